@@ -1,0 +1,91 @@
+"""What the axes of MANUAL_CONTROL mean to each kind of vehicle: Axes in -1..1 to and from the message.
+
+The message means three things in the field: our rover reads x and r as the specification says, ArduPilot Rover reads
+z and y (z = 0 is neutral), PX4 rovers read z and y with 500 as neutral. To add a kind, add a line to AXIS_MAPS.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from dialects.enums import Autopilot
+from dialects.messages import INVALID_AXIS, ManualControl
+
+FULL = 1000
+"""Full deflection of an axis (common.xml, MANUAL_CONTROL)."""
+
+AXIS_NAMES = ("x", "y", "z", "r")
+"""In the order of ROVER_AXIS."""
+
+
+@dataclass(frozen=True, slots=True)
+class Axes:
+    """A demand: throttle forward positive, steering clockwise (right) positive, each -1..1."""
+
+    throttle: float = 0.0
+    steering: float = 0.0
+
+    @property
+    def neutral(self) -> bool:
+        """True when nothing is asked."""
+        return self.throttle == 0.0 and self.steering == 0.0
+
+
+NEUTRAL = Axes()
+
+
+@dataclass(frozen=True, slots=True)
+class AxisMap:
+    """Which axis carries what; `throttle_neutral` and `throttle_span` are in axis units."""
+
+    throttle: str
+    steering: str
+    throttle_neutral: int = 0
+    throttle_span: int = FULL
+
+
+AXIS_MAPS: dict[int, AxisMap] = {
+    Autopilot.GENERIC: AxisMap(throttle="x", steering="r"),
+    Autopilot.ARDUPILOT: AxisMap(throttle="z", steering="y"),
+    Autopilot.PX4: AxisMap(throttle="z", steering="y", throttle_neutral=500, throttle_span=500),
+}
+"""MAV_AUTOPILOT of the vehicle's HEARTBEAT -> its axes."""
+
+
+def axis_map(autopilot: int) -> AxisMap:
+    """The axes of a vehicle; those of the specification for an autopilot we do not know."""
+    return AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
+
+
+def manual_control(
+    axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]
+) -> ManualControl:
+    """The message for a demand. Values are clamped here because ArduPilot does not (z = 32766 is full ahead there).
+
+    Axes that mean nothing to the vehicle are sent as INT16_MAX, "invalid".
+    """
+    values = dict.fromkeys(AXIS_NAMES, INVALID_AXIS)
+    values[axis_map.throttle] = axis_map.throttle_neutral + round(
+        _clamp(axes.throttle) * axis_map.throttle_span
+    )
+    values[axis_map.steering] = round(_clamp(axes.steering) * FULL)
+    return ManualControl(target=target, buttons=0, **values)
+
+
+def _clamp(value: float) -> float:
+    return 0.0 if math.isnan(value) else max(-1.0, min(1.0, value))
+
+
+def demand(
+    message: ManualControl, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]
+) -> tuple[float | None, float | None]:
+    """Throttle and steering in -1..1 of a received message; None for an axis that is invalid or out of range.
+
+    Out of range is refused and not clamped: a wild value must not become full speed.
+    """
+    raw_throttle = getattr(message, axis_map.throttle)
+    raw_steering = getattr(message, axis_map.steering)
+    throttle = (raw_throttle - axis_map.throttle_neutral) / axis_map.throttle_span
+    steering = raw_steering / FULL
+    return (throttle if abs(throttle) <= 1.0 else None, steering if abs(steering) <= 1.0 else None)

@@ -1,0 +1,103 @@
+"""Every message we speak, under a readable name: pymavlink's generated classes, nothing wrapped around them.
+
+To speak another message, add one line here; its fields are those of the official definition (or of rover.xml).
+"""
+
+from __future__ import annotations
+
+from dialects import rover
+
+Message = rover.MAVLink_message
+
+# Both directions
+Heartbeat = rover.MAVLink_heartbeat_message
+Timesync = rover.MAVLink_timesync_message
+Ping = rover.MAVLink_ping_message
+StatusText = rover.MAVLink_statustext_message
+CommandLong = rover.MAVLink_command_long_message
+CommandInt = rover.MAVLink_command_int_message
+CommandAck = rover.MAVLink_command_ack_message
+CommandCancel = rover.MAVLink_command_cancel_message
+SystemTime = rover.MAVLink_system_time_message
+RadioStatus = rover.MAVLink_radio_status_message
+
+# Demands
+ManualControl = rover.MAVLink_manual_control_message
+RcChannelsOverride = rover.MAVLink_rc_channels_override_message
+SetMode = rover.MAVLink_set_mode_message
+RoverOperatorPresence = rover.MAVLink_rover_operator_presence_message
+
+# Parameters, missions, files, logs
+ParamRequestList = rover.MAVLink_param_request_list_message
+ParamRequestRead = rover.MAVLink_param_request_read_message
+ParamSet = rover.MAVLink_param_set_message
+ParamValue = rover.MAVLink_param_value_message
+ParamError = rover.MAVLink_param_error_message
+RequestDataStream = rover.MAVLink_request_data_stream_message
+MessageInterval = rover.MAVLink_message_interval_message
+MissionRequestList = rover.MAVLink_mission_request_list_message
+MissionCount = rover.MAVLink_mission_count_message
+FileTransferProtocol = rover.MAVLink_file_transfer_protocol_message
+LogRequestList = rover.MAVLink_log_request_list_message
+LogEntry = rover.MAVLink_log_entry_message
+
+# Telemetry
+SysStatus = rover.MAVLink_sys_status_message
+BatteryStatus = rover.MAVLink_battery_status_message
+Attitude = rover.MAVLink_attitude_message
+VfrHud = rover.MAVLink_vfr_hud_message
+LocalPositionNed = rover.MAVLink_local_position_ned_message
+GlobalPositionInt = rover.MAVLink_global_position_int_message
+GpsRawInt = rover.MAVLink_gps_raw_int_message
+ServoOutputRaw = rover.MAVLink_servo_output_raw_message
+RcChannels = rover.MAVLink_rc_channels_message
+HomePosition = rover.MAVLink_home_position_message
+ExtendedSysState = rover.MAVLink_extended_sys_state_message
+AutopilotVersion = rover.MAVLink_autopilot_version_message
+ProtocolVersion = rover.MAVLink_protocol_version_message
+AvailableModes = rover.MAVLink_available_modes_message
+CurrentMode = rover.MAVLink_current_mode_message
+ControlStatus = rover.MAVLink_control_status_message
+RoverDriveStatus = rover.MAVLink_rover_drive_status_message
+RoverFailsafeStatus = rover.MAVLink_rover_failsafe_status_message
+RoverLinkStatus = rover.MAVLink_rover_link_status_message
+RoverDriveInfo = rover.MAVLink_rover_drive_info_message
+
+MESSAGES: dict[int, type[Message]] = rover.mavlink_map
+"""Every message of the dialect by id."""
+
+INVALID_AXIS = 32767
+"""INT16_MAX on an axis of MANUAL_CONTROL: "no demand on this axis" (common.xml, MANUAL_CONTROL)."""
+
+UINT16_MAX = 65535
+UINT32_MASK = 0xFFFFFFFF
+
+
+def boot_ms(seconds: float) -> int:
+    """`time_boot_ms` for a time since boot in s; wraps after 49.7 days as the field does (pymavlink raises instead)."""
+    return int(seconds * 1000) & UINT32_MASK
+
+
+ACKNOWLEDGED: frozenset[int] = frozenset(
+    message.id
+    for message in (CommandLong, CommandInt, CommandAck, CommandCancel, SetMode, ParamRequestList, ParamRequestRead, ParamSet,
+                    ParamValue, ParamError, MissionRequestList, MissionCount, FileTransferProtocol, LogRequestList, LogEntry,
+                    StatusText, Timesync, Ping)
+)  # fmt: skip
+"""Messages that are repeated until answered, or said once. All others are state: only the newest counts."""
+
+
+def text_of(message: StatusText) -> str:
+    """The text as UTF-8 (the generated decoder knows only ASCII), with control characters shown and never obeyed.
+
+    A vehicle's text goes to a terminal: an escape sequence inside it must not reach the screen as one.
+    """
+    raw: bytes = message._text_raw
+    return printable(raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
+
+
+def printable(text: str) -> str:
+    """`text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
+    return "".join(
+        character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text
+    )

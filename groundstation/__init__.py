@@ -1,0 +1,1 @@
+"""Who commands: the terminal ground station and its command line."""

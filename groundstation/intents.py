@@ -1,0 +1,104 @@
+"""What the operator wants: the values that travel from the keys to the station, and nothing else does.
+
+They are msgspec structs because the keys live in the terminal's process and the station in another one (helm.py).
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+
+class Intent(msgspec.Struct, frozen=True, tag=True):
+    """Base of the union below."""
+
+
+class Push(Intent, frozen=True):
+    """A drive key went down, or repeats: "this way", -1, 0 or +1 an axis."""
+
+    key: str
+    throttle: int
+    steering: int
+    repeat: bool = False
+    """The terminal says that this is an auto-repeat (only terminals that report key releases know)."""
+
+
+class Release(Intent, frozen=True):
+    """A drive key went up. Only some terminals tell; elsewhere the sticks fall back by themselves."""
+
+    key: str
+
+
+class Stop(Intent, frozen=True):
+    """Neutral at once; also ends a latched drive."""
+
+    reason: str = "stop key"
+
+
+class EmergencyStop(Intent, frozen=True):
+    """Motors off at once and locked, by command and repeated until acknowledged."""
+
+
+class ClearEmergencyStop(Intent, frozen=True):
+    """Release the emergency stop; arming is a further step."""
+
+
+class ChangeSpeed(Intent, frozen=True):
+    """Scale the limits of the sticks; never moves the vehicle. Factors above 0, e.g. 1.1."""
+
+    throttle: float = 1.0
+    steering: float = 1.0
+
+
+class SetStyle(Intent, frozen=True):
+    """How keys drive: "hold", "latch" or "step"."""
+
+    style: str
+
+
+class ExactKeys(Intent, frozen=True):
+    """The terminal has proved that it reports key releases: no timers are needed any more."""
+
+
+class Gate(Intent, frozen=True):
+    """May keys drive now? Closed when another screen is on top, the focus is lost or the terminal is gone."""
+
+    open: bool
+    reason: str = ""
+
+
+class Lease(Intent, frozen=True):
+    """ "The screen lives": renewed by the UI's own loop. Without it the station goes neutral and then silent."""
+
+
+class Arm(Intent, frozen=True):
+    """Arm the vehicle, after putting it into MANUAL where it is in HOLD."""
+
+
+class Disarm(Intent, frozen=True):
+    """Disarm the vehicle."""
+
+
+class SetMode(Intent, frozen=True):
+    """Change the mode; `mode` is a name of dialects.modes.Mode."""
+
+    mode: str
+
+
+class RequestControl(Intent, frozen=True):
+    """Ask to be the ground station in control."""
+
+
+class SelectVehicle(Intent, frozen=True):
+    """Drive the vehicle with this system id from now on."""
+
+    system: int
+
+
+class Quit(Intent, frozen=True):
+    """Send neutral several times and end."""
+
+
+AnyIntent = (
+    Push | Release | Stop | EmergencyStop | ClearEmergencyStop | ChangeSpeed | SetStyle | ExactKeys | Gate | Lease | Arm
+    | Disarm | SetMode | RequestControl | SelectVehicle | Quit
+)  # fmt: skip

@@ -1,0 +1,94 @@
+"""The one contract of both houses: a core takes messages and time, and gives messages. Shells do the input and output."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
+
+from dialects.messages import Message
+
+
+class Peer(NamedTuple):
+    """The other end of a link: which link, and which address on it."""
+
+    link: int
+    address: Hashable
+
+
+class Received(NamedTuple):
+    """A message that was found whole, checked and counted."""
+
+    message: Message
+    system: int
+    """System id of the sender, 1..255."""
+    component: int
+    """Component id of the sender, 1..255."""
+    sequence: int
+    """Packet sequence number, 0..255."""
+    peer: Peer
+    introduced: bool
+    """The peer has shown a HEARTBEAT of this system: only then may it control (a moved address must say who it is)."""
+
+
+class Outgoing(NamedTuple):
+    """A message to send: to one peer, or where `peer` is None to every peer that the message is meant for."""
+
+    message: Message
+    peer: Peer | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SourceCount:
+    """What one system and component has got through, since the link opened."""
+
+    received: int
+    lost: int
+
+
+@dataclass(frozen=True, slots=True)
+class LinkReport:
+    """What a link says of itself, counted since it opened."""
+
+    name: str
+    """The endpoint as the user wrote it."""
+    index: int = 0
+    peers: int = 0
+    frames: int = 0
+    bytes_received: int = 0
+    bytes_sent: int = 0
+    crc_errors: int = 0
+    resync_bytes: int = 0
+    unknown: int = 0
+    """Frames with an id that the dialect lacks."""
+    duplicates: int = 0
+    late: int = 0
+    rate_limited: int = 0
+    refused_peers: int = 0
+    dialect_mismatch: tuple[str, ...] = ()
+    """Names of messages that arrive whole but with another definition's checksum."""
+    own_id: bool = False
+    """Somebody else sends with our system and component id."""
+    down: str | None = None
+    """Why the link is down, or None."""
+    sources: dict[tuple[int, int], SourceCount] = field(default_factory=dict)
+
+
+class Core(Protocol):
+    """What the runner drives. `now` is seconds of a monotonic clock and never goes back.
+
+    Two rules of the content: state (demands, telemetry, heartbeats) is replaced, the newest wins; commands are repeated
+    until acknowledged. And silence is an input: tick() acts on what did not arrive.
+    """
+
+    def receive(self, received: Received, now: float) -> None:
+        """Take one message and act on it at once."""
+
+    def tick(self, now: float) -> None:
+        """Let time pass: send what is due, act on what is overdue."""
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Take what the links say of themselves, about once a second."""
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """What to send now; empties what it returns."""

@@ -1,0 +1,1 @@
+"""Who obeys: the rover daemon and its simulator. Runs without Textual."""
