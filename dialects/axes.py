@@ -58,17 +58,13 @@ def axis_map(autopilot: int) -> AxisMap:
     return AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
 
 
-def manual_control(
-    axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]
-) -> ManualControl:
+def manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]) -> ManualControl:
     """The message for a demand. Values are clamped here because ArduPilot does not (z = 32766 is full ahead there).
 
     Axes that mean nothing to the vehicle are sent as INT16_MAX, "invalid".
     """
     values = dict.fromkeys(AXIS_NAMES, INVALID_AXIS)
-    values[axis_map.throttle] = axis_map.throttle_neutral + round(
-        _clamp(axes.throttle) * axis_map.throttle_span
-    )
+    values[axis_map.throttle] = axis_map.throttle_neutral + round(_clamp(axes.throttle) * axis_map.throttle_span)
     values[axis_map.steering] = round(_clamp(axes.steering) * FULL)
     return ManualControl(target=target, buttons=0, **values)
 

@@ -98,6 +98,4 @@ def text_of(message: StatusText) -> str:
 
 def printable(text: str) -> str:
     """`text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
-    return "".join(
-        character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text
-    )
+    return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)
