@@ -1,4 +1,4 @@
-"""The one contract of both houses: a core takes messages and time, and gives messages. Shells do the input and output."""
+"""The one contract of both houses: a core takes messages and time, and gives messages. Shells do the I/O."""
 
 from __future__ import annotations
 

@@ -1,0 +1,69 @@
+"""Where a link ends: "udpin:127.0.0.1:14550" and its kind. ONE table is the parser and the help text."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+class EndpointError(ValueError):
+    """The text of an endpoint is wrong; the message is one line that says what, where and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    """One end of a link, as parsed."""
+
+    text: str
+    """As the user wrote it, without `//`."""
+    scheme: str
+    host: str
+    port: int
+    """1..65535"""
+
+
+@dataclass(frozen=True, slots=True)
+class Scheme:
+    """A kind of endpoint: how it looks, what it does, how its text is read."""
+
+    form: str
+    help: str
+    parse: Callable[[str, str], Endpoint]
+
+
+def _host_port(scheme: str, rest: str) -> Endpoint:
+    text = f"{scheme}:{rest}"
+    host, colon, port = rest.rpartition(":")
+    host = host.removeprefix("[").removesuffix("]")
+    if not colon or not host:
+        raise EndpointError(f"endpoint {text!r}: write {SCHEMES[scheme].form}, for example {scheme}:127.0.0.1:14550")
+    if not (port.isascii() and port.isdigit() and 1 <= int(port) <= 65535):
+        raise EndpointError(f"endpoint {text!r}: port {port!r} is not a number from 1 to 65535")
+    return Endpoint(text, scheme, host, int(port))
+
+
+SCHEMES: dict[str, Scheme] = {
+    "udpin": Scheme("udpin:HOST:PORT", "wait on this address; answer whoever shows a heartbeat", _host_port),
+    "udpout": Scheme("udpout:HOST:PORT", "send to this address first", _host_port),
+}
+"""Scheme -> its parser and help. link/runner.py holds the shell for each."""
+
+
+def parse(text: str) -> Endpoint:
+    """The endpoint that `text` names; `udpin://HOST:PORT` is the same as `udpin:HOST:PORT`. Raises EndpointError."""
+    scheme, colon, rest = text.strip().partition(":")
+    scheme = scheme.lower()
+    if scheme not in SCHEMES or not colon:
+        near = difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
+        hint = f"did you mean {near[0]}:? " if near else ""
+        raise EndpointError(
+            f"endpoint {text!r}: {hint}it must be one of " + ", ".join(each.form for each in SCHEMES.values())
+        )
+    return SCHEMES[scheme].parse(scheme, rest.removeprefix("//").rstrip("/"))
+
+
+def endpoint_help() -> str:
+    """The table as lines for --help."""
+    width = max(len(each.form) for each in SCHEMES.values())
+    return "\n".join(f"  {each.form:<{width}}  {each.help}" for each in SCHEMES.values())

@@ -1,0 +1,279 @@
+"""Bytes -> frames: finds them, checks length and checksum, resynchronises by one byte, drops and counts the rest.
+
+Rules: a frame counts only when its id is in the dialect and its checksum is right; anything else moves the search on by
+ONE byte, so that a stray start byte costs nothing (pymavlink throws the whole claimed length away: 12 frames, 0.65 s at
+20 Hz). Input from the wire never raises. Payloads are not decoded here.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from typing import NamedTuple
+
+from fastcrc.crc16 import mcrf4xx
+
+from dialects.codec import (
+    BASE_SIZE,
+    CRC_EXTRA,
+    CRC_SIZE,
+    HEADER_V1,
+    HEADER_V2,
+    INCOMPAT_SIGNED,
+    MAGIC_V1,
+    MAGIC_V2,
+    SIGNATURE_SIZE,
+)
+
+PARTIAL_DEADLINE = 0.1
+"""s that a stream may owe the rest of a frame. Longer than the longest frame takes at 57600 baud (280 bytes, 49 ms),
+shorter than the vehicle's patience with a driver (0.45 s): a forged header must not hide the frames behind it."""
+
+MISMATCHES_KEPT = 64
+_SHORTEST = HEADER_V2 + CRC_SIZE
+_MAGIC = re.compile(b"[\xfd\xfe]")
+_KNOWN = {number.to_bytes(3, "little"): (number, extra) for number, extra in CRC_EXTRA.items()}
+
+
+class Frame(NamedTuple):
+    """A whole frame with a right checksum."""
+
+    message_id: int
+    system: int
+    component: int
+    sequence: int
+    raw: bytes
+    """All of it, as received."""
+
+    @property
+    def payload(self) -> bytes:
+        """The payload as received, its trailing zeros cut by the sender or not."""
+        raw = self.raw
+        start = HEADER_V2 if raw[0] == MAGIC_V2 else HEADER_V1
+        return raw[start : start + raw[1]]
+
+
+@dataclass(slots=True)
+class Counts:
+    """What a framer has seen so far."""
+
+    frames: int = 0
+    crc_errors: int = 0
+    resync_bytes: int = 0
+    """Bytes that belonged to no frame."""
+    unknown: int = 0
+    """Whole frames with an id outside the dialect."""
+    refused: int = 0
+    """Frames with flags we do not know, or MAVLink 1 frames of the wrong length."""
+    mismatches: dict[int, int] = field(default_factory=dict)
+    """Known ids that arrive whole but with another definition's checksum -> how often."""
+
+
+_new_frame = tuple.__new__  # half the cost of Frame(...)
+
+
+class _Missing(Enum):
+    """Why there is no frame at a place."""
+
+    MAGIC = auto()
+    """No start byte here."""
+    BYTES = auto()
+    """It may be one, but its end has not come yet."""
+    FRAME = auto()
+    """It cannot be one."""
+
+
+class _Doubt(NamedTuple):
+    """A failed frame whose claimed end may yet prove that it was a whole one: then it was foreign and not noise."""
+
+    end: int
+    message_id: int
+    known: bool
+
+
+class Framer:
+    """Frames of one sender's bytes.
+
+    With `stream` false each feed() is one datagram: a frame never goes on in the next one. With `stream` true bytes
+    are kept until a frame is whole, but no longer than PARTIAL_DEADLINE.
+    """
+
+    def __init__(self, *, stream: bool) -> None:
+        self.counts = Counts()
+        self._stream = stream
+        self._buffer = b""
+        self._waiting_since: float | None = None
+        self._doubt: _Doubt | None = None
+
+    def feed(self, data: bytes, now: float) -> list[Frame]:
+        """All frames that are whole now. `now` in s, monotonic."""
+        if not self._stream:
+            whole = self._single(data)
+            return self._scan(data, final=True)[0] if whole is None else whole
+        frames = self.expire(now)
+        self._buffer += data
+        frames += self._take(now)
+        return frames
+
+    def expire(self, now: float) -> list[Frame]:
+        """Give up a partial frame that is overdue and look behind its first byte; call it when nothing arrives, too."""
+        frames: list[Frame] = []
+        while self._waiting_since is not None and now - self._waiting_since >= PARTIAL_DEADLINE:
+            self._skip_first_byte()
+            found = self._take(now)
+            frames += found
+            if not found and self._waiting_since is not None:
+                self._waiting_since = now - PARTIAL_DEADLINE  # what follows has waited as long
+        return frames
+
+    def _single(self, datagram: bytes) -> list[Frame] | None:
+        """The usual case, found fast: a datagram that is one unsigned MAVLink 2 frame and nothing else, else None."""
+        if len(datagram) < _SHORTEST or datagram[0] != MAGIC_V2 or datagram[2] or len(datagram) != datagram[1] + 12:
+            return None
+        known = _KNOWN.get(datagram[7:10])
+        if known is None:
+            self.counts.unknown += 1
+            return []
+        if mcrf4xx(datagram[1:-2] + known[1]) != datagram[-2] | datagram[-1] << 8:
+            return None
+        self.counts.frames += 1
+        return [_new_frame(Frame, (known[0], datagram[5], datagram[6], datagram[4], datagram))]
+
+    def _skip_first_byte(self) -> None:
+        self._buffer = self._buffer[1:]
+        self._doubt = None
+        self.counts.resync_bytes += 1
+
+    def _take(self, now: float) -> list[Frame]:
+        frames, used = self._scan(self._buffer, final=False)
+        self._buffer = self._buffer[used:]
+        self._doubt = self._doubt and self._doubt._replace(end=self._doubt.end - used)
+        if not self._buffer:
+            self._waiting_since = None
+        elif used or self._waiting_since is None:
+            self._waiting_since = now
+        return frames
+
+    def _scan(self, data: bytes, *, final: bool) -> tuple[list[Frame], int]:
+        """Frames in `data` and how many bytes are done with. `final`: no more bytes will come.
+
+        The hot path of all reception: a sound unsigned MAVLink 2 frame costs no call here but the checksum's (the rest
+        is in _frame_at, which knows every case).
+        """
+        frames: list[Frame] = []
+        position, size = 0, len(data)
+        while position < size:
+            known = _KNOWN.get(data[position + 7 : position + 10])
+            if known is not None and data[position] == MAGIC_V2 and not data[position + 2]:
+                crc_at = position + HEADER_V2 + data[position + 1]
+                end = crc_at + CRC_SIZE
+                if end <= size and (
+                    mcrf4xx(data[position + 1 : crc_at] + known[1]) == data[crc_at] | data[crc_at + 1] << 8
+                ):
+                    if self._doubt is not None:
+                        self._settle(position)
+                    frames.append(
+                        _new_frame(
+                            Frame,
+                            (known[0], data[position + 5], data[position + 6], data[position + 4], data[position:end]),
+                        )
+                    )
+                    position = end
+                    continue
+            after = self._slow(data, position, size, frames)
+            if after == position:
+                if not final:
+                    break  # the rest of the frame may still come
+                self.counts.resync_bytes += 1
+                after += 1
+            position = after
+        if final:
+            self._settle(size)
+        self.counts.frames += len(frames)
+        return frames, position
+
+    def _slow(self, data: bytes, position: int, size: int, frames: list[Frame]) -> int:
+        """Any case at `position`; returns where to go on, `position` itself where a frame's end has not come yet."""
+        found = self._frame_at(data, position, size)
+        if type(found) is Frame:
+            self._settle(position)
+            frames.append(found)
+            return position + len(found.raw)
+        if found is _Missing.BYTES:
+            return position
+        if found is _Missing.MAGIC:
+            return self._next_magic(data, position, size)
+        self.counts.resync_bytes += 1
+        return position + 1
+
+    def _next_magic(self, data: bytes, position: int, size: int) -> int:
+        match = _MAGIC.search(data, position)
+        end = match.start() if match else size
+        self.counts.resync_bytes += end - position
+        return end
+
+    def _frame_at(self, data: bytes, start: int, size: int) -> Frame | _Missing:
+        """The frame at `start`, or what it lacks."""
+        if data[start] != MAGIC_V2:
+            return self._frame_v1(data, start, size) if data[start] == MAGIC_V1 else _Missing.MAGIC
+        if size - start < HEADER_V2 + CRC_SIZE:
+            return _Missing.BYTES
+        length, flags, _, sequence, system, component, low, middle, high = data[start + 1 : start + HEADER_V2]
+        message_id = low | middle << 8 | high << 16
+        crc_at = start + HEADER_V2 + length
+        end = crc_at + CRC_SIZE + (SIGNATURE_SIZE if flags else 0)
+        extra = CRC_EXTRA.get(message_id)
+        if flags > INCOMPAT_SIGNED or extra is None:
+            return self._foreign(start, end, flags, message_id)
+        if end > size:
+            return _Missing.BYTES
+        if mcrf4xx(data[start + 1 : crc_at] + extra) != data[crc_at] | data[crc_at + 1] << 8:
+            return self._bad_crc(start, end, message_id)
+        return Frame(message_id, system, component, sequence, data[start:end])
+
+    def _foreign(self, start: int, end: int, flags: int, message_id: int) -> _Missing:
+        """Flags that we may not ignore (MAVLink serialization: drop it), or an id outside the dialect."""
+        if flags > INCOMPAT_SIGNED:
+            self.counts.refused += 1
+        else:
+            self._suspect(start, _Doubt(end, message_id, known=False))
+        return _Missing.FRAME
+
+    def _frame_v1(self, data: bytes, start: int, size: int) -> Frame | _Missing:
+        if size - start < HEADER_V1 + CRC_SIZE:
+            return _Missing.BYTES
+        length, sequence, system, component, message_id = data[start + 1 : start + HEADER_V1]
+        if BASE_SIZE.get(message_id) != length:
+            self.counts.refused += message_id in BASE_SIZE
+            return _Missing.FRAME
+        crc_at = start + HEADER_V1 + length
+        end = crc_at + CRC_SIZE
+        if end > size:
+            return _Missing.BYTES
+        if mcrf4xx(data[start + 1 : crc_at] + CRC_EXTRA[message_id]) != data[crc_at] | data[crc_at + 1] << 8:
+            return self._bad_crc(start, end, message_id)
+        return Frame(message_id, system, component, sequence, data[start:end])
+
+    def _bad_crc(self, start: int, end: int, message_id: int) -> _Missing:
+        self.counts.crc_errors += 1
+        self._suspect(start, _Doubt(end, message_id, known=True))
+        return _Missing.FRAME
+
+    def _suspect(self, start: int, doubt: _Doubt) -> None:
+        """Remember a failed frame, unless it lies inside an earlier one that may still prove whole."""
+        if self._doubt is not None and self._doubt.end <= start:
+            self._settle(start)
+        if self._doubt is None:
+            self._doubt = doubt
+
+    def _settle(self, position: int) -> None:
+        """A frame starts, or the datagram ends, at `position`: was the failed frame before it a whole foreign one?"""
+        doubt = self._doubt
+        self._doubt = None
+        if doubt is None or doubt.end != position:
+            return
+        if not doubt.known:
+            self.counts.unknown += 1
+        elif doubt.message_id in self.counts.mismatches or len(self.counts.mismatches) < MISMATCHES_KEPT:
+            self.counts.mismatches[doubt.message_id] = self.counts.mismatches.get(doubt.message_id, 0) + 1

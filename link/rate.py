@@ -1,0 +1,49 @@
+"""How much is too much, and how much it was: a token bucket and a rate meter."""
+
+from __future__ import annotations
+
+from collections import deque
+
+
+class TokenBucket:
+    """Lets `rate` a second through, and `burst` at once."""
+
+    def __init__(self, rate: float, burst: float) -> None:
+        self._rate = rate
+        self._burst = burst
+        self._tokens = burst
+        self._at: float | None = None
+
+    def take(self, now: float, cost: float = 1.0) -> bool:
+        """True when there was room for `cost`; nothing is taken otherwise."""
+        if self._at is not None:
+            self._tokens = min(self._burst, self._tokens + (now - self._at) * self._rate)
+        self._at = now
+        if self._tokens < cost:
+            return False
+        self._tokens -= cost
+        return True
+
+
+class RateMeter:
+    """Events a second over the last `window` s."""
+
+    def __init__(self, window: float = 1.0) -> None:
+        self._window = window
+        self._events: deque[tuple[float, float]] = deque()
+        self._sum = 0.0
+
+    def add(self, now: float, amount: float = 1.0) -> None:
+        """`amount` events happened now."""
+        self._events.append((now, amount))
+        self._sum += amount
+        self._forget(now)
+
+    def rate(self, now: float) -> float:
+        """Events a second."""
+        self._forget(now)
+        return self._sum / self._window
+
+    def _forget(self, now: float) -> None:
+        while self._events and self._events[0][0] <= now - self._window:
+            self._sum -= self._events.popleft()[1]
