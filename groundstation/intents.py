@@ -50,7 +50,7 @@ class ChangeSpeed(Intent, frozen=True):
 
 
 class SetStyle(Intent, frozen=True):
-    """How keys drive: "hold", "latch" or "step"."""
+    """How keys drive: "hold", "latch" or "step"; "next" is the one after the present one."""
 
     style: str
 
@@ -94,11 +94,15 @@ class SelectVehicle(Intent, frozen=True):
     system: int
 
 
+class StartSimulator(Intent, frozen=True):
+    """Start a simulated rover as a child of the station and let it connect to us."""
+
+
 class Quit(Intent, frozen=True):
     """Send neutral several times and end."""
 
 
 AnyIntent = (
     Push | Release | Stop | EmergencyStop | ClearEmergencyStop | ChangeSpeed | SetStyle | ExactKeys | Gate | Lease | Arm
-    | Disarm | SetMode | RequestControl | SelectVehicle | Quit
+    | Disarm | SetMode | RequestControl | SelectVehicle | StartSimulator | Quit
 )  # fmt: skip

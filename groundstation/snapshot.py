@@ -129,7 +129,7 @@ class MessageRate(msgspec.Struct, frozen=True, kw_only=True):
     """We send it; else we receive it."""
 
 
-class Snapshot(msgspec.Struct, frozen=True, kw_only=True):
+class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """Everything the screen shows."""
 
     number: int = 0

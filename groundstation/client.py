@@ -1,0 +1,178 @@
+"""The screen's end of the pipe: starts the station process, sends it intents, and takes its snapshots. Not Textual."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import subprocess
+import sys
+import threading
+from collections import deque
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+
+from groundstation.intents import AnyIntent, Lease, Push, Quit
+from groundstation.snapshot import Snapshot
+from groundstation.wire import MAX_PACKET, SOCKET_BUFFER, Batch, Failure, Hello, clock, decode_up, encode
+
+HELLO_TIMEOUT = 15.0
+"""How long the station may take to open its links: Python's start on a slow Pi (3 s) and a name to resolve (10 s)."""
+
+CLOSE_TIMEOUT = 1.0
+"""How long a station may take to send its neutral frames and end, before it is killed. It needs 0.25 s."""
+
+MAX_PENDING = 256
+"""Intents kept for a station that does not read. Pushes and leases are not kept: late, they would be wrong."""
+
+
+class StationError(RuntimeError):
+    """The station process could not start; the message is one line for the user."""
+
+
+class StationClient:
+    """One station process, and the pipe to it. `send` may be called from any thread, the rest from one."""
+
+    def __init__(self, pipe: socket.socket, process: subprocess.Popen[bytes], endpoints: tuple[str, ...]) -> None:
+        self.endpoints = endpoints
+        self._pipe = pipe
+        self._process = process
+        self._lock = threading.Lock()
+        self._pending: deque[AnyIntent] = deque(maxlen=MAX_PENDING)
+        self._open = True
+
+    @classmethod
+    def start(
+        cls,
+        endpoints: Sequence[str],
+        *,
+        system: int = 255,
+        style: str = "hold",
+        speed: float = 0.6,
+        sitl: bool = False,
+        log_file: Path | None = None,
+    ) -> StationClient:
+        """Start the station process and wait until its links are open. Raises StationError."""
+        options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
+        if log_file is not None:
+            options.append(f"--log-file={log_file}")
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with theirs:
+            for end in (ours, theirs):
+                end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
+            process = _spawn(theirs.fileno(), options, endpoints)
+        try:
+            hello = _hello(ours)
+        except StationError:
+            _end(process, CLOSE_TIMEOUT)
+            ours.close()
+            raise
+        ours.setblocking(False)
+        return cls(ours, process, hello.endpoints)
+
+    @property
+    def pid(self) -> int:
+        """Process id of the station."""
+        return self._process.pid
+
+    def send(self, *intents: AnyIntent) -> None:
+        """Hand over what the operator wants; never blocks, never raises. The intents of one call stay together."""
+        with self._lock:
+            if not self._open:
+                return
+            packet = (*self._pending, *intents)
+            try:
+                self._pipe.send(encode(Batch(clock(), packet)))
+                self._pending.clear()
+            except BlockingIOError:
+                self._pending.extend(intent for intent in intents if not isinstance(intent, (Push, Lease)))
+            except OSError:  # the station has ended; alive tells
+                self._open = False
+
+    def fileno(self) -> int:
+        """For the screen's loop to wait on."""
+        return self._pipe.fileno()
+
+    def receive(self) -> Snapshot | None:
+        """The newest snapshot that waits, or None. Never blocks; when the station has ended, `alive` is False after it."""
+        newest: bytes | None = None
+        while True:
+            try:
+                packet = self._pipe.recv(MAX_PACKET)
+            except BlockingIOError:
+                break
+            except OSError:
+                packet = b""
+            if not packet:
+                self._open = False
+                break
+            newest = packet
+        return _snapshot(newest) if newest else None
+
+    @property
+    def alive(self) -> bool:
+        """The station is there. False from the end of its pipe on: it can no longer take intents."""
+        return self._open and self._process.poll() is None
+
+    def close(self) -> int | None:
+        """Let the station send its neutral frames and end, within about a second. Its exit code (negative: signal)."""
+        self.send(Quit())
+        code = _end(self._process, CLOSE_TIMEOUT)
+        with self._lock:
+            self._open = False
+            self._pipe.close()
+        return code
+
+
+def _spawn(descriptor: int, options: Sequence[str], endpoints: Sequence[str]) -> subprocess.Popen[bytes]:
+    """The process has no terminal of ours on its standard streams: nothing that it or a library prints may be seen."""
+    command = [sys.executable, "-m", "groundstation.helm", f"--fd={descriptor}", *options, "--", *endpoints]
+    null = subprocess.DEVNULL
+    try:
+        return subprocess.Popen(
+            command, pass_fds=[descriptor], stdin=null, stdout=null, stderr=null, env=_environment()
+        )
+    except OSError as error:
+        raise StationError(f"the station process did not start: {error.strerror}") from error
+
+
+def child_environment() -> dict[str, str]:
+    """Ours; from a checkout that is not installed, with its folder on the path, which -P takes off."""
+    root = Path(__file__).resolve().parent.parent
+    if not (root / "pyproject.toml").exists():
+        return dict(os.environ)
+    return os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))}
+
+
+def _hello(pipe: socket.socket) -> Hello:
+    pipe.settimeout(HELLO_TIMEOUT)
+    try:
+        packet = pipe.recv(MAX_PACKET)
+    except TimeoutError as error:
+        raise StationError(f"the station process did not answer within {HELLO_TIMEOUT:.0f} s") from error
+    except OSError as error:
+        raise StationError(f"the station process ended: {error.strerror}") from error
+    first = decode_up(packet) if packet else Failure("the station process ended before it was ready; its log says why")
+    if isinstance(first, Failure):
+        raise StationError(first.line)
+    if not isinstance(first, Hello):
+        raise StationError("the station process speaks another version")
+    return first
+
+
+def _snapshot(packet: bytes) -> Snapshot | None:
+    with contextlib.suppress(msgspec.DecodeError):
+        message = decode_up(packet)
+        if isinstance(message, Snapshot):
+            return message
+    return None
+
+
+def _end(process: subprocess.Popen[bytes], timeout: float) -> int | None:
+    try:
+        return process.wait(timeout)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        return process.wait()

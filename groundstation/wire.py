@@ -1,0 +1,47 @@
+"""What travels on the pipe between the screen's process and the station's: one packet a message, nothing stored."""
+
+from __future__ import annotations
+
+import time
+
+import msgspec
+
+from groundstation.intents import AnyIntent
+from groundstation.snapshot import Snapshot
+
+SOCKET_BUFFER = 1 << 20
+"""Bytes asked for each way, so that a snapshot (< 60 kB) or a second of keys always fits; the kernel may give less."""
+
+MAX_PACKET = 1 << 18
+
+
+class Batch(msgspec.Struct, frozen=True):
+    """Down: the intents of one read of keys (or of one act of the screen), and when they were made."""
+
+    time: float
+    """CLOCK_MONOTONIC, s: the clock of all processes, so that the station can refuse a key that lay around."""
+    intents: tuple[AnyIntent, ...]
+
+
+class Hello(msgspec.Struct, frozen=True, tag=True):
+    """Up, first: the links are open."""
+
+    endpoints: tuple[str, ...]
+
+
+class Failure(msgspec.Struct, frozen=True, tag=True):
+    """Up, first and last: the station cannot work; one line for the user."""
+
+    line: str
+
+
+Up = Hello | Failure | Snapshot
+
+encode = msgspec.msgpack.Encoder().encode
+decode_up = msgspec.msgpack.Decoder(Up).decode
+decode_down = msgspec.msgpack.Decoder(Batch).decode
+
+
+def clock() -> float:
+    """CLOCK_MONOTONIC, s: on Linux one clock for all processes, unlike perf_counter's promise."""
+    return time.monotonic()
