@@ -1,0 +1,114 @@
+"""How a simulated rover moves: throttles in, speed, turn and place out. No energy (battery.py) or sensors (body.py)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+AT_REST = 1e-3
+"""m/s; slower than this a driven-out wheel stands, as friction makes it do: else a stopped rover creeps for ever."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """The build of a rover. The numbers are those of a 30 cm kit with geared 12 V motors, the usual first rover."""
+
+    top_speed: float = 1.5
+    """m/s at full throttle and nominal voltage: 230 turns a minute on a 12.5 cm wheel."""
+    track_width: float = 0.3
+    """m between left and right wheels."""
+    wheelbase: float = 0.25
+    """m between the axles; matters to steered wheels only."""
+    scrub: float = 1.6
+    """A skid-steered rover turns as if this much wider: its wheels slide sideways (1.5-2 on hard floors)."""
+    motor_lag: float = 0.15
+    """s until a motor has made 63 % of a change: gearbox and the weight of the rover. Shorter than the rover's own slew
+    (0.4 s), so that what a driver feels is mostly the slew, as with a real one."""
+    steering_max: float = 0.5
+    """rad at full steering (29 degrees, a usual car servo linkage): turning circle 0.46 m."""
+    steering_rate: float = 5.0
+    """rad/s of a usual steering servo (0.2 s for 60 degrees)."""
+
+
+@dataclass(slots=True)
+class Motion:
+    """Where the rover is and how it moves. Angles clockwise from north, SI."""
+
+    north: float = 0.0
+    east: float = 0.0
+    yaw: float = 0.0
+    """0..2 pi"""
+    speed: float = 0.0
+    """Along the nose, negative backwards."""
+    yaw_rate: float = 0.0
+    acceleration: float = 0.0
+    """Along the nose."""
+    wheel_speeds: tuple[float, ...] = (0.0, 0.0)
+    """Left and right, or the driven axle, m/s."""
+
+    def advance(self, speed: float, yaw_rate: float, dt: float) -> None:
+        """Move for `dt` at the mean of old and new speed and turn."""
+        along = (self.speed + speed) / 2 * dt
+        turn = (self.yaw_rate + yaw_rate) / 2 * dt
+        middle = self.yaw + turn / 2
+        self.north += along * math.cos(middle)
+        self.east += along * math.sin(middle)
+        self.yaw = (self.yaw + turn) % math.tau
+        self.acceleration = (speed - self.speed) / dt
+        self.speed, self.yaw_rate = speed, yaw_rate
+
+
+class Chassis(Protocol):
+    """A kind of drive."""
+
+    motion: Motion
+    top_speed: float
+    """m/s at full throttle and nominal voltage."""
+
+    def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
+        """Move for `dt` > 0 with these motor outputs; `strength` is the voltage against the nominal one."""
+
+
+class SkidChassis:
+    """Two driven sides, as a tank; `throttles` are left and right."""
+
+    def __init__(self, frame: Frame | None = None) -> None:
+        self._frame = frame or Frame()
+        self.top_speed = self._frame.top_speed
+        self.motion = Motion()
+
+    def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
+        """Each side follows its throttle; the difference turns the rover."""
+        frame, motion = self._frame, self.motion
+        top = frame.top_speed * strength
+        left = _follow(motion.wheel_speeds[0], throttles[0] * top, frame.motor_lag, dt)
+        right = _follow(motion.wheel_speeds[1], throttles[1] * top, frame.motor_lag, dt)
+        motion.wheel_speeds = (left, right)
+        motion.advance((left + right) / 2, (left - right) / (frame.track_width * frame.scrub), dt)
+
+
+class AckermannChassis:
+    """A driven axle and steered front wheels, as a car; `throttles` are throttle and steering."""
+
+    def __init__(self, frame: Frame | None = None) -> None:
+        self._frame = frame or Frame()
+        self.top_speed = self._frame.top_speed
+        self.motion = Motion(wheel_speeds=(0.0,))
+        self._angle = 0.0
+
+    def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
+        """The axle follows the throttle, the servo its angle at its own rate (bicycle model)."""
+        frame, motion = self._frame, self.motion
+        speed = _follow(motion.speed, throttles[0] * frame.top_speed * strength, frame.motor_lag, dt)
+        reach = frame.steering_rate * dt
+        self._angle += max(-reach, min(reach, throttles[1] * frame.steering_max - self._angle))
+        motion.wheel_speeds = (speed,)
+        motion.advance(speed, speed * math.tan(self._angle) / frame.wheelbase, dt)
+
+
+def _follow(speed: float, wanted: float, lag: float, dt: float) -> float:
+    """First-order lag, exact for any dt."""
+    speed = wanted + (speed - wanted) * math.exp(-dt / lag)
+    return 0.0 if wanted == 0.0 and abs(speed) < AT_REST else speed
