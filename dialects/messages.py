@@ -99,3 +99,13 @@ def text_of(message: StatusText) -> str:
 def printable(text: str) -> str:
     """`text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
     return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)
+
+
+def is_stop(message: Message) -> bool:
+    """Is this a command that only ever stops: disarm, safety switch to SAFE, flight termination?"""
+    if not isinstance(message, CommandLong | CommandInt):
+        return False
+    if message.command == rover.MAV_CMD_DO_FLIGHTTERMINATION:
+        return bool(message.param1 > 0.5)
+    stops = (rover.MAV_CMD_COMPONENT_ARM_DISARM, rover.MAV_CMD_DO_SET_SAFETY_SWITCH_STATE)
+    return message.command in stops and bool(message.param1 == 0)

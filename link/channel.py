@@ -1,0 +1,302 @@
+"""One live conversation: bytes of peers to messages and back, with sequence, loss, peers and rate limits. No I/O here.
+
+Rules: nothing without a right frame makes a peer; nobody is sent telemetry before they have shown a HEARTBEAT; a frame
+is never answered with more than was asked; every table has a cap. A repeated frame has no second effect, and of state
+messages (all but dialects.messages.ACKNOWLEDGED) one that was overtaken is dropped: the newest wins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass, field
+
+from dialects import codec
+from dialects.messages import (
+    ACKNOWLEDGED,
+    MESSAGES,
+    CommandInt,
+    CommandLong,
+    Heartbeat,
+    ManualControl,
+    Message,
+    RcChannelsOverride,
+    RoverOperatorPresence,
+    SetMode,
+    is_stop,
+)
+from link.core import LinkReport, Outgoing, Peer, Received, SourceCount
+from link.framer import Counts, Frame, Framer
+from link.rate import TokenBucket
+
+MAX_PEERS = 8
+MAX_SOURCES = 64
+"""Systems and components counted behind one peer."""
+PEER_SILENCE = 10.0
+"""s after which a silent peer gives up its place; twice the longest usual heartbeat timeout."""
+LATE_WINDOW = 32
+"""Frames up to this much older than the newest are late; further back, the sender has restarted."""
+RESTART_AFTER = 4
+"""So many late frames in a row are a sender that restarted just behind its old number."""
+MISMATCH_AFTER = 3
+"""So many whole frames with a foreign checksum are another dialect; one may be an accident."""
+
+_DEMANDS = frozenset(each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence))
+_COMMANDS = frozenset(each.id for each in (CommandLong, CommandInt, SetMode))
+
+
+@dataclass(slots=True)
+class _Source:
+    """The numbering of one system and component behind a peer."""
+
+    newest: int
+    received: int = 1
+    lost: int = 0
+    late_run: int = 0
+
+    def accept(self, sequence: int) -> str:
+        """Count a frame: "new", "late" or "duplicate"."""
+        ahead = (sequence - self.newest) & 0xFF
+        if ahead == 0:
+            return "duplicate"
+        if ahead > 0xFF - LATE_WINDOW and self.late_run < RESTART_AFTER:
+            self.late_run += 1
+            return "late"
+        restarted = ahead > 0xFF - LATE_WINDOW
+        self.lost += 0 if restarted else ahead - 1
+        self.newest, self.late_run = sequence, 0
+        self.received += 1
+        return "new"
+
+
+def _buckets() -> dict[str, TokenBucket]:
+    # Demands come at 50 Hz at most and commands by hand; the rest has room for ArduPilot's 1240 messages/s.
+    return {"demand": TokenBucket(200, 50), "command": TokenBucket(50, 50), "rest": TokenBucket(2500, 1000)}
+
+
+@dataclass(slots=True)
+class _PeerState:
+    """What we know of one address."""
+
+    peer: Peer
+    framer: Framer
+    heard: float
+    fixed: bool = False
+    """The user named this address: it is sent to before it has spoken."""
+    sequence: int = 0
+    systems: set[int] = field(default_factory=set)
+    """Systems whose HEARTBEAT came from here."""
+    sources: dict[tuple[int, int], _Source] = field(default_factory=dict)
+    buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
+
+    def hears(self, target: int) -> bool:
+        """Should a message for system `target` (0: for all) go here?"""
+        if not self.systems:
+            return self.fixed
+        return target == 0 or target in self.systems
+
+
+class Channel:
+    """Turns what arrives on one link into Received, and Outgoing into bytes.
+
+    `system` and `component` (1..255) are ours; `stream` says that bytes have no datagram borders; `wanted` are the
+    message ids that the core reads (None: all), others are counted and not decoded; `target` is the address that the
+    user named, for links that speak first.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        index: int,
+        *,
+        system: int,
+        component: int,
+        stream: bool = False,
+        wanted: frozenset[int] | None = None,
+        target: Hashable | None = None,
+    ) -> None:
+        self.name = name
+        self.index = index
+        self._ids = (system, component)
+        self._stream = stream
+        self._wanted = wanted
+        self._strangers = Framer(stream=False)
+        self._peers: dict[Hashable, _PeerState] = {}
+        self._gone = Counts()
+        self._bytes_received = self._bytes_sent = 0
+        self._duplicates = self._late = self._rate_limited = self._refused_peers = 0
+        self._own_id = False
+        if target is not None:
+            self._peers[target] = self._new_peer(target, 0.0, fixed=True)
+
+    # ---- receiving ----
+
+    def receive(self, data: bytes, address: Hashable, now: float) -> list[Received]:
+        """The messages in `data` from `address`. `now` in s, monotonic."""
+        self._bytes_received += len(data)
+        state = self._peers.get(address)
+        if state is not None:
+            return self._accept(state, state.framer.feed(data, now), now)
+        frames = self._strangers.feed(data, now)
+        if not frames and not self._stream:
+            return []
+        state = self._admit(address, now)
+        if state is None:
+            self._refused_peers += 1
+            return []
+        return self._accept(state, state.framer.feed(data, now) if self._stream else frames, now)
+
+    def tick(self, now: float) -> list[Received]:
+        """Give up overdue partial frames; returns what was hidden behind them."""
+        if not self._stream:
+            return []
+        found: list[Received] = []
+        for state in list(self._peers.values()):
+            found += self._accept(state, state.framer.expire(now), now)
+        return found
+
+    def _admit(self, address: Hashable, now: float) -> _PeerState | None:
+        """A place for a new address: a free one, or that of a peer who is silent or never introduced itself."""
+        if len(self._peers) >= MAX_PEERS:
+            leaving = min(
+                (each for each in self._peers.values() if not each.fixed and self._dispensable(each, now)),
+                key=lambda each: each.heard,
+                default=None,
+            )
+            if leaving is None:
+                return None
+            self._forget(leaving)
+        state = self._peers[address] = self._new_peer(address, now)
+        return state
+
+    def _dispensable(self, state: _PeerState, now: float) -> bool:
+        return not state.systems or now - state.heard > PEER_SILENCE
+
+    def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> _PeerState:
+        return _PeerState(Peer(self.index, address), Framer(stream=self._stream), now, fixed)
+
+    def _forget(self, state: _PeerState) -> None:
+        del self._peers[state.peer.address]
+        _add(self._gone, state.framer.counts)
+
+    def _accept(self, state: _PeerState, frames: list[Frame], now: float) -> list[Received]:
+        accepted: list[Received] = []
+        for frame in frames:
+            if not frame.system or not frame.component:
+                continue
+            if (frame.system, frame.component) == self._ids:
+                self._own_id = True
+                continue
+            state.heard = now
+            if self._in_order(state, frame):
+                received = self._decode(state, frame, now)
+                if received is not None:
+                    accepted.append(received)
+        return accepted
+
+    def _in_order(self, state: _PeerState, frame: Frame) -> bool:
+        key = (frame.system, frame.component)
+        source = state.sources.get(key)
+        if source is None:
+            if len(state.sources) < MAX_SOURCES:
+                state.sources[key] = _Source(frame.sequence)
+            return True
+        order = source.accept(frame.sequence)
+        if order == "duplicate":
+            self._duplicates += 1
+            return False
+        if order == "late":
+            self._late += 1
+            return frame.message_id in ACKNOWLEDGED
+        return True
+
+    def _decode(self, state: _PeerState, frame: Frame, now: float) -> Received | None:
+        number = frame.message_id
+        if self._wanted is not None and number not in self._wanted:
+            return None
+        kind = "demand" if number in _DEMANDS else "command" if number in _COMMANDS else "rest"
+        room = state.buckets[kind].take(now)
+        if not room and kind != "command":
+            self._rate_limited += 1
+            return None
+        message = codec.decode(number, frame.payload)
+        if not room and not is_stop(message):  # a stop passes however much noise its sender makes
+            self._rate_limited += 1
+            return None
+        if number == Heartbeat.id:
+            state.systems.add(frame.system)
+        introduced = frame.system in state.systems
+        return Received(message, frame.system, frame.component, frame.sequence, state.peer, introduced)
+
+    # ---- sending ----
+
+    def send(self, outgoing: Outgoing) -> Iterator[tuple[bytes, Hashable, int]]:
+        """The frames to put on the wire: bytes, address, packet sequence. Each peer has its own sequence, so that what
+        one of them does not get is no loss to it. Raises codec.EncodeError."""
+        message, peer = outgoing
+        payload = codec.encode_payload(message)
+        for state in self._recipients(message, peer):
+            sequence = state.sequence
+            state.sequence = (sequence + 1) & 0xFF
+            data = codec.frame(message.id, payload, sequence, *self._ids)
+            self._bytes_sent += len(data)
+            yield data, state.peer.address, sequence
+
+    def _recipients(self, message: Message, peer: Peer | None) -> list[_PeerState]:
+        if peer is not None:
+            state = self._peers.get(peer.address) if peer.link == self.index else None
+            return [state] if state else []
+        target = getattr(message, "target_system", getattr(message, "target", 0))
+        return [state for state in self._peers.values() if state.hears(target)]
+
+    # ---- telling ----
+
+    def forget_silent(self, now: float) -> None:
+        """Drop peers that have been silent for PEER_SILENCE; the one the user named stays."""
+        for state in list(self._peers.values()):
+            if not state.fixed and now - state.heard > PEER_SILENCE:
+                self._forget(state)
+
+    def report(self, down: str | None = None) -> LinkReport:
+        """What this channel has counted. `down` comes from the shell."""
+        counts = Counts()
+        for each in (self._gone, self._strangers.counts, *(state.framer.counts for state in self._peers.values())):
+            _add(counts, each)
+        return LinkReport(
+            name=self.name,
+            index=self.index,
+            peers=sum(1 for state in self._peers.values() if state.systems),
+            frames=counts.frames,
+            bytes_received=self._bytes_received,
+            bytes_sent=self._bytes_sent,
+            crc_errors=counts.crc_errors,
+            resync_bytes=counts.resync_bytes,
+            unknown=counts.unknown,
+            duplicates=self._duplicates,
+            late=self._late,
+            rate_limited=self._rate_limited,
+            refused_peers=self._refused_peers,
+            dialect_mismatch=tuple(
+                sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER)
+            ),
+            own_id=self._own_id,
+            down=down,
+            sources=self._source_counts(),
+        )
+
+    def _source_counts(self) -> dict[tuple[int, int], SourceCount]:
+        totals: dict[tuple[int, int], SourceCount] = {}
+        for state in self._peers.values():
+            for key, source in state.sources.items():
+                before = totals.get(key, SourceCount(0, 0))
+                totals[key] = SourceCount(before.received + source.received, before.lost + source.lost)
+        return totals
+
+
+def _add(total: Counts, more: Counts) -> None:
+    total.frames += more.frames
+    total.crc_errors += more.crc_errors
+    total.resync_bytes += more.resync_bytes
+    total.unknown += more.unknown
+    total.refused += more.refused
+    for number, times in more.mismatches.items():
+        total.mismatches[number] = total.mismatches.get(number, 0) + times

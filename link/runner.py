@@ -1,0 +1,169 @@
+"""The only loop: drives one core with its links. It knows sockets and time so that no core has to."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Hashable, Sequence
+from typing import Protocol, runtime_checkable
+
+from dialects.codec import EncodeError
+from dialects.messages import Message
+from link.channel import Channel
+from link.core import Core, Outgoing, Received
+from link.endpoint import Endpoint, parse
+
+log = logging.getLogger(__name__)
+
+REPORT_PERIOD = 1.0
+"""s between two core.observe()."""
+
+
+class LinkError(Exception):
+    """A link cannot be opened; the message is one line that says what, where and what to do."""
+
+
+class Link(Protocol):
+    """A shell around a socket or port. To add a kind: a module beside udp.py and a line in OPENERS."""
+
+    endpoint: Endpoint
+    channel: Channel
+    problem: str | None
+    """Why it does not work now, in one line, or None."""
+
+    def start(self, loop: asyncio.AbstractEventLoop, deliver: Datagrams) -> None:
+        """Hand what arrives to `deliver`."""
+
+    def send(self, data: bytes, address: Hashable) -> None:
+        """Put one frame on the wire, now or never; neither blocks nor raises."""
+
+    def close(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Free the port; safe to call once."""
+
+
+Datagrams = Callable[[Link, Sequence[tuple[bytes, Hashable]]], None]
+
+
+@runtime_checkable
+class HearsOfSending(Protocol):
+    """A core that wants to know which packet sequence its messages got."""
+
+    def sent(self, message: Message, sequence: int, now: float) -> None:
+        """`message` went out under this number."""
+
+
+def open_links(
+    endpoints: Sequence[str], *, system: int, component: int, wanted: frozenset[int] | None = None
+) -> list[Link]:
+    """Open all endpoints, or none: raises EndpointError or LinkError."""
+    from link.udp import open_udp
+
+    openers = {"udpin": open_udp, "udpout": open_udp}
+    links: list[Link] = []
+    try:
+        for index, endpoint in enumerate(map(parse, endpoints)):
+            opener = openers[endpoint.scheme]
+            links.append(opener(endpoint, index, system=system, component=component, wanted=wanted))
+    except (LinkError, ValueError):
+        loop = asyncio.get_running_loop()
+        for link in links:
+            link.close(loop)
+        raise
+    return links
+
+
+class Runner:
+    """Drives `core`: messages in at once, messages out at once, a tick every `period` s at absolute deadlines."""
+
+    def __init__(self, core: Core, links: Sequence[Link], *, period: float) -> None:
+        self._core = core
+        self._links = links
+        self._period = period
+        self._sent = core.sent if isinstance(core, HearsOfSending) else None
+        self._ended: asyncio.Future[None] | None = None
+        self._report_due = 0.0
+        self._tick_due = 0.0
+        self._timer: asyncio.TimerHandle | None = None
+
+    async def run(self) -> None:
+        """Run until stop() or until the core raises; that exception is raised here. Closes the links at the end."""
+        loop = asyncio.get_running_loop()
+        self._ended = loop.create_future()
+        self._tick_due = loop.time()
+        try:
+            for link in self._links:
+                link.start(loop, self._deliver)
+            self._tick()
+            await self._ended
+        finally:
+            if self._timer:
+                self._timer.cancel()
+            for link in self._links:
+                link.close(loop)
+
+    def stop(self) -> None:
+        """Let run() return."""
+        if self._ended and not self._ended.done():
+            self._ended.set_result(None)
+
+    def wake(self) -> None:
+        """Send what the core has now: for cores that are told things from elsewhere than a link."""
+        self._guard(self._flush)
+
+    def _guard(self, step: Callable[[], None]) -> None:
+        """Callbacks of the loop have no caller to raise to: what goes wrong in one ends run()."""
+        if self._ended is None or self._ended.done():
+            return
+        try:
+            step()
+        except Exception as error:
+            self._ended.set_exception(error)
+
+    def _deliver(self, link: Link, datagrams: Sequence[tuple[bytes, Hashable]]) -> None:
+        self._guard(lambda: self._receive(link, datagrams))
+
+    def _receive(self, link: Link, datagrams: Sequence[tuple[bytes, Hashable]]) -> None:
+        now = asyncio.get_running_loop().time()
+        for data, address in datagrams:
+            self._hand_over(link.channel.receive(data, address, now), now)
+        self._flush()
+
+    def _hand_over(self, messages: list[Received], now: float) -> None:
+        for received in messages:
+            self._core.receive(received, now)
+
+    def _tick(self) -> None:
+        self._guard(self._on_time)
+        loop = asyncio.get_running_loop()
+        # Absolute deadlines do not drift; after a pause the missed ticks are skipped, not made up for.
+        self._tick_due = max(self._tick_due + self._period, loop.time())
+        self._timer = loop.call_at(self._tick_due, self._tick)
+
+    def _on_time(self) -> None:
+        now = asyncio.get_running_loop().time()
+        for link in self._links:
+            self._hand_over(link.channel.tick(now), now)
+        if now >= self._report_due:
+            self._report_due = now + REPORT_PERIOD
+            self._observe(now)
+        self._core.tick(now)
+        self._flush()
+
+    def _observe(self, now: float) -> None:
+        for link in self._links:
+            link.channel.forget_silent(now)
+        self._core.observe([link.channel.report(link.problem) for link in self._links], now)
+
+    def _flush(self) -> None:
+        for outgoing in self._core.messages_to_send():
+            try:
+                self._send(outgoing)
+            except EncodeError:
+                log.exception("a message of ours could not be encoded and was not sent")
+
+    def _send(self, outgoing: Outgoing) -> None:
+        for link in self._links:
+            for data, address, sequence in link.channel.send(outgoing):
+                link.send(data, address)
+                if self._sent:
+                    self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())
