@@ -80,10 +80,12 @@ def boot_ms(seconds: float) -> int:
 
 ACKNOWLEDGED: frozenset[int] = frozenset(
     message.id
-    for message in (CommandLong, CommandInt, CommandAck, CommandCancel, SetMode, ParamRequestList, ParamRequestRead, ParamSet,
-                    ParamValue, ParamError, MissionRequestList, MissionCount, FileTransferProtocol, LogRequestList, LogEntry,
-                    StatusText, Timesync, Ping)
-)  # fmt: skip
+    for message in (
+        *(CommandLong, CommandInt, CommandAck, CommandCancel, SetMode, StatusText, Timesync, Ping),
+        *(ParamRequestList, ParamRequestRead, ParamSet, ParamValue, ParamError),
+        *(MissionRequestList, MissionCount, FileTransferProtocol, LogRequestList, LogEntry),
+    )
+)
 """Messages that are repeated until answered, or said once. All others are state: only the newest counts."""
 
 

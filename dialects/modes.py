@@ -1,4 +1,4 @@
-"""Modes and their numbers: ArduRover's custom_mode, so that MAVProxy and pymavlink show the right names for any rover."""
+"""Modes and their numbers: ArduRover's custom_mode, so that MAVProxy and pymavlink name them right for any rover."""
 
 from __future__ import annotations
 

@@ -9,39 +9,15 @@ from typing import Protocol, runtime_checkable
 
 from dialects.codec import EncodeError
 from dialects.messages import Message
-from link.channel import Channel
 from link.core import Core, Outgoing, Received
-from link.endpoint import Endpoint, parse
+from link.endpoint import parse
+from link.link import Link, LinkError, Opener
+from link.udp import open_udp
 
 log = logging.getLogger(__name__)
 
 REPORT_PERIOD = 1.0
 """s between two core.observe()."""
-
-
-class LinkError(Exception):
-    """A link cannot be opened; the message is one line that says what, where and what to do."""
-
-
-class Link(Protocol):
-    """A shell around a socket or port. To add a kind: a module beside udp.py and a line in OPENERS."""
-
-    endpoint: Endpoint
-    channel: Channel
-    problem: str | None
-    """Why it does not work now, in one line, or None."""
-
-    def start(self, loop: asyncio.AbstractEventLoop, deliver: Datagrams) -> None:
-        """Hand what arrives to `deliver`."""
-
-    def send(self, data: bytes, address: Hashable) -> None:
-        """Put one frame on the wire, now or never; neither blocks nor raises."""
-
-    def close(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Free the port; safe to call once."""
-
-
-Datagrams = Callable[[Link, Sequence[tuple[bytes, Hashable]]], None]
 
 
 @runtime_checkable
@@ -52,22 +28,22 @@ class HearsOfSending(Protocol):
         """`message` went out under this number."""
 
 
+OPENERS: dict[str, Opener] = {"udpin": open_udp, "udpout": open_udp}
+"""Scheme of link/endpoint.py -> what opens it."""
+
+
 def open_links(
     endpoints: Sequence[str], *, system: int, component: int, wanted: frozenset[int] | None = None
 ) -> list[Link]:
-    """Open all endpoints, or none: raises EndpointError or LinkError."""
-    from link.udp import open_udp
-
-    openers = {"udpin": open_udp, "udpout": open_udp}
+    """Open all endpoints, or none: raises EndpointError or LinkError. `wanted`: see Channel."""
+    parsed = [parse(text) for text in endpoints]
     links: list[Link] = []
     try:
-        for index, endpoint in enumerate(map(parse, endpoints)):
-            opener = openers[endpoint.scheme]
-            links.append(opener(endpoint, index, system=system, component=component, wanted=wanted))
-    except (LinkError, ValueError):
-        loop = asyncio.get_running_loop()
+        for index, endpoint in enumerate(parsed):
+            links.append(OPENERS[endpoint.scheme](endpoint, index, system=system, component=component, wanted=wanted))
+    except LinkError:
         for link in links:
-            link.close(loop)
+            link.close()
         raise
     return links
 
@@ -99,7 +75,7 @@ class Runner:
             if self._timer:
                 self._timer.cancel()
             for link in self._links:
-                link.close(loop)
+                link.close()
 
     def stop(self) -> None:
         """Let run() return."""

@@ -9,7 +9,7 @@ from collections.abc import Hashable
 
 from link.channel import Channel
 from link.endpoint import Endpoint
-from link.runner import Datagrams, LinkError
+from link.link import Datagrams, LinkError
 
 BATCH = 64
 """Datagrams read before the loop gets its turn again: a flood must not starve the control loop (about 1 ms)."""
@@ -26,9 +26,11 @@ class UdpLink:
         self._socket = sock
         self._connected = endpoint.scheme == "udpout"
         self._buffer = memoryview(bytearray(BUFFER))
+        self._loop: asyncio.AbstractEventLoop | None = None
 
     def start(self, loop: asyncio.AbstractEventLoop, deliver: Datagrams) -> None:
         """Hand arriving datagrams to `deliver` in batches."""
+        self._loop = loop
         loop.add_reader(self._socket, self._readable, deliver)
 
     def send(self, data: bytes, address: Hashable) -> None:
@@ -45,9 +47,10 @@ class UdpLink:
         else:
             self.problem = None
 
-    def close(self, loop: asyncio.AbstractEventLoop) -> None:
+    def close(self) -> None:
         """Stop listening and free the port."""
-        loop.remove_reader(self._socket)
+        if self._loop:
+            self._loop.remove_reader(self._socket)
         self._socket.close()
 
     def _readable(self, deliver: Datagrams) -> None:

@@ -100,17 +100,17 @@ class CommandServer:
 
 
 def _request(message: CommandLong | CommandInt, received: Received) -> CommandRequest:
-    is_int = isinstance(message, CommandInt)
-    fifth, sixth, seventh = (
-        (message.x, message.y, message.z) if is_int else (message.param5, message.param6, message.param7)
-    )
+    if isinstance(message, CommandInt):
+        last, frame, x, y = (message.x, message.y, message.z), message.frame, message.x, message.y
+    else:
+        last, frame, x, y = (message.param5, message.param6, message.param7), None, 0, 0
     return CommandRequest(
         command=message.command,
-        params=(message.param1, message.param2, message.param3, message.param4, fifth, sixth, seventh),
-        frame=message.frame if is_int else None,
-        x=message.x if is_int else 0,
-        y=message.y if is_int else 0,
-        is_int=is_int,
+        params=(message.param1, message.param2, message.param3, message.param4, *last),
+        frame=frame,
+        x=x,
+        y=y,
+        is_int=isinstance(message, CommandInt),
         system=received.system,
         component=received.component,
         peer=received.peer,
