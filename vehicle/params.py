@@ -1,0 +1,103 @@
+"""Every setting of the vehicle in one table: name, default, range, unit, what it does. Saving them is not done here.
+
+Names are ArduRover's where it has the same setting, at most 16 characters, and every value is a float, because only
+REAL32 parameters read the same in every ground station.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One setting. `safety` settings are never changed while armed."""
+
+    name: str
+    default: float
+    low: float
+    high: float
+    unit: str
+    description: str
+    safety: bool = False
+    whole: bool = False
+    """Only whole numbers."""
+
+
+TABLE: tuple[Parameter, ...] = (
+    # Identity
+    Parameter("MAV_SYSID", 1, 1, 255, "", "System id of this vehicle; after a restart", whole=True),
+    Parameter("MAV_GCS_SYSID", 0, 0, 255, "", "Only this ground station may take control; 0: the first that arms or asks",
+              safety=True, whole=True),
+    # Manual driving
+    Parameter("MAN_TIMEOUT", 0.45, 0.2, 2, "s", "A demand older than this is neutral; 9 frames of 20 Hz, and less than 0.5 s "
+              "so that the wheels begin to slow in time", safety=True),
+    Parameter("MAN_DEADBAND", 3, 0, 20, "%", "Demands smaller than this are neutral"),
+    Parameter("MANUAL_EXPO", 0, 0, 0.9, "", "Softness of throttle near neutral; 0 is linear"),
+    Parameter("MANUAL_STR_EXPO", 0, 0, 0.9, "", "Softness of steering near neutral; 0 is linear"),
+    Parameter("INITIAL_MODE", 0, 0, 4, "", "Mode after start: 0 MANUAL, 4 HOLD", whole=True),
+    Parameter("OPR_TIMEOUT", 10, 2, 60, "s", "Without a key or stick event for so long while moving: stop"),
+    Parameter("OPR_ECHO_MAX", 0.45, 0.2, 5, "s", "A demand is refused when the driver's newest word of the vehicle is older "
+              "than this; raise it on slow radios", safety=True),
+    # Failsafes
+    Parameter("FS_TIMEOUT", 1.5, 0.5, 10, "s", "From manual control lost to HOLD", safety=True),
+    Parameter("FS_DISARM_T", 30, 5, 300, "s", "From manual control lost to disarmed", safety=True),
+    Parameter("FS_GCS_ENABLE", 1, 0, 1, "", "HOLD when the ground station in control is silent", safety=True, whole=True),
+    Parameter("FS_GCS_TIMEOUT", 5, 2, 120, "s", "Silence after which the ground station in control is lost", safety=True),
+    Parameter("FS_LOOP_TIMEOUT", 0.2, 0.1, 2, "s", "A control cycle later than this disarms", safety=True),
+    Parameter("FS_LOW_ACT", 2, 0, 2, "", "Battery low: 0 slow down only, 2 HOLD as well", whole=True),
+    Parameter("BATT_LOW_VOLT", 10.5, 0, 100, "V", "Battery low below this; 0: off"),
+    Parameter("BATT_CRT_VOLT", 10.0, 0, 100, "V", "Battery critical below this; 0: off"),
+    Parameter("BATT_LOW_TIMER", 10, 1, 120, "s", "The voltage must be low for so long, because motors pull it down for moments"),
+    Parameter("DISARM_DELAY", 300, 0, 3600, "s", "Disarm after so long without a demand; 0: never"),
+    # Motors
+    Parameter("DRIVE_TYPE", 1, 1, 2, "", "1 skid steering, 2 Ackermann", safety=True, whole=True),
+    Parameter("MOT_SLEWRATE", 250, 10, 1000, "%/s", "Acceleration of each motor", safety=True),
+    Parameter("MOT_DECEL", 250, 250, 10000, "%/s", "Deceleration of each motor; at least 250, so that full speed ends in 0.4 s",
+              safety=True),
+    Parameter("MOT_THR_MAX", 100, 30, 100, "%", "Largest throttle", safety=True),
+    Parameter("MOT_STR_THR_MIX", 0.5, 0.2, 1, "", "Skid steering at its limit: more keeps steering, less keeps throttle"),
+    Parameter("MOT_REV_DELAY", 0, 0, 1, "s", "Pause at zero before a motor reverses", safety=True),
+    # Shape
+    Parameter("SPEED_MAX", 1.5, 0.1, 30, "m/s", "Top speed"),
+    Parameter("TRACK_WIDTH", 0.35, 0.05, 5, "m", "Distance between left and right wheels"),
+    Parameter("WHEELBASE", 0.3, 0.05, 5, "m", "Distance between front and rear axles"),
+)  # fmt: skip
+
+PARAMETERS: dict[str, Parameter] = {parameter.name: parameter for parameter in TABLE}
+
+
+class ParamError(ValueError):
+    """An unknown name or a value that is not allowed; the message is one clear line."""
+
+
+class Params:
+    """The settings in force. They live in memory."""
+
+    def __init__(self, values: Mapping[str, float] | None = None) -> None:
+        """Defaults, with `values` in their place. Raises ParamError."""
+        self._values = {parameter.name: float(parameter.default) for parameter in TABLE}
+        for name, value in (values or {}).items():
+            self.set(name, value)
+
+    def __getitem__(self, name: str) -> float:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def set(self, name: str, value: float) -> None:
+        """Put a value in force. Raises ParamError and changes nothing."""
+        parameter = PARAMETERS.get(name)
+        if parameter is None:
+            raise ParamError(f"no parameter {name!r}")
+        if not math.isfinite(value) or not parameter.low <= value <= parameter.high:
+            raise ParamError(f"{name} must be {parameter.low:g} to {parameter.high:g}, not {value:g}")
+        if parameter.whole and value != int(value):
+            raise ParamError(f"{name} must be a whole number, not {value:g}")
+        self._values[name] = float(value)

@@ -1,0 +1,41 @@
+"""What the sensors say, as one value a cycle; reading them is vehicle/sensors' and vehicle/sim's work."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Readings:
+    """The newest of every sensor; None where there is none. Units are SI; angles in rad, yaw clockwise from north."""
+
+    roll: float | None = None
+    pitch: float | None = None
+    yaw: float | None = None
+    yaw_rate: float | None = None
+    """rad/s, clockwise positive."""
+    north: float | None = None
+    """m from the origin."""
+    east: float | None = None
+    velocity_north: float | None = None
+    velocity_east: float | None = None
+    speed: float | None = None
+    """m/s along the nose, negative backwards."""
+    latitude: float | None = None
+    """Degrees."""
+    longitude: float | None = None
+    altitude: float | None = None
+    """m above mean sea level."""
+    gps_fix: int | None = None
+    """GPS_FIX_TYPE: 3 and more is a 3D fix."""
+    gps_satellites: int | None = None
+    gps_hdop: float | None = None
+    battery_voltage: float | None = None
+    battery_current: float | None = None
+    battery_remaining: float | None = None
+    """0..1"""
+    wheel_speeds: tuple[float, ...] = ()
+    """m/s of each wheel, in motor order."""
+
+
+NO_READINGS = Readings()
