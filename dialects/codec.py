@@ -56,7 +56,7 @@ def decode(message_id: int, payload: bytes) -> Message:
 def encode_payload(message: Message) -> bytes:
     """The payload without its trailing zeros, at least one byte (MAVLink 2 payload truncation)."""
     try:
-        payload: bytes = _ENCODERS[message.id](message)
+        payload: bytes = _ENCODERS[type(message).id](message)  # STATUSTEXT has a field `id`
     except (struct.error, TypeError, OverflowError) as error:
         raise EncodeError(f"{message.msgname}: {error}") from error
     return payload.rstrip(b"\0") or b"\0"

@@ -237,7 +237,7 @@ class Channel:
         for state in self._recipients(message, peer):
             sequence = state.sequence
             state.sequence = (sequence + 1) & 0xFF
-            data = codec.frame(message.id, payload, sequence, *self._ids)
+            data = codec.frame(type(message).id, payload, sequence, *self._ids)
             self._bytes_sent += len(data)
             yield data, state.peer.address, sequence
 

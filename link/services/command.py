@@ -101,9 +101,11 @@ class CommandServer:
 
 def _request(message: CommandLong | CommandInt, received: Received) -> CommandRequest:
     if isinstance(message, CommandInt):
-        last, frame, x, y = (message.x, message.y, message.z), message.frame, message.x, message.y
+        last: tuple[float, float, float] = (message.x, message.y, message.z)
+        frame, x, y = message.frame, message.x, message.y
     else:
-        last, frame, x, y = (message.param5, message.param6, message.param7), None, 0, 0
+        last = (message.param5, message.param6, message.param7)
+        frame, x, y = None, 0, 0
     return CommandRequest(
         command=message.command,
         params=(message.param1, message.param2, message.param3, message.param4, *last),

@@ -1,0 +1,129 @@
+"""Both ends in one process and in virtual time: cores joined through channels and lossy pipes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field
+
+from dialects.messages import Message
+from link.channel import Channel
+from link.core import Core, Outgoing
+from link.memory import LossyPipe
+from link.runner import REPORT_PERIOD, HearsOfSending
+
+
+@dataclass
+class Host:
+    """A core with its one channel, as the runner would drive it."""
+
+    core: Core
+    channel: Channel
+    period: float
+    tick_due: float = 0.0
+    report_due: float = 0.0
+    sent: list[tuple[float, Message]] = field(default_factory=list)
+    frozen: bool = False
+    """As after SIGSTOP: it neither hears nor acts."""
+
+    def advance(self, now: float) -> None:
+        """What the runner does on time."""
+        if self.frozen or now < self.tick_due:
+            return
+        self.tick_due = max(self.tick_due + self.period, now)
+        if now >= self.report_due:
+            self.report_due = now + REPORT_PERIOD
+            self.channel.forget_silent(now)
+            self.core.observe([self.channel.report()], now)
+        self.core.tick(now)
+
+    def hear(self, data: bytes, address: Hashable, now: float) -> None:
+        """What the runner does when something arrives."""
+        if self.frozen:
+            return
+        for received in self.channel.receive(data, address, now):
+            self.core.receive(received, now)
+
+    def speak(self, now: float) -> list[bytes]:
+        """Frames to put on the wire."""
+        frames: list[bytes] = []
+        outbox: list[Outgoing] = [] if self.frozen else self.core.messages_to_send()
+        for outgoing in outbox:
+            self.sent.append((now, outgoing.message))
+            for data, _, sequence in self.channel.send(outgoing):
+                frames.append(data)
+                if isinstance(self.core, HearsOfSending):
+                    self.core.sent(outgoing.message, sequence, now)
+        return frames
+
+
+class World:
+    """Two hosts, `near` (a ground station) and `far` (a vehicle), and the two directions between them.
+
+    Time starts at `now` and moves in steps of `step` s; every step delivers, ticks and sends, as the real loop does.
+    """
+
+    def __init__(
+        self,
+        near: Core,
+        far: Core,
+        *,
+        near_ids: tuple[int, int] = (255, 190),
+        far_ids: tuple[int, int] = (1, 1),
+        period: float = 0.02,
+        up: LossyPipe | None = None,
+        down: LossyPipe | None = None,
+        now: float = 100.0,
+        step: float = 0.005,
+    ) -> None:
+        self.now = now
+        self.step = step
+        self.up = up or LossyPipe()
+        self.down = down or LossyPipe()
+        self.near = Host(near, self._channel("near", near_ids, "far"), period)
+        self.far = Host(far, self._channel("far", far_ids, "near"), period)
+        self._start = now
+        self._steps = 0
+
+    @staticmethod
+    def _channel(name: str, ids: tuple[int, int], target: str) -> Channel:
+        return Channel(name, 0, system=ids[0], component=ids[1], target=target)
+
+    def run(self, seconds: float, each: Callable[[float], None] | None = None) -> None:
+        """Let `seconds` pass; `each` is called once a step with the time, after everything else."""
+        for _ in range(round(seconds / self.step)):
+            self._steps += 1
+            self.now = self._start + self._steps * self.step
+            self._one_step()
+            if each:
+                each(self.now)
+
+    def run_until(self, condition: Callable[[], bool], within: float) -> float:
+        """Let time pass until `condition`; returns how long it took. AssertionError when it takes longer."""
+        start = self.now
+        while not condition():
+            assert self.now - start < within, f"not within {within} s"
+            self.run(self.step)
+        return self.now - start
+
+    def cut(self, cut: bool = True) -> None:
+        """Cut both directions, or join them again."""
+        self.up.cut = self.down.cut = cut
+
+    def settle(self) -> None:
+        """Send what the cores have, without letting time pass: for intents that come between two steps."""
+        self._exchange()
+
+    def _one_step(self) -> None:
+        for data in self.down.receive(self.now):
+            self.near.hear(data, "far", self.now)
+        for data in self.up.receive(self.now):
+            self.far.hear(data, "near", self.now)
+        self.near.advance(self.now)
+        self.far.advance(self.now)
+        self._exchange()
+
+    def _exchange(self) -> None:
+        for data in self.near.speak(self.now):
+            self.up.send(data, self.now)
+        for data in self.far.speak(self.now):
+            self.down.send(data, self.now)
