@@ -1,0 +1,51 @@
+"""Endpoints: one table, and errors that say what to do."""
+
+from __future__ import annotations
+
+import pytest
+
+from link.endpoint import SCHEMES, Endpoint, EndpointError, endpoint_help, parse
+from link.runner import OPENERS
+
+
+@pytest.mark.parametrize(
+    ("text", "endpoint"),
+    [
+        ("udpin:127.0.0.1:14550", Endpoint("udpin:127.0.0.1:14550", "udpin", "127.0.0.1", 14550)),
+        ("udpout://rover.local:14550", Endpoint("udpout:rover.local:14550", "udpout", "rover.local", 14550)),
+        (" UDPIN:0.0.0.0:1/ ", Endpoint("udpin:0.0.0.0:1", "udpin", "0.0.0.0", 1)),
+        ("udpout:[::1]:14550", Endpoint("udpout:[::1]:14550", "udpout", "::1", 14550)),
+    ],
+)
+def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
+    assert parse(text) == endpoint
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "must be one of udpin:HOST:PORT"),
+        ("14550", "must be one of"),
+        ("udpinn:127.0.0.1:14550", "did you mean udpin:"),
+        ("bluetooth:1:2", "must be one of"),
+        ("udpin:14550", "for example udpin:127.0.0.1:14550"),
+        ("udpin::14550", "write udpin:HOST:PORT"),
+        ("udpin:127.0.0.1:", "port '' is not a number from 1 to 65535"),
+        ("udpin:127.0.0.1:0", "port '0'"),
+        ("udpin:127.0.0.1:65536", "port '65536'"),
+        ("udpin:127.0.0.1:-1", "port '-1'"),
+        ("udpin:127.0.0.1:\u0661", "is not a number"),
+    ],
+)
+def test_what_is_not_understood_is_explained(text: str, told: str) -> None:
+    with pytest.raises(EndpointError) as caught:
+        parse(text)
+    assert told in str(caught.value)
+    assert repr(text) in str(caught.value) or text in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_table_is_the_help_and_every_scheme_can_be_opened() -> None:
+    for scheme in SCHEMES.values():
+        assert scheme.form in endpoint_help()
+    assert SCHEMES.keys() == OPENERS.keys()

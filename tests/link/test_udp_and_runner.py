@@ -1,0 +1,167 @@
+"""Real sockets on loopback, driven by the runner: delivery, floods, refusals and the end."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Callable, Sequence
+
+import pytest
+
+from dialects.messages import Heartbeat, ManualControl, Message
+from link.core import LinkReport, Outgoing, Received
+from link.link import LinkError
+from link.runner import Runner, open_links
+from tests.link.frames import demand, heartbeat
+
+
+class Recorder:
+    """A core that notes everything and answers each demand with a heartbeat."""
+
+    def __init__(self, done: Callable[[Recorder], bool], runner: list[Runner]) -> None:
+        self.received: list[Received] = []
+        self.reports: list[Sequence[LinkReport]] = []
+        self.ticks: list[float] = []
+        self.numbers: list[tuple[Message, int]] = []
+        self.outbox: list[Outgoing] = []
+        self._done = done
+        self._runner = runner
+
+    def receive(self, received: Received, now: float) -> None:
+        self.received.append(received)
+        if isinstance(received.message, ManualControl):
+            self.outbox.append(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+        self._check()
+
+    def tick(self, now: float) -> None:
+        self.ticks.append(now)
+        self._check()
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        self.reports.append(reports)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        outbox, self.outbox = self.outbox, []
+        return outbox
+
+    def sent(self, message: Message, sequence: int, now: float) -> None:
+        self.numbers.append((message, sequence))
+
+    def _check(self) -> None:
+        if self._done(self):
+            self._runner[0].stop()
+
+
+async def run(endpoint: str, done: Callable[[Recorder], bool], *, first: Callable[[], None] = lambda: None) -> Recorder:
+    runner: list[Runner] = []
+    core = Recorder(done, runner)
+    links = open_links([endpoint], system=1, component=1)
+    runner.append(Runner(core, links, period=0.01))
+    first()
+    async with asyncio.timeout(20):
+        await runner[0].run()
+    return core
+
+
+@pytest.fixture
+def ground() -> socket.socket:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.bind(("127.0.0.1", 0))
+        sock.settimeout(10)
+        yield sock  # type: ignore[misc]
+
+
+def free_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.bind(("127.0.0.1", 0))
+        return int(sock.getsockname()[1])
+
+
+async def test_udpin_hears_and_answers_whoever_shows_a_heartbeat(ground: socket.socket) -> None:
+    port = free_port()
+
+    def speak() -> None:
+        for data in (heartbeat(0), demand(1)):
+            ground.sendto(data, ("127.0.0.1", port))
+
+    core = await run(f"udpin:127.0.0.1:{port}", lambda core: len(core.received) >= 2, first=speak)
+    assert [each.sequence for each in core.received] == [0, 1]
+    assert ground.recv(300)[7] == Heartbeat.id
+    assert [(type(message), number) for message, number in core.numbers] == [(Heartbeat, 0)]
+
+
+async def test_udpout_speaks_first_and_survives_nobody_listening(ground: socket.socket) -> None:
+    def two_ticks_with_words(core: Recorder) -> bool:
+        core.outbox.append(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+        return len(core.ticks) > 5
+
+    await run(f"udpout:127.0.0.1:{free_port()}", two_ticks_with_words)  # every datagram is refused by ICMP
+    await run(f"udpout:127.0.0.1:{ground.getsockname()[1]}", two_ticks_with_words)
+    assert ground.recv(300)[7] == Heartbeat.id
+
+
+async def test_the_core_ticks_and_hears_of_its_links_while_flooded(ground: socket.socket) -> None:
+    port = free_port()
+    ground.setblocking(False)
+
+    def flood(core: Recorder) -> bool:
+        for number in range(40):
+            try:
+                ground.sendto(demand(number), ("127.0.0.1", port))
+            except BlockingIOError:
+                break
+        return len(core.ticks) > 50
+
+    core = await run(f"udpin:127.0.0.1:{port}", flood)
+    assert len(core.ticks) > 50
+    assert core.reports[0][0].name == f"udpin:127.0.0.1:{port}"
+
+
+async def test_what_the_core_raises_ends_the_run_and_frees_the_port() -> None:
+    port = free_port()
+
+    def fail(core: Recorder) -> bool:
+        raise ZeroDivisionError("a bug")
+
+    with pytest.raises(ZeroDivisionError, match="a bug"):
+        await run(f"udpin:127.0.0.1:{port}", fail)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.bind(("127.0.0.1", port))
+
+
+async def test_a_message_that_cannot_be_encoded_is_logged_and_the_rest_goes_out(
+    ground: socket.socket, caplog: pytest.LogCaptureFixture
+) -> None:
+    def speak(core: Recorder) -> bool:
+        core.outbox += [
+            Outgoing(ManualControl(target=1, x=99999, y=0, z=0, r=0, buttons=0)),
+            Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)),
+        ]
+        return len(core.ticks) > 1
+
+    await run(f"udpout:127.0.0.1:{ground.getsockname()[1]}", speak)
+    assert ground.recv(300)[7] == Heartbeat.id
+    assert "MANUAL_CONTROL" in caplog.text
+
+
+async def test_one_line_says_why_a_port_cannot_be_opened(ground: socket.socket) -> None:
+    port = ground.getsockname()[1]
+    wrong = {
+        f"udpin:127.0.0.1:{port}": f"port {port} is in use",
+        "udpout:no-such-host.invalid:14550": "host 'no-such-host.invalid' is not known",
+        "udpin:203.0.113.7:14550": "203.0.113.7 is no address of this machine",
+        f"udpout:{'x' * 70}.invalid:14550": "is not known",
+    }
+    for endpoint, told in wrong.items():
+        with pytest.raises(LinkError) as caught:
+            open_links([endpoint], system=1, component=1)
+        assert told in str(caught.value)
+        assert "\n" not in str(caught.value)
+
+
+async def test_a_failed_endpoint_leaves_none_open() -> None:
+    port = free_port()
+    with pytest.raises(LinkError):
+        open_links([f"udpin:127.0.0.1:{port}", "udpin:203.0.113.7:14550"], system=1, component=1)
+    for link in open_links([f"udpin:127.0.0.1:{port}"], system=1, component=1):
+        link.close()
