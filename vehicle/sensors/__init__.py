@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from vehicle.readings import Readings
+from vehicle.readings import NO_READINGS, Readings
 
 
 class Sensors(Protocol):
@@ -19,7 +19,4 @@ class NoSensors:
 
     def read(self, now: float) -> Readings:
         """Nothing is known."""
-        return _NOTHING
-
-
-_NOTHING = Readings()
+        return NO_READINGS

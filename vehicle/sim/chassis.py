@@ -13,21 +13,21 @@ AT_REST = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """The build of a rover. The numbers are those of a 30 cm kit with geared 12 V motors, the usual first rover."""
+    """The build of a rover. The numbers are those of a 40 cm kit with geared 12 V motors, the usual first rover."""
 
     top_speed: float = 1.5
     """m/s at full throttle and nominal voltage: 230 turns a minute on a 12.5 cm wheel."""
-    track_width: float = 0.3
+    track_width: float = 0.35
     """m between left and right wheels."""
-    wheelbase: float = 0.25
+    wheelbase: float = 0.3
     """m between the axles; matters to steered wheels only."""
-    scrub: float = 1.6
+    scrub: float = 2.0
     """A skid-steered rover turns as if this much wider: its wheels slide sideways (1.5-2 on hard floors)."""
     motor_lag: float = 0.15
     """s until a motor has made 63 % of a change: gearbox and the weight of the rover. Shorter than the rover's own slew
     (0.4 s), so that what a driver feels is mostly the slew, as with a real one."""
     steering_max: float = 0.5
-    """rad at full steering (29 degrees, a usual car servo linkage): turning circle 0.46 m."""
+    """rad at full steering (29 degrees, a usual car servo linkage): turning radius 0.55 m."""
     steering_rate: float = 5.0
     """rad/s of a usual steering servo (0.2 s for 60 degrees)."""
 

@@ -1,0 +1,184 @@
+"""The rover daemon: links, rover, motors and signals joined in one process; what is decided is decided in the cores.
+
+Whatever ends it (a signal, a broken driver, a fault in our own code) the order is the same: motors neutral and without
+power, last messages, exit code with one line. Exit codes: 0 asked to stop, 1 a fault, 2 the user's mistake.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import gc
+import logging
+import signal
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from link.endpoint import EndpointError
+from link.link import LinkError
+from link.runner import Runner, open_links
+from vehicle.machine import Machine
+from vehicle.motors import MotorError, Motors, UnknownDriverError, open_motors
+from vehicle.motors.log import LoggedMotors, MotorLog
+from vehicle.motors.simulated import SimulatedMotors
+from vehicle.params import ParamError, Params
+from vehicle.rover import Rover
+from vehicle.sensors import NoSensors, Sensors
+from vehicle.sim.battery import Battery
+from vehicle.sim.body import Home, SimulatedBody
+from vehicle.sim.chassis import AckermannChassis, Frame, SkidChassis
+
+log = logging.getLogger(__name__)
+
+PERIOD = 0.02
+"""s, the control cycle: 50 Hz is what servos and controllers of this size take, and ten times the driver's own rate."""
+
+COMPONENT = 1
+"""MAV_COMP_ID_AUTOPILOT1: ground stations take only this one for a vehicle."""
+
+STOPPED, FAULT, MISTAKE = 0, 1, 2
+"""Exit codes."""
+
+SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+"""Asked to stop: by the service manager, by Ctrl-C, by a terminal that was closed."""
+
+CHASSIS: dict[int, type[SkidChassis] | type[AckermannChassis]] = {1: SkidChassis, 2: AckermannChassis}
+"""DRIVE_TYPE -> how the simulated rover moves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Simulation:
+    """Wishes for the simulated rover."""
+
+    home: Home = field(default_factory=Home)
+    battery: float = 1.0
+    """Charge at the start, 0..1."""
+    seed: int | None = None
+    """Seed of the sensors' noise; None: no noise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the command line or a file asks for."""
+
+    endpoints: tuple[str, ...]
+    motors: str = "simulated"
+    """Driver name; a simulation has its own."""
+    simulation: Simulation | None = None
+    params: Mapping[str, float] = field(default_factory=dict)
+    motor_log: str | None = None
+
+
+class SettingsError(Exception):
+    """What was asked for cannot be had; the text is one line."""
+
+
+def run(settings: Settings) -> int:
+    """Run until asked to stop; the exit code. What goes wrong becomes one line of the log."""
+    try:
+        return asyncio.run(_serve(settings))
+    except (SettingsError, EndpointError, LinkError, ParamError, UnknownDriverError) as error:
+        log.error("%s", error)
+        return MISTAKE
+    except MotorError as error:
+        log.error("motor driver: %s", error)
+        return FAULT
+    except Exception as error:
+        log.critical("%s (--log-file keeps the details)", _told(error), exc_info=True)
+        return FAULT
+
+
+def _told(error: Exception) -> str:
+    """A fault in one line. The machine stopped the motors before it let the fault through, or noted that it could not."""
+    notes = getattr(error, "__notes__", [])
+    state = f"motors may still turn, cut their power: {'; '.join(notes)}" if notes else "motors neutral"
+    return f"{state}; stopped by a fault in the program: {type(error).__name__}: {error}"
+
+
+async def _serve(settings: Settings) -> int:
+    loop = asyncio.get_running_loop()
+    params = Params(settings.params)
+    system = int(params["MAV_SYSID"])
+    rover = Rover(params, now=loop.time(), wall_clock=time.time())
+    with _open_body(settings, params) as (motors, sensors):
+        machine = Machine(rover, motors, sensors)
+        with contextlib.closing(machine):
+            links = open_links(settings.endpoints, system=system, component=COMPONENT)
+            ending = _Ending(machine, Runner(machine, links, period=PERIOD))
+            ending.listen(loop)
+            gc.collect()
+            gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
+            log.info("ready, system %d, %s", system, ", ".join(settings.endpoints))
+            return await ending.wait()
+
+
+class _Ending:
+    """How the run ends from outside the cores: asked by a signal, or by a fault in a callback of the loop."""
+
+    def __init__(self, machine: Machine, runner: Runner) -> None:
+        self._machine = machine
+        self._runner = runner
+        self._reason: str | None = None
+        self._fault: Exception | None = None
+
+    def listen(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Take signals and what callbacks raise."""
+        for number in SIGNALS:
+            loop.add_signal_handler(number, self._end, f"stopped by {number.name}, motors neutral")
+        loop.set_exception_handler(lambda _, context: self._end("", context.get("exception"), context["message"]))
+
+    async def wait(self) -> int:
+        """Run until the end. Raises what went wrong."""
+        await self._runner.run()
+        if self._fault is not None:
+            raise self._fault
+        log.info("%s", self._reason)
+        return STOPPED
+
+    def _end(self, reason: str, fault: Exception | None = None, message: str = "") -> None:
+        """The same order as everywhere: motors, last messages (Runner.run sends them), end."""
+        if self._reason is not None:
+            return
+        self._reason = reason
+        self._fault = fault or (RuntimeError(message) if message else None)
+        try:
+            self._machine.shutdown(asyncio.get_running_loop().time())
+        except Exception as error:
+            self._fault = MotorError(f"the motors did not stop when told, cut their power: {error}")
+        self._runner.stop()
+
+
+@contextlib.contextmanager
+def _open_body(settings: Settings, params: Params) -> Iterator[tuple[Motors, Sensors]]:
+    """Motors and sensors; the motors are closed on every way out. Raises MotorError, SettingsError."""
+    sensors: Sensors = NoSensors()
+    if settings.simulation is None:
+        motors = open_motors(settings.motors)
+    else:
+        motors, sensors = _simulated_body(settings.simulation, params)
+    with contextlib.closing(motors):
+        yield _logged(motors, settings.motor_log), sensors
+
+
+def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sensors]:
+    motors = SimulatedMotors()
+    frame = Frame(top_speed=params["SPEED_MAX"], track_width=params["TRACK_WIDTH"], wheelbase=params["WHEELBASE"])
+    chassis = CHASSIS[int(params["DRIVE_TYPE"])](frame)
+    body = SimulatedBody(
+        lambda: motors.outputs,
+        chassis=chassis,
+        battery=Battery(simulation.battery),
+        home=simulation.home,
+        seed=simulation.seed,
+    )
+    return motors, body
+
+
+def _logged(motors: Motors, path: str | None) -> Motors:
+    if path is None:
+        return motors
+    try:
+        return LoggedMotors(motors, MotorLog(path).write, time.monotonic_ns)
+    except OSError as error:
+        raise SettingsError(f"motor log {path}: {error.strerror}") from error

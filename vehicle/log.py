@@ -1,0 +1,77 @@
+"""The daemon's log: lines to stderr and to a file, written by a thread of its own; what is logged is not decided here.
+
+A terminal on hold (Ctrl-S) or a full pipe blocks whoever writes to it. The control loop must never wait for that while
+wheels turn, so it only puts lines in a queue; when the queue is full, the newest lines are lost and not the control.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import queue
+import threading
+
+STDERR = 2
+QUEUE_LINES = 1000
+"""More than a start and an end write; what a daemon says more than this while nobody can read it is lost."""
+DRAIN = 1.0
+"""s that the end of the program waits for the last lines; a reader that takes longer is gone."""
+
+
+class _Brief(logging.Formatter):
+    """For a person: one line, never a traceback."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        return "vehicle: " + " ".join(record.getMessage().split())
+
+
+class _Queued(logging.Handler):
+    """Puts formatted lines in the queue, with the descriptor where they go."""
+
+    def __init__(self, lines: queue.Queue[tuple[int, bytes] | None], descriptor: int) -> None:
+        super().__init__()
+        self._lines = lines
+        self._descriptor = descriptor
+
+    def emit(self, record: logging.LogRecord) -> None:
+        try:
+            self._lines.put_nowait((self._descriptor, (self.format(record) + "\n").encode()))
+        except queue.Full:
+            return  # losing the newest line is the rule above
+
+
+class Log:
+    """The running log. Make one, `close` it last."""
+
+    def __init__(self, path: str | None = None, *, verbose: bool = False) -> None:
+        """`path` takes every line with its time and traceback. Raises OSError where it cannot be opened."""
+        self._lines: queue.Queue[tuple[int, bytes] | None] = queue.Queue(QUEUE_LINES)
+        handlers = [self._handler(STDERR, _Brief())]
+        if path is not None:
+            flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
+            full = logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s")
+            handlers.append(self._handler(os.open(path, flags, 0o644), full))
+        logging.basicConfig(level=logging.DEBUG if verbose else logging.INFO, handlers=handlers, force=True)
+        self._thread = threading.Thread(target=self._write, name="log", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Write what is left, for at most DRAIN s."""
+        try:
+            self._lines.put(None, timeout=DRAIN)
+        except queue.Full:
+            return
+        self._thread.join(DRAIN)
+
+    def _handler(self, descriptor: int, formatter: logging.Formatter) -> logging.Handler:
+        handler = _Queued(self._lines, descriptor)
+        handler.setFormatter(formatter)
+        return handler
+
+    def _write(self) -> None:
+        while (item := self._lines.get()) is not None:
+            descriptor, line = item
+            try:
+                os.write(descriptor, line)
+            except OSError:
+                continue  # the terminal is closed or the disk is full: there is nobody to tell
