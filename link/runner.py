@@ -74,6 +74,7 @@ class Runner:
         finally:
             if self._timer:
                 self._timer.cancel()
+            self._last_words()
             for link in self._links:
                 link.close()
 
@@ -85,6 +86,13 @@ class Runner:
     def wake(self) -> None:
         """Send what the core has now: for cores that are told things from elsewhere than a link."""
         self._guard(self._flush)
+
+    def _last_words(self) -> None:
+        """What the core still says when it ends, also after an exception of its own."""
+        try:
+            self._flush()
+        except Exception as error:
+            log.warning("the last messages could not be sent: %r", error)
 
     def _guard(self, step: Callable[[], None]) -> None:
         """Callbacks of the loop have no caller to raise to: what goes wrong in one ends run()."""
