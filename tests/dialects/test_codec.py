@@ -67,7 +67,7 @@ def test_trailing_zeros_are_cut_but_one_byte_stays() -> None:
 
 def test_bytes_of_a_newer_definition_are_dropped() -> None:
     payload = codec.encode_payload(Heartbeat(10, 0, 1, 2, 3, 3)) + b"new"
-    assert codec.decode(Heartbeat.id, payload).custom_mode == 2
+    assert codec.decode(Heartbeat.id, payload).to_dict()["custom_mode"] == 2
 
 
 @pytest.mark.parametrize("value", [40000, -40000, 12.7, None])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import pytest
 
@@ -64,11 +64,11 @@ async def run(endpoint: str, done: Callable[[Recorder], bool], *, first: Callabl
 
 
 @pytest.fixture
-def ground() -> socket.socket:
+def ground() -> Iterator[socket.socket]:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
         sock.bind(("127.0.0.1", 0))
         sock.settimeout(10)
-        yield sock  # type: ignore[misc]
+        yield sock
 
 
 def free_port() -> int:

@@ -1,0 +1,185 @@
+"""The two real programs as a user runs them: the vehicle as a process, the ground station in a real pty."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import select
+import signal
+import struct
+import subprocess
+import sys
+import termios
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from tests.e2e.relay import Relay
+
+REPEAT = 0.033
+"""s between the auto-repeats of a held key: 30 a second, as most systems do."""
+FIRST_REPEAT = 0.4
+"""s from pressing a key to its first repeat; shorter than the longest in use (0.66 s, X11)."""
+
+
+class Output(NamedTuple):
+    """A line of the motor log."""
+
+    at: float
+    """Monotonic, s."""
+    throttles: tuple[float, ...]
+
+    @property
+    def turning(self) -> bool:
+        """Does any wheel get power?"""
+        return any(self.throttles)
+
+
+class Vehicle:
+    """`python -m vehicle --sim` with a motor log."""
+
+    def __init__(self, folder: Path, port: int, *options: str) -> None:
+        self.motor_log = folder / "motors.log"
+        self.errors = folder / "vehicle.err"
+        command = [sys.executable, "-m", "vehicle", "--sim", f"udpout:127.0.0.1:{port}", *options]
+        with self.errors.open("wb") as errors:
+            self.process = subprocess.Popen(
+                [*command, "--motor-log", str(self.motor_log)], stdout=errors, stderr=errors, stdin=subprocess.DEVNULL
+            )
+
+    def outputs(self) -> list[Output]:
+        """All changes of the motor outputs so far."""
+        if not self.motor_log.exists():
+            return []
+        lines = self.motor_log.read_text().rpartition("\n")[0].splitlines()
+        rows = (line.split() for line in lines)
+        return [Output(int(at) / 1e9, tuple(map(float, values))) for at, *values in rows]
+
+    def turning(self) -> bool:
+        """Do the wheels turn now?"""
+        outputs = self.outputs()
+        return bool(outputs) and outputs[-1].turning
+
+    def at_full(self, least: float = 0.4) -> bool:
+        """Do both wheels get at least `least` of their power?"""
+        outputs = self.outputs()
+        return bool(outputs) and min(map(abs, outputs[-1].throttles)) >= least
+
+    def moved_since(self, at: float) -> bool:
+        """Did any wheel get power at or after `at` (monotonic)?"""
+        return any(each.turning for each in self.outputs() if each.at >= at)
+
+    def falls_and_stops_after(self, at: float) -> tuple[float, float]:
+        """When, counted from `at`, the outputs first got smaller and when they were neutral and stayed so, s."""
+        outputs = [each for each in self.outputs() if each.at > at]
+        before = [each for each in self.outputs() if each.at <= at][-1]
+        power = max(map(abs, before.throttles))
+        falling = None
+        for each in outputs:
+            now = max(map(abs, each.throttles))
+            if now < power and falling is None:
+                falling = each.at
+            power = max(power, now) if falling is None else power
+        assert outputs, "the outputs never changed again"
+        assert not outputs[-1].turning, f"still turning: {outputs[-1]}"
+        assert falling is not None
+        return falling - at, outputs[-1].at - at
+
+    def end(self) -> None:
+        """End it, whatever state it is in."""
+        _end(self.process)
+
+
+class GroundStation:
+    """`python -m groundstation` in a pty of its own session, as a terminal window gives it."""
+
+    def __init__(self, folder: Path, *arguments: str, columns: int = 80, lines: int = 24) -> None:
+        self.screen = b""
+        self.log = folder / "groundstation.log"
+        self._terminal, program = pty.openpty()
+        fcntl.ioctl(program, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "groundstation", *arguments, "--log-file", str(self.log)],
+            stdin=program,
+            stdout=program,
+            stderr=program,
+            start_new_session=True,
+            preexec_fn=_own_terminal,
+            env={**os.environ, "TERM": "xterm-256color", "COLUMNS": str(columns), "LINES": str(lines)},
+        )
+        os.close(program)
+
+    def type(self, keys: str) -> None:
+        """All of `keys` in one write: a slow SSH brings several at once like this."""
+        os.write(self._terminal, keys.encode())
+        self.look(0.0)
+
+    def hold(self, key: str, until: Callable[[], bool], within: float = 20.0) -> None:
+        """Hold a key down, as auto-repeat shows it, until `until`; then let go."""
+        deadline = time.monotonic() + within
+        self.type(key)
+        self.look(FIRST_REPEAT)
+        while not until():
+            assert time.monotonic() < deadline, f"holding {key!r} for {within} s did not do it"
+            self.type(key)
+            self.look(REPEAT)
+
+    def look(self, seconds: float) -> None:
+        """Read what the program draws, for `seconds`: a terminal that nobody reads blocks its program."""
+        deadline = time.monotonic() + seconds
+        while True:
+            ready, _, _ = select.select([self._terminal], [], [], max(0.0, deadline - time.monotonic()))
+            if not ready:
+                return
+            try:
+                self.screen += os.read(self._terminal, 65536)
+            except OSError:
+                return  # the program has closed its end
+
+    def wait_for(self, condition: Callable[[], bool], within: float, what: str) -> None:
+        """Look at the screen until `condition`."""
+        deadline = time.monotonic() + within
+        while not condition():
+            assert time.monotonic() < deadline, f"not within {within} s: {what}"
+            self.look(0.02)
+
+    def ended(self, within: float = 10.0) -> int:
+        """Wait for the program's end; returns its exit code."""
+        self.wait_for(lambda: self.process.poll() is not None, within, "the ground station ends")
+        return int(self.process.returncode)
+
+    def close_terminal(self) -> None:
+        """Close the window: the program gets SIGHUP and its terminal is gone."""
+        os.close(self._terminal)
+        self._terminal = -1
+
+    def end(self) -> None:
+        """End it, whatever state it is in."""
+        _end(self.process)
+        if self._terminal >= 0:
+            os.close(self._terminal)
+
+
+def _own_terminal() -> None:
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    if process.poll() is None:
+        process.send_signal(signal.SIGCONT)
+        process.kill()
+    process.wait(10)
+
+
+def drive(station: GroundStation, vehicle: Vehicle, relay: Relay, key: str = "i") -> None:
+    """Arm through the keys and hold one until the wheels turn: every stop test starts from here."""
+    station.wait_for(lambda: relay.mode() is not None, 20, "the vehicle is heard")
+    station.wait_for(lambda: b"MANUAL" in station.screen, 20, "the drive screen shows the vehicle")
+    station.type("r")
+    station.look(0.3)
+    station.type("y")
+    station.wait_for(relay.armed, 10, f"armed; the vehicle said {relay.texts()}")
+    station.hold(key, vehicle.at_full)
+    assert vehicle.turning()
