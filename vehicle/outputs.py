@@ -1,8 +1,17 @@
-"""The last gate before the motors: it refuses what it cannot vouch for, whoever asked for it."""
+"""The last gate before the motors: it refuses what it cannot vouch for, whoever asked for it.
+
+It does not trust the rest of the vehicle: it judges by a few plain facts (Clearance), checks every value, and times
+every deceleration itself.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
+
+SLACK = 0.05
+"""s that a deceleration may take longer than its ramp: two cycles of 20 ms and a little, because it begins in one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,3 +21,74 @@ class Outputs:
     throttles: tuple[float, ...]
     enabled: bool
     """False: the driver's enable line is off too."""
+
+
+class Permit(Enum):
+    """What the motors may do in this cycle."""
+
+    NONE = "none"
+    """Zero at once: disarmed, emergency stop, fault, a late cycle."""
+    FALL = "fall"
+    """Ramp down to zero, nothing else: stale demand, HOLD, failsafe, no neutral seen."""
+    DRIVE = "drive"
+    """Follow the demand."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clearance:
+    """The facts that decide about motion."""
+
+    armed: bool = False
+    late: bool = False
+    """The control loop was late in this cycle."""
+    held: bool = True
+    """The mode or a failsafe wants neutral."""
+    neutral_seen: bool = False
+    demand_age: float | None = None
+    """s since the demand in use came from the driver in control; None without one."""
+    timeout: float = 0.0
+    """s that a demand counts."""
+
+    @property
+    def permit(self) -> Permit:
+        """Anything unknown or not a number is a no."""
+        if not self.armed or self.late:
+            return Permit.NONE
+        fresh = self.demand_age is not None and 0.0 <= self.demand_age <= self.timeout
+        return Permit.DRIVE if fresh and self.neutral_seen and not self.held else Permit.FALL
+
+
+class Gate:
+    """Passes motor values or replaces them by zero."""
+
+    def __init__(self, motors: int) -> None:
+        self.refused = 0
+        """Values that were not numbers or out of range, in a row."""
+        self._motors = motors
+        self._before = (0.0,) * motors
+        self._fall_began: float | None = None
+
+    def judge(self, throttles: Sequence[float], permit: Permit, fall_time: float, now: float) -> Outputs:
+        """What may go to the motors. `fall_time` is the longest a deceleration to zero may take, s."""
+        self._note_fall(permit, now)
+        passed = permit is not Permit.NONE and self._sound(throttles) and self._falling(throttles, fall_time, now)
+        self._before = tuple(throttles) if passed else (0.0,) * self._motors
+        return Outputs(self._before, enabled=passed and (permit is Permit.DRIVE or any(self._before)))
+
+    def _sound(self, throttles: Sequence[float]) -> bool:
+        # NaN fails every comparison, so that it is refused here too.
+        sound = len(throttles) == self._motors and all(-1.0 <= value <= 1.0 for value in throttles)
+        self.refused = 0 if sound else self.refused + 1
+        return sound
+
+    def _note_fall(self, permit: Permit, now: float) -> None:
+        if permit is not Permit.FALL:
+            self._fall_began = None
+        elif self._fall_began is None:
+            self._fall_began = now
+
+    def _falling(self, throttles: Sequence[float], fall_time: float, now: float) -> bool:
+        if self._fall_began is None:
+            return True
+        smaller = all(abs(new) <= abs(old) for new, old in zip(throttles, self._before, strict=True))
+        return smaller and (now - self._fall_began <= fall_time + SLACK or not any(throttles))

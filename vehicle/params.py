@@ -29,36 +29,38 @@ class Parameter:
 TABLE: tuple[Parameter, ...] = (
     # Identity
     Parameter("MAV_SYSID", 1, 1, 255, "", "System id of this vehicle; after a restart", whole=True),
-    Parameter("MAV_GCS_SYSID", 0, 0, 255, "", "Only this ground station may take control; 0: the first that arms or asks",
+    Parameter("MAV_GCS_SYSID", 0, 0, 255, "", "Only this ground station may take control; 0: the first that arms",
               safety=True, whole=True),
     # Manual driving
-    Parameter("MAN_TIMEOUT", 0.45, 0.2, 2, "s", "A demand older than this is neutral; 9 frames of 20 Hz, and less than 0.5 s "
-              "so that the wheels begin to slow in time", safety=True),
+    Parameter("MAN_TIMEOUT", 0.45, 0.2, 2, "s", "A demand older than this is neutral. 9 frames of 20 Hz; less than "
+              "0.5 s, so that the wheels begin to slow by then", safety=True),
     Parameter("MAN_DEADBAND", 3, 0, 20, "%", "Demands smaller than this are neutral"),
     Parameter("MANUAL_EXPO", 0, 0, 0.9, "", "Softness of throttle near neutral; 0 is linear"),
     Parameter("MANUAL_STR_EXPO", 0, 0, 0.9, "", "Softness of steering near neutral; 0 is linear"),
     Parameter("INITIAL_MODE", 0, 0, 4, "", "Mode after start: 0 MANUAL, 4 HOLD", whole=True),
     Parameter("OPR_TIMEOUT", 10, 2, 60, "s", "Without a key or stick event for so long while moving: stop"),
-    Parameter("OPR_ECHO_MAX", 0.45, 0.2, 5, "s", "A demand is refused when the driver's newest word of the vehicle is older "
-              "than this; raise it on slow radios", safety=True),
+    Parameter("OPR_ECHO_MAX", 0.45, 0.2, 5, "s", "A demand is refused when the driver has seen nothing newer of the "
+              "vehicle than this; raise it on slow radios", safety=True),
     # Failsafes
     Parameter("FS_TIMEOUT", 1.5, 0.5, 10, "s", "From manual control lost to HOLD", safety=True),
     Parameter("FS_DISARM_T", 30, 5, 300, "s", "From manual control lost to disarmed", safety=True),
-    Parameter("FS_GCS_ENABLE", 1, 0, 1, "", "HOLD when the ground station in control is silent", safety=True, whole=True),
-    Parameter("FS_GCS_TIMEOUT", 5, 2, 120, "s", "Silence after which the ground station in control is lost", safety=True),
+    Parameter("FS_GCS_ENABLE", 1, 0, 1, "", "HOLD when the ground station in control is silent", safety=True,
+              whole=True),
+    Parameter("FS_GCS_TIMEOUT", 5, 2, 120, "s", "Silence after which the ground station in control is lost",
+              safety=True),
     Parameter("FS_LOOP_TIMEOUT", 0.2, 0.1, 2, "s", "A control cycle later than this disarms", safety=True),
     Parameter("FS_LOW_ACT", 2, 0, 2, "", "Battery low: 0 slow down only, 2 HOLD as well", whole=True),
     Parameter("BATT_LOW_VOLT", 10.5, 0, 100, "V", "Battery low below this; 0: off"),
     Parameter("BATT_CRT_VOLT", 10.0, 0, 100, "V", "Battery critical below this; 0: off"),
-    Parameter("BATT_LOW_TIMER", 10, 1, 120, "s", "The voltage must be low for so long, because motors pull it down for moments"),
+    Parameter("BATT_LOW_TIMER", 10, 1, 120, "s", "The voltage must be low for so long; motors pull it down"),
     Parameter("DISARM_DELAY", 300, 0, 3600, "s", "Disarm after so long without a demand; 0: never"),
     # Motors
     Parameter("DRIVE_TYPE", 1, 1, 2, "", "1 skid steering, 2 Ackermann", safety=True, whole=True),
     Parameter("MOT_SLEWRATE", 250, 10, 1000, "%/s", "Acceleration of each motor", safety=True),
-    Parameter("MOT_DECEL", 250, 250, 10000, "%/s", "Deceleration of each motor; at least 250, so that full speed ends in 0.4 s",
+    Parameter("MOT_DECEL", 250, 250, 10000, "%/s", "Deceleration of each motor; 250 is from full to zero in 0.4 s",
               safety=True),
     Parameter("MOT_THR_MAX", 100, 30, 100, "%", "Largest throttle", safety=True),
-    Parameter("MOT_STR_THR_MIX", 0.5, 0.2, 1, "", "Skid steering at its limit: more keeps steering, less keeps throttle"),
+    Parameter("MOT_STR_THR_MIX", 0.5, 0.2, 1, "", "Skid steering at its limit: more keeps steering, less throttle"),
     Parameter("MOT_REV_DELAY", 0, 0, 1, "s", "Pause at zero before a motor reverses", safety=True),
     # Shape
     Parameter("SPEED_MAX", 1.5, 0.1, 30, "m/s", "Top speed"),

@@ -1,0 +1,117 @@
+"""A driver's demand as the two messages that carry one say it: MANUAL_CONTROL and RC_CHANNELS_OVERRIDE."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from dialects import axes
+from dialects.messages import ManualControl, RcChannelsOverride
+
+STEERING_CHANNEL, THROTTLE_CHANNEL = 1, 3
+"""ArduRover's default RCMAP."""
+PULSE_NEUTRAL, PULSE_DEADZONE, PULSE_SPAN = 1500, 30, 400
+"""us: ArduRover's trim, dead zone and distance to full deflection (1100..1900, RC_Channel.cpp)."""
+PULSE_MIN, PULSE_MAX = 800, 2200
+"""us: anything else is no pulse of a radio."""
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What a driver asks for. None on an axis is "no demand there": neutral, but no proof of a stick at rest."""
+
+    throttle: float | None
+    steering: float | None
+    time: float
+    """When its oldest part arrived."""
+    system: int
+    sequence: int
+    """Packet sequence number of the message."""
+
+    def neutral(self, band: float) -> bool:
+        """Both sticks are at rest."""
+        return all(axis is not None and abs(axis) <= band for axis in (self.throttle, self.steering))
+
+    def moving(self, band: float) -> bool:
+        """Any stick asks for motion."""
+        return any(axis is not None and abs(axis) > band for axis in (self.throttle, self.steering))
+
+
+def from_manual_control(message: ManualControl, system: int, sequence: int, now: float) -> Demand | None:
+    """The demand of a MANUAL_CONTROL; None where no axis of ours is valid. Axes: dialects/axes.py."""
+    throttle, steering = axes.demand(message)
+    if throttle is None and steering is None:
+        return None
+    return Demand(throttle, steering, now, system, sequence)
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """One overridden channel."""
+
+    pulse: int
+    """us"""
+    time: float
+
+
+class Override:
+    """The channels that RC_CHANNELS_OVERRIDE holds; each is given back or goes stale by itself."""
+
+    COUNT = 18
+
+    def __init__(self) -> None:
+        self.channels: dict[int, Channel] = {}
+        """Channel 1..18 -> what holds it."""
+        self.invalid = 0
+        """Values that are neither a pulse nor one of the special numbers."""
+
+    def take(self, message: RcChannelsOverride, now: float) -> bool:
+        """Take a message; True where it speaks of throttle or steering (setting them or giving them back)."""
+        spoken = [self._set(number, getattr(message, f"chan{number}_raw"), now) for number in range(1, self.COUNT + 1)]
+        return spoken[THROTTLE_CHANNEL - 1] or spoken[STEERING_CHANNEL - 1]
+
+    def demand(self, system: int, sequence: int, now: float, timeout: float) -> Demand:
+        """Throttle and steering of the channels that are not older than `timeout` s.
+
+        Steering that nobody holds is at rest, because MAVProxy's `rc 3 1500` holds the throttle only.
+        """
+        throttle, steering = (self._fresh(number, now, timeout) for number in (THROTTLE_CHANNEL, STEERING_CHANNEL))
+        # A channel that moves the rover must not live longer because the other one was repeated.
+        oldest = min((each.time for each in (throttle, steering) if each and deflection(each.pulse)), default=now)
+        return Demand(
+            deflection(throttle.pulse) if throttle else None,
+            deflection(steering.pulse) if steering else 0.0,
+            oldest,
+            system,
+            sequence,
+        )
+
+    def _fresh(self, number: int, now: float, timeout: float) -> Channel | None:
+        channel = self.channels.get(number)
+        return channel if channel and now - channel.time <= timeout else None
+
+    def _set(self, number: int, value: int, now: float) -> bool:
+        if value == 65535 or (number > 8 and value == 0):
+            return False
+        if value == (0 if number <= 8 else 65534):
+            self.channels.pop(number, None)
+            return True
+        if not PULSE_MIN <= value <= PULSE_MAX:
+            self.invalid += 1
+            return False
+        self.channels[number] = Channel(value, now)
+        return True
+
+
+def deflection(pulse: int) -> float:
+    """A pulse in us as -1..1."""
+    offset = pulse - PULSE_NEUTRAL
+    if abs(offset) <= PULSE_DEADZONE:
+        return 0.0
+    beyond = (abs(offset) - PULSE_DEADZONE) / (PULSE_SPAN - PULSE_DEADZONE)
+    return math.copysign(min(1.0, beyond), offset)
+
+
+def pulse(value: float) -> int:
+    """-1..1 as a pulse in us: what a radio or servo of that deflection would show."""
+    return PULSE_NEUTRAL + round(value * PULSE_SPAN)

@@ -1,0 +1,82 @@
+"""From a demand to motor values: dead band, expo, limits, mixer, ramps, gate. Who may drive is not decided here."""
+
+from __future__ import annotations
+
+from dialects.enums import DriveType, Limit
+from vehicle.demand import Demand
+from vehicle.mixer import MIXERS, Mixed, deadband, expo
+from vehicle.outputs import Clearance, Gate, Outputs, Permit
+from vehicle.params import Params
+from vehicle.slew import Slew, SlewLimits
+
+HALF = 0.5
+"""Largest throttle while a failsafe limits the speed (vehicle.md, battery low)."""
+
+
+class Drive:
+    """The motors' side of the rover. Ramps are per motor, so that a stop makes every motor's value fall from the first
+    cycle on; ramps before the mixer would leave a saturated motor at full for a while."""
+
+    def __init__(self, params: Params, now: float) -> None:
+        self.kind = DriveType(int(params["DRIVE_TYPE"]))
+        self.mixer = MIXERS[self.kind]
+        self.limits = Limit(0)
+        """Why the outputs differ from the demand, as far as this side knows."""
+        self.outputs = Outputs((0.0,) * len(self.mixer.motors), enabled=False)
+        self._params = params
+        self._slews = [Slew() for _ in self.mixer.motors]
+        self._gate = Gate(len(self._slews))
+        self._at = now
+
+    @property
+    def refused(self) -> int:
+        """Cycles in a row in which the gate got values that are no values."""
+        return self._gate.refused
+
+    def step(self, demand: Demand | None, clearance: Clearance, *, limited: bool, now: float) -> Outputs:
+        """The outputs of this moment. `limited`: a failsafe asks for half speed."""
+        permit = clearance.permit
+        dt, self._at = max(0.0, now - self._at), now
+        self.limits = Limit(0)
+        if permit is Permit.NONE:
+            for slew in self._slews:
+                slew.reset()
+        ramps = self._ramps()
+        targets = self._targets(demand if permit is Permit.DRIVE else None, limited)
+        values = [slew.step(target, dt, ramps) for slew, target in zip(self._slews, targets, strict=True)]
+        self._note_limits()
+        self.outputs = self._gate.judge(values, permit, 1.0 / ramps.decel, now)
+        if self.outputs.throttles != tuple(values):  # refused: no ramp goes on from there
+            for slew in self._slews:
+                slew.reset()
+        return self.outputs
+
+    def _targets(self, demand: Demand | None, limited: bool) -> tuple[float, ...]:
+        if demand is None:
+            return (0.0,) * len(self._slews)
+        band = self._params["MAN_DEADBAND"] / 100
+        throttle = expo(deadband(demand.throttle or 0.0, band), self._params["MANUAL_EXPO"])
+        steering = expo(deadband(demand.steering or 0.0, band), self._params["MANUAL_STR_EXPO"])
+        mixed: Mixed = self.mixer.mix(self._cap(throttle, limited), steering, self._params["MOT_STR_THR_MIX"])
+        if mixed.saturated:
+            self.limits |= Limit.SATURATED
+        return mixed.throttles
+
+    def _cap(self, throttle: float, limited: bool) -> float:
+        largest = self._params["MOT_THR_MAX"] / 100
+        reason = Limit.SPEED
+        if limited and largest > HALF:
+            largest, reason = HALF, Limit.BATTERY
+        if abs(throttle) > largest:
+            self.limits |= reason
+        return max(-largest, min(largest, throttle))
+
+    def _ramps(self) -> SlewLimits:
+        params = self._params
+        return SlewLimits(params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100, params["MOT_REV_DELAY"])
+
+    def _note_limits(self) -> None:
+        if any(slew.limited for slew in self._slews):
+            self.limits |= Limit.SLEW
+        if any(slew.waiting for slew in self._slews):
+            self.limits |= Limit.REVERSE_DELAY

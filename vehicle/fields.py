@@ -1,0 +1,27 @@
+"""Numbers into message fields: rounded, clamped to what the field holds, and its "unknown" for None and NaN."""
+
+from __future__ import annotations
+
+import math
+
+INT16 = (-32768, 32767)
+INT32 = (-(2**31), 2**31 - 1)
+UINT8 = (0, 255)
+UINT16 = (0, 65535)
+UINT32 = (0, 2**32 - 1)
+INT8 = (-128, 127)
+
+
+def whole(value: float | None, bounds: tuple[int, int], scale: float = 1.0, unknown: int = 0) -> int:
+    """`value` x `scale` as an integer within `bounds`; `unknown` where there is no number."""
+    if value is None or not math.isfinite(value):
+        return unknown
+    low, high = bounds
+    return int(max(low, min(high, round(value * scale)))) if math.isfinite(value * scale) else unknown
+
+
+def real(value: float | None, unknown: float = 0.0) -> float:
+    """`value` as a 32-bit float can hold it."""
+    if value is None or not math.isfinite(value):
+        return unknown
+    return max(-3.4e38, min(3.4e38, value))

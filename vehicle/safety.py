@@ -1,0 +1,248 @@
+"""May it move? State, mode, arming, emergency stop and failsafes: the verbs behind the commands, and what time does.
+
+It knows no messages: vehicle/commands.py translates them into these verbs, vehicle/drive.py turns a Clearance into
+motor values.
+"""
+
+from __future__ import annotations
+
+from dialects.enums import Failsafe, Severity
+from dialects.modes import Mode
+from vehicle.arming import Facts, problems
+from vehicle.battery import BatteryWatch
+from vehicle.conditions import Scene, found
+from vehicle.control import Control
+from vehicle.failsafe import RULES, Action, Failsafes, Taken
+from vehicle.modes import OFFERED
+from vehicle.outputs import Clearance
+from vehicle.params import Params
+from vehicle.states import TRANSITIONS, Event, State
+from vehicle.texts import Texts
+
+LATE = 0.1
+"""s between two cycles of 20 ms from which on the motors get zero for a cycle (vehicle.md, control loop late)."""
+BAD_VALUES = 3
+"""Cycles in a row with values that are not numbers, and the mode becomes HOLD."""
+ACTION_WORDS = {
+    Action.WARN: "warning",
+    Action.LIMIT: "half speed",
+    Action.NEUTRAL: "stopping",
+    Action.HOLD: "HOLD",
+    Action.DISARM: "disarmed",
+}
+
+
+class Safety:
+    """The one place that arms, disarms and changes the mode."""
+
+    def __init__(self, params: Params, control: Control, texts: Texts, now: float) -> None:
+        self.state = State.BOOT
+        self.mode = self.intended = Mode(int(params["INITIAL_MODE"]))
+        self.terminated = False
+        """Emergency stop that only a restart ends (DO_FLIGHTTERMINATION)."""
+        self.fault: str | None = None
+        self.overrun = False
+        """A late cycle has disarmed; until the next arming."""
+        self.failsafes = Failsafes(params)
+        self.battery = BatteryWatch(params)
+        self._params = params
+        self._control = control
+        self._texts = texts
+        self._armed_at = self._asked_at = now
+        self._cycle = now
+
+    @property
+    def armed(self) -> bool:
+        """Motors may turn."""
+        return self.state is State.ARMED
+
+    @property
+    def latched(self) -> Failsafe:
+        """What stays until somebody does something."""
+        held = self.failsafes.latched
+        for cause, holds in ((Failsafe.ESTOP, self.state is State.ESTOP), (Failsafe.MOTOR_DRIVER, self.fault is not None),
+                             (Failsafe.LOOP_OVERRUN, self.overrun)):  # fmt: skip
+            held |= cause if holds else Failsafe(0)
+        return held
+
+    # What somebody wants
+
+    def problems(self, now: float, *, force: bool = False) -> list[str]:
+        """What forbids to arm; empty where nothing does."""
+        facts = Facts(
+            params=self._params,
+            state=self.state,
+            terminated=self.terminated,
+            fault=self.fault,
+            battery_low=self.battery.low_since(now) is not None,
+            battery_critical=self.battery.critical_since(now) is not None,
+            battery_silent=self.battery.silent(now),
+            sticks_moving=self._control.moving() and not self._control.stale(now),
+        )
+        return problems(facts, force=force)
+
+    def arm(self, system: int, now: float, *, force: bool = False) -> list[str]:
+        """Arm for `system`, which takes control. Returns what forbids it, and has said so."""
+        if self.armed and self._control.owner == system:
+            return []
+        refusals = self._arm_refusals(system, now, force=force)
+        for problem in refusals:
+            self._texts.say(Severity.WARNING, f"PreArm: {problem}", now)
+        if refusals:
+            return refusals
+        self._control.take(system, now)
+        self._control.reset()
+        self._happen(Event.ARM)
+        self._armed_at = now
+        self.overrun = False
+        self.failsafes.acknowledge()
+        self._texts.say(Severity.NOTICE, f"Armed by GCS {system}, mode {self.mode.name}", now)
+        return []
+
+    def disarm(self, why: str, now: float) -> None:
+        """Motors to zero at once."""
+        if not self.armed:
+            return
+        self._happen(Event.DISARM)
+        self._texts.say(Severity.NOTICE, f"Disarmed: {why}", now)
+        self._free_lost_owner(now)
+
+    def emergency_stop(self, who: str, now: float, *, terminate: bool = False) -> None:
+        """Motors to zero at once, until somebody releases it. `terminate`: until a restart."""
+        self.terminated |= terminate
+        if self.state is not State.ESTOP:
+            self._happen(Event.STOP)
+            self._texts.say(Severity.EMERGENCY, f"EMERGENCY STOP by {who}", now)
+
+    def release(self, now: float) -> str | None:
+        """End the emergency stop; stays disarmed. Returns why not."""
+        if self.terminated:
+            return "terminated, restart the vehicle"
+        if self.state is State.ESTOP:
+            self._happen(Event.RELEASE)
+            self._texts.say(Severity.NOTICE, "Emergency stop released, disarmed", now)
+            if self.fault:
+                self._happen(Event.FAIL)
+        return None
+
+    def choose_mode(self, mode: Mode, now: float) -> str | None:
+        """The driver's choice of a mode. Returns why not."""
+        blocking = self.failsafes.blocks_modes()
+        if blocking and OFFERED[mode].manual:
+            return " and ".join(RULES[cause].words for cause in Failsafe if cause & blocking)
+        self.intended = mode
+        self.failsafes.acknowledge()
+        if mode is not self.mode:
+            self.mode = mode
+            self._control.reset() if OFFERED[mode].manual else self._control.close()
+            self._texts.say(Severity.INFO, f"Mode {mode.name}", now)
+        return None
+
+    def motor_failed(self, reason: str, now: float) -> None:
+        """The motor driver does not do what it should."""
+        if self.fault is None:
+            self._texts.say(Severity.CRITICAL, f"Motor driver failed: {reason}", now)
+        self.fault = reason
+        self._happen(Event.FAIL)
+
+    def motor_repaired(self, now: float) -> None:
+        """The motor driver works again."""
+        if self.fault is not None:
+            self._texts.say(Severity.NOTICE, "Motor driver works again", now)
+        self.fault = None
+        self._happen(Event.REPAIR)
+
+    def shutdown(self) -> None:
+        """The end."""
+        self._happen(Event.SHUTDOWN)
+
+    # What time does
+
+    def is_late(self, now: float) -> bool:
+        """The control loop has not run for too long. A much too late one disarms."""
+        gap = now - self._cycle
+        if self.armed and gap > self._params["FS_LOOP_TIMEOUT"]:
+            self.overrun = True
+            self.disarm(f"control loop was {gap:.2f} s late", now)
+        return gap > LATE
+
+    def update(self, now: float, refused: int) -> None:
+        """One cycle: find what fails, do what follows. `refused`: cycles in a row with values that are not numbers."""
+        self._cycle = now
+        if self.state is State.BOOT:
+            self._happen(Event.READY)
+        self._control.lapse(now)
+        self._update_failsafes(now)
+        if refused >= BAD_VALUES and self.armed and self.mode is not Mode.HOLD:
+            self._texts.say(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
+            self._hold()
+        self._disarm_idle(now)
+        if not self.armed:
+            self._free_lost_owner(now)
+
+    def clearance(self, now: float, *, late: bool) -> Clearance:
+        """The facts about motion at this moment."""
+        return Clearance(
+            armed=self.armed,
+            late=late,
+            held=not OFFERED[self.mode].manual or self.failsafes.action(now) >= Action.NEUTRAL,
+            neutral_seen=self._control.neutral_seen,
+            demand_age=self._control.age(now),
+            timeout=self._params["MAN_TIMEOUT"],
+        )
+
+    def _update_failsafes(self, now: float) -> None:
+        before = self.failsafes.active
+        taken = self.failsafes.update(found(self._scene(), now) if self.armed else {}, now)
+        for cause in (cause for cause in Failsafe if cause & before & ~self.failsafes.active and self.armed):
+            self._texts.say(Severity.NOTICE, f"Failsafe over: {RULES[cause].words}", now)
+        for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
+            self._follow(step, now)
+
+    def _scene(self) -> Scene:
+        return Scene(
+            params=self._params,
+            control=self._control,
+            battery=self.battery,
+            driven=OFFERED[self.mode].manual,
+            latched=self.failsafes.latched,
+            armed_at=self._armed_at,
+        )
+
+    def _follow(self, step: Taken, now: float) -> None:
+        severity = Severity.CRITICAL if step.action >= Action.HOLD else Severity.WARNING
+        words = RULES[step.cause].words
+        self._texts.say(severity, f"Failsafe: {words}: {ACTION_WORDS[step.action]}", now)
+        if step.action is Action.NEUTRAL:
+            self._control.close()
+        elif step.action is Action.HOLD:
+            self._hold()
+        elif step.action is Action.DISARM:
+            self.disarm(words, now)
+
+    def _arm_refusals(self, system: int, now: float, *, force: bool) -> list[str]:
+        if self.armed:  # who wants to drive an armed vehicle asks for control, and does not slip in by arming
+            return [f"armed already by GCS {self._control.owner}"]
+        refusal = self._control.refusal(system, now)
+        return [refusal] if refusal else self.problems(now, force=force)
+
+    def _hold(self) -> None:
+        self.mode = Mode.HOLD
+        self._control.close()
+
+    def _disarm_idle(self, now: float) -> None:
+        delay = self._params["DISARM_DELAY"]
+        demand = self._control.demand
+        if demand and self._control.moving():
+            self._asked_at = demand.time
+        if delay and now - max(self._armed_at, self._asked_at) > delay:
+            self.disarm(f"no demand for {delay:g} s", now)
+
+    def _free_lost_owner(self, now: float) -> None:
+        if self._control.owner and self._control.lost(now):
+            self._control.release("is silent", now)
+
+    def _happen(self, event: Event) -> None:
+        self.state = TRANSITIONS[self.state, event]
+        if not self.armed:
+            self._control.close()

@@ -1,0 +1,56 @@
+"""How fast one motor may change: slower up than down, and a pause before it reverses."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class SlewLimits:
+    """Rates in 1/s (1 is from zero to full in a second), delay in s."""
+
+    accel: float
+    decel: float
+    reverse_delay: float = 0.0
+
+
+class Slew:
+    """The ramp of one motor."""
+
+    def __init__(self) -> None:
+        self.value = 0.0
+        self.limited = False
+        """The last step did not reach its target because of a rate."""
+        self.waiting = False
+        """The last step stood at zero because of the reverse delay."""
+        self._direction = 0.0
+        self._rested = math.inf
+
+    def reset(self) -> None:
+        """Stand at zero at once: emergency stop, disarmed."""
+        self.value = 0.0
+        self.limited = self.waiting = False
+
+    def step(self, target: float, dt: float, limits: SlewLimits) -> float:
+        """Move towards `target` for `dt` s; returns the new value."""
+        self.waiting = False
+        self._rested = 0.0 if self.value else self._rested + dt
+        if self.value and target * self.value <= 0.0:
+            self._toward(0.0, limits.decel * dt)
+        elif self._must_wait(target, limits.reverse_delay):
+            self.waiting = True
+        else:
+            rate = limits.decel if abs(target) < abs(self.value) else limits.accel
+            self._toward(target, rate * dt)
+        if self.value:
+            self._direction = math.copysign(1.0, self.value)
+        self.limited = self.value != target and not self.waiting
+        return self.value
+
+    def _must_wait(self, target: float, delay: float) -> bool:
+        return target * self._direction < 0.0 and self._rested < delay
+
+    def _toward(self, target: float, step: float) -> None:
+        difference = target - self.value
+        self.value = target if abs(difference) <= step else self.value + math.copysign(step, difference)
