@@ -78,7 +78,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
     try:
         parser = _parser()
-        return _run(parser.parse_args(_joined(words)), parser)
+        return _run(parser.parse_intermixed_args(_joined(words)), parser)
     except KeyboardInterrupt:  # before the daemon takes signals; no motor is open yet
         return 0
 
@@ -215,7 +215,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--system": {"metavar": "N", "type": _system, "help": "MAVLink system id, 1 to 255 (default 1)"},
     "--param": {"metavar": "NAME=VALUE", "type": _param, "action": "append", "default": [],
                 "help": "set a parameter; repeatable"},
-    "--motor-log": {"metavar": "FILE", "help": "append a line for each change of the motors: CLOCK_MONOTONIC ns, throttles"},
+    "--motor-log": {"metavar": "FILE", "help": "append each change of the motors: CLOCK_MONOTONIC ns, throttles"},
     "--log-file": {"metavar": "FILE", "help": "append the log with times and tracebacks; stderr has the brief one"},
     "--verbose": {"action": "store_true", "help": "log more"},
     "--home": {"metavar": "LAT,LON", "type": _home, "help": "where the simulated rover starts, degrees"},

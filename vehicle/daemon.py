@@ -90,7 +90,7 @@ def run(settings: Settings) -> int:
 
 
 def _told(error: Exception) -> str:
-    """A fault in one line. The machine stopped the motors before it let the fault through, or noted that it could not."""
+    """A fault in one line. The machine stopped the motors before it let it through, or noted that it could not."""
     notes = getattr(error, "__notes__", [])
     state = f"motors may still turn, cut their power: {'; '.join(notes)}" if notes else "motors neutral"
     return f"{state}; stopped by a fault in the program: {type(error).__name__}: {error}"

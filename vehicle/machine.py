@@ -71,11 +71,16 @@ class Drivetrain:
         self._motors.set(self._neutral)
 
     def close(self) -> None:
-        """Neutral, disabled, let go; each step is tried even where the one before raised."""
+        """Neutral, disabled, let go; each step is tried even where the one before raised.
+
+        Raises what `disable` or `close` raise: then the motors may still turn. A driver that does not even take neutral
+        any more is no matter as long as it gives up the power.
+        """
         with contextlib.ExitStack() as steps:  # last in, first out
             steps.callback(self._motors.close)
             steps.callback(self._motors.disable)
-            steps.callback(self._motors.set, self._neutral)
+            with contextlib.suppress(Exception):
+                self._motors.set(self._neutral)
 
     def _power(self) -> None:
         if not self._powered:
@@ -137,7 +142,7 @@ class Machine:
             raise
 
     def close(self) -> None:
-        """Stop the motors for good. May come twice. Raises what the driver raises, after every step was tried."""
+        """Stop the motors for good. May come twice. Raises where they may still turn, after every step was tried."""
         if not self._closed:
             self._closed = True
             self._drivetrain.close()
