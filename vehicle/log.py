@@ -46,17 +46,19 @@ class Log:
     def __init__(self, path: str | None = None, *, verbose: bool = False) -> None:
         """`path` takes every line with its time and traceback. Raises OSError where it cannot be opened."""
         self._lines: queue.Queue[tuple[int, bytes] | None] = queue.Queue(QUEUE_LINES)
-        handlers = [self._handler(STDERR, _Brief())]
+        self._handlers = [self._handler(STDERR, _Brief())]
         if path is not None:
             flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
             full = logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s")
-            handlers.append(self._handler(os.open(path, flags, 0o644), full))
-        logging.basicConfig(level=logging.DEBUG if verbose else logging.INFO, handlers=handlers, force=True)
+            self._handlers.append(self._handler(os.open(path, flags, 0o644), full))
+        logging.basicConfig(level=logging.DEBUG if verbose else logging.INFO, handlers=self._handlers, force=True)
         self._thread = threading.Thread(target=self._write, name="log", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
-        """Write what is left, for at most DRAIN s."""
+        """Write what is left, for at most DRAIN s, and log no more."""
+        for handler in self._handlers:
+            logging.getLogger().removeHandler(handler)
         try:
             self._lines.put(None, timeout=DRAIN)
         except queue.Full:

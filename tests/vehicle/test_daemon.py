@@ -1,0 +1,160 @@
+"""The vehicle as a real process: however it ends, the wheels that turned stand first."""
+
+from __future__ import annotations
+
+import fcntl
+import logging
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from dialects.enums import State
+from dialects.messages import Heartbeat
+from tests.vehicle.ground import Ground, drive, running
+from vehicle import daemon
+from vehicle.daemon import FAULT, MISTAKE, Settings, Simulation
+
+BREAKING = "tests.vehicle.motors.breaking"
+
+
+@pytest.mark.e2e
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+def test_a_signal_while_driving_stops_the_wheels(tmp_path: Path, number: signal.Signals) -> None:
+    with Ground() as ground, running(tmp_path, "--sim", ground.endpoint) as vehicle:
+        assert vehicle.ready() == f"vehicle: ready, system 1, {ground.endpoint}"
+        drive(ground, vehicle)
+        vehicle.process.send_signal(number)
+        assert vehicle.ended() == (0, [f"vehicle: stopped by {number.name}, motors neutral"])
+        assert not any(vehicle.outputs()[-1])
+        ground.drain()
+        assert not ground.armed
+        assert [m for m in ground.heard if isinstance(m, Heartbeat)][-1].system_status == State.POWEROFF
+
+
+@pytest.mark.e2e
+def test_a_fault_in_the_program_stops_the_wheels_first(tmp_path: Path) -> None:
+    details = tmp_path / "details"
+    words = (f"{BREAKING}:RaisesWhileTurning", "--log-file", str(details))
+    with Ground() as ground, running(tmp_path, ground.endpoint, "--motors", *words) as vehicle:
+        vehicle.ready()
+        drive(ground, vehicle)
+        ground.wait(lambda: vehicle.process.poll() is not None, "the fault ends the vehicle")
+        code, lines = vehicle.ended()
+        assert code == FAULT
+        assert len(lines) == 1
+        assert "motors neutral; stopped by a fault in the program: ZeroDivisionError: a bug in the driver" in lines[0]
+        assert not any(vehicle.outputs()[-1])
+        assert "Traceback" in details.read_text()
+        ground.drain()
+        assert not ground.armed
+
+
+@pytest.mark.e2e
+def test_motors_that_cannot_be_stopped_are_said_to_turn(tmp_path: Path) -> None:
+    with Ground() as ground, running(tmp_path, ground.endpoint, "--motors", f"{BREAKING}:CannotStop") as vehicle:
+        vehicle.ready()
+        drive(ground, vehicle)
+        ground.wait(lambda: vehicle.process.poll() is not None, "the fault ends the vehicle")
+        code, lines = vehicle.ended()
+        assert code == FAULT
+        assert len(lines) == 1
+        assert "motors may still turn, cut their power" in lines[0]
+
+
+@pytest.mark.e2e
+def test_a_terminal_on_hold_does_not_hold_the_vehicle(tmp_path: Path) -> None:
+    """Nobody reads stderr and it is full: the vehicle lives on, and ends when asked."""
+    reader, writer = os.pipe()
+    fcntl.fcntl(writer, fcntl.F_SETPIPE_SZ, 4096)
+    os.write(writer, b"." * 4096)
+    with Ground() as ground:
+        process = subprocess.Popen([sys.executable, "-m", "vehicle", "--sim", ground.endpoint], stderr=writer)
+        try:
+            ground.arm()
+            process.send_signal(signal.SIGTERM)
+            ground.wait(lambda: process.poll() is not None, "the vehicle ends")
+            assert process.returncode == 0
+        finally:
+            process.kill()
+            process.wait(10)
+            os.close(reader)
+            os.close(writer)
+
+
+@pytest.mark.e2e
+def test_a_closed_stderr_is_no_fault() -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    with Ground() as ground:
+        process = subprocess.Popen([sys.executable, "-m", "vehicle", "--sim", ground.endpoint], stderr=writer)
+        os.close(writer)
+        try:
+            ground.arm()
+            process.send_signal(signal.SIGTERM)
+            assert process.wait(10) == 0
+        finally:
+            process.kill()
+            process.wait(10)
+
+
+@pytest.mark.e2e
+def test_is_ready_soon(tmp_path: Path) -> None:
+    """0.5 s on an idle machine (benchmarks measure that); here other tests run beside it."""
+    with Ground() as ground:
+        start = time.monotonic()
+        with running(tmp_path, "--sim", ground.endpoint) as vehicle:
+            assert "ready" in vehicle.ready()
+            assert time.monotonic() - start < 3.0
+
+
+# ---- mistakes and faults before the start ----
+
+
+def said(caplog: pytest.LogCaptureFixture) -> str:
+    """The one line."""
+    assert len(caplog.records) == 1
+    assert caplog.records[0].levelno >= logging.ERROR
+    assert "\n" not in caplog.records[0].getMessage()
+    return caplog.records[0].getMessage()
+
+
+def test_an_unknown_driver_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
+    assert daemon.run(Settings(("udpout:127.0.0.1:9",), motors="gipo")) == MISTAKE
+    assert "unknown motor driver 'gipo'" in said(caplog)
+
+
+def test_missing_hardware_is_a_fault(caplog: pytest.LogCaptureFixture) -> None:
+    assert daemon.run(Settings(("udpout:127.0.0.1:9",), motors=f"{BREAKING}:NoHardware")) == FAULT
+    assert said(caplog) == "motor driver: no board at address 0x40"
+
+
+def test_a_port_in_use_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        port = taken.getsockname()[1]
+        assert daemon.run(Settings((f"udpin:127.0.0.1:{port}",), simulation=Simulation())) == MISTAKE
+    assert f"port {port} is in use" in said(caplog)
+
+
+def test_a_host_that_nobody_knows_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
+    assert daemon.run(Settings(("udpout:no-such-host.invalid:14550",), simulation=Simulation())) == MISTAKE
+    assert "host 'no-such-host.invalid' is not known" in said(caplog)
+
+
+def test_a_bad_endpoint_or_parameter_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
+    assert daemon.run(Settings(("carrier-pigeon:1",), simulation=Simulation())) == MISTAKE
+    caplog.clear()
+    assert daemon.run(Settings((), simulation=Simulation(), params={"MAN_TIMEOUT": 99.0})) == MISTAKE
+    assert "MAN_TIMEOUT" in said(caplog)
+
+
+def test_a_motor_log_that_cannot_be_written_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
+    settings = Settings(("udpout:127.0.0.1:9",), simulation=Simulation(), motor_log="/no/such/folder/motors")
+    assert daemon.run(settings) == MISTAKE
+    assert said(caplog) == "motor log /no/such/folder/motors: No such file or directory"
