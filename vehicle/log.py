@@ -51,7 +51,10 @@ class Log:
             flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
             full = logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s")
             self._handlers.append(self._handler(os.open(path, flags, 0o644), full))
-        logging.basicConfig(level=logging.DEBUG if verbose else logging.INFO, handlers=self._handlers, force=True)
+        root = logging.getLogger()
+        root.setLevel(logging.DEBUG if verbose else logging.INFO)
+        for handler in self._handlers:
+            root.addHandler(handler)
         self._thread = threading.Thread(target=self._write, name="log", daemon=True)
         self._thread.start()
 
