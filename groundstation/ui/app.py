@@ -1,0 +1,207 @@
+"""The app: joins the station's pipe, the keys' gate and the screens, and renews the lease while it lives."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import time
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+from textual import events
+from textual.app import App
+from textual.binding import Binding, BindingType
+from textual.driver import Driver
+
+from groundstation.intents import AnyIntent, Lease
+from groundstation.keymap import Action, Keymap, KeyPress
+from groundstation.snapshot import Snapshot
+from groundstation.ui.colours import THEME
+from groundstation.ui.gate import Client, Door, KeyGate, Shut
+from groundstation.ui.output import TerminalFile
+from groundstation.ui.palette import Actions
+from groundstation.ui.ping import PERIOD
+from groundstation.ui.screens.drive import DriveScreen
+from groundstation.ui.screens.help import HelpScreen
+from groundstation.ui.terminal import PING, HelmDriver, KeyUp, TerminalClosed
+
+TICK = 0.1
+"""s between renewals of the lease: a third of what the station allows."""
+
+LIT = 0.15
+"""s for which a cap stays lit after a press; by then a snapshot (10 Hz) has told what is held."""
+
+FASTEST_PICTURE = 0.06
+"""s between two pictures at least: what comes faster is skipped, only the newest counts."""
+
+
+class HelmApp(App[int]):
+    """One operator at one terminal."""
+
+    COMMANDS: ClassVar[Any] = {Actions}
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+p", "command_palette", "All", show=False, priority=True)]
+
+    def __init__(
+        self,
+        client: Client,
+        keymap: Keymap,
+        *,
+        terminal: TerminalFile | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.gate = KeyGate(client, keymap, clock)
+        driver: type[Driver] | None = None if terminal is None else HelmDriver.bound(self.gate, terminal)
+        super().__init__(driver_class=driver)
+        self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
+        self._snapshot = Snapshot()
+        self._pressed: dict[str, float] = {}
+        self._shown_at = 0.0
+        self._closed = False
+        self.drive = DriveScreen(keymap, self._send, self.perform)
+
+    # ---- life ----
+
+    def on_mount(self) -> None:
+        """The Drive screen first; the garbage collector's long passes never while somebody drives."""
+        self.register_theme(THEME)
+        self.theme = THEME.name
+        self.push_screen(self.drive)
+        asyncio.get_running_loop().add_reader(self._client.fileno(), self._readable)
+        # In this loop and in no thread: a screen that hangs must lose its lease.
+        self.set_interval(TICK, self._tick)
+        self.set_interval(PERIOD, self._ping)
+        self.call_after_refresh(_freeze)
+
+    def on_unmount(self) -> None:
+        """Neutral before anything else ends."""
+        self.gate.shut("quitting")
+        asyncio.get_running_loop().remove_reader(self._client.fileno())
+
+    def end(self, code: int = 0) -> None:
+        """Leave; neutral at once."""
+        self.gate.shut("quitting")
+        self._closed = True
+        self.exit(code)
+
+    def on_terminal_closed(self, event: TerminalClosed) -> None:
+        """Nobody can see or type any more."""
+        self.end(1)
+
+    def push_screen(self, screen: Any, *arguments: Any, **options: Any) -> Any:
+        """Another screen on top is neutral at once, before it is even made."""
+        if screen is not self.drive:
+            self.gate.set(Shut("another screen is open", Door.STOPS))
+        return super().push_screen(screen, *arguments, **options)
+
+    # ---- the station ----
+
+    def _send(self, intent: AnyIntent) -> None:
+        self._client.send(intent)
+
+    def _readable(self) -> None:
+        """A snapshot waits. Many may: only the newest is shown, and not faster than an eye can follow."""
+        snapshot = self._client.receive()
+        if snapshot is not None:
+            self._take(snapshot)
+        if not self._client.alive:
+            asyncio.get_running_loop().remove_reader(self._client.fileno())
+
+    def _take(self, snapshot: Snapshot) -> None:
+        self._snapshot = snapshot
+        vehicle, helm = snapshot.vehicle, snapshot.helm
+        driving = bool(helm.throttle or helm.steering or helm.held)
+        self.gate.observe(armed=vehicle is not None and vehicle.armed, driving=driving)
+        if self._clock() - self._shown_at >= FASTEST_PICTURE:
+            self._show()
+
+    def _show(self) -> None:
+        self._shown_at = self._clock()
+        if self.drive.is_mounted:
+            self.drive.show(
+                self._snapshot,
+                pressed=frozenset(self._pressed),
+                shut=self.gate.state,
+                terminal=self.gate.ping.round_trip,
+                alive=self._client.alive,
+            )
+
+    # ---- the beat ----
+
+    def _tick(self) -> None:
+        now = self._clock()
+        self._client.send(Lease())
+        self.gate.set(self._why_shut(now))
+        for key in [key for key, until in self._pressed.items() if now >= until]:
+            del self._pressed[key]
+        if now - self._shown_at >= TICK:
+            self._show()
+
+    def _ping(self) -> None:
+        if isinstance(self._driver, HelmDriver) and self.gate.ping.due(self._clock()):
+            self._driver.write(PING)
+
+    def _why_shut(self, now: float) -> Shut | None:
+        """Why keys must not drive now, as far as the screen knows; None when they may."""
+        checks: tuple[tuple[bool, Shut], ...] = (
+            (self._closed, Shut("quitting")),
+            (not self._client.alive, Shut("the station has ended")),
+            (self.screen is not self.drive, Shut("another screen is open", Door.STOPS)),
+            (self.drive.question is not None, Shut("a question is open", Door.STOPS)),
+            (not self.app_focus, Shut("this window does not have the focus")),
+            (self.drive.too_small, Shut("the terminal is too small")),
+            (self.gate.ping.silent(now), Shut("the terminal does not answer")),
+            (self._terminal is not None and self._terminal.stuck(time.monotonic()), Shut("the terminal is stuck")),
+        )
+        return next((shut for holds, shut in checks if holds), None)
+
+    # ---- keys ----
+
+    async def on_event(self, event: events.Event) -> None:
+        """Before any widget: quit works everywhere, and where no driver of ours took the key, it is taken here."""
+        if isinstance(event, events.Key) and not event.is_forwarded:
+            if not isinstance(self._driver, HelmDriver):
+                self.gate.take([KeyPress(event.key)])
+            action = self._keys.action(event.key)
+            if action is not None and action.id == "app.quit":
+                self.end()
+                return
+            self._light(event.key)
+        await super().on_event(event)
+        if isinstance(event, (events.Key, events.AppBlur, events.AppFocus)):
+            self.gate.set(self._why_shut(self._clock()))
+
+    def on_key_up(self, event: KeyUp) -> None:
+        """Dark again."""
+        self._pressed.pop(event.key, None)
+        self.drive.light(frozenset(self._pressed))
+
+    def _light(self, key: str) -> None:
+        self._pressed[key] = self._clock() + LIT
+        if self.screen is self.drive:
+            self.drive.light(frozenset(self._pressed))
+
+    # ---- actions ----
+
+    def perform(self, action: Action) -> None:
+        """Do an action by its name: what the app does itself, and what was chosen in the palette."""
+        if action.id == "app.quit":
+            self.end()
+        elif action.id == "app.help":
+            self.push_screen(HelpScreen(self._keys))
+
+    def choose(self, action: Action) -> None:
+        """An action from the palette: no key has sent its intent."""
+        vehicle = self._snapshot.vehicle
+        if vehicle is not None and vehicle.armed and action.when_armed is not None:
+            self._send(action.when_armed)
+        elif action.confirm or action.intent is None:
+            self.drive.request(action)
+        else:
+            self._send(action.intent)
+
+
+def _freeze() -> None:
+    """What is there now stays: the collector need not walk it again (28-61 ms a pass when it did)."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 20)

@@ -1,0 +1,1 @@
+"""What may fill the terminal: one module and one .tcss file a screen."""

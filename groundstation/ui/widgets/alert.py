@@ -1,0 +1,33 @@
+"""The line of the most urgent alert, and how many more there are."""
+
+from __future__ import annotations
+
+from textual.strip import Strip
+
+from groundstation.ui.alerts import Alert, Level
+from groundstation.ui.colours import AMBER, DEEP_RED, PANEL, TEXT, YELLOW, badge, style
+from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
+
+_LOOKS = {
+    Level.HINT: style(TEXT, PANEL),
+    Level.WARNING: style(AMBER, "#33270f", bold=True),
+    Level.DANGER: badge(DEEP_RED),
+    Level.QUESTION: badge(YELLOW),
+}
+_MARKS = {Level.HINT: "›", Level.WARNING: "!", Level.DANGER: "■", Level.QUESTION: "?"}
+
+
+class AlertLine(Instrument[tuple[Alert, ...]]):
+    """One line over the whole width."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """The first alert in its colour; hints count for nothing beside another one."""
+        if not self.value:
+            return []
+        first = self.value[0]
+        others = sum(alert.level is not Level.HINT for alert in self.value[1:])
+        look = _LOOKS[first.level]
+        left: list[Part] = [(f" {_MARKS[first.level]} {first.text}", look)]
+        right: list[Part] = [(f" +{others} " if others else "", look)]
+        gap = max(1, width - length(left) - length(right))
+        return [strip(*left, (" " * gap, look), *right).crop(0, width)]

@@ -1,0 +1,73 @@
+"""The artificial horizon, in eighths of a cell."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import groupby
+
+from textual.strip import Strip
+
+from groundstation.snapshot import VehicleView
+from groundstation.ui.colours import DIM, GROUND, SKY, YELLOW, style
+from groundstation.ui.widgets.instrument import Instrument, Part, known, strip
+
+HALF_VIEW = math.radians(25)
+"""Pitch that moves the horizon from the middle to the edge."""
+
+_BLOCKS = " ▁▂▃▄▅▆▇█"
+
+
+@dataclass(frozen=True, slots=True)
+class Attitude:
+    """Roll (right side down is positive) and pitch (nose up is positive), rad."""
+
+    roll: float
+    pitch: float
+
+    @classmethod
+    def of(cls, vehicle: VehicleView | None) -> Attitude | None:
+        """Of a snapshot's vehicle, rounded to a third of a degree."""
+        if vehicle is None or (roll := known(vehicle.roll)) is None or (pitch := known(vehicle.pitch)) is None:
+            return None
+        return cls(round(roll * 180) / 180, round(pitch * 180) / 180)
+
+
+def ground(attitude: Attitude, column: float, row: int, height: int) -> float:
+    """How much of a cell is ground, 0..1, counted from its bottom. `column` is from the middle."""
+    # A cell is about twice as high as wide, hence half a row a column.
+    slope = math.tan(max(-1.4, min(1.4, attitude.roll)))
+    horizon = height / 2 + attitude.pitch / HALF_VIEW * height / 2 - slope * column / 2
+    return max(0.0, min(1.0, row + 1 - horizon))
+
+
+class Horizon(Instrument[Attitude | None]):
+    """Sky over ground, and the vehicle's nose."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """A row is few runs, because blocks of both colours share one style."""
+        attitude = self.value
+        if attitude is None:
+            return [strip(("no attitude".center(width) if row == height // 2 else " " * width, style(DIM)))
+                    for row in range(height)]  # fmt: skip
+        return [self._row(attitude, row, width, height) for row in range(height)]
+
+    def _row(self, attitude: Attitude, row: int, width: int, height: int) -> Strip:
+        cells: list[Part] = []
+        for column in range(width):
+            eighths = round(8 * ground(attitude, column - (width - 1) / 2, row, height))
+            cells.append((" ", style(on=GROUND)) if eighths == 8 else (_BLOCKS[eighths], style(GROUND, SKY)))
+        if row == height // 2:
+            middle = width // 2
+            for column, mark in (
+                (middle - 2, "╺"),
+                (middle - 1, "━"),
+                (middle, "◆"),
+                (middle + 1, "━"),
+                (middle + 2, "╸"),
+            ):
+                if 0 <= column < width:
+                    on = GROUND if ground(attitude, column - (width - 1) / 2, row, height) > 0.5 else SKY
+                    cells[column] = (mark, style(YELLOW, on, bold=True))
+        runs = groupby(cells, key=lambda cell: cell[1])
+        return strip(*(("".join(text for text, _ in run), look) for look, run in runs))

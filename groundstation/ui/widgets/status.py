@@ -1,0 +1,128 @@
+"""The top line: which vehicle, armed or not, who drives, and how well both ends hear each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from textual.strip import Strip
+
+from groundstation.snapshot import LinkView, Snapshot, VehicleView
+from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, GREEN, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.widgets.instrument import Instrument, Part, known, length, strip
+
+STALE_COMMAND, OLD_COMMAND = 0.45, 0.2
+"""s: from 0.45 on the vehicle no longer obeys (its MAN_TIMEOUT); 0.2 is four missed frames at 20 Hz."""
+
+_BARS = "▂▄▆█"
+_MODES = {"MANUAL": GREEN, "HOLD": AMBER}
+
+
+@dataclass(frozen=True, slots=True)
+class StatusValue:
+    """What the line shows, and what the snapshot does not know: the terminal's own round trip, s."""
+
+    snapshot: Snapshot
+    terminal: float | None = None
+
+
+class Status(Instrument[StatusValue]):
+    """One line where it fits, else two."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """The badges left, the rest right; on two lines the links go below."""
+        snapshot = self.value.snapshot
+        badges, health = _badges(snapshot), _health(snapshot.vehicle)
+        lines = [*_links(snapshot), *_command(snapshot), *_terminal(self.value.terminal)]
+        if height > 1:
+            return [_spread(badges, health, width), _spread([], lines, width)]
+        return [_spread(badges, [*lines, *health], width)]
+
+
+def _spread(left: list[Part], right: list[Part], width: int) -> Strip:
+    gap = max(1, width - length(left) - length(right))
+    return strip(*left, (" " * gap, style()), *right).crop(0, width)
+
+
+def _badges(snapshot: Snapshot) -> list[Part]:
+    vehicle = snapshot.vehicle
+    if vehicle is None:
+        return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
+    parts = [(f" {vehicle.name} ", badge(BLUE)), (f" {vehicle.mode} ", badge(_MODES.get(vehicle.mode, YELLOW)))]
+    if vehicle.emergency_stop:
+        parts.append((" EMERGENCY STOP ", badge(RED)))
+    elif vehicle.armed:
+        parts.append((" ARMED ", badge(DEEP_RED)))
+    else:
+        parts.append((" DISARMED ", style(TEXT, "#27303c", bold=True)))
+    return [*parts, (" ", style()), _driver(vehicle)]
+
+
+def _driver(vehicle: VehicleView) -> Part:
+    if not vehicle.alive:
+        return (f"silent for {vehicle.silence:.0f} s", style(RED, bold=True))
+    if vehicle.in_control:
+        return ("you drive", style(GREEN, bold=True))
+    if vehicle.driver:
+        return (f"driven by {vehicle.driver}", style(AMBER, bold=True))
+    return ("nobody drives", style(DIM))
+
+
+def _field(name: str, text: str, colour: str = TEXT) -> list[Part]:
+    return [(f"  {name} ", style(DIM)), (text, style(colour))]
+
+
+def _links(snapshot: Snapshot) -> list[Part]:
+    if not snapshot.links:
+        return _field("link", "none", DIM)
+    link = min(snapshot.links, key=lambda each: (known(each.loss) is None, known(each.loss) or 0.0))
+    alive = snapshot.vehicle is not None and snapshot.vehicle.alive
+    loss, trip = known(link.loss), known(link.round_trip)
+    bars, colour = _quality(link, alive)
+    parts = [("  link ", style(DIM)), (_BARS[:bars], style(colour)), (_BARS[bars:], style("#2b3440"))]
+    parts += _field("loss", "--" if loss is None else f"{100 * loss:.1f}%", TEXT if (loss or 0) < 0.05 else AMBER)
+    return parts + _field(
+        "rtt", "--" if trip is None else f"{1000 * trip:.0f} ms", TEXT if (trip or 0) < 0.2 else AMBER
+    )
+
+
+def _quality(link: LinkView, alive: bool) -> tuple[int, str]:
+    if not alive:
+        return 0, RED
+    lost = known(link.loss) or 0.0
+    full = 4 - sum(lost > limit for limit in (0.02, 0.10, 0.25))
+    return full, (RED, RED, AMBER, GREEN, GREEN)[full]
+
+
+def _command(snapshot: Snapshot) -> list[Part]:
+    vehicle = snapshot.vehicle
+    parts = _field("sent", f"{snapshot.helm.rate:2.0f} Hz", TEXT if snapshot.helm.sending else DIM)
+    if vehicle is None:
+        return parts
+    age, latency = known(vehicle.command_age), known(vehicle.latency)
+    if age is not None and age < 10:
+        colour = GREEN if age < OLD_COMMAND else AMBER if age < STALE_COMMAND else RED
+        parts += _field("cmd", f"{1000 * age:3.0f} ms", colour)
+    if latency is not None:
+        parts += _field("key→motor", f"{1000 * latency:.1f} ms", TEXT if latency < 0.1 else AMBER)
+    return parts
+
+
+def _terminal(round_trip: float | None) -> list[Part]:
+    return (
+        [] if round_trip is None else _field("tty", f"{1000 * round_trip:.0f} ms", TEXT if round_trip < 0.2 else AMBER)
+    )
+
+
+def _health(vehicle: VehicleView | None) -> list[Part]:
+    if vehicle is None:
+        return []
+    parts: list[Part] = []
+    if vehicle.gps_fix is not None:
+        fix = {0: "none", 1: "none", 2: "2D", 3: "3D"}.get(vehicle.gps_fix, "RTK" if vehicle.gps_fix > 4 else "DGPS")
+        count = "" if vehicle.gps_satellites is None else f" {vehicle.gps_satellites}"
+        parts += _field("gps", fix + count, GREEN if vehicle.gps_fix >= 3 else AMBER)
+    volts, left = known(vehicle.battery_voltage), known(vehicle.battery_remaining)
+    if volts is not None:
+        colour = GREEN if left is None or left > 0.3 else AMBER if left > 0.15 else RED
+        parts += _field("batt", f"{volts:.1f} V" + ("" if left is None else f" {100 * left:.0f}%"), colour)
+    return [*parts, (" ", style())]

@@ -1,0 +1,99 @@
+"""What is asked against what happens: centre-zero bars of the demand, of what the vehicle obeys, and of each motor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rich.style import Style
+from textual.strip import Strip
+
+from groundstation.snapshot import Snapshot
+from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, PANEL, TEXT, WHITE, style
+from groundstation.ui.widgets.instrument import Instrument, Part, known, strip
+
+LABEL, FIGURES = 9, 6
+"""Cells left and right of a bar."""
+
+_PARTIAL = " ▏▎▍▌▋▊▉"
+
+_OUTPUT_NAMES = {1: ("motor",), 2: ("left", "right")}
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """One bar, in percent; `obeyed` is where the vehicle says it is."""
+
+    label: str
+    colour: str
+    percent: int | None
+    obeyed: int | None = None
+
+
+def bars(snapshot: Snapshot) -> tuple[Bar, ...]:
+    """Throttle and steering as sent, then the motors."""
+    helm, vehicle = snapshot.helm, snapshot.vehicle
+    obeyed = vehicle.demand if vehicle is not None and vehicle.demand is not None else (None, None)
+    outputs = vehicle.outputs if vehicle is not None else ()
+    names = _OUTPUT_NAMES.get(len(outputs)) or tuple(f"motor {number + 1}" for number in range(len(outputs)))
+    return (
+        Bar("throttle", AMBER, _percent(helm.throttle), _percent(obeyed[0])),
+        Bar("steering", BLUE, _percent(helm.steering), _percent(obeyed[1])),
+        *(Bar(name, GREEN, _percent(value)) for name, value in zip(names, outputs, strict=True)),
+    )
+
+
+def _percent(value: float | None) -> int | None:
+    value = known(value)
+    return None if value is None else round(100 * max(-1.0, min(1.0, value)))
+
+
+def cells(bar: Bar, width: int) -> Iterator[Part]:
+    """The cells of a bar that grows from its middle, in eighths of a cell."""
+    half = (width - 1) // 2
+    filled = abs(bar.percent or 0) / 100 * half
+    whole, eighths = int(filled), int(filled % 1 * 8)
+    on, trough = style(bar.colour, bar.colour), style(FAINT, PANEL)
+    rest = half - whole - (1 if eighths else 0)
+    if (bar.percent or 0) < 0:
+        # There are no blocks that grow from the right: the block of the rest in the colours swapped is one.
+        part = _PARTIAL[8 - eighths] if eighths else ""
+        left = [("░" * rest, trough), (part, style(PANEL, bar.colour)), (" " * whole, on)]
+        right = [("░" * half, trough)]
+    else:
+        part = _PARTIAL[eighths] if eighths else ""
+        left = [("░" * half, trough)]
+        right = [(" " * whole, on), (part, style(bar.colour, PANEL)), ("░" * rest, trough)]
+    parts = [*left, ("│", style(DIM, PANEL)), *right]
+    yield from parts if bar.obeyed is None else _marked(parts, half + round(bar.obeyed / 100 * half))
+
+
+def _marked(parts: list[Part], at: int) -> Iterator[Part]:
+    """The parts with the mark of the obeyed demand over one cell, in that cell's own ground."""
+    start = 0
+    for text, look in parts:
+        if start <= at < start + len(text):
+            yield text[: at - start], look
+            ground = look.bgcolor.name if look.bgcolor is not None else BACKGROUND
+            yield "┃", style(WHITE, ground, bold=True)
+            yield text[at - start + 1 :], look
+        else:
+            yield text, look
+        start += len(text)
+
+
+class Sticks(Instrument[tuple[Bar, ...]]):
+    """The bars, one a line."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """As many as there is room for: the demand first."""
+        return [self._line(bar, width) for bar in self.value[:height]]
+
+    def _line(self, bar: Bar, width: int) -> Strip:
+        figures = "--" if bar.percent is None else f"{bar.percent:+d}%"
+        look: Style = style(TEXT if bar.percent else DIM)
+        return strip(
+            (f"{bar.label:<{LABEL}}", style(DIM)),
+            *cells(bar, width - LABEL - FIGURES),
+            (f"{figures:>{FIGURES}}", look),
+        )

@@ -1,0 +1,56 @@
+"""The heading tape: a strip of the compass that slides under a caret."""
+
+from __future__ import annotations
+
+import math
+
+from textual.strip import Strip
+
+from groundstation.snapshot import VehicleView
+from groundstation.ui.colours import BLUE, DIM, TEXT, WHITE, YELLOW, style
+from groundstation.ui.widgets.instrument import Instrument, known, strip
+
+DEGREES_PER_CELL = 3
+
+_NAMES = {0: "N", 45: "NE", 90: "E", 135: "SE", 180: "S", 225: "SW", 270: "W", 315: "NW"}
+
+
+def degrees(vehicle: VehicleView | None) -> int | None:
+    """The heading as the tape shows it, 0..359."""
+    if vehicle is None or (heading := known(vehicle.heading)) is None:
+        return None
+    return round(math.degrees(heading)) % 360
+
+
+def tape(heading: int, width: int) -> str:
+    """The marks around a heading: names of the eight winds, numbers each 30 degrees, dots each 15."""
+    middle = width // 2
+    cells = [" "] * width
+    first = (heading - (middle + 3) * DEGREES_PER_CELL) // 15 * 15
+    for mark in range(first, first + (width + 6) * DEGREES_PER_CELL + 15, 15):
+        text = _NAMES.get(mark % 360) or (f"{mark % 360:03d}" if mark % 30 == 0 else "·")
+        start = middle + round((mark - heading) / DEGREES_PER_CELL) - len(text) // 2
+        for offset, character in enumerate(text):
+            if 0 <= start + offset < width:
+                cells[start + offset] = character
+    return "".join(cells)
+
+
+class Tape(Instrument[int | None]):
+    """The tape, and the heading in figures under its middle."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """Two lines."""
+        if self.value is None:
+            return [strip((" " * width, style())), strip(("no heading".center(width), style(DIM)))]
+        marks = tape(self.value, width)
+        middle = width // 2
+        figures = f" {self.value:03d}° {_NAMES.get(round(self.value / 45) * 45 % 360, '')}"
+        return [
+            strip(
+                (marks[:middle], style(BLUE)),
+                (marks[middle], style(WHITE, bold=True)),
+                (marks[middle + 1 :], style(BLUE)),
+            ),
+            strip((" " * middle, style()), ("▲", style(YELLOW)), (figures, style(TEXT, bold=True))),
+        ]

@@ -1,0 +1,151 @@
+"""The map: where the vehicle has been, where it is and points, and how far from home. North is up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from textual.strip import Strip
+
+from groundstation.snapshot import VehicleView
+from groundstation.ui.colours import AMBER, BLUE, DIM, LINE, RED, YELLOW, style
+from groundstation.ui.widgets.canvas import Canvas, Point
+from groundstation.ui.widgets.instrument import Instrument, known
+
+REACH = 150.0
+"""m: the map fits the track and home within this distance of the vehicle; farther ones leave the picture."""
+
+SMALLEST = 0.08
+"""m a dot: closer than this, GPS noise would dance over the map."""
+
+_STEPS = (1.0, 1.4, 2.0, 3.0, 5.0, 7.0)
+_RINGS = (1.0, 2.0, 5.0)
+
+
+@dataclass(frozen=True, slots=True)
+class TrackValue:
+    """What the map shows; positions are (north, east) in m."""
+
+    position: Point | None = None
+    heading: float | None = None
+    home: Point | None = None
+    track: tuple[Point, ...] = ()
+
+    @classmethod
+    def of(cls, vehicle: VehicleView | None) -> TrackValue:
+        """Of a snapshot's vehicle, rounded to what a dot can show."""
+        if vehicle is None or vehicle.position is None or not all(map(math.isfinite, vehicle.position)):
+            return cls()
+        north, east = vehicle.position
+        heading = known(vehicle.heading)
+        rounded = None if heading is None else round(heading, 1)
+        return cls((round(north, 2), round(east, 2)), rounded, vehicle.home, vehicle.track)
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A window on the ground: its middle (north, east), m a dot, and the distance of its rings."""
+
+    north: float
+    east: float
+    scale: float
+    ring: float
+
+    def dot(self, point: Point, canvas: Canvas) -> Point:
+        """Where a (north, east) is on the canvas."""
+        north, east = point
+        x = canvas.across / 2 + (east - self.east) / self.scale
+        return x, canvas.down / 2 - (north - self.north) / self.scale
+
+
+def fit(value: TrackValue, across: int, down: int) -> View:
+    """The closest view in which the vehicle, its near track and home lie, in steps so that it seldom changes.
+
+    A view that follows each metre would redraw the whole map ten times a second, over a thin line too.
+    """
+    vehicle = value.position or (0.0, 0.0)
+    points = [point for point in (*value.track, value.home or vehicle) if math.dist(point, vehicle) < REACH]
+    points.append(vehicle)
+    norths, easts = [north for north, _ in points], [east for _, east in points]
+    north, east = (min(norths) + max(norths)) / 2, (min(easts) + max(easts)) / 2
+    for view in _views(north, east, min(across, down)):
+        tall = max(abs(max(norths) - view.north), abs(min(norths) - view.north)) / view.scale
+        wide = max(abs(max(easts) - view.east), abs(min(easts) - view.east)) / view.scale
+        if tall < down * 0.42 and wide < across * 0.44:
+            break
+    return view
+
+
+def _views(north: float, east: float, dots: int) -> Iterator[View]:
+    for decade in range(-2, 4):
+        for step in _STEPS:
+            scale = step * 10.0**decade
+            if scale < SMALLEST:
+                continue
+            ring = _ring(scale * max(8, dots) / 4)
+            yield View(round(north / ring * 2) * ring / 2, round(east / ring * 2) * ring / 2, scale, ring)
+
+
+def _ring(at_least: float) -> float:
+    decade = 10.0 ** math.floor(math.log10(at_least))
+    return next((step * decade for step in _RINGS if step * decade >= at_least), 10 * decade)
+
+
+class Track(Instrument[TrackValue]):
+    """The map."""
+
+    BORDER_TITLE = "track"
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """Rings and home below, the track over them, the vehicle on top."""
+        canvas = Canvas(width, height)
+        value = self.value
+        if value.position is None:
+            canvas.word(max(0, width // 2 - 7), height // 2, "no position yet", style(DIM))
+            return canvas.strips()
+        view = fit(value, canvas.across, canvas.down)
+        _draw_rings(canvas, view, value.home or (0.0, 0.0))
+        canvas.path([view.dot(point, canvas) for point in (*value.track, value.position)], style(BLUE))
+        if value.home is not None:
+            x, y = view.dot(value.home, canvas)
+            canvas.word(int(x) >> 1, int(y) >> 2, "⌂", style(AMBER, bold=True))
+        _draw_vehicle(canvas, view.dot(value.position, canvas), value.heading)
+        _draw_words(canvas, view, value)
+        return canvas.strips()
+
+
+def _draw_rings(canvas: Canvas, view: View, home: Point) -> None:
+    x, y = view.dot(home, canvas)
+    farthest = math.hypot(max(x, canvas.across - x), max(y, canvas.down - y))
+    spacing = view.ring / view.scale
+    for number in range(1, min(12, int(farthest / spacing)) + 1):
+        radius = spacing * number
+        for step in range(count := max(24, int(radius * 1.6))):
+            angle = step * math.tau / count
+            canvas.dot(round(x + radius * math.cos(angle)), round(y + radius * math.sin(angle)), style(LINE))
+        canvas.word((int(x + radius) >> 1) + 1, int(y) >> 2, _metres(view.ring * number), style(DIM))
+
+
+def _draw_vehicle(canvas: Canvas, at: Point, heading: float | None) -> None:
+    x, y = at
+    if heading is None:
+        canvas.word(int(x) >> 1, int(y) >> 2, "●", style(YELLOW))
+        return
+    along, aside = math.sin(heading), math.cos(heading)
+    corners = [(7.0, 0.0), (-5.0, 4.5), (-2.5, 0.0), (-5.0, -4.5)]  # dots ahead, dots to the right
+    canvas.fill([(x + a * along + b * aside, y - a * aside + b * along) for a, b in corners], style(YELLOW))
+
+
+def _draw_words(canvas: Canvas, view: View, value: TrackValue) -> None:
+    canvas.word(canvas.width // 2, 0, "N", style(RED, bold=True))
+    bar = max(2, round(view.ring / view.scale / 2))
+    if bar < canvas.width // 2:
+        canvas.word(1, canvas.height - 1, "├" + "─" * (bar - 1) + "┤ " + _metres(view.ring), style(DIM))
+    if value.home is not None and value.position is not None:
+        text = f"home {math.dist(value.home, value.position):.1f} m"
+        canvas.word(canvas.width - len(text) - 1, canvas.height - 1, text, style(DIM))
+
+
+def _metres(distance: float) -> str:
+    return f"{distance:g} m" if distance < 1000 else f"{distance / 1000:g} km"
