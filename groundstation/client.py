@@ -96,7 +96,7 @@ class StationClient:
         return self._pipe.fileno()
 
     def receive(self) -> Snapshot | None:
-        """The newest snapshot that waits, or None. Never blocks; when the station has ended, `alive` is False after it."""
+        """The newest snapshot that waits, or None. Never blocks; `alive` is False once the station has ended."""
         newest: bytes | None = None
         while True:
             try:
@@ -132,7 +132,7 @@ def _spawn(descriptor: int, options: Sequence[str], endpoints: Sequence[str]) ->
     null = subprocess.DEVNULL
     try:
         return subprocess.Popen(
-            command, pass_fds=[descriptor], stdin=null, stdout=null, stderr=null, env=_environment()
+            command, pass_fds=[descriptor], stdin=null, stdout=null, stderr=null, env=child_environment()
         )
     except OSError as error:
         raise StationError(f"the station process did not start: {error.strerror}") from error

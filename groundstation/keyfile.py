@@ -45,7 +45,8 @@ VITAL = ("drive.stop", "stop.emergency", "app.quit")
 
 _MODIFIERS = re.compile(r"^(?:(?:ctrl|alt|shift|super)\+)+")
 
-FILE_HELP = """A key map file is TOML: base = "standard" (or "teleop"), and under [keys] lines such as "drive.forward" = ["e", "up"]"""  # noqa: E501
+FILE_HELP = """A key map file is TOML: base = "standard" or "teleop", and a table [keys] with lines such as
+"drive.forward" = ["e", "up"], which replace all keys of that action."""
 
 
 def load_keymap(name_or_path: str) -> Keymap:
@@ -112,7 +113,8 @@ def key_name(key: object, where: str) -> str:
     if plain not in NAMED_KEYS and not (len(plain) == 1 and plain.isprintable()):
         raise KeymapError(
             f"key map {where}: unknown key {key!r}: choose a character, up, down, left, right, space, comma, "
-            "full_stop, plus, minus, enter, tab, home, end, pageup, pagedown, insert, delete, backspace, f1 to f24, ctrl+..."
+            "full_stop, plus, minus, enter, tab, home, end, pageup, pagedown, insert, delete, backspace, "
+            "f1 to f24, ctrl+..."
         )
     return modifiers + plain
 

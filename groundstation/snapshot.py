@@ -73,7 +73,9 @@ class HelmView(msgspec.Struct, frozen=True, kw_only=True):
     exact: bool = False
     """Key releases are reported; else timers end a push."""
     stop_bound: float = 0.0
-    """The longest a vehicle gets a demand after the key is let go, s, as it stands now."""
+    """The longest a vehicle gets a demand after the key is let go, s, as it stands now.
+
+    0 where releases are reported, inf where the drive goes on until the next key (latch, step)."""
     held: tuple[str, ...] = ()
     """Keys that count as held."""
     throttle: float = 0.0

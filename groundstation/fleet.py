@@ -1,0 +1,89 @@
+"""All vehicles that were heard, and which one the operator looks at. It sees them come, go silent and come back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from dialects.enums import Autopilot, Severity, Type
+from dialects.messages import Heartbeat, Message
+from groundstation.cadence import DemandStream
+from groundstation.foreign import SettingsCheck
+from groundstation.texts import TextLog
+from groundstation.vehicle_state import VehicleState
+from link.core import Received
+
+MAX_VEHICLES = 16
+"""More would not fit on the screen; a flood of invented ids must not grow a table."""
+
+
+@dataclass(slots=True)
+class Contact:
+    """A vehicle and what the station keeps beside its picture."""
+
+    state: VehicleState
+    settings: SettingsCheck | None = None
+    stream: DemandStream = field(default_factory=DemandStream)
+    lost_at: float | None = None
+    questions: list[int] = field(default_factory=list)
+    """Message ids to ask for, one after the other."""
+    asked_info: bool = False
+
+
+class Fleet:
+    """The contacts by system id. `system` is ours."""
+
+    def __init__(self, log: TextLog, system: int) -> None:
+        self.selected: Contact | None = None
+        self._log = log
+        self._system = system
+        self._contacts: dict[int, Contact] = {}
+
+    def __iter__(self) -> Iterator[Contact]:
+        return iter(self._contacts.values())
+
+    @property
+    def systems(self) -> tuple[int, ...]:
+        """System ids of all of them."""
+        return tuple(self._contacts)
+
+    def get(self, system: int) -> Contact | None:
+        """The contact with this system id."""
+        return self._contacts.get(system)
+
+    def select(self, system: int) -> bool:
+        """Look at this one from now on; False where it is unknown."""
+        contact = self._contacts.get(system)
+        if contact is not None:
+            self.selected = contact
+        return contact is not None
+
+    def admit(self, received: Received, now: float) -> Contact | None:
+        """The contact that a message belongs to; a vehicle's HEARTBEAT makes a new one."""
+        contact = self._contacts.get(received.system)
+        if contact is not None or not is_vehicle(received.message) or len(self._contacts) >= MAX_VEHICLES:
+            return contact
+        state = VehicleState(received.system, received.component)
+        state.receive(received, now)
+        contact = self._contacts[received.system] = Contact(state)
+        if SettingsCheck.wanted(state.autopilot):
+            contact.settings = SettingsCheck(self._system, (state.system, state.component))
+        self.selected = self.selected or contact
+        self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
+        return contact
+
+    def watch(self, now: float) -> None:
+        """Notice who went silent and who came back."""
+        for contact in self._contacts.values():
+            monitor, name = contact.state.monitor, contact.state.name
+            if contact.lost_at is None and not monitor.alive(now):
+                contact.lost_at = now - monitor.silence(now)
+                self._log.add(now, "station", f"{name} lost: silent for {monitor.timeout:g} s", Severity.CRITICAL)
+            elif contact.lost_at is not None and monitor.alive(now):
+                self._log.add(now, "station", f"{name} is back after {now - contact.lost_at:.1f} s", Severity.NOTICE)
+                contact.lost_at = None
+
+
+def is_vehicle(message: Message) -> bool:
+    """Is this the HEARTBEAT of something that drives, and not of a ground station, a camera or a radio?"""
+    return isinstance(message, Heartbeat) and message.type != Type.GCS and message.autopilot != Autopilot.INVALID

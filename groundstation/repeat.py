@@ -1,0 +1,89 @@
+"""How long after its last sign a key counts as held, on a terminal that tells no releases; it knows no directions.
+
+A held key shows as: press, a pause (the repeat delay, 0.25 to 1 s), then repeats every 25 to 92 ms. So there are two
+windows: a long one after the press and a short one once it repeats. Both are learned from what this keyboard does.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+
+FIRST = 0.75
+"""Window after a press, s: longer than X11's repeat delay of 0.66 s; also the longest that a tap drives."""
+
+FIRST_SHORTEST = 0.35
+"""A learned window after a press is not shorter, s: the shortest repeat delay (0.25 s) and 0.1 s of network jitter."""
+
+LATER = 0.20
+"""Window once a key repeats, s: two gaps of the slowest console (kbdrate, 92 ms)."""
+
+LATER_SHORTEST, LATER_LONGEST = 0.12, 0.25
+"""Clamps of the learned window, s: three gaps of 40 ms; and what ssh needs, half of the vehicle's own 0.5 s."""
+
+REPEAT_GAP = 0.12
+"""Events of a key closer than this are its repeats and not taps, s: nobody taps 9 times a second."""
+
+JITTER = 0.10
+"""Added to a learned delay, s; 60 ms of network jitter was measured to need it."""
+
+
+SHORTEST_DELAY, LONGEST_DELAY = 0.2, 1.1
+"""Repeat delays that exist, s (Linux console 0.25, Windows up to 1.0). Two taps may look like one: a third event within
+REPEAT_GAP decides."""
+
+GAPS_TO_LEARN = 20
+"""Repeats seen before the short window is changed: one second of holding."""
+
+
+@dataclass(slots=True)
+class Trace:
+    """When one key was seen, from its press on."""
+
+    pressed: float
+    seen: float
+    delay: float | None = None
+    """From the press to the second event, s."""
+    repeating: bool = False
+
+
+@dataclass(slots=True)
+class RepeatWindows:
+    """The two windows, learned for this session. Newest habits count: a user may turn to another keyboard."""
+
+    _delays: deque[float] = field(default_factory=lambda: deque(maxlen=5))
+    _gaps: deque[float] = field(default_factory=lambda: deque(maxlen=GAPS_TO_LEARN))
+
+    @property
+    def first(self) -> float:
+        """Window after a press, s."""
+        if not self._delays:
+            return FIRST
+        return min(max(1.15 * max(self._delays) + JITTER, FIRST_SHORTEST), FIRST)
+
+    @property
+    def later(self) -> float:
+        """Window once a key repeats, s."""
+        if len(self._gaps) < GAPS_TO_LEARN:
+            return LATER
+        return min(max(2.5 * max(self._gaps), LATER_SHORTEST), LATER_LONGEST)
+
+    @staticmethod
+    def press(earlier: Trace | None, now: float) -> Trace:
+        """Begin a press. `earlier` is the last one of this key: it may have been given up before its first repeat."""
+        if earlier is not None and earlier.delay is None and now - earlier.pressed < LONGEST_DELAY:
+            return Trace(pressed=earlier.pressed, seen=now, delay=now - earlier.pressed)
+        return Trace(pressed=now, seen=now)
+
+    def again(self, trace: Trace, now: float) -> float:
+        """Note a further event of a key that counts as held; the window to hold it from now on, s."""
+        gap, trace.seen = now - trace.seen, now
+        if trace.delay is None:
+            trace.delay = gap
+        elif not trace.repeating and gap <= REPEAT_GAP:
+            trace.repeating = True
+            if SHORTEST_DELAY <= trace.delay <= LONGEST_DELAY:
+                self._delays.append(trace.delay)
+        if trace.repeating:
+            self._gaps.append(gap)
+        return self.later

@@ -1,0 +1,108 @@
+"""The message log: what the vehicle said, what it answered, what the station noticed. Bounded; repeats are counted."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from dialects.enums import Severity
+from dialects.messages import StatusText, printable, text_of
+from groundstation.snapshot import TextLine
+
+MAX_LINES = 200
+MAX_LENGTH = 160
+"""Characters kept of a text: three full STATUSTEXT chunks, and 200 lines of it fit into a snapshot."""
+
+CHUNK = 50
+"""Bytes of text in one STATUSTEXT (common.xml)."""
+
+MAX_CHUNKS = 8
+"""Chunks joined to one text; a vehicle that sends more is cut."""
+
+CHUNK_TIMEOUT = 2.0
+"""s after which the chunks of a text that have come are shown without the missing ones."""
+
+
+@dataclass(slots=True)
+class _Line:
+    time: float
+    severity: int
+    label: str
+    text: str
+    count: int = 1
+
+
+@dataclass(slots=True)
+class _Chunks:
+    """A long text under way."""
+
+    started: float
+    severity: int
+    parts: dict[int, str]
+    last: int | None = None
+
+    @property
+    def complete(self) -> bool:
+        return self.last is not None and len(self.parts) > self.last
+
+    @property
+    def text(self) -> str:
+        return "".join(self.parts[number] for number in sorted(self.parts))
+
+
+class TextLog:
+    """Texts in the order of arrival; times are of the monotonic clock and become wall clock in `lines`."""
+
+    def __init__(self) -> None:
+        self._lines: deque[_Line] = deque(maxlen=MAX_LINES)
+        self._chunks: dict[tuple[int, int], _Chunks] = {}
+
+    def add(self, now: float, label: str, text: str, severity: int = Severity.INFO) -> None:
+        """Add a line, or count it where it says again what the last one of its label said."""
+        text = printable(text)[:MAX_LENGTH]
+        last = self._lines[-1] if self._lines else None
+        if last is not None and (last.label, last.severity, last.text) == (label, severity, text):
+            last.count += 1
+            last.time = now
+        else:
+            self._lines.append(_Line(now, severity, label, text))
+
+    def hear(self, message: StatusText, system: int, now: float) -> str | None:
+        """Take a vehicle's text; returns it when it is whole."""
+        severity = int(message.severity)
+        if message.id == 0:  # the field is an extension: 0 says "not one of several chunks"
+            self.add(now, "vehicle", text_of(message), severity)
+            return text_of(message)
+        key = (system, int(message.id))
+        if key not in self._chunks and len(self._chunks) >= MAX_CHUNKS:
+            self.expire(now, everything=True)
+        chunks = self._chunks.setdefault(key, _Chunks(now, severity, {}))
+        part = text_of(message)
+        chunks.parts[min(int(message.chunk_seq), MAX_CHUNKS - 1)] = part
+        if len(message._text_raw.split(b"\0", 1)[0]) < CHUNK or message.chunk_seq >= MAX_CHUNKS - 1:
+            chunks.last = min(int(message.chunk_seq), MAX_CHUNKS - 1)
+        if not chunks.complete:
+            return None
+        del self._chunks[key]
+        self.add(now, "vehicle", chunks.text, chunks.severity)
+        return chunks.text
+
+    def expire(self, now: float, *, everything: bool = False) -> None:
+        """Show what came of long texts whose rest is lost."""
+        for key, chunks in list(self._chunks.items()):
+            if everything or now - chunks.started > CHUNK_TIMEOUT:
+                del self._chunks[key]
+                self.add(now, "vehicle", chunks.text + " ...", chunks.severity)
+
+    def lines(self, now: float, wall: float) -> tuple[TextLine, ...]:
+        """All lines, oldest first; `now` and `wall` are the same moment on both clocks."""
+        return tuple(
+            TextLine(
+                time=wall - (now - line.time),
+                severity=line.severity,
+                label=line.label,
+                text=line.text,
+                count=line.count,
+            )
+            for line in self._lines
+        )
