@@ -61,18 +61,20 @@ class Control:
         self.reset()
 
     def refusal(self, system: int, now: float) -> str | None:
-        """Why `system` may not command or take control, or None where it may."""
-        fixed = int(self._params["MAV_GCS_SYSID"])
-        if fixed and system != fixed:
-            return f"only GCS {fixed} may control (MAV_GCS_SYSID)"
-        if self.owner in (0, system) or self.takeover_allowed or self.lost(now):
-            return None
-        return f"GCS {self.owner} is in control"
+        """Why `system` may not take control, or None where it may."""
+        reason = self.stranger(system)
+        if self._fixed_other(system) or not (self.takeover_allowed or self.lost(now)):
+            return reason
+        return None
 
-    def commands(self, system: int) -> bool:
-        """`system` may command without taking control: it has it, or nobody has."""
-        fixed = int(self._params["MAV_GCS_SYSID"])
-        return self.owner in (0, system) and fixed in (0, system)
+    def stranger(self, system: int) -> str | None:
+        """Why `system` may not command as it stands, or None: it is in control, or nobody is."""
+        if self._fixed_other(system):
+            return f"only GCS {self._params['MAV_GCS_SYSID']:g} may (MAV_GCS_SYSID)"
+        return None if self.owner in (0, system) else f"GCS {self.owner} is in control"
+
+    def _fixed_other(self, system: int) -> bool:
+        return self._params["MAV_GCS_SYSID"] not in (0, system)
 
     def hear(self, received: Received, now: float) -> None:
         """Anything of the owner is a sign of its life: counting heartbeats alone gave false alarms on lossy links."""

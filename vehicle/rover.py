@@ -4,10 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from dialects import messages as m
+from dialects.enums import Severity
 from link.core import LinkReport, Outgoing, Received
+from link.services.command import CommandServer
+from vehicle import status
+from vehicle.commands import Commands
+from vehicle.control import Control
+from vehicle.drive import Drive
+from vehicle.failsafe import Action
+from vehicle.fields import UINT8, UINT32, whole
 from vehicle.outputs import Outputs
+from vehicle.param_service import ParamService
 from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
+from vehicle.replies import Replies
+from vehicle.requests import Requests
+from vehicle.safety import Safety
+from vehicle.states import State
+from vehicle.telemetry import Telemetry
+from vehicle.texts import Texts
+from vehicle.view import Home, View
+
+COMPONENT = 1
+"""MAV_COMP_ID_AUTOPILOT1: QGroundControl makes a vehicle only of this one."""
+FIX_3D = 3
+"""GPS_FIX_TYPE_3D_FIX."""
+ROUND_TRIP_UNKNOWN = m.UINT16_MAX
 
 
 class Rover:
@@ -15,26 +38,68 @@ class Rover:
 
     def __init__(self, params: Params, *, now: float, wall_clock: float | None = None) -> None:
         """`now` is the monotonic time of boot; `wall_clock` the Unix time at `now`, None where it is not known."""
-        self._boot = now
         self._params = params
+        self._boot = now
         self._wall_clock = wall_clock
+        self._system = int(params["MAV_SYSID"])
         self._readings = NO_READINGS
+        self._home: Home | None = None
         self._outgoing: list[Outgoing] = []
-        self._outputs = Outputs((0.0, 0.0), enabled=False)
+        self._texts = Texts()
+        self._control = Control(params, self._texts, system=self._system, boot=now)
+        self._safety = Safety(params, self._control, self._texts, now)
+        self._drive = Drive(params, now)
+        self._telemetry = Telemetry(now)
+        self._replies = Replies(self._system, COMPONENT)
+        self._param_service = ParamService(params, self._texts, self._system, COMPONENT)
+        self._commands = Commands(self._safety, self._control, self._texts)
+        self._requests = Requests(self._telemetry, self._look)
+        handlers = self._commands.handlers() | self._requests.handlers()
+        self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
 
     @property
     def outputs(self) -> Outputs:
         """What the motors must get now; recomputed inside `receive` and `tick`."""
-        return self._outputs
+        return self._drive.outputs
+
+    @property
+    def state(self) -> State:
+        """Safety state, for the daemon's log and for tests."""
+        return self._safety.state
 
     def receive(self, received: Received, now: float) -> None:
         """Take one message; a fresh demand is in `outputs` when this returns."""
+        if self._safety.state is State.OFF:
+            return
+        self._control.hear(received, now)
+        if self._demand(received, now) or self._order(received, now):
+            self._move(now)
+        else:
+            self._outgoing += self._replies.answer(received, now)
+            self._outgoing += self._param_service.receive(received, now)
 
     def tick(self, now: float) -> None:
         """Let time pass: act on silence, send what is due."""
+        if self._safety.state is State.OFF:
+            return
+        late = self._safety.is_late(now)
+        self._safety.update(now, self._drive.refused)
+        self._move(now, late=late)
+        self._outgoing += self._param_service.tick()
+        self._outgoing += [Outgoing(text) for text in self._texts.due(now)]
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves, about once a second."""
+        if self._safety.state is State.OFF:
+            return
+        for report in reports:
+            self._outgoing.append(Outgoing(self._link_status(report)))
+            for name in report.dialect_mismatch:
+                text = f"Dialect mismatch on {report.name}: {name} has another definition"
+                self._texts.say_once(f"mismatch {report.name} {name}", Severity.WARNING, text, now)
+            if report.own_id:
+                text = f"Somebody on {report.name} uses our own ids {self._system}/{COMPONENT}"
+                self._texts.say_once(f"own id {report.name}", Severity.WARNING, text, now)
 
     def messages_to_send(self) -> list[Outgoing]:
         """What to send now; empties what it returns."""
@@ -44,12 +109,103 @@ class Rover:
     def sense(self, readings: Readings, now: float) -> None:
         """Take the newest readings."""
         self._readings = readings
+        self._safety.battery.sense(readings.battery_voltage, now)
+        if self._home is None:
+            self._home = _home(readings)
 
     def motor_failed(self, reason: str, now: float) -> None:
         """The motor driver reports an error: zero, disarm, and no arming until `motor_repaired`."""
+        self._safety.motor_failed(reason, now)
+        self._move(now)
 
     def motor_repaired(self, now: float) -> None:
         """The motor driver has passed its self test again: arming is possible."""
+        self._safety.motor_repaired(now)
 
     def shutdown(self, now: float) -> None:
         """The last call: neutral, disarmed, and one HEARTBEAT that says POWEROFF."""
+        if self._safety.state is not State.OFF:
+            self._safety.shutdown()
+            self._outgoing.append(Outgoing(status.heartbeat(self._look(now))))
+        self._drive.step(None, self._safety.clearance(now, late=False), limited=False, now=now)
+
+    def _move(self, now: float, *, late: bool | None = None) -> None:
+        """Outputs of this moment, and what they and the state make worth telling."""
+        late = self._safety.is_late(now) if late is None else late
+        clearance = self._safety.clearance(now, late=late)
+        limited = self._safety.failsafes.action(now) >= Action.LIMIT
+        self._drive.step(self._control.demand, clearance, limited=limited, now=now)
+        self._outgoing += [Outgoing(message) for message in self._telemetry.due(self._look(now))]
+
+    def _look(self, now: float) -> View:
+        since_boot = now - self._boot
+        return View(
+            now=now,
+            since_boot=since_boot,
+            unix_time=None if self._wall_clock is None else self._wall_clock + since_boot,
+            params=self._params,
+            readings=self._readings,
+            safety=self._safety,
+            control=self._control,
+            drive=self._drive,
+            home=self._home,
+        )
+
+    def _link_status(self, report: LinkReport) -> m.Message:
+        return m.RoverLinkStatus(
+            frames_ok=whole(report.frames, UINT32),
+            crc_errors=whole(report.crc_errors, UINT32),
+            resync_bytes=whole(report.resync_bytes, UINT32),
+            bad_signature=0,
+            replayed=whole(report.duplicates + report.late, UINT32),
+            unsigned_rejected=0,
+            not_in_control=whole(self._control.not_in_control, UINT32),
+            rate_limited=whole(report.rate_limited, UINT32),
+            rtt_ms=ROUND_TRIP_UNKNOWN,
+            jitter_ms=ROUND_TRIP_UNKNOWN,
+            link_id=whole(report.index, UINT8),
+            peers=whole(report.peers, UINT8),
+        )
+
+    def _demand(self, received: Received, now: float) -> bool:
+        """What may move the rover."""
+        match received.message:
+            case m.ManualControl() as message:
+                self._control.manual(received, message, now)
+            case m.RcChannelsOverride(target_component=component) as message if component in (0, COMPONENT):
+                self._control.rc_override(received, message, now)
+            case m.RoverOperatorPresence() as message:
+                self._control.operator(received, message, now)
+            case _:
+                return False
+        return True
+
+    def _order(self, received: Received, now: float) -> bool:
+        """What changes the rover or what it tells."""
+        match received.message:
+            case m.CommandLong() | m.CommandInt() as message:
+                self._command(message, received, now)
+            case m.SetMode(target_system=self._system) as message:
+                self._commands.set_mode(received, message, now)
+            case m.RequestDataStream(target_system=self._system) as message if received.introduced:
+                rate = message.req_message_rate if message.start_stop else 0
+                self._telemetry.set_group(message.req_stream_id, rate, now)
+            case m.RadioStatus() as message:
+                self._telemetry.radio(message.txbuf)
+            case _:
+                return False
+        return True
+
+    def _command(self, message: m.CommandLong | m.CommandInt, received: Received, now: float) -> None:
+        if message.target_system == 0 and not self._commands.for_everybody(message):
+            return
+        self._outgoing += self._server.receive(received, now)
+        self._outgoing += self._commands.messages_to_send() + self._requests.messages_to_send()
+
+
+def _home(readings: Readings) -> Home | None:
+    """Where the rover stands at its first 3D fix."""
+    latitude, longitude = readings.latitude, readings.longitude
+    if latitude is None or longitude is None or (readings.gps_fix or 0) < FIX_3D:
+        return None
+    return Home(latitude, longitude, readings.altitude or 0.0, readings.north or 0.0, readings.east or 0.0)

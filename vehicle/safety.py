@@ -59,11 +59,12 @@ class Safety:
     @property
     def latched(self) -> Failsafe:
         """What stays until somebody does something."""
-        held = self.failsafes.latched
-        for cause, holds in ((Failsafe.ESTOP, self.state is State.ESTOP), (Failsafe.MOTOR_DRIVER, self.fault is not None),
-                             (Failsafe.LOOP_OVERRUN, self.overrun)):  # fmt: skip
-            held |= cause if holds else Failsafe(0)
-        return held
+        own = {
+            Failsafe.ESTOP: self.state is State.ESTOP,
+            Failsafe.MOTOR_DRIVER: self.fault is not None,
+            Failsafe.LOOP_OVERRUN: self.overrun,
+        }
+        return self.failsafes.latched | Failsafe(sum(cause for cause, holds in own.items() if holds))
 
     # What somebody wants
 

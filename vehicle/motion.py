@@ -1,0 +1,130 @@
+"""Messages about motion: attitude, position, speed, GPS, servos, channels. Builders only; None without the sensor."""
+
+from __future__ import annotations
+
+import math
+
+from dialects import messages as m
+from vehicle.demand import STEERING_CHANNEL, THROTTLE_CHANNEL, Override, pulse
+from vehicle.fields import INT16, INT32, UINT8, UINT16, real, whole
+from vehicle.readings import Readings
+from vehicle.view import View
+
+RSSI_UNKNOWN = 255
+
+
+def attitude(view: View) -> m.Message | None:
+    """ATTITUDE."""
+    readings = view.readings
+    if readings.yaw is None:
+        return None
+    return m.Attitude(
+        time_boot_ms=view.boot_ms,
+        roll=real(readings.roll),
+        pitch=real(readings.pitch),
+        yaw=math.remainder(real(readings.yaw), math.tau),
+        rollspeed=0.0,
+        pitchspeed=0.0,
+        yawspeed=real(readings.yaw_rate),
+    )
+
+
+def vfr_hud(view: View) -> m.Message:
+    """VFR_HUD: speed over ground, heading and throttle, also where only the throttle is known."""
+    readings, throttles = view.readings, view.drive.outputs.throttles
+    speed = abs(real(readings.speed))
+    return m.VfrHud(
+        airspeed=speed,
+        groundspeed=speed,
+        heading=_heading(readings, 1.0, unknown=0) % 360,
+        throttle=whole(max(abs(value) for value in throttles), UINT16, 100),
+        alt=real(readings.altitude),
+        climb=0.0,
+    )
+
+
+def local_position_ned(view: View) -> m.Message | None:
+    """LOCAL_POSITION_NED."""
+    readings = view.readings
+    if readings.north is None or readings.east is None:
+        return None
+    return m.LocalPositionNed(
+        time_boot_ms=view.boot_ms,
+        x=real(readings.north),
+        y=real(readings.east),
+        z=-_above_home(view),
+        vx=real(readings.velocity_north),
+        vy=real(readings.velocity_east),
+        vz=0.0,
+    )
+
+
+def global_position_int(view: View) -> m.Message | None:
+    """GLOBAL_POSITION_INT."""
+    readings = view.readings
+    if readings.latitude is None or readings.longitude is None:
+        return None
+    return m.GlobalPositionInt(
+        time_boot_ms=view.boot_ms,
+        lat=whole(readings.latitude, INT32, 1e7),
+        lon=whole(readings.longitude, INT32, 1e7),
+        alt=whole(readings.altitude, INT32, 1000),
+        relative_alt=whole(_above_home(view), INT32, 1000),
+        vx=whole(readings.velocity_north, INT16, 100),
+        vy=whole(readings.velocity_east, INT16, 100),
+        vz=0,
+        hdg=_heading(readings, 100.0, unknown=m.UINT16_MAX),
+    )
+
+
+def gps_raw_int(view: View) -> m.Message | None:
+    """GPS_RAW_INT."""
+    readings = view.readings
+    if readings.gps_fix is None:
+        return None
+    north, east = real(readings.velocity_north), real(readings.velocity_east)
+    course = math.degrees(math.atan2(east, north)) % 360
+    return m.GpsRawInt(
+        time_usec=view.boot_us,
+        fix_type=whole(readings.gps_fix, UINT8),
+        lat=whole(readings.latitude, INT32, 1e7),
+        lon=whole(readings.longitude, INT32, 1e7),
+        alt=whole(readings.altitude, INT32, 1000),
+        eph=whole(readings.gps_hdop, UINT16, 100, unknown=m.UINT16_MAX),
+        epv=m.UINT16_MAX,
+        vel=whole(math.hypot(north, east), UINT16, 100),
+        cog=whole(course, UINT16, 100),
+        satellites_visible=whole(readings.gps_satellites, UINT8, unknown=255),
+    )
+
+
+def servo_output_raw(view: View) -> m.Message:
+    """SERVO_OUTPUT_RAW: each motor's output as a pulse, at the servo numbers of ArduRover's default wiring."""
+    pulses = [0] * 16
+    for servo, value in zip(view.drive.mixer.servos, view.drive.outputs.throttles, strict=True):
+        pulses[servo - 1] = pulse(value)
+    return m.ServoOutputRaw(view.boot_us & m.UINT32_MASK, 0, *pulses)
+
+
+def rc_channels(view: View) -> m.Message:
+    """RC_CHANNELS: what overrides hold, and the demand in use at the throttle and steering channels."""
+    control = view.control
+    pulses = [m.UINT16_MAX] * Override.COUNT
+    for number, channel in control.override.channels.items():
+        pulses[number - 1] = channel.pulse
+    if control.demand and not control.stale(view.now):
+        pulses[THROTTLE_CHANNEL - 1] = pulse(control.demand.throttle or 0.0)
+        pulses[STEERING_CHANNEL - 1] = pulse(control.demand.steering or 0.0)
+    channels = {f"chan{number}_raw": value for number, value in enumerate(pulses, start=1)}
+    return m.RcChannels(time_boot_ms=view.boot_ms, chancount=Override.COUNT, rssi=RSSI_UNKNOWN, **channels)
+
+
+def _above_home(view: View) -> float:
+    return real(view.readings.altitude) - (view.home.altitude if view.home else real(view.readings.altitude))
+
+
+def _heading(readings: Readings, scale: float, unknown: int) -> int:
+    """Yaw as 0..360 degrees x `scale`."""
+    if readings.yaw is None or not math.isfinite(readings.yaw):
+        return unknown
+    return whole(math.degrees(readings.yaw) % 360, UINT16, scale, unknown)

@@ -1,0 +1,124 @@
+"""Commands that ask for messages and rates. They change nothing that moves; anybody with a HEARTBEAT may ask.
+
+An answer goes to the asker alone. Who has shown no HEARTBEAT gets a refusal, which is not longer than the question: a
+forged address must not turn the vehicle into an amplifier.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from dialects import messages as m
+from dialects.enums import Command, Result
+from link.core import Outgoing
+from link.services.command import CommandRequest, Handler
+from vehicle import status
+from vehicle.telemetry import BY_ID, Telemetry
+from vehicle.view import View
+
+MICROSECONDS = 1e6
+SLOWEST = 3600.0
+"""s: longest interval that SET_MESSAGE_INTERVAL may ask for."""
+
+
+class Requests:
+    """Answers to the askers."""
+
+    def __init__(self, telemetry: Telemetry, look: Callable[[float], View]) -> None:
+        self._telemetry = telemetry
+        self._look = look
+        self._outbox: list[Outgoing] = []
+
+    def handlers(self) -> dict[int, Handler]:
+        """The table for link.services.command.CommandServer."""
+        questions = {
+            Command.REQUEST_MESSAGE: Handler(self._request_message, broadcast=True),
+            Command.SET_MESSAGE_INTERVAL: Handler(self._set_interval),
+            Command.GET_MESSAGE_INTERVAL: Handler(self._get_interval),
+            Command.REQUEST_PROTOCOL_VERSION: Handler(self._legacy(m.ProtocolVersion)),
+            Command.REQUEST_AUTOPILOT_CAPABILITIES: Handler(self._legacy(m.AutopilotVersion)),
+            Command.GET_HOME_POSITION: Handler(self._get_home),
+        }
+        return {command: Handler(_to_known(each.run), broadcast=each.broadcast) for command, each in questions.items()}
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """The messages asked for; empties what it returns."""
+        outbox, self._outbox = self._outbox, []
+        return outbox
+
+    def _request_message(self, request: CommandRequest, now: float) -> Result:
+        number = _message_id(request.params[0])
+        if number is None:
+            return Result.DENIED
+        if number == m.AvailableModes.id:
+            return self._available_modes(request)
+        if number == m.MessageInterval.id:
+            return self._tell_interval(request, request.params[1])
+        if number not in BY_ID:
+            return Result.UNSUPPORTED
+        return self._tell(request, BY_ID[number].build(self._look(now)))
+
+    def _available_modes(self, request: CommandRequest) -> Result:
+        """Parameter 2: 0 all, else the index from 1."""
+        modes, index = status.available_modes(), request.params[1]
+        if not (math.isfinite(index) and index == int(index) and 0 <= index <= len(modes)):
+            return Result.DENIED
+        for mode in [modes[int(index) - 1]] if index else modes:
+            self._tell(request, mode)
+        return Result.ACCEPTED
+
+    def _set_interval(self, request: CommandRequest, now: float) -> Result:
+        """Parameter 2 in us: -1 off, 0 default; too fast is made slower."""
+        number, interval = _message_id(request.params[0]), request.params[1]
+        if number not in BY_ID or not math.isfinite(interval) or (interval < 0 and interval != -1):
+            return Result.DENIED
+        if interval == 0:
+            self._telemetry.set_default(number, now)
+        else:
+            wanted = None if interval == -1 else min(SLOWEST, interval / MICROSECONDS)
+            self._telemetry.set_interval(number, wanted, now)
+        return Result.ACCEPTED
+
+    def _get_interval(self, request: CommandRequest, now: float) -> Result:
+        return self._tell_interval(request, request.params[0])
+
+    def _tell_interval(self, request: CommandRequest, asked: float) -> Result:
+        """MESSAGE_INTERVAL: us, -1 off, 0 for what is no stream."""
+        number = _message_id(asked)
+        if number is None or number > m.UINT16_MAX:
+            return Result.DENIED
+        interval = self._telemetry.interval(number) if number in BY_ID else 0.0
+        self._tell(request, m.MessageInterval(number, -1 if interval is None else round(interval * MICROSECONDS)))
+        return Result.ACCEPTED
+
+    def _get_home(self, request: CommandRequest, now: float) -> Result:
+        return self._tell(request, status.home_position(self._look(now)))
+
+    def _legacy(self, message: type[m.Message]) -> Callable[[CommandRequest, float], Result]:
+        """REQUEST_PROTOCOL_VERSION and REQUEST_AUTOPILOT_CAPABILITIES, older than REQUEST_MESSAGE; 1 asks."""
+
+        def run(request: CommandRequest, now: float) -> Result:
+            if request.params[0] != 1:
+                return Result.DENIED
+            return self._tell(request, BY_ID[message.id].build(self._look(now)))
+
+        return run
+
+    def _tell(self, request: CommandRequest, message: m.Message | None) -> Result:
+        if message is None:
+            return Result.FAILED
+        self._outbox.append(Outgoing(message, request.peer))
+        return Result.ACCEPTED
+
+
+def _to_known(run: Callable[[CommandRequest, float], Result]) -> Callable[[CommandRequest, float], Result]:
+    """Refuse those who have not shown a HEARTBEAT; they may ask again when they have."""
+    return lambda request, now: run(request, now) if request.introduced else Result.TEMPORARILY_REJECTED
+
+
+def _message_id(value: float) -> int | None:
+    """A message id from a command's parameter; None for what cannot be one (ids have 24 bits)."""
+    if not math.isfinite(value) or value != int(value) or not 0 <= value < 2**24:
+        return None
+    return int(value)

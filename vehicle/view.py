@@ -1,0 +1,49 @@
+"""What telemetry tells about, at one moment. Read only: builders in status.py and motion.py make messages of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from dialects.messages import boot_ms
+from vehicle.control import Control
+from vehicle.drive import Drive
+from vehicle.params import Params
+from vehicle.readings import Readings
+from vehicle.safety import Safety
+
+
+@dataclass(frozen=True, slots=True)
+class Home:
+    """Where the first 3D fix was."""
+
+    latitude: float
+    longitude: float
+    altitude: float
+    north: float
+    east: float
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """The rover at the time `now`."""
+
+    now: float
+    since_boot: float
+    unix_time: float | None
+    """s since 1970, where the computer knows it."""
+    params: Params
+    readings: Readings
+    safety: Safety
+    control: Control
+    drive: Drive
+    home: Home | None
+
+    @property
+    def boot_ms(self) -> int:
+        """`time_boot_ms`."""
+        return boot_ms(self.since_boot)
+
+    @property
+    def boot_us(self) -> int:
+        """`time_usec` since boot."""
+        return int(self.since_boot * 1e6)
