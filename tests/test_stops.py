@@ -1,0 +1,268 @@
+"""The stop matrix in virtual time: station and vehicle joined through pipes that delay, lose and cut.
+
+Here the bounds of docs/safety.md hold to the millisecond. Each test first sees the wheels turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dialects.modes import Mode
+from groundstation import intents as i
+from groundstation.station import Station
+from link.memory import LossyPipe
+from tests.world import World
+from vehicle.machine import Machine
+from vehicle.motors.simulated import SimulatedMotors
+from vehicle.params import Params
+from vehicle.rover import Rover
+from vehicle.sim.battery import Battery
+from vehicle.sim.body import Home, SimulatedBody
+from vehicle.sim.chassis import Frame, SkidChassis
+from vehicle.states import State
+
+FALLS_WITHIN = 0.5
+NEUTRAL_WITHIN = 1.0
+REPEAT = 0.04
+"""s between the auto-repeats of a held key."""
+
+
+class Drive:
+    """An operator at the keys, a station, a link and a simulated rover."""
+
+    def __init__(self, *, loss: float = 0.0, delay: float = 0.0, seed: int = 0, style: str = "hold") -> None:
+        start = 100.0
+        self.station = Station(["memory"], now=start)
+        self.motors = SimulatedMotors()
+        params = Params({})
+        self.rover = Rover(params, now=start)
+        body = SimulatedBody(
+            lambda: self.motors.outputs,
+            chassis=SkidChassis(Frame(top_speed=params["SPEED_MAX"], track_width=params["TRACK_WIDTH"])),
+            battery=Battery(1.0),
+            home=Home(),
+            seed=None,
+        )
+        self.world = World(
+            self.station,
+            Machine(self.rover, self.motors, body),
+            up=LossyPipe(loss=loss, delay=delay, seed=seed),
+            down=LossyPipe(loss=loss, delay=delay, seed=seed + 1),
+            now=start,
+        )
+        self.held: str | None = None
+        self.screen_lives = True
+        self.moved: list[tuple[float, float]] = []
+        self._key_due = self._lease_due = 0.0
+        self.tell(i.SetStyle(style), i.Gate(True))
+
+    @property
+    def power(self) -> float:
+        """The greatest motor output now."""
+        return max(map(abs, self.motors.outputs), default=0.0)
+
+    def tell(self, *intents: i.AnyIntent) -> None:
+        for intent in intents:
+            self.station.intend(intent, self.world.now)
+        self.world.settle()
+
+    def run(self, seconds: float) -> None:
+        self.world.run(seconds, self._each)
+
+    def until(self, condition: Callable[[], bool], within: float = 10.0) -> float:
+        start = self.world.now
+        while not condition():
+            assert self.world.now - start < within, f"not within {within} s"
+            self.run(self.world.step)
+        return self.world.now - start
+
+    def _each(self, now: float) -> None:
+        if self.screen_lives and now >= self._lease_due:
+            self._lease_due = now + 0.1
+            self.station.intend(i.Lease(), now)
+        if self.screen_lives and self.held and now >= self._key_due:
+            self._key_due = now + REPEAT
+            self.station.intend(i.Push(self.held, 1, 0), now)
+        self.moved.append((now, self.power))
+
+    def get_going(self) -> None:
+        """Arm, press the key, and see the wheels turn at the full demand."""
+        self.until(lambda: self.station.snapshot(self.world.now, 0).vehicle is not None)
+        self.run(2.0)
+        self.tell(i.Arm())
+        self.until(lambda: self.rover.state is State.ARMED)
+        self.run(1.5)
+        self.held = "i"
+        self.until(lambda: self.power > 0.5)
+        assert self.rover.outputs.enabled
+
+    def assert_stops(self, since: float, *, falls: float = FALLS_WITHIN, neutral: float = NEUTRAL_WITHIN) -> None:
+        """From `since` the outputs fall and become neutral in time, and stay so."""
+        power = self.power
+        assert power > 0.5, "the wheels must turn, or there is nothing to stop"
+        self.until(lambda: self.power < power, within=falls - (self.world.now - since) + self.world.step)
+        self.until(lambda: self.power == 0.0, within=neutral - (self.world.now - since) + self.world.step)
+        self.moved.clear()
+        self.run(5.0)
+        assert max(power for _, power in self.moved) == 0.0
+
+
+def test_key_released() -> None:
+    drive = Drive()
+    drive.get_going()
+    drive.held = None
+    drive.assert_stops(drive.world.now)
+
+
+def test_stop_key() -> None:
+    drive = Drive()
+    drive.get_going()
+    drive.held = None
+    drive.tell(i.Stop())
+    drive.assert_stops(drive.world.now, falls=0.05, neutral=0.5)
+
+
+def test_latched_drive_goes_on_and_ends_with_the_stop_key() -> None:
+    drive = Drive(style="latch")
+    drive.get_going()
+    drive.held = None
+    drive.run(3.0)
+    assert drive.power > 0.5
+    drive.tell(i.Stop())
+    drive.assert_stops(drive.world.now, falls=0.05, neutral=0.5)
+
+
+@pytest.mark.parametrize("style", ["hold", "latch"])
+def test_frozen_screen(style: str) -> None:
+    drive = Drive(style=style)
+    drive.get_going()
+    drive.screen_lives = False
+    drive.assert_stops(drive.world.now)
+
+
+@pytest.mark.parametrize("style", ["hold", "latch"])
+def test_closed_gate(style: str) -> None:
+    drive = Drive(style=style)
+    drive.get_going()
+    drive.tell(i.Gate(False, "help is open"))
+    drive.assert_stops(drive.world.now, falls=0.05, neutral=0.5)
+
+
+@pytest.mark.parametrize("style", ["hold", "latch"])
+def test_killed_or_frozen_ground_station(style: str) -> None:
+    drive = Drive(style=style)
+    drive.get_going()
+    drive.world.near.frozen = True
+    drive.assert_stops(drive.world.now)
+
+
+@pytest.mark.parametrize("style", ["hold", "latch"])
+@pytest.mark.parametrize("seconds", [0.6, 1.2, 1.8, 2.5, 4.0, 10.0, 90.0])
+def test_link_cut_and_back(style: str, seconds: float) -> None:
+    """However long the cut: nothing moves afterwards until the key was let go and, where the mode fell back, MANUAL."""
+    drive = Drive(style=style)
+    drive.get_going()
+    drive.world.cut()
+    drive.until(lambda: drive.power == 0.0, within=NEUTRAL_WITHIN)
+    drive.moved.clear()
+    drive.run(seconds)
+    drive.world.cut(False)
+    drive.run(5.0)
+    assert max(power for _, power in drive.moved) == 0.0
+
+
+def test_after_a_cut_the_driver_can_go_on() -> None:
+    drive = Drive()
+    drive.get_going()
+    drive.world.cut()
+    drive.run(10.0)
+    drive.world.cut(False)
+    drive.run(2.0)
+    drive.held = None
+    drive.run(1.0)
+    drive.tell(i.SetMode(Mode.MANUAL.name))
+    drive.run(1.0)
+    drive.held = "i"
+    drive.until(lambda: drive.power > 0.5, within=2.0)
+
+
+def test_a_hiccup_needs_the_key_let_go_once() -> None:
+    drive = Drive()
+    drive.get_going()
+    drive.world.cut()
+    drive.run(1.0)
+    assert drive.power == 0.0
+    drive.world.cut(False)
+    drive.run(1.0)
+    assert drive.power == 0.0
+    drive.held = None
+    drive.run(1.5)
+    drive.held = "i"
+    drive.until(lambda: drive.power > 0.5, within=2.0)
+
+
+def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
+    drive = Drive(loss=0.10, delay=0.010, seed=5)
+    drive.get_going()
+    drive.moved.clear()
+    drive.run(600.0)
+    driving = sum(power > 0.5 for _, power in drive.moved) / len(drive.moved)
+    assert driving > 0.99
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 10_000))
+def test_thirty_percent_loss_never_moves_late(seed: int) -> None:
+    drive = Drive(loss=0.30, delay=0.010, seed=seed)
+    drive.until(lambda: drive.station.snapshot(drive.world.now, 0).vehicle is not None)
+    for _ in range(8):
+        drive.tell(i.Arm())
+        drive.run(2.0)
+        drive.held = "i"
+        drive.run(3.0)
+        drive.held = None
+        drive.run(0.25 + NEUTRAL_WITHIN + 0.05)
+        drive.moved.clear()
+        drive.run(1.0)
+        assert max(power for _, power in drive.moved) == 0.0
+
+
+def test_emergency_stop_is_at_once_and_stays() -> None:
+    drive = Drive()
+    drive.get_going()
+    drive.tell(i.EmergencyStop())
+    drive.assert_stops(drive.world.now, falls=0.05, neutral=0.05)
+    assert drive.rover.state is State.ESTOP
+    drive.tell(i.Arm())
+    drive.run(3.0)
+    assert drive.rover.state is State.ESTOP
+    drive.held = None
+    drive.tell(i.ClearEmergencyStop())
+    drive.run(2.0)
+    drive.get_going()
+
+
+def test_disarm_is_at_once() -> None:
+    drive = Drive()
+    drive.get_going()
+    drive.tell(i.Disarm())
+    drive.assert_stops(drive.world.now, falls=0.05, neutral=0.05)
+
+
+def test_arming_with_a_key_held_does_not_drive_off() -> None:
+    drive = Drive()
+    drive.run(2.0)
+    drive.held = "i"
+    drive.run(1.0)
+    drive.tell(i.Arm())
+    drive.run(5.0)
+    assert drive.rover.state is State.ARMED
+    assert max(power for _, power in drive.moved) == 0.0
+    drive.held = None
+    drive.run(1.0)
+    drive.held = "i"
+    drive.until(lambda: drive.power > 0.5)
