@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import socket
 import subprocess
-import sys
 import threading
 from collections import deque
 from collections.abc import Sequence
@@ -14,9 +12,10 @@ from pathlib import Path
 
 import msgspec
 
-from groundstation.intents import AnyIntent, Lease, Push, Quit
+from groundstation.intents import AnyIntent, Quit
+from groundstation.processes import end_process, start_module
 from groundstation.snapshot import Snapshot
-from groundstation.wire import MAX_PACKET, SOCKET_BUFFER, Batch, Failure, Hello, clock, decode_up, encode
+from groundstation.wire import MAX_PACKET, NEVER_LATE, SOCKET_BUFFER, Batch, Failure, Hello, clock, decode_up, encode
 
 HELLO_TIMEOUT = 15.0
 """How long the station may take to open its links: Python's start on a slow Pi (3 s) and a name to resolve (10 s)."""
@@ -25,7 +24,7 @@ CLOSE_TIMEOUT = 1.0
 """How long a station may take to send its neutral frames and end, before it is killed. It needs 0.25 s."""
 
 MAX_PENDING = 256
-"""Intents kept for a station that does not read. Pushes and leases are not kept: late, they would be wrong."""
+"""Intents kept for a station that does not read: those of NEVER_LATE. The others would be wrong when they are late."""
 
 
 class StationError(RuntimeError):
@@ -60,13 +59,13 @@ class StationClient:
             options.append(f"--log-file={log_file}")
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
-            for end in (ours, theirs):
-                end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
+            for half in (ours, theirs):
+                half.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
             process = _spawn(theirs.fileno(), options, endpoints)
         try:
             hello = _hello(ours)
         except StationError:
-            _end(process, CLOSE_TIMEOUT)
+            end_process(process, CLOSE_TIMEOUT)
             ours.close()
             raise
         ours.setblocking(False)
@@ -87,7 +86,7 @@ class StationClient:
                 self._pipe.send(encode(Batch(clock(), packet)))
                 self._pending.clear()
             except BlockingIOError:
-                self._pending.extend(intent for intent in intents if not isinstance(intent, (Push, Lease)))
+                self._pending.extend(intent for intent in intents if isinstance(intent, NEVER_LATE))
             except OSError:  # the station has ended; alive tells
                 self._open = False
 
@@ -119,7 +118,7 @@ class StationClient:
     def close(self) -> int | None:
         """Let the station send its neutral frames and end, within about a second. Its exit code (negative: signal)."""
         self.send(Quit())
-        code = _end(self._process, CLOSE_TIMEOUT)
+        code = end_process(self._process, CLOSE_TIMEOUT)
         with self._lock:
             self._open = False
             self._pipe.close()
@@ -127,23 +126,11 @@ class StationClient:
 
 
 def _spawn(descriptor: int, options: Sequence[str], endpoints: Sequence[str]) -> subprocess.Popen[bytes]:
-    """The process has no terminal of ours on its standard streams: nothing that it or a library prints may be seen."""
-    command = [sys.executable, "-m", "groundstation.helm", f"--fd={descriptor}", *options, "--", *endpoints]
-    null = subprocess.DEVNULL
     try:
-        return subprocess.Popen(
-            command, pass_fds=[descriptor], stdin=null, stdout=null, stderr=null, env=child_environment()
-        )
+        arguments = [f"--fd={descriptor}", *options, "--", *endpoints]
+        return start_module("groundstation.helm", arguments, pass_fds=[descriptor])
     except OSError as error:
         raise StationError(f"the station process did not start: {error.strerror}") from error
-
-
-def child_environment() -> dict[str, str]:
-    """Ours; from a checkout that is not installed, with its folder on the path, which -P takes off."""
-    root = Path(__file__).resolve().parent.parent
-    if not (root / "pyproject.toml").exists():
-        return dict(os.environ)
-    return os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))}
 
 
 def _hello(pipe: socket.socket) -> Hello:
@@ -168,11 +155,3 @@ def _snapshot(packet: bytes) -> Snapshot | None:
         if isinstance(message, Snapshot):
             return message
     return None
-
-
-def _end(process: subprocess.Popen[bytes], timeout: float) -> int | None:
-    try:
-        return process.wait(timeout)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        return process.wait()

@@ -6,13 +6,22 @@ import time
 
 import msgspec
 
-from groundstation.intents import AnyIntent
+from groundstation.intents import AnyIntent, Disarm, EmergencyStop, ExactKeys, Gate, Quit, Release, Stop
+from groundstation.operator import LEASE
 from groundstation.snapshot import Snapshot
 
 SOCKET_BUFFER = 1 << 20
 """Bytes asked for each way, so that a snapshot (< 60 kB) or a second of keys always fits; the kernel may give less."""
 
 MAX_PACKET = 1 << 18
+
+
+NEVER_LATE = (Stop, EmergencyStop, Disarm, Release, Gate, ExactKeys, Quit)
+"""Intents that only ever stop, or that say how things are. All others mean the moment in which they were made."""
+
+TOO_LATE = LEASE
+"""s after which other intents are dropped: a station that was frozen must not drive, arm or call the screen alive by
+what lay in the pipe meanwhile."""
 
 
 class Batch(msgspec.Struct, frozen=True):

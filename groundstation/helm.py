@@ -1,0 +1,252 @@
+"""The station process: joins the station with its links and the screen's pipe. It has no terminal itself."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import gc
+import logging
+import logging.handlers
+import secrets
+import signal
+import socket
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from dialects.enums import Severity
+from groundstation.intents import Lease, Quit, StartSimulator, Stop
+from groundstation.sitl import Simulator, free_port
+from groundstation.station import COMPONENT, Station
+from groundstation.sticks import Style
+from groundstation.wire import MAX_PACKET, NEVER_LATE, TOO_LATE, Failure, Hello, decode_down, encode
+from link.endpoint import EndpointError, parse
+from link.link import Link, LinkError
+from link.runner import Runner, open_links
+
+log = logging.getLogger(__name__)
+
+TICK = 0.02
+"""s: a held key's end and a due demand are noticed within it; well below the demands' 0.05 s."""
+
+SNAPSHOT_PERIOD = 0.1
+"""s: what a person can read; the screen draws no faster."""
+
+END_WITHIN = 1.0
+"""s for the last neutral frames (0.25 s are needed), then the process ends in any case."""
+
+LOG_SIZE = 1 << 20
+LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
+
+
+class Helm:
+    """One station, its links, its pipe to the screen, and the simulator where it started one."""
+
+    def __init__(self, station: Station, links: Sequence[Link], pipe: socket.socket) -> None:
+        self._station = station
+        self._links = links
+        self._pipe = pipe
+        self._runner = Runner(station, links, period=TICK)
+        self._simulator: Simulator | None = None
+        self._error: BaseException | None = None
+        self._ending = False
+
+    async def run(self) -> None:
+        """Run until the screen is gone or says so. Raises what went wrong inside."""
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(self._broken)
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            loop.add_signal_handler(number, self._end)
+        loop.add_reader(self._pipe, self._listen)
+        show = loop.create_task(self._show())
+        try:
+            await self._runner.run()
+        finally:
+            show.cancel()
+            loop.remove_reader(self._pipe)
+            if self._simulator is not None:
+                self._simulator.close()
+        if self._error is not None:
+            raise self._error
+
+    def start_simulator(self, now: float) -> None:
+        """Start a simulator that speaks to the first of our links that listens on this machine."""
+        port = next((link.endpoint.port for link in self._links if link.endpoint.scheme == "udpin"), None)
+        if self._simulator is not None and self._simulator.running:
+            return
+        if port is None:
+            self._say(now, "the simulator needs a link that listens, such as udpin:127.0.0.1:14550")
+            return
+        try:
+            self._simulator = Simulator(port)
+        except OSError as error:
+            self._say(now, f"the simulator did not start: {error.strerror}")
+
+    # ---- the pipe ----
+
+    def _listen(self) -> None:
+        now = asyncio.get_running_loop().time()
+        while (packet := self._packet()) is not None:
+            if not packet:  # the screen is gone, whatever became of it
+                asyncio.get_running_loop().remove_reader(self._pipe)
+                self._end()
+                break
+            self._take(packet, now)
+        self._runner.wake()
+
+    def _packet(self) -> bytes | None:
+        try:
+            return self._pipe.recv(MAX_PACKET)
+        except BlockingIOError:
+            return None
+        except OSError:
+            return b""
+
+    def _take(self, packet: bytes, now: float) -> None:
+        try:
+            batch = decode_down(packet)
+        except msgspec.DecodeError:
+            log.exception("the screen sent what is no intent")
+            return
+        late = now - batch.time > TOO_LATE
+        for intent in batch.intents:
+            if late and not isinstance(intent, NEVER_LATE):
+                if not isinstance(intent, Lease):
+                    self._say(now, f"{type(intent).__name__} came {now - batch.time:.1f} s late and was dropped")
+            elif isinstance(intent, StartSimulator):
+                self.start_simulator(now)
+            elif isinstance(intent, Quit):
+                self._end()
+            else:
+                self._station.intend(intent, now)
+
+    async def _show(self) -> None:
+        """Snapshots at absolute deadlines, and the simulator's end."""
+        loop = asyncio.get_running_loop()
+        due = loop.time()
+        while True:
+            self._watch_simulator(loop.time())
+            self._send(self._station.snapshot(loop.time(), time.time()))
+            due = max(due + SNAPSHOT_PERIOD, loop.time())
+            await asyncio.sleep(due - loop.time())
+
+    def _send(self, message: msgspec.Struct) -> None:
+        """Now or never: a screen that does not read gets a newer picture later."""
+        try:
+            self._pipe.send(encode(message))
+        except BlockingIOError:
+            log.debug("the screen does not read")
+        except OSError:
+            log.debug("the screen is gone")  # its end of the pipe tells _listen
+
+    def _watch_simulator(self, now: float) -> None:
+        if self._simulator is None:
+            return
+        state = f"simulator {self._simulator.state}"
+        if not self._simulator.running and self._station.simulator != self._simulator.state:
+            self._say(now, state)
+        self._station.simulator = self._simulator.state
+
+    def _say(self, now: float, text: str) -> None:
+        log.warning(text)
+        self._station.log.add(now, "station", text, Severity.WARNING)
+
+    # ---- the end ----
+
+    def _end(self) -> None:
+        """Neutral several times, then end."""
+        if self._ending:
+            return
+        self._ending = True
+        loop = asyncio.get_running_loop()
+        self._station.intend(Stop(), loop.time())
+        self._station.intend(Quit(), loop.time())
+        self._runner.wake()
+        self._end_when_finished(loop.time() + END_WITHIN)
+
+    def _end_when_finished(self, deadline: float) -> None:
+        loop = asyncio.get_running_loop()
+        if self._station.finished or loop.time() >= deadline:
+            self._runner.stop()
+        else:
+            loop.call_later(TICK, self._end_when_finished, deadline)
+
+    def _broken(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """An exception in a callback must end the process: a station that half works must not look alive."""
+        self._error = context.get("exception") or RuntimeError(str(context.get("message")))
+        self._runner.stop()
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a station for the screen at the other end of --fd. Exit code 2: it could not start, and has said why."""
+    options = _parser().parse_args(arguments)
+    for number in (signal.SIGINT, signal.SIGTSTP):  # the terminal's keys are for the screen's process
+        signal.signal(number, signal.SIG_IGN)
+    pipe = socket.socket(fileno=options.fd)
+    pipe.setblocking(False)
+    endpoints = [*options.endpoints, *([f"udpin:127.0.0.1:{free_port()}"] if options.sitl else [])]
+    try:
+        _log_to(options.log_file)
+        links = open_links(endpoints, system=options.system, component=COMPONENT)
+        known = tuple(parse(text).text for text in endpoints)
+    except (EndpointError, LinkError, OSError) as error:
+        pipe.send(encode(Failure(_one_line(error))))
+        return 2
+    pipe.send(encode(Hello(known)))
+    return _run(options, known, links, pipe)
+
+
+def _run(options: argparse.Namespace, endpoints: tuple[str, ...], links: list[Link], pipe: socket.socket) -> int:
+    started = time.monotonic()  # the loop's clock
+    session = secrets.randbits(32)
+    style = Style(options.style)
+    station = Station(
+        endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started
+    )  # fmt: skip
+    helm = Helm(station, links, pipe)
+    if options.sitl:
+        helm.start_simulator(started)
+    gc.collect()
+    gc.freeze()  # what is imported lives as long as we do; without it a full pass stops the sender for 30 ms
+    try:
+        asyncio.run(helm.run())
+    except Exception:
+        log.exception("the station broke")
+        return 1
+    return 0
+
+
+def _log_to(path: Path | None) -> None:
+    """Everything that a library says goes to the file, or nowhere."""
+    handler: logging.Handler = logging.NullHandler()
+    if path is not None:
+        handler = logging.handlers.RotatingFileHandler(path, maxBytes=LOG_SIZE, backupCount=1, encoding="utf-8")
+    logging.basicConfig(
+        level=logging.INFO, handlers=[handler], format="%(asctime)s %(levelname)s %(name)s: %(message)s"
+    )
+    logging.captureWarnings(True)
+
+
+def _one_line(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return str(error)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="groundstation.helm", description="Started by `groundstation`, not by hand.")
+    parser.add_argument("--fd", type=int, required=True, help="the station's end of the pipe")
+    parser.add_argument("--system", type=int, default=255)
+    parser.add_argument("--style", choices=list(Style), default=Style.HOLD)
+    parser.add_argument("--speed", type=float, default=0.6)
+    parser.add_argument("--sitl", action="store_true")
+    parser.add_argument("--log-file", type=Path)
+    parser.add_argument("endpoints", nargs="*")
+    return parser
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
