@@ -7,12 +7,11 @@ power, last messages, exit code with one line. Exit codes: 0 asked to stop, 1 a 
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import gc
 import logging
 import signal
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from link.endpoint import EndpointError
@@ -97,23 +96,29 @@ def _told(error: Exception) -> str:
 
 
 async def _serve(settings: Settings) -> int:
-    loop = asyncio.get_running_loop()
+    now = asyncio.get_running_loop().time()
     params = Params(settings.params)
-    system = int(params["MAV_SYSID"])
-    rover = Rover(params, now=loop.time(), wall_clock=time.time())
-    with _open_body(settings, params) as (motors, sensors):
-        machine = Machine(rover, motors, sensors)
-        with contextlib.closing(machine):
-            links = open_links(settings.endpoints, system=system, component=COMPONENT)
-            ending = _Ending(machine, Runner(machine, links, period=PERIOD))
-            ending.listen(loop)
-            gc.collect()
-            gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
-            log.info("ready, system %d, %s", system, ", ".join(settings.endpoints))
-            return await ending.wait()
+    machine = _build(settings, params, Rover(params, now=now, wall_clock=time.time()))
+    try:
+        return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]))
+    except BaseException as error:
+        machine.abandon(error, asyncio.get_running_loop().time())
+        raise
+    finally:
+        machine.close()
 
 
-class _Ending:
+async def _drive(machine: Machine, endpoints: Sequence[str], system: int) -> int:
+    runner = Runner(machine, open_links(endpoints, system=system, component=COMPONENT), period=PERIOD)
+    ending = Ending(machine, runner)
+    ending.listen(asyncio.get_running_loop())
+    gc.collect()
+    gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
+    log.info("ready, system %d, %s", system, ", ".join(endpoints))
+    return await ending.wait()
+
+
+class Ending:
     """How the run ends from outside the cores: asked by a signal, or by a fault in a callback of the loop."""
 
     def __init__(self, machine: Machine, runner: Runner) -> None:
@@ -149,16 +154,18 @@ class _Ending:
         self._runner.stop()
 
 
-@contextlib.contextmanager
-def _open_body(settings: Settings, params: Params) -> Iterator[tuple[Motors, Sensors]]:
-    """Motors and sensors; the motors are closed on every way out. Raises MotorError, SettingsError."""
+def _build(settings: Settings, params: Params, rover: Rover) -> Machine:
+    """The rover in its body. Raises MotorError, SettingsError."""
     sensors: Sensors = NoSensors()
     if settings.simulation is None:
         motors = open_motors(settings.motors)
     else:
         motors, sensors = _simulated_body(settings.simulation, params)
-    with contextlib.closing(motors):
-        yield _logged(motors, settings.motor_log), sensors
+    try:
+        return Machine(rover, _logged(motors, settings.motor_log), sensors)
+    except BaseException:
+        motors.close()
+        raise
 
 
 def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sensors]:

@@ -154,20 +154,22 @@ class Machine:
         finally:
             self._mind.shutdown(now)
 
+    def abandon(self, error: BaseException, now: float) -> None:
+        """Shut down because of `error`, which goes on after this: it gets a note where the motors may still turn."""
+        if self._closed:
+            return
+        try:
+            self.shutdown(now)
+        except Exception as second:
+            error.add_note(f"while stopping: {second!r}")
+
     def _guard(self, decide: Callable[[], None], now: float, *, refresh: bool = False) -> None:
         try:
             decide()
             self._drive(now, refresh=refresh)
         except BaseException as error:
-            self._fall(error, now)
+            self.abandon(error, now)
             raise
-
-    def _fall(self, error: BaseException, now: float) -> None:
-        """The last act before an exception goes on: motors, then last words."""
-        try:
-            self.shutdown(now)
-        except Exception as second:
-            error.add_note(f"and while stopping: {second!r}")
 
     def _cycle(self, now: float) -> None:
         self._mind.sense(self._sensors.read(now), now)

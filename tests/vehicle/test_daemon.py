@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import fcntl
 import logging
 import os
@@ -16,9 +17,12 @@ import pytest
 
 from dialects.enums import State
 from dialects.messages import Heartbeat
+from link.runner import Runner
 from tests.vehicle.ground import Ground, drive, running
+from tests.vehicle.script import driving
 from vehicle import daemon
-from vehicle.daemon import FAULT, MISTAKE, Settings, Simulation
+from vehicle.daemon import FAULT, MISTAKE, Ending, Settings, Simulation
+from vehicle.motors import MotorError
 
 BREAKING = "tests.vehicle.motors.breaking"
 
@@ -111,6 +115,32 @@ def test_is_ready_soon(tmp_path: Path) -> None:
         with running(tmp_path, "--sim", ground.endpoint) as vehicle:
             assert "ready" in vehicle.ready()
             assert time.monotonic() - start < 3.0
+
+
+# ---- ends from outside the cores ----
+
+
+async def test_an_exception_in_a_callback_of_the_loop_stops_the_motors_and_ends_the_run() -> None:
+    machine, _, motors = driving()
+    ending = Ending(machine, Runner(machine, [], period=0.02))
+    loop = asyncio.get_running_loop()
+    ending.listen(loop)
+    loop.call_soon(int, "not a number")
+    with pytest.raises(ValueError, match="not a number"):
+        await ending.wait()
+    assert motors.outputs == (0.0, 0.0)
+    assert motors.asked[-1] == "close"
+
+
+async def test_a_signal_to_motors_that_do_not_stop_is_a_fault() -> None:
+    machine, mind, motors = driving()
+    motors.broken["disable"] = OSError("bus is gone")
+    ending = Ending(machine, Runner(machine, [], period=0.02))
+    ending.listen(asyncio.get_running_loop())
+    signal.raise_signal(signal.SIGTERM)
+    with pytest.raises(MotorError, match="cut their power: bus is gone"):
+        await ending.wait()
+    assert mind.calls[-2:] == ["shutdown", "messages_to_send"]
 
 
 # ---- mistakes and faults before the start ----
