@@ -66,18 +66,19 @@ def _run(options: argparse.Namespace) -> int:
     for endpoint in endpoints:
         parse(endpoint)
     _check_terminal()
+    log_file = _log_file(options.log_file)
     client = StationClient.start(
         endpoints,
         system=options.system,
         style=options.style,
         speed=options.speed,
         sitl=options.sitl,
-        log_file=_log_file(options.log_file),
+        log_file=log_file,
     )
     try:
         from groundstation.ui.app import run  # half a second that a mistake need not wait for
 
-        return run(client, keymap=keymap, style=options.style, endpoints=client.endpoints, sitl=options.sitl)
+        return run(client, keymap=keymap, log_file=log_file)
     finally:
         client.close()
 

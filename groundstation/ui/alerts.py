@@ -9,7 +9,7 @@ from enum import Enum, auto
 from groundstation.keymap import CONFIRM_KEY, Action, Keymap
 from groundstation.snapshot import Snapshot
 from groundstation.ui.gate import Shut
-from groundstation.ui.keynames import key_name
+from groundstation.ui.keynames import key_name, main_key
 
 MAX_SILENCE = 99.0
 """s of silence that are still counted; after that it is simply gone."""
@@ -47,9 +47,9 @@ class Situation:
     station_alive: bool = True
 
     def key(self, action: str) -> str:
-        """The first key of an action, as it is written."""
-        keys = self.keymap.keys(action)
-        return key_name(keys[0]) if keys else "?"
+        """The key of an action, as it is written."""
+        key = main_key(self.keymap, action)
+        return "?" if key is None else key_name(key)
 
 
 Rule = Callable[[Situation], Iterator[Alert]]

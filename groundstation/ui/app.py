@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import signal
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, ClassVar
 
 from textual import events
@@ -17,8 +20,9 @@ from groundstation.intents import AnyIntent, Lease
 from groundstation.keymap import Action, Keymap, KeyPress
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import THEME
+from groundstation.ui.ending import orderly_end
 from groundstation.ui.gate import Client, Door, KeyGate, Shut
-from groundstation.ui.output import TerminalFile
+from groundstation.ui.output import TerminalFile, only_the_screen
 from groundstation.ui.palette import Actions
 from groundstation.ui.ping import PERIOD
 from groundstation.ui.screens.drive import DriveScreen
@@ -39,7 +43,7 @@ class HelmApp(App[int]):
     """One operator at one terminal."""
 
     COMMANDS: ClassVar[Any] = {Actions}
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+p", "command_palette", "All", show=False, priority=True)]
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+z", "suspend_process", "Suspend", show=False)]
 
     def __init__(
         self,
@@ -57,6 +61,7 @@ class HelmApp(App[int]):
         self._pressed: dict[str, float] = {}
         self._shown_at = 0.0
         self._closed = False
+        self._beating: asyncio.AbstractEventLoop | None = None
         self.drive = DriveScreen(keymap, self._send, self.perform)
 
     # ---- life ----
@@ -66,11 +71,13 @@ class HelmApp(App[int]):
         self.register_theme(THEME)
         self.theme = THEME.name
         self.push_screen(self.drive)
-        asyncio.get_running_loop().add_reader(self._client.fileno(), self._readable)
+        self._beating = asyncio.get_running_loop()
+        self._beating.add_reader(self._client.fileno(), self._readable)
         # In this loop and in no thread: a screen that hangs must lose its lease.
         self.set_interval(TICK, self._tick)
         self.set_interval(PERIOD, self._ping)
-        self.call_after_refresh(_freeze)
+        if self._terminal is not None:
+            self.call_after_refresh(_freeze)
 
     def on_unmount(self) -> None:
         """Neutral before anything else ends."""
@@ -83,9 +90,15 @@ class HelmApp(App[int]):
         self._closed = True
         self.exit(code)
 
+    def end_soon(self, code: int) -> None:
+        """The same from a signal handler: takes no lock."""
+        if self._beating is None:
+            raise SystemExit(code)
+        self._beating.call_soon_threadsafe(self.end, code)
+
     def on_terminal_closed(self, event: TerminalClosed) -> None:
-        """Nobody can see or type any more."""
-        self.end(1)
+        """Nobody can see or type any more: the same as a hang-up."""
+        self.end(128 + signal.SIGHUP)
 
     def push_screen(self, screen: Any, *arguments: Any, **options: Any) -> Any:
         """Another screen on top is neutral at once, before it is even made."""
@@ -198,6 +211,19 @@ class HelmApp(App[int]):
             self.drive.request(action)
         else:
             self._send(action.intent)
+
+
+def run(client: Client, *, keymap: Keymap, log_file: Path | None = None) -> int:
+    """Show the screen until its person leaves or is gone. 0 after a quit, 128 + n after signal n, 1 when it broke."""
+    with only_the_screen(log_file) as terminal:
+        app = HelmApp(client, keymap, terminal=terminal)
+        with orderly_end(app.end_soon, terminal):
+            # No mouse: each move of it would wake the loop, and people want to select text.
+            code = app.run(mouse=False)
+    if code is None:
+        sys.stderr.write(f"groundstation: the screen failed; {log_file or 'run with --log-file: the log'} tells why\n")
+        return 1
+    return code
 
 
 def _freeze() -> None:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from groundstation.keyfile import PUNCTUATION
+from groundstation.keymap import Keymap
 
 _MARKS = {name: character for character, name in PUNCTUATION.items() if character != " "} | {
     "space": "SPACE", "tab": "TAB", "enter": "ENTER", "escape": "ESC", "up": "↑", "down": "↓", "left": "←",
     "right": "→", "pageup": "PgUp", "pagedown": "PgDn",
 }  # fmt: skip
+
+_PLACES = frozenset({"u", "i", "o", "j", "k", "l", "m", "comma", "full_stop"})
 
 
 def key_name(key: str) -> str:
@@ -15,3 +18,14 @@ def key_name(key: str) -> str:
     *modifiers, last = key.split("+")
     shown = _MARKS.get(last) or (last.upper() if last[:1] == "f" and last[1:].isdigit() else last)
     return "".join("^" if modifier == "ctrl" else f"{modifier}+" for modifier in modifiers) + shown
+
+
+def main_key(keymap: Keymap, action_id: str) -> str | None:
+    """The key to name for an action that has several: one that is a letter or mark, as on a keyboard's cap.
+
+    Where the place around `k` is free to choose, it is chosen, so that the caps look like the block on the keyboard.
+    """
+    keys = keymap.keys(action_id)
+    place = [key for key in keys if key in _PLACES]
+    short = [key for key in keys if len(key_name(key)) == 1 and key.isascii()]
+    return next(iter((*place, *short, *keys)), None)

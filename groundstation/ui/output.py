@@ -19,7 +19,9 @@ MAX_FLUSH = 0.5
 class TerminalFile:
     """The file that Textual draws into. A terminal that has gone away swallows the rest instead of raising."""
 
-    def __init__(self, descriptor: int) -> None:
+    def __init__(self, descriptor: int, keyboard: int) -> None:
+        self.keyboard = keyboard
+        """Descriptor to read keys from."""
         self._descriptor = descriptor
         self._buffer: list[str] = []
         self.gone = False
@@ -73,7 +75,7 @@ def only_the_screen(log_file: Path | None) -> Iterator[TerminalFile]:
     try:
         for descriptor in _STANDARD:
             os.dup2(log, descriptor)
-        yield TerminalFile(terminal)
+        yield TerminalFile(terminal, sys.stdin.fileno())
     finally:
         for descriptor, old in zip(_STANDARD, saved, strict=True):
             with contextlib.suppress(OSError, ValueError):

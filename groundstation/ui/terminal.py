@@ -12,6 +12,7 @@ import re
 import selectors
 from codecs import getincrementaldecoder
 from collections.abc import Callable, Iterable, Sequence
+from threading import Thread
 from typing import Any, Protocol, cast
 
 from textual import constants, events
@@ -35,6 +36,9 @@ PING, PONG = "\x1b[5n", "\x1b[0n"
 """Device status report: every terminal answers it, so it tells whether the line to the person lives."""
 
 READ_SIZE = 4096
+SUSPEND_PATIENCE = 0.1
+"""s that a suspend waits for its neutral to go out."""
+
 SELECT_TIMEOUT = 0.1
 """Of the input thread, s: how late it may see the end of the app, or that an Escape stands alone."""
 
@@ -179,6 +183,8 @@ class HelmDriver(LinuxDriver):
     def __init__(self, app: App[Any], **options: Any) -> None:
         super().__init__(app, **options)
         self._file = cast(Any, self.terminal)
+        self.fileno = self.terminal.keyboard
+        self.input_tty = os.isatty(self.fileno)
 
     @classmethod
     def bound(cls, sink: KeySink, terminal: TerminalFile) -> type[HelmDriver]:
@@ -201,7 +207,11 @@ class HelmDriver(LinuxDriver):
         return 80, 24
 
     def _sigtstp_application(self, *arguments: Any) -> None:
-        self.sink.shut("the ground station was suspended")
+        # This is a signal handler, and the main thread that it stopped may hold a lock that `shut` needs. Then the other
+        # thread waits in vain, and the lease runs out instead.
+        shut = Thread(target=self.sink.shut, args=("the ground station was suspended",), daemon=True)
+        shut.start()
+        shut.join(SUSPEND_PATIENCE)
         super()._sigtstp_application(*arguments)
 
     def run_input_thread(self) -> None:

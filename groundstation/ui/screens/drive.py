@@ -23,6 +23,7 @@ from groundstation.ui.widgets.chart import Chart, Series
 from groundstation.ui.widgets.footer import KeyFooter
 from groundstation.ui.widgets.horizon import Attitude, Horizon
 from groundstation.ui.widgets.keycaps import Keycaps, KeycapsValue
+from groundstation.ui.widgets.links import Links
 from groundstation.ui.widgets.log import Log
 from groundstation.ui.widgets.rates import Rates
 from groundstation.ui.widgets.speed import Speed, figures
@@ -59,7 +60,7 @@ class DriveScreen(Screen[None]):
         self._sticks, self._keycaps = Sticks((), id="sticks"), Keycaps(self._keymap, id="keycaps")
         self._speeds = Chart("speed", "m/s", (Series("", GREEN),), step=0.5, id="speeds")
         self._battery = Chart("battery", "V", (Series("", BLUE),), step=0.5, id="battery")
-        self._rates, self._log = Rates((), id="rates"), Log((), id="log")
+        self._rates, self._links, self._log = Rates((), id="rates"), Links((), id="links"), Log((), id="log")
         self._waiting = Waiting(key_name(simulator[0]) if simulator else "F5", id="waiting")
         self._alert, self._footer = AlertLine((), id="alert"), KeyFooter(self._keymap, id="footer")
         with Vertical(id="console"):
@@ -69,7 +70,7 @@ class DriveScreen(Screen[None]):
                 yield self._track
                 with Vertical(id="instruments"):
                     with Horizontal(id="motion") as motion:
-                        motion.border_title = "speed"
+                        motion.border_title = "motion"
                         yield self._speed
                         yield self._horizon
                     yield self._tape
@@ -79,7 +80,9 @@ class DriveScreen(Screen[None]):
                         yield self._keycaps
                     yield self._speeds
                     yield self._battery
-                yield self._rates
+                with Vertical(id="traffic"):
+                    yield self._rates
+                    yield self._links
             yield self._log
             yield self._alert
             yield self._footer
@@ -125,6 +128,7 @@ class DriveScreen(Screen[None]):
             self._speeds.add(snapshot.uptime, vehicle.speed)
             self._battery.add(snapshot.uptime, vehicle.battery_voltage)
             self._rates.show(snapshot.messages)
+            self._links.show(snapshot.links)
 
     def light(self, pressed: frozenset[str]) -> None:
         """Light the caps of keys that are down."""

@@ -6,14 +6,22 @@ from textual.strip import Strip
 
 from groundstation.keymap import ACTIONS, Keymap
 from groundstation.ui.colours import DIM, PANEL, RED, TEXT, YELLOW, style
-from groundstation.ui.keynames import key_name
+from groundstation.ui.keynames import key_name, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
-SHOWN = (
-    "drive.stop", "stop.emergency", "vehicle.arm", "drive.style", "speed.faster", "speed.slower", "app.help",
-    "app.quit", "vehicle.manual", "vehicle.hold", "vehicle.control",
-)  # fmt: skip
-"""Ids in order of importance: those that find no room are left out. The rest is on the help screen."""
+SHOWN: tuple[tuple[str | None, tuple[str, ...]], ...] = (
+    (None, ("drive.stop",)),
+    ("E-STOP", ("stop.emergency",)),
+    (None, ("vehicle.arm",)),
+    ("Speed", ("speed.faster", "speed.slower")),
+    (None, ("drive.style",)),
+    (None, ("app.help",)),
+    (None, ("app.quit",)),
+    (None, ("vehicle.manual",)),
+    (None, ("vehicle.hold",)),
+    (None, ("vehicle.control",)),
+)
+"""A word where the action's own is too long, and the ids. The most important first: the last ones may find no room."""
 
 
 class KeyFooter(Instrument[bool]):
@@ -27,20 +35,26 @@ class KeyFooter(Instrument[bool]):
         """Keys in yellow, those that stop in red."""
         parts: list[Part] = []
         tail = [("│ ", style(DIM, PANEL)), ("^p", style(YELLOW, PANEL, bold=True)), (" All ", style(TEXT, PANEL))]
-        for action_id in SHOWN:
-            item = self._item(action_id)
+        for label, ids in SHOWN:
+            item = self._item(label, ids)
             if item and length(parts) + length(item) + length(tail) <= width:
                 parts += item
         gap = max(0, width - length(parts) - length(tail))
         return [strip(*parts, (" " * gap, style(TEXT, PANEL)), *tail).crop(0, width)]
 
-    def _item(self, action_id: str) -> list[Part]:
-        keys = self._keymap.keys(action_id)
-        if not keys:
+    def _item(self, label: str | None, ids: tuple[str, ...]) -> list[Part]:
+        keys = [self._key(action_id) for action_id in ids]
+        if None in keys:
             return []
-        action = ACTIONS[action_id]
-        key = "space" if "space" in keys else keys[0]
-        label = "Disarm" if self.value and action.when_armed is not None else action.label
-        label = "E-STOP" if action_id == "stop.emergency" else label
+        action = ACTIONS[ids[0]]
+        word = label or ("Disarm" if self.value and action.when_armed is not None else action.label)
         colour = RED if action.group == "stop" else YELLOW
-        return [(f" {key_name(key)}", style(colour, PANEL, bold=True)), (f" {label} ", style(TEXT, PANEL))]
+        return [
+            (f" {' '.join(filter(None, keys))}", style(colour, PANEL, bold=True)),
+            (f" {word} ", style(TEXT, PANEL)),
+        ]
+
+    def _key(self, action_id: str) -> str | None:
+        keys = self._keymap.keys(action_id)
+        key = "space" if "space" in keys else main_key(self._keymap, action_id)
+        return None if key is None else key_name(key)

@@ -58,16 +58,7 @@ class Horizon(Instrument[Attitude | None]):
             eighths = round(8 * ground(attitude, column - (width - 1) / 2, row, height))
             cells.append((" ", style(on=GROUND)) if eighths == 8 else (_BLOCKS[eighths], style(GROUND, SKY)))
         if row == height // 2:
-            middle = width // 2
-            for column, mark in (
-                (middle - 2, "╺"),
-                (middle - 1, "━"),
-                (middle, "◆"),
-                (middle + 1, "━"),
-                (middle + 2, "╸"),
-            ):
-                if 0 <= column < width:
-                    on = GROUND if ground(attitude, column - (width - 1) / 2, row, height) > 0.5 else SKY
-                    cells[column] = (mark, style(YELLOW, on, bold=True))
+            on = GROUND if ground(attitude, 0.0, row, height) > 0.5 else SKY
+            cells[(width - 1) // 2] = ("●", style(YELLOW, on, bold=True))
         runs = groupby(cells, key=lambda cell: cell[1])
         return strip(*(("".join(text for text, _ in run), look) for look, run in runs))

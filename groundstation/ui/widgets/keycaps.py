@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from textual.strip import Strip
@@ -10,7 +11,7 @@ from groundstation.intents import Push, Stop
 from groundstation.keymap import Keymap
 from groundstation.snapshot import HelmView
 from groundstation.ui.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
-from groundstation.ui.keynames import key_name
+from groundstation.ui.keynames import key_name, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 GRID = (
@@ -77,8 +78,8 @@ class Keycaps(Instrument[KeycapsValue]):
         return lines[:height]
 
     def _cap(self, action: str) -> list[Part]:
-        keys = [key for key in self._keymap.keys(action) if key != "space"]
-        name = key_name(min(keys, key=len)) if keys else "·"
+        key = main_key(self._keymap, action)
+        name = "·" if key is None else "␣" if key == "space" else key_name(key)
         if action in self.value.lit:
             look = badge(DEEP_RED) if action == "drive.stop" else badge(YELLOW)
         elif not self.value.open:
@@ -89,13 +90,20 @@ class Keycaps(Instrument[KeycapsValue]):
 
     def _words(self) -> tuple[list[Part], list[Part], list[Part]]:
         value = self.value
-        kind = "" if value.style != "hold" else " releases seen" if value.exact else " by timer"
-        bound = "never by itself" if value.style == "latch" else f"{value.stop_bound:.2f} s"
         return (
             [STYLES.get(value.style, (value.style, style(TEXT)))],
-            [("let go: stops in ", style(DIM)), (bound, style(TEXT)), (kind, style(DIM))],
+            self._bound(),
             [
                 ("limits ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
                 (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),
             ],
         )  # fmt: skip
+
+    def _bound(self) -> list[Part]:
+        """What ends a drive, and how soon: without releases only a timer can tell that a key was let go."""
+        value = self.value
+        if not math.isfinite(value.stop_bound):
+            return [("only a key stops it", style(AMBER))]
+        if value.exact:
+            return [("stops when you let go", style(DIM))]
+        return [("timer: stops within ", style(DIM)), (f"{value.stop_bound:.2f} s", style(TEXT))]

@@ -25,6 +25,14 @@ class StatusValue:
     terminal: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One reading; a small weight is kept longest where the line is short."""
+
+    weight: int
+    parts: tuple[Part, ...]
+
+
 class Status(Instrument[StatusValue]):
     """One line where it fits, else two."""
 
@@ -32,10 +40,22 @@ class Status(Instrument[StatusValue]):
         """The badges left, the rest right; on two lines the links go below."""
         snapshot = self.value.snapshot
         badges, health = _badges(snapshot), _health(snapshot.vehicle)
-        lines = [*_links(snapshot), *_command(snapshot), *_terminal(self.value.terminal)]
+        fields = [*_links(snapshot), *_command(snapshot), *_terminal(self.value.terminal)]
         if height > 1:
-            return [_spread(badges, health, width), _spread([], lines, width)]
-        return [_spread(badges, [*lines, *health], width)]
+            return [
+                _spread(badges, _fitting(health, width - length(badges)), width),
+                _spread(_fitting(fields, width), [], width),
+            ]
+        return [_spread(badges, _fitting([*fields, *health], width - length(badges) - 1), width)]
+
+
+def _fitting(fields: list[Field], room: int) -> list[Part]:
+    """The parts of the fields that find room: the least important are left out first, the order stays."""
+    kept: list[Field] = []
+    for candidate in sorted(fields, key=lambda each: each.weight):
+        if sum(length(each.parts) for each in (*kept, candidate)) <= room:
+            kept.append(candidate)
+    return [part for each in fields if each in kept for part in each.parts]
 
 
 def _spread(left: list[Part], right: list[Part], width: int) -> Strip:
@@ -67,22 +87,23 @@ def _driver(vehicle: VehicleView) -> Part:
     return ("nobody drives", style(DIM))
 
 
-def _field(name: str, text: str, colour: str = TEXT) -> list[Part]:
-    return [(f"  {name} ", style(DIM)), (text, style(colour))]
+def _field(weight: int, name: str, text: str, colour: str = TEXT) -> Field:
+    return Field(weight, ((f" {name} ", style(DIM)), (f"{text} ", style(colour))))
 
 
-def _links(snapshot: Snapshot) -> list[Part]:
+def _links(snapshot: Snapshot) -> list[Field]:
     if not snapshot.links:
-        return _field("link", "none", DIM)
+        return [_field(1, "link", "none", DIM)]
     link = min(snapshot.links, key=lambda each: (known(each.loss) is None, known(each.loss) or 0.0))
     alive = snapshot.vehicle is not None and snapshot.vehicle.alive
     loss, trip = known(link.loss), known(link.round_trip)
     bars, colour = _quality(link, alive)
-    parts = [("  link ", style(DIM)), (_BARS[:bars], style(colour)), (_BARS[bars:], style("#2b3440"))]
-    parts += _field("loss", "--" if loss is None else f"{100 * loss:.1f}%", TEXT if (loss or 0) < 0.05 else AMBER)
-    return parts + _field(
-        "rtt", "--" if trip is None else f"{1000 * trip:.0f} ms", TEXT if (trip or 0) < 0.2 else AMBER
-    )
+    strength = Field(1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_BARS[bars:]} ", style("#2b3440"))))
+    return [
+        strength,
+        _field(2, "loss", "--" if loss is None else f"{100 * loss:.1f}%", TEXT if (loss or 0) < 0.05 else AMBER),
+        _field(2, "rtt", "--" if trip is None else f"{1000 * trip:.0f} ms", TEXT if (trip or 0) < 0.2 else AMBER),
+    ]
 
 
 def _quality(link: LinkView, alive: bool) -> tuple[int, str]:
@@ -93,36 +114,35 @@ def _quality(link: LinkView, alive: bool) -> tuple[int, str]:
     return full, (RED, RED, AMBER, GREEN, GREEN)[full]
 
 
-def _command(snapshot: Snapshot) -> list[Part]:
+def _command(snapshot: Snapshot) -> list[Field]:
     vehicle = snapshot.vehicle
-    parts = _field("sent", f"{snapshot.helm.rate:2.0f} Hz", TEXT if snapshot.helm.sending else DIM)
+    fields = [_field(5, "sent", f"{snapshot.helm.rate:.0f} Hz", TEXT if snapshot.helm.sending else DIM)]
     if vehicle is None:
-        return parts
+        return []
     age, latency = known(vehicle.command_age), known(vehicle.latency)
     if age is not None and age < 10:
         colour = GREEN if age < OLD_COMMAND else AMBER if age < STALE_COMMAND else RED
-        parts += _field("cmd", f"{1000 * age:3.0f} ms", colour)
+        fields.append(_field(1, "cmd", f"{1000 * age:.0f} ms", colour))
     if latency is not None:
-        parts += _field("key→motor", f"{1000 * latency:.1f} ms", TEXT if latency < 0.1 else AMBER)
-    return parts
+        fields.append(_field(3, "key→motor", f"{1000 * latency:.1f} ms", TEXT if latency < 0.1 else AMBER))
+    return fields
 
 
-def _terminal(round_trip: float | None) -> list[Part]:
-    return (
-        [] if round_trip is None else _field("tty", f"{1000 * round_trip:.0f} ms", TEXT if round_trip < 0.2 else AMBER)
-    )
+def _terminal(trip: float | None) -> list[Field]:
+    return [] if trip is None else [_field(4, "tty", f"{1000 * trip:.0f} ms", TEXT if trip < 0.2 else AMBER)]
 
 
-def _health(vehicle: VehicleView | None) -> list[Part]:
+def _health(vehicle: VehicleView | None) -> list[Field]:
     if vehicle is None:
         return []
-    parts: list[Part] = []
+    fields: list[Field] = []
     if vehicle.gps_fix is not None:
         fix = {0: "none", 1: "none", 2: "2D", 3: "3D"}.get(vehicle.gps_fix, "RTK" if vehicle.gps_fix > 4 else "DGPS")
         count = "" if vehicle.gps_satellites is None else f" {vehicle.gps_satellites}"
-        parts += _field("gps", fix + count, GREEN if vehicle.gps_fix >= 3 else AMBER)
+        fields.append(_field(2, "gps", fix + count, GREEN if vehicle.gps_fix >= 3 else AMBER))
     volts, left = known(vehicle.battery_voltage), known(vehicle.battery_remaining)
     if volts is not None:
         colour = GREEN if left is None or left > 0.3 else AMBER if left > 0.15 else RED
-        parts += _field("batt", f"{volts:.1f} V" + ("" if left is None else f" {100 * left:.0f}%"), colour)
-    return [*parts, (" ", style())]
+        rest = "" if left is None else f" {100 * left:.0f}%"
+        fields.append(_field(1, "batt", f"{volts:.1f} V{rest}", colour))
+    return fields

@@ -83,7 +83,7 @@ def _views(north: float, east: float, dots: int) -> Iterator[View]:
             scale = step * 10.0**decade
             if scale < SMALLEST:
                 continue
-            ring = _ring(scale * max(8, dots) / 4)
+            ring = _ring(scale * max(8, dots) / 5)
             yield View(round(north / ring * 2) * ring / 2, round(east / ring * 2) * ring / 2, scale, ring)
 
 
@@ -121,7 +121,7 @@ def _draw_rings(canvas: Canvas, view: View, home: Point) -> None:
     spacing = view.ring / view.scale
     for number in range(1, min(12, int(farthest / spacing)) + 1):
         radius = spacing * number
-        for step in range(count := max(24, int(radius * 1.6))):
+        for step in range(count := max(24, int(radius * 2.4))):
             angle = step * math.tau / count
             canvas.dot(round(x + radius * math.cos(angle)), round(y + radius * math.sin(angle)), style(LINE))
         canvas.word((int(x + radius) >> 1) + 1, int(y) >> 2, _metres(view.ring * number), style(DIM))
@@ -133,7 +133,7 @@ def _draw_vehicle(canvas: Canvas, at: Point, heading: float | None) -> None:
         canvas.word(int(x) >> 1, int(y) >> 2, "●", style(YELLOW))
         return
     along, aside = math.sin(heading), math.cos(heading)
-    corners = [(7.0, 0.0), (-5.0, 4.5), (-2.5, 0.0), (-5.0, -4.5)]  # dots ahead, dots to the right
+    corners = [(9.0, 0.0), (-4.5, 4.0), (-2.0, 0.0), (-4.5, -4.0)]  # dots ahead, dots to the right
     canvas.fill([(x + a * along + b * aside, y - a * aside + b * along) for a, b in corners], style(YELLOW))
 
 
