@@ -1,0 +1,95 @@
+"""The benchmarks' command line: `python -m tests.benchmarks`. JSON to stdout, progress to stderr.
+
+Exit code 0 when every benchmark ran, whether it met its goals or not, 1 when one could not run, 2 for a mistake.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+import traceback
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from tests.benchmarks import cost, framer, key_to_motor, machine, receive_path
+from tests.benchmarks.figures import BenchmarkError, Options, Report
+from tests.benchmarks.tables import markdown
+
+BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
+    "framer": (framer.run, "framing, decoding and encoding against pymavlink"),
+    "receive_path": (receive_path.run, "the vehicle's work on one demand, from bytes to outputs"),
+    "cost": (cost.run, "start-up time, memory and CPU of both programs"),
+    "key_to_motor": (key_to_motor.run, "key byte on the terminal to motor outputs, against the common hobby form"),
+}
+"""Name -> what runs it, and what it measures. To add one: a module with `run(Options) -> Report` and a line here."""
+
+TLOG = machine.ROOT.parent / "shared" / "data" / "ardurover.tlog"
+"""Real traffic, where the checkout has it beside itself."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run what is asked for; the exit code."""
+    asked = _parser().parse_args(argv)
+    options = Options(quick=asked.quick, tlog=asked.tlog, say=_say)
+    facts, failures = machine.facts(), {}
+    reports: dict[str, Report] = {}
+    for name in asked.only or BENCHMARKS:
+        started = time.monotonic()
+        try:
+            reports[name] = BENCHMARKS[name][0](options)
+        except Exception as error:  # the others still run; the exit code tells
+            failures[name] = str(error)
+            _tell(name, error)
+        _say(f"{name}: {time.monotonic() - started:.0f} s")
+    facts["load_after"] = machine.load()
+    _write(asked, facts, reports, failures)
+    return 1 if failures else 0
+
+
+def _write(
+    asked: argparse.Namespace, facts: dict[str, Any], reports: dict[str, Report], failures: dict[str, str]
+) -> None:
+    results = {name: report.plain() for name, report in reports.items()}
+    text = json.dumps({"quick": asked.quick, "machine": facts, "results": results, "failed": failures}, indent=1)
+    if asked.out:
+        asked.out.write_text(text + "\n")
+    print(markdown(facts, reports, quick=asked.quick) if asked.markdown else text)
+
+
+def _tell(name: str, error: Exception) -> None:
+    _say(f"{name} could not run: {error}")
+    if not isinstance(error, BenchmarkError):
+        traceback.print_exception(error)
+
+
+def _say(line: str) -> None:
+    print(line, file=sys.stderr, flush=True)
+
+
+def _parser() -> argparse.ArgumentParser:
+    names = "\n".join(f"  {name:14}{text}" for name, (_, text) in BENCHMARKS.items())
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.benchmarks",
+        description="Measure both programs beside a reference in the same run.",
+        epilog=f"benchmarks:\n{names}\n\nA full run takes about ten minutes and wants the machine for itself.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--only", metavar="NAME", action="append", choices=BENCHMARKS, help="this one; repeatable")
+    parser.add_argument("--quick", action="store_true", help="a short run, to see that they work")
+    parser.add_argument("--out", metavar="FILE", type=Path, help="write the JSON to FILE too")
+    parser.add_argument("--markdown", action="store_true", help="print tables for docs/performance.md instead of JSON")
+    parser.add_argument(
+        "--tlog",
+        metavar="FILE",
+        default=str(TLOG) if TLOG.exists() else None,
+        help="telemetry log for the framer (default: ardurover.tlog where it lies beside the checkout)",
+    )
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

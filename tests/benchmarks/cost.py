@@ -1,0 +1,239 @@
+"""Start-up time, memory and CPU of both programs, idle and driving, beside a bare Python and a bare Textual program."""
+
+from __future__ import annotations
+
+import socket
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from statistics import median
+
+from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table, spread
+from tests.benchmarks.key_to_motor import CONTENDERS, OURS_WIDE, Rig, running
+from tests.benchmarks.procfs import cpu_seconds, family, memory
+from tests.benchmarks.programs import Program, free_port, on_pipe, on_terminal, python
+from tests.benchmarks.traffic import mix
+from tests.benchmarks.watch import Watch
+
+WINDOW, QUICK_WINDOW = 10.0, 2.0
+"""s over which CPU time is counted; /proc counts in steps of 10 ms."""
+WARM_UP = 2.0
+"""s before that: what a program does once at its start is start-up time."""
+
+STARTS = 3
+"""Of each program in each round."""
+
+REPEATS = 30.0
+"""Hz of a held key, as most systems repeat it."""
+
+FLOOD = 1000
+"""Messages a second of performance.md; ArduPilot can be asked for as many."""
+FLOOD_STEP = 0.01
+
+SIZE = (140, 45)
+BARE_PYTHON = [sys.executable, "-c", "input('bare python ready')"]
+GROUND, VEHICLE, PYTHON, TEXTUAL = "groundstation", "vehicle --sim", "bare python", "bare Textual app"
+
+
+def run(options: Options) -> Report:
+    """Starts first, then what the running programs cost."""
+    goals: list[Goal] = []
+    return Report([_starts(options, goals), _running_costs(options, goals)], goals)
+
+
+# ---- start-up ----
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """A program and the word that says that it is there."""
+
+    argv: list[str]
+    word: str
+    terminal: bool = True
+
+
+def _starters() -> dict[str, Start]:
+    endpoint = f"127.0.0.1:{free_port()}"
+    return {
+        PYTHON: Start(BARE_PYTHON, "bare python ready"),
+        TEXTUAL: Start(python("tests.benchmarks.bare_textual"), "bare textual ready"),
+        f"{VEHICLE}, ready": Start(python("vehicle", "--sim", f"udpout:{endpoint}"), "ready", terminal=False),
+        f"{GROUND}, first paint": Start(python("groundstation", f"udpin:{endpoint}"), "waiting for a vehicle"),
+        f"{GROUND} --sitl, rover on the screen": Start(python("groundstation", "--sitl"), "MANUAL"),
+    }
+
+
+def _starts(options: Options, goals: list[Goal]) -> Table:
+    seen: dict[str, list[list[float]]] = {}
+    for number in range(ROUNDS):
+        for name, start in _starters().items():
+            options.say(f"cost: round {number + 1} of {ROUNDS}, start of {name}")
+            times = [_start_time(start) for _ in range(1 if options.quick else STARTS)]
+            seen.setdefault(name, []).append(times)
+    table = Table("From the start of the process, s")
+    for name, rounds in seen.items():
+        each = spread(rounds)
+        table.rows.append({"program": name, "starts": each.samples, "p50": each.p50, "max": each.max})
+    goals.append(Goal("groundstation, start to first paint", _p50(seen, f"{GROUND}, first paint"), 0.8, "s"))
+    goals.append(Goal("vehicle, start to ready", _p50(seen, f"{VEHICLE}, ready"), 0.5, "s"))
+    return table
+
+
+def _p50(seen: dict[str, list[list[float]]], name: str) -> float:
+    return spread(seen[name]).p50
+
+
+def _start_time(start: Start) -> float:
+    watch = Watch()
+    program = on_terminal(watch, start.argv, *SIZE) if start.terminal else on_pipe(watch, start.argv)
+    try:
+        return program.wait_for(start.word, 20)
+    finally:
+        program.end()
+        watch.close()
+
+
+# ---- memory and CPU ----
+
+
+@dataclass(slots=True)
+class Cost:
+    """Of one program in one state; one value a round."""
+
+    processes: int = 0
+    rss: list[float] = field(default_factory=list)
+    pss: list[float] = field(default_factory=list)
+    cpu: list[float] = field(default_factory=list)
+
+    def row(self, name: str) -> Row:
+        """As a row of the table."""
+        return {
+            "program": name,
+            "processes": self.processes,
+            "RSS MiB": median(self.rss),
+            "PSS MiB": median(self.pss),
+            "CPU %": median(self.cpu),
+            "CPU % of rounds": " / ".join(f"{value:.1f}" for value in self.cpu),
+        }
+
+
+class Ledger:
+    """Costs by program and state, and how they are counted."""
+
+    def __init__(self, window: float) -> None:
+        self.costs: dict[str, Cost] = {}
+        self.window = window
+
+    def book(self, programs: dict[str, Program], meanwhile: Callable[[float], None]) -> None:
+        """Count what `programs` use while `meanwhile` lets the window pass."""
+        meanwhile(WARM_UP)
+        pids = {name: family(program.pid) for name, program in programs.items()}
+        before = {name: cpu_seconds(each) for name, each in pids.items()}
+        started = time.monotonic()
+        meanwhile(self.window)
+        spent = time.monotonic() - started
+        for name, each in pids.items():
+            cost = self.costs.setdefault(name, Cost())
+            used = memory(each)
+            cost.processes = len(each)
+            cost.rss.append(used.rss)
+            cost.pss.append(used.pss)
+            cost.cpu.append(100 * (cpu_seconds(each) - before[name]) / spent)
+
+
+def _running_costs(options: Options, goals: list[Goal]) -> Table:
+    ledger = Ledger(QUICK_WINDOW if options.quick else WINDOW)
+    for number in range(ROUNDS):
+        for state in (_bare, _waiting, _connected, _flooded):
+            options.say(f"cost: round {number + 1} of {ROUNDS}, {state.__name__.strip('_')}")
+            state(ledger)
+    goals += _goals(ledger.costs)
+    note = "RSS counts shared pages in each process, PSS divides them. CPU: 100 % is one core."
+    return Table("While running", [cost.row(name) for name, cost in ledger.costs.items()], note)
+
+
+def _goals(costs: dict[str, Cost]) -> Iterator[Goal]:
+    for what, name, limit in (
+        ("groundstation, CPU waiting", f"{GROUND}, waiting", 2.0),
+        ("groundstation, CPU with a rover that stands", f"{GROUND}, rover disarmed", 2.0),
+        ("groundstation, CPU at 1000 messages/s", f"{GROUND}, {FLOOD} messages/s", 15.0),
+        ("vehicle, CPU disarmed", f"{VEHICLE}, disarmed", 1.5),
+        ("vehicle, CPU driving", f"{VEHICLE}, driving", 1.5),
+    ):
+        yield Goal(what, median(costs[name].cpu), limit, "%")
+    yield Goal("groundstation, RSS of all its processes", median(costs[f"{GROUND}, driving"].rss), 80, "MiB")
+    yield Goal("vehicle, RSS", median(costs[f"{VEHICLE}, driving"].rss), 35, "MiB")
+
+
+def _bare(ledger: Ledger) -> None:
+    bare = {PYTHON: (BARE_PYTHON, "ready"), TEXTUAL: (python("tests.benchmarks.bare_textual"), "ready")}
+    for name, (argv, word) in bare.items():
+        with _alone(argv, word) as (watch, program):
+            ledger.book({name: program}, watch.pause)
+
+
+def _waiting(ledger: Ledger) -> None:
+    with _alone(python("groundstation", f"udpin:127.0.0.1:{free_port()}"), "waiting for a vehicle") as (watch, program):
+        ledger.book({f"{GROUND}, waiting": program}, watch.pause)
+
+
+def _connected(ledger: Ledger) -> None:
+    with running(CONTENDERS[OURS_WIDE]) as rig:
+        standing = {f"{GROUND}, rover disarmed": rig.ground, f"{VEHICLE}, disarmed": rig.vehicle}
+        ledger.book(standing, rig.watch.pause)
+        rig.arm()
+        driving = {f"{GROUND}, driving": rig.ground, f"{VEHICLE}, driving": rig.vehicle}
+        ledger.book(driving, lambda seconds: _hold(rig, seconds))
+        if not rig.feed.moving:
+            raise BenchmarkError("the rover did not drive while the key was held")
+
+
+def _hold(rig: Rig, seconds: float) -> None:
+    """A key held down for so long."""
+    start = time.monotonic()
+    for number in range(round(seconds * REPEATS)):
+        rig.watch.pause(start + number / REPEATS - time.monotonic())
+        rig.ground.type(b"i")
+
+
+def _flooded(ledger: Ledger) -> None:
+    port = free_port()
+    with ExitStack() as stack:
+        watch, program = stack.enter_context(_alone(python("groundstation", f"udpin:127.0.0.1:{port}"), "waiting"))
+        sock = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+        sock.connect(("127.0.0.1", port))
+        frames = Flood(sock)
+        ledger.book({f"{GROUND}, {FLOOD} messages/s": program}, lambda seconds: frames.send(watch, seconds))
+
+
+class Flood:
+    """A vehicle that tells too much."""
+
+    def __init__(self, sock: socket.socket) -> None:
+        self._socket = sock
+        self._frames = mix(2560)  # a whole number of times round the sequence numbers: no gap where it starts again
+        self._next = 0
+
+    def send(self, watch: Watch, seconds: float) -> None:
+        """FLOOD frames a second, one a datagram, a few at a time."""
+        start = time.monotonic()
+        for step in range(round(seconds / FLOOD_STEP)):
+            watch.pause(start + step * FLOOD_STEP - time.monotonic())
+            for _ in range(round(FLOOD * FLOOD_STEP)):
+                self._socket.send(self._frames[self._next % len(self._frames)])
+                self._next += 1
+
+
+@contextmanager
+def _alone(argv: list[str], word: str) -> Iterator[tuple[Watch, Program]]:
+    watch = Watch()
+    program = on_terminal(watch, argv, *SIZE)
+    try:
+        program.wait_for(word, 20)
+        yield watch, program
+    finally:
+        program.end()
+        watch.close()

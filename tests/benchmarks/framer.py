@@ -1,0 +1,192 @@
+"""Frames found, decoded and made a second, against pymavlink: same definitions, same bytes, same run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from dialects import codec, rover
+from dialects import messages as m
+from dialects.axes import Axes, manual_control
+from link.channel import Channel
+from link.framer import Framer
+from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Table
+from tests.benchmarks.rates import Work, rates
+from tests.benchmarks.traffic import chopped, framed, joined, mix, telemetry_log
+
+FRAMES = 20_000
+SERIAL_READ = 64
+"""Bytes a read of a serial port gives at a time, about; frames are cut anywhere."""
+
+DRIVE_SCREEN = frozenset(
+    message.id
+    for message in (
+        *(m.Heartbeat, m.ControlStatus, m.RoverDriveStatus, m.RoverFailsafeStatus, m.RoverDriveInfo, m.Attitude),
+        *(m.VfrHud, m.LocalPositionNed, m.GlobalPositionInt, m.HomePosition, m.GpsRawInt, m.SysStatus),
+        *(m.BatteryStatus, m.ServoOutputRaw, m.StatusText, m.CommandAck, m.Timesync),
+    )
+)
+"""What the Drive screen reads (groundstation/vehicle_state.py, station.py)."""
+
+PYMAVLINK = "pymavlink parse_buffer"
+FRAMER = "framer"
+SCREEN = "framer + screen's"
+ALL = "framer + all"
+CHANNEL = "channel + screen's"
+
+
+def run(options: Options) -> Report:
+    """All figures of the framer and the codec."""
+    report = Report()
+    for name, frames in _sources(options).items():
+        _receiving(report, name, frames, options)
+    _sending(report, options)
+    _noise(report)
+    return report
+
+
+def _sources(options: Options) -> dict[str, list[bytes]]:
+    count = FRAMES // 10 if options.quick else FRAMES
+    sources = {"mix of 7 kinds": mix(count)}
+    if options.tlog is not None:
+        try:
+            sources["ardurover.tlog"] = telemetry_log(Path(options.tlog), count)
+        except OSError as error:
+            raise BenchmarkError(f"telemetry log {options.tlog}: {error.strerror}") from error
+    return sources
+
+
+# ---- receiving ----
+
+NOTE = """x: against pymavlink in the same row. "+ screen's": and decode what the Drive screen reads; "+ all": and
+decode everything; "channel": with sequence, peers and rate limits, as the programs run it."""
+
+
+def _receiving(report: Report, source: str, frames: Sequence[bytes], options: Options) -> None:
+    forms = {
+        "a frame a datagram": (list(frames), False),
+        "8 frames a datagram": (joined(frames, 8), False),
+        f"stream, {SERIAL_READ} bytes a read": (chopped(frames, SERIAL_READ), True),
+    }
+    table = Table(f"Receiving, {source}: frames a second", note=NOTE)
+    for form, (pieces, stream) in forms.items():
+        options.say(f"framer: {source}, {form}")
+        measured = rates(_receivers(pieces, stream=stream), len(frames), quick=options.quick)
+        table.rows.append(_against({"input": form}, measured, PYMAVLINK))
+        if not stream and len(pieces) == len(frames):
+            report.goals.append(_ratio(f"framer, {source}, {form}", measured, FRAMER, 10))
+            report.goals.append(_ratio(f"framer + Drive screen, {source}, {form}", measured, SCREEN, 5))
+    report.tables.append(table)
+
+
+def _against(row: Row, measured: Mapping[str, float], reference: str) -> Row:
+    row[reference] = measured[reference]
+    for name, rate in measured.items():
+        if name != reference:
+            row[name] = rate
+            row[f"x {name}"] = rate / measured[reference]
+    return row
+
+
+def _ratio(what: str, measured: Mapping[str, float], ours: str, limit: float) -> Goal:
+    return Goal(f"{what} / {PYMAVLINK}", measured[ours] / measured[PYMAVLINK], limit, "x", at_least=True)
+
+
+def _receivers(pieces: Sequence[bytes], *, stream: bool) -> dict[str, Work]:
+    return {
+        PYMAVLINK: partial(_pymavlink, pieces),
+        FRAMER: partial(_framer, pieces, stream),
+        SCREEN: partial(_decoding, pieces, stream, DRIVE_SCREEN),
+        ALL: partial(_decoding, pieces, stream, frozenset(rover.mavlink_map)),
+        CHANNEL: partial(_channel, pieces, stream, DRIVE_SCREEN),
+    }
+
+
+def _parser() -> Any:
+    """pymavlink's parser as mavutil sets it up: bad bytes are dropped and counted, not raised."""
+    parser = rover.MAVLink(None)
+    parser.robust_parsing = True
+    return parser
+
+
+def _pymavlink(pieces: Sequence[bytes]) -> None:
+    parse = _parser().parse_buffer
+    for piece in pieces:
+        parse(piece)
+
+
+def _framer(pieces: Sequence[bytes], stream: bool) -> None:
+    feed = Framer(stream=stream).feed
+    for piece in pieces:
+        feed(piece, 0.0)
+
+
+def _decoding(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> None:
+    feed, decode = Framer(stream=stream).feed, codec.decode
+    for piece in pieces:
+        for frame in feed(piece, 0.0):
+            if frame.message_id in ids:
+                decode(frame.message_id, frame.payload)
+
+
+def _channel(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> None:
+    receive = Channel("bench", 0, system=255, component=190, stream=stream, wanted=ids).receive
+    for number, piece in enumerate(pieces):
+        receive(piece, "peer", number * 0.01)  # 100 datagrams a second: the rate limits stay out of it
+
+
+# ---- sending ----
+
+
+def _sending(report: Report, options: Options) -> None:
+    options.say("framer: encoding")
+    table = Table("Sending MANUAL_CONTROL: frames a second")
+    for task, encoders in _encoders().items():
+        measured = rates(encoders, 1000, quick=options.quick)
+        ratio = measured["ours"] / measured["pymavlink"]
+        table.rows.append({"task": task, **measured, "x": ratio})
+        report.goals.append(Goal(f"MANUAL_CONTROL, {task} / pymavlink", ratio, 5, "x", at_least=True))
+    report.tables.append(table)
+
+
+def _encoders() -> dict[str, dict[str, Work]]:
+    mavlink: Any = rover.MAVLink(None, srcSystem=255, srcComponent=190)
+    axes = Axes(0.6, -0.2)
+    message: Any = manual_control(axes, 1)
+    return {
+        "numbers to bytes": {
+            "pymavlink": _times(lambda: mavlink.manual_control_encode(1, 600, 32767, 32767, -200, 0).pack(mavlink)),
+            "ours": _times(lambda: framed(manual_control(axes, 1), 7, 255, 190)),
+        },
+        "made message to bytes": {
+            "pymavlink": _times(lambda: message.pack(mavlink)),
+            "ours": _times(lambda: framed(message, 7, 255, 190)),
+        },
+    }
+
+
+def _times(encode: Callable[[], object]) -> Work:
+    def work() -> None:
+        for _ in range(1000):
+            encode()
+
+    return work
+
+
+# ---- noise ----
+
+
+def _noise(report: Report) -> None:
+    """40 frames of a 20 Hz stream with one stray start byte before the first."""
+    frames = [framed(manual_control(Axes(0.5, 0.1), 1), number, 255, 190) for number in range(40)]
+    pieces = [b"\xfd" + frames[0], *frames[1:]]
+    parser, framer = _parser(), Framer(stream=True)
+    theirs = sum(each.get_msgId() >= 0 for piece in pieces for each in parser.parse_buffer(piece) or ())
+    ours = sum(len(framer.feed(piece, number * 0.05)) for number, piece in enumerate(pieces))
+    ours += len(framer.expire(40 * 0.05))
+    table = Table("40 MANUAL_CONTROL frames at 20 Hz in a stream, one stray 0xFD before them")
+    table.rows = [{"parser": "pymavlink", "frames found": theirs}, {"parser": "ours", "frames found": ours}]
+    report.tables.append(table)
+    report.goals.append(Goal("frames lost to one stray byte", float(40 - ours), 0, "frames"))

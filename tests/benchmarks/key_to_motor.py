@@ -1,0 +1,205 @@
+"""Key byte written to a real terminal -> motor outputs changed at the vehicle: both real programs, UDP loopback.
+
+The common hobby form runs the same path beside it: a mavutil sender thread at a fixed rate, a mavutil receiver that
+looks at each tick. A measurement ends with the vehicle's own stamp of the change; all processes share that clock.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Spread, Table, spread
+from tests.benchmarks.motor_feed import MotorFeed
+from tests.benchmarks.programs import Program, free_port, on_pipe, on_terminal, python, scratch
+from tests.benchmarks.watch import Watch
+
+KEYS = 60
+"""Keys of one contender in one round: 180 in all."""
+QUICK_KEYS = 14
+
+DRIVE_KEYS = (b"i", b"j", b",", b"l")
+STOP_KEYS = (b"k", b" ")
+
+QUIET = 0.06
+"""s without a change after which the outputs count as settled: three control cycles."""
+
+GAPS = (0.02, 0.25)
+"""s, random, from settled outputs to the next key, so that keys fall on every phase of every timer. A key of the ground
+station counts as held for 0.75 s: ramp (0.24), QUIET and gap together stay below."""
+
+LOST_AFTER = 1.0
+"""s without a change after which a key counts as lost."""
+
+OURS_WIDE, OURS_NARROW = "mavhelm, 140x45", "mavhelm, 80x24"
+HOBBY_50, HOBBY_20 = "hobby: 50 Hz sender, 50 Hz receiver", "hobby: 20 Hz sender, 10 ms receiver"
+
+
+@dataclass(frozen=True, slots=True)
+class Contender:
+    """One way from a key to a motor."""
+
+    ground: tuple[str, ...]
+    """Module and arguments; {port} is filled in."""
+    vehicle: tuple[str, ...]
+    """The same; {motors} is the motor log."""
+    columns: int = 80
+    lines: int = 24
+    arms: bool = False
+    """It must be armed with r and y before keys drive."""
+
+
+_OURS = (
+    ("groundstation", "udpin:127.0.0.1:{port}"),
+    ("vehicle", "--sim", "udpout:127.0.0.1:{port}", "--motor-log", "{motors}"),
+)
+_HOBBY_GROUND, _HOBBY_VEHICLE = "tests.benchmarks.hobby_ground", "tests.benchmarks.hobby_vehicle"
+
+CONTENDERS = {
+    OURS_WIDE: Contender(*_OURS, columns=140, lines=45, arms=True),
+    HOBBY_50: Contender(
+        (_HOBBY_GROUND, "udpin:127.0.0.1:{port}", "50"), (_HOBBY_VEHICLE, "udpout:127.0.0.1:{port}", "0.02", "{motors}")
+    ),
+    OURS_NARROW: Contender(*_OURS, arms=True),
+    HOBBY_20: Contender(
+        (_HOBBY_GROUND, "udpin:127.0.0.1:{port}", "20"), (_HOBBY_VEHICLE, "udpout:127.0.0.1:{port}", "0.01", "{motors}")
+    ),
+}  # fmt: skip
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What one contender has shown so far."""
+
+    latencies: list[list[float]]
+    """ms, one list a round."""
+    lost: int = 0
+
+
+def run(options: Options) -> Report:
+    """All contenders in turn, round by round."""
+    chance = random.Random(7)
+    outcomes = {name: Outcome([]) for name in CONTENDERS}
+    for number in range(ROUNDS):
+        for name, contender in CONTENDERS.items():
+            options.say(f"key_to_motor: round {number + 1} of {ROUNDS}, {name}")
+            with running(contender) as rig:
+                if contender.arms:
+                    rig.arm()
+                rig.measure(outcomes[name], QUICK_KEYS if options.quick else KEYS, chance)
+    return _report(outcomes)
+
+
+class Rig:
+    """A ground station on a terminal and a vehicle whose motors we watch, connected."""
+
+    def __init__(self, ground: Program, vehicle: Program, feed: MotorFeed, watch: Watch) -> None:
+        self.ground = ground
+        self.vehicle = vehicle
+        self.feed = feed
+        self.watch = watch
+
+    def arm(self) -> None:
+        """Through the keys, as a driver does; then drive once, so that nothing happens for the first time later."""
+        for key in (b"r", b"y"):
+            self.watch.pause(0.5)
+            self.ground.type(key)
+        if not self.watch.until(self._drives, 15):
+            raise BenchmarkError(f"the wheels never turned; the screen says {self.ground.text[-500:]!r}")
+
+    def _drives(self) -> bool:
+        stamp = self.ground.type(DRIVE_KEYS[0])
+        if self.feed.after(stamp, LOST_AFTER) is None:
+            return False
+        self.ground.type(STOP_KEYS[0])
+        return True
+
+    def measure(self, outcome: Outcome, keys: int, chance: random.Random) -> None:
+        """Press `keys` keys, each of which must change the outputs."""
+        latencies: list[float] = []
+        for number in range(keys):
+            self._settle(chance)
+            choice = STOP_KEYS if self.feed.moving else DRIVE_KEYS
+            stamp = self.ground.type(choice[number // 2 % len(choice)])
+            change = self.feed.after(stamp, LOST_AFTER)
+            if change is None:
+                outcome.lost += 1
+            else:
+                latencies.append((change.at - stamp) / 1e6)
+        if not latencies:
+            raise BenchmarkError("no key reached the motors")
+        outcome.latencies.append(latencies)
+
+    def _settle(self, chance: random.Random) -> None:
+        """Steady outputs, and then a random moment in which they stay so."""
+        while True:
+            if not self.feed.quiet_for(QUIET, 10):
+                raise BenchmarkError("the outputs never settled")
+            before = len(self.feed.changes)
+            gap = chance.uniform(*GAPS)
+            if not self.watch.until(lambda: len(self.feed.changes) > before, gap):  # noqa: B023
+                return
+
+
+@contextmanager
+def running(contender: Contender) -> Iterator[Rig]:
+    """Both programs, connected to each other."""
+    with ExitStack() as stack:
+        folder: Path = stack.enter_context(scratch())
+        watch = Watch()
+        stack.callback(watch.close)
+        feed = MotorFeed(watch, folder)
+        stack.callback(feed.close)
+        names = {"port": free_port(), "motors": feed.path}
+        ground_argv, vehicle_argv = (
+            python(*(word.format(**names) for word in argv)) for argv in (contender.ground, contender.vehicle)
+        )
+        ground = on_terminal(watch, ground_argv, contender.columns, contender.lines)
+        stack.callback(ground.end)
+        vehicle = on_pipe(watch, vehicle_argv)
+        stack.callback(vehicle.end)
+        ground.wait_for("MANUAL" if contender.arms else "ready", 20)
+        yield Rig(ground, vehicle, feed, watch)
+
+
+# ---- what it says ----
+
+
+def _report(outcomes: dict[str, Outcome]) -> Report:
+    spreads = {name: spread(outcome.latencies) for name, outcome in outcomes.items()}
+    table = Table(
+        "Key byte written to the terminal -> motor outputs changed, ms",
+        [_row(name, spreads, outcome) for name, outcome in outcomes.items()],
+        "p50 is the median of the rounds' medians; p90, p99 and max are of all keys. x: the 50 Hz hobby form / this.",
+    )
+    return Report([table], _goals(spreads, outcomes))
+
+
+def _row(name: str, spreads: dict[str, Spread], outcome: Outcome) -> Row:
+    mine, hobby = spreads[name], spreads[HOBBY_50]
+    return {
+        "path": name,
+        "keys": mine.samples,
+        "lost": outcome.lost,
+        "p50": mine.p50,
+        "p90": mine.p90,
+        "p99": mine.p99,
+        "max": mine.max,
+        "x p50": hobby.p50 / mine.p50,
+        "x p99": hobby.p99 / mine.p99,
+        "p50 of rounds": " / ".join(f"{value:.2f}" for value in mine.rounds),
+    }
+
+
+def _goals(spreads: dict[str, Spread], outcomes: dict[str, Outcome]) -> list[Goal]:
+    wide, hobby = spreads[OURS_WIDE], spreads[HOBBY_50]
+    return [
+        Goal("key to motor at 140x45, p50", wide.p50, 1.0, "ms"),
+        Goal("key to motor at 140x45, p99", wide.p99, 10.0, "ms"),
+        Goal("50 Hz hobby form / ours, p50", hobby.p50 / wide.p50, 15, "x", at_least=True),
+        Goal("50 Hz hobby form / ours, p99", hobby.p99 / wide.p99, 4, "x", at_least=True),
+        Goal("keys lost", float(outcomes[OURS_WIDE].lost + outcomes[OURS_NARROW].lost), 0, "keys"),
+    ]

@@ -1,0 +1,75 @@
+"""Memory and CPU time of a program and all its children, from /proc. Linux only."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+TICKS = os.sysconf("SC_CLK_TCK")
+PAGE = os.sysconf("SC_PAGE_SIZE")
+
+
+class Memory(NamedTuple):
+    """MiB of all processes together."""
+
+    rss: float
+    """Resident; what processes share is counted once for each."""
+    pss: float
+    """The same, each shared page divided by how many processes share it."""
+
+
+def family(pid: int) -> list[int]:
+    """A process and all that descend from it."""
+    children: dict[int, list[int]] = {}
+    for each in _all():
+        parent = _parent(each)
+        if parent is not None:
+            children.setdefault(parent, []).append(each)
+    found = [pid]
+    for each in found:
+        found += children.get(each, [])
+    return found
+
+
+def memory(pids: list[int]) -> Memory:
+    """Of all `pids` together."""
+    return Memory(sum(_rss(pid) for pid in pids), sum(_pss(pid) for pid in pids))
+
+
+def cpu_seconds(pids: list[int]) -> float:
+    """User and system time that `pids` have used so far, s; in steps of 10 ms."""
+    return sum(_cpu(pid) for pid in pids)
+
+
+def _all() -> Iterator[int]:
+    return (int(entry.name) for entry in Path("/proc").iterdir() if entry.name.isdecimal())
+
+
+def _fields(pid: int) -> list[str]:
+    """/proc/PID/stat from its third field on; the second may contain anything."""
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+
+
+def _parent(pid: int) -> int | None:
+    try:
+        return int(_fields(pid)[1])
+    except OSError:
+        return None  # it has ended meanwhile
+
+
+def _cpu(pid: int) -> float:
+    fields = _fields(pid)
+    return (int(fields[11]) + int(fields[12])) / TICKS
+
+
+def _rss(pid: int) -> float:
+    return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * PAGE / 2**20
+
+
+def _pss(pid: int) -> float:
+    for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
+        if line.startswith("Pss:"):
+            return int(line.split()[1]) / 1024
+    return 0.0
