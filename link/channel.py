@@ -19,53 +19,29 @@ from dialects.messages import (
     Heartbeat,
     ManualControl,
     Message,
+    RadioStatus,
     RcChannelsOverride,
     RoverOperatorPresence,
     SetMode,
     is_stop,
 )
 from link.core import LinkReport, Outgoing, Peer, Received, SourceCount
-from link.framer import Counts, Frame, Framer
+from link.flow import FlowControl
+from link.frame import Counts, Frame, noise_hint
+from link.framer import Framer
 from link.rate import TokenBucket
+from link.source import Order, Source
 
 MAX_PEERS = 8
 MAX_SOURCES = 64
 """Systems and components counted behind one peer."""
 PEER_SILENCE = 10.0
 """s after which a silent peer gives up its place; twice the longest usual heartbeat timeout."""
-LATE_WINDOW = 32
-"""Frames up to this much older than the newest are late; further back, the sender has restarted."""
-RESTART_AFTER = 4
-"""So many late frames in a row are a sender that restarted just behind its old number."""
 MISMATCH_AFTER = 3
 """So many whole frames with a foreign checksum are another dialect; one may be an accident."""
 
 _DEMANDS = frozenset(each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence))
 _COMMANDS = frozenset(each.id for each in (CommandLong, CommandInt, SetMode))
-
-
-@dataclass(slots=True)
-class _Source:
-    """The numbering of one system and component behind a peer."""
-
-    newest: int
-    received: int = 1
-    lost: int = 0
-    late_run: int = 0
-
-    def accept(self, sequence: int) -> str:
-        """Count a frame: "new", "late" or "duplicate"."""
-        ahead = (sequence - self.newest) & 0xFF
-        if ahead == 0:
-            return "duplicate"
-        if ahead > 0xFF - LATE_WINDOW and self.late_run < RESTART_AFTER:
-            self.late_run += 1
-            return "late"
-        restarted = ahead > 0xFF - LATE_WINDOW
-        self.lost += 0 if restarted else ahead - 1
-        self.newest, self.late_run = sequence, 0
-        self.received += 1
-        return "new"
 
 
 def _buckets() -> dict[str, TokenBucket]:
@@ -85,7 +61,7 @@ class _PeerState:
     sequence: int = 0
     systems: set[int] = field(default_factory=set)
     """Systems whose HEARTBEAT came from here."""
-    sources: dict[tuple[int, int], _Source] = field(default_factory=dict)
+    sources: dict[tuple[int, int], Source] = field(default_factory=dict)
     buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
 
     def hears(self, target: int) -> bool:
@@ -100,7 +76,7 @@ class Channel:
 
     `system` and `component` (1..255) are ours; `stream` says that bytes have no datagram borders; `wanted` are the
     message ids that the core reads (None: all), others are counted and not decoded; `target` is the address that the
-    user named, for links that speak first.
+    user named, for links that speak first; `capacity` is what the wire takes in bytes/s, where that is known.
     """
 
     def __init__(
@@ -113,10 +89,13 @@ class Channel:
         stream: bool = False,
         wanted: frozenset[int] | None = None,
         target: Hashable | None = None,
+        capacity: float | None = None,
     ) -> None:
         self.name = name
         self.index = index
-        self._ids = (system, component)
+        self.ids = (system, component)
+        self._capacity = capacity
+        self._flow = FlowControl()
         self._stream = stream
         self._wanted = wanted
         self._strangers = Framer(stream=False)
@@ -174,40 +153,57 @@ class Channel:
     def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> _PeerState:
         return _PeerState(Peer(self.index, address), Framer(stream=self._stream), now, fixed)
 
+    def gone(self, address: Hashable) -> None:
+        """The connection to `address` has ended: half a frame is lost, and who comes next must introduce itself."""
+        state = self._peers.get(address)
+        if state is None:
+            return
+        self._forget(state)
+        if state.fixed:
+            successor = self._peers[address] = self._new_peer(address, state.heard, fixed=True)
+            successor.sequence = state.sequence
+
     def _forget(self, state: _PeerState) -> None:
         del self._peers[state.peer.address]
-        _add(self._gone, state.framer.counts)
+        self._gone.add(state.framer.counts)
 
     def _accept(self, state: _PeerState, frames: list[Frame], now: float) -> list[Received]:
         accepted: list[Received] = []
         for frame in frames:
             if not frame.system or not frame.component:
                 continue
-            if (frame.system, frame.component) == self._ids:
+            if (frame.system, frame.component) == self.ids:
                 self._own_id = True
                 continue
             state.heard = now
+            if frame.message_id == RadioStatus.id:
+                self._hear_radio(frame, now)
             if self._in_order(state, frame):
                 received = self._decode(state, frame, now)
                 if received is not None:
                     accepted.append(received)
         return accepted
 
+    def _hear_radio(self, frame: Frame, now: float) -> None:
+        status = codec.decode(RadioStatus.id, frame.payload)
+        if isinstance(status, RadioStatus):
+            self._flow.radio_status(status.txbuf, now)
+
     def _in_order(self, state: _PeerState, frame: Frame) -> bool:
         key = (frame.system, frame.component)
         source = state.sources.get(key)
         if source is None:
             if len(state.sources) < MAX_SOURCES:
-                state.sources[key] = _Source(frame.sequence)
+                state.sources[key] = Source(frame.sequence, frame.message_id)
             return True
-        order = source.accept(frame.sequence)
-        if order == "duplicate":
+        order = source.accept(frame.sequence, frame.message_id)
+        if order is Order.NEW:
+            return True
+        if order is Order.DUPLICATE:
             self._duplicates += 1
             return False
-        if order == "late":
-            self._late += 1
-            return frame.message_id in ACKNOWLEDGED
-        return True
+        self._late += 1
+        return frame.message_id in ACKNOWLEDGED
 
     def _decode(self, state: _PeerState, frame: Frame, now: float) -> Received | None:
         number = frame.message_id
@@ -237,7 +233,7 @@ class Channel:
         for state in self._recipients(message, peer):
             sequence = state.sequence
             state.sequence = (sequence + 1) & 0xFF
-            data = codec.frame(type(message).id, payload, sequence, *self._ids)
+            data = codec.frame(type(message).id, payload, sequence, *self.ids)
             self._bytes_sent += len(data)
             yield data, state.peer.address, sequence
 
@@ -256,11 +252,11 @@ class Channel:
             if not state.fixed and now - state.heard > PEER_SILENCE:
                 self._forget(state)
 
-    def report(self, down: str | None = None) -> LinkReport:
-        """What this channel has counted. `down` comes from the shell."""
+    def report(self, down: str | None = None, *, now: float = 0.0, dropped: int = 0) -> LinkReport:
+        """What this channel has counted. `down` and `dropped` come from the shell."""
         counts = Counts()
         for each in (self._gone, self._strangers.counts, *(state.framer.counts for state in self._peers.values())):
-            _add(counts, each)
+            counts.add(each)
         return LinkReport(
             name=self.name,
             index=self.index,
@@ -279,9 +275,17 @@ class Channel:
                 sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER)
             ),
             own_id=self._own_id,
-            down=down,
+            down=down or self._nothing_but_noise(counts),
+            capacity=self._capacity,
+            headroom=self._flow.headroom(now) if self._capacity is not None else 1.0,
+            dropped=dropped,
             sources=self._source_counts(),
         )
+
+    def _nothing_but_noise(self, counts: Counts) -> str | None:
+        if self._capacity is None:
+            return None
+        return noise_hint(self.name, self._bytes_received, counts)
 
     def _source_counts(self) -> dict[tuple[int, int], SourceCount]:
         totals: dict[tuple[int, int], SourceCount] = {}
@@ -290,13 +294,3 @@ class Channel:
                 before = totals.get(key, SourceCount(0, 0))
                 totals[key] = SourceCount(before.received + source.received, before.lost + source.lost)
         return totals
-
-
-def _add(total: Counts, more: Counts) -> None:
-    total.frames += more.frames
-    total.crc_errors += more.crc_errors
-    total.resync_bytes += more.resync_bytes
-    total.unknown += more.unknown
-    total.refused += more.refused
-    for number, times in more.mismatches.items():
-        total.mismatches[number] = total.mismatches.get(number, 0) + times

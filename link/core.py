@@ -71,6 +71,12 @@ class LinkReport:
     """Somebody else sends with our system and component id."""
     down: str | None = None
     """Why the link is down, or None."""
+    capacity: float | None = None
+    """What the wire takes, bytes/s; None where nobody knows (UDP, TCP). All telemetry together belongs well below."""
+    headroom: float = 1.0
+    """Share of the capacity that may be filled now, 0..1: a telemetry radio asks for less (RADIO_STATUS)."""
+    dropped: int = 0
+    """Frames of ours that the link had no room for."""
     sources: dict[tuple[int, int], SourceCount] = field(default_factory=dict)
 
 

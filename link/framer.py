@@ -8,7 +8,6 @@ ONE byte, so that a stray start byte costs nothing (pymavlink throws the whole c
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import NamedTuple
 
@@ -25,6 +24,7 @@ from dialects.codec import (
     MAGIC_V2,
     SIGNATURE_SIZE,
 )
+from link.frame import Counts, Frame, read_header
 
 PARTIAL_DEADLINE = 0.1
 """s that a stream may owe the rest of a frame. Longer than the longest frame takes at 57600 baud (280 bytes, 49 ms),
@@ -34,40 +34,6 @@ MISMATCHES_KEPT = 64
 _SHORTEST = HEADER_V2 + CRC_SIZE
 _MAGIC = re.compile(b"[\xfd\xfe]")
 _KNOWN = {number.to_bytes(3, "little"): (number, extra) for number, extra in CRC_EXTRA.items()}
-
-
-class Frame(NamedTuple):
-    """A whole frame with a right checksum."""
-
-    message_id: int
-    system: int
-    component: int
-    sequence: int
-    raw: bytes
-    """All of it, as received."""
-
-    @property
-    def payload(self) -> bytes:
-        """The payload as received, its trailing zeros cut by the sender or not."""
-        raw = self.raw
-        start = HEADER_V2 if raw[0] == MAGIC_V2 else HEADER_V1
-        return raw[start : start + raw[1]]
-
-
-@dataclass(slots=True)
-class Counts:
-    """What a framer has seen so far."""
-
-    frames: int = 0
-    crc_errors: int = 0
-    resync_bytes: int = 0
-    """Bytes that belonged to no frame."""
-    unknown: int = 0
-    """Whole frames with an id outside the dialect."""
-    refused: int = 0
-    """Frames with flags we do not know, or MAVLink 1 frames of the wrong length."""
-    mismatches: dict[int, int] = field(default_factory=dict)
-    """Known ids that arrive whole but with another definition's checksum -> how often."""
 
 
 _new_frame = tuple.__new__  # half the cost of Frame(...)
@@ -96,12 +62,17 @@ class Framer:
     """Frames of one sender's bytes.
 
     With `stream` false each feed() is one datagram: a frame never goes on in the next one. With `stream` true bytes
-    are kept until a frame is whole, but no longer than PARTIAL_DEADLINE.
+    are kept until a frame is whole, but no longer than PARTIAL_DEADLINE. With `unknown` true it also gives frames of
+    ids outside the dialect, for routers: where a sound frame ended one may start, and it must end where the bytes end
+    or another one starts.
     """
 
-    def __init__(self, *, stream: bool) -> None:
+    def __init__(self, *, stream: bool, unknown: bool = False) -> None:
         self.counts = Counts()
         self._stream = stream
+        self._unknown = unknown
+        self._at_border = True
+        """The buffer starts where a frame may start: nothing before it was noise."""
         self._buffer = b""
         self._waiting_since: float | None = None
         self._doubt: _Doubt | None = None
@@ -133,6 +104,8 @@ class Framer:
             return None
         known = _KNOWN.get(datagram[7:10])
         if known is None:
+            if self._unknown:
+                return None
             self.counts.unknown += 1
             return []
         if mcrf4xx(datagram[1:-2] + known[1]) != datagram[-2] | datagram[-1] << 8:
@@ -142,6 +115,7 @@ class Framer:
 
     def _skip_first_byte(self) -> None:
         self._buffer = self._buffer[1:]
+        self._at_border = False
         self._doubt = None
         self.counts.resync_bytes += 1
 
@@ -163,6 +137,7 @@ class Framer:
         """
         frames: list[Frame] = []
         position, size = 0, len(data)
+        border = 0 if self._at_border else -1
         while position < size:
             known = _KNOWN.get(data[position + 7 : position + 10])
             if known is not None and data[position] == MAGIC_V2 and not data[position + 2]:
@@ -179,33 +154,54 @@ class Framer:
                             (known[0], data[position + 5], data[position + 6], data[position + 4], data[position:end]),
                         )
                     )
-                    position = end
+                    position = border = end
                     continue
-            after = self._slow(data, position, size, frames)
+            after, border = self._slow(data, position, size, frames, border)
             if after == position:
                 if not final:
                     break  # the rest of the frame may still come
                 self.counts.resync_bytes += 1
                 after += 1
             position = after
-        if final:
-            self._settle(size)
         self.counts.frames += len(frames)
+        if not final:
+            self._at_border = border == position
+            return frames, position
+        self._settle(size)
         return frames, position
 
-    def _slow(self, data: bytes, position: int, size: int, frames: list[Frame]) -> int:
-        """Any case at `position`; returns where to go on, `position` itself where a frame's end has not come yet."""
+    def _slow(self, data: bytes, position: int, size: int, frames: list[Frame], border: int) -> tuple[int, int]:
+        """Any case at `position`; returns where to go on, `position` itself where a frame's end has not come yet, and
+        where the last frame ended."""
         found = self._frame_at(data, position, size)
+        if found is _Missing.FRAME and position == border and self._unknown:
+            found = self._unknown_at(data, position, size)
         if type(found) is Frame:
             self._settle(position)
             frames.append(found)
-            return position + len(found.raw)
+            end = position + len(found.raw)
+            return end, end
         if found is _Missing.BYTES:
-            return position
+            return position, border
         if found is _Missing.MAGIC:
-            return self._next_magic(data, position, size)
+            return self._next_magic(data, position, size), border
         self.counts.resync_bytes += 1
-        return position + 1
+        return position + 1, border
+
+    def _unknown_at(self, data: bytes, start: int, size: int) -> Frame | _Missing:
+        """The frame of an id outside the dialect at `start`, as far as its borders can tell."""
+        header = read_header(data, start)
+        if header is None or header.message_id in CRC_EXTRA or not (header.system and header.component):
+            return _Missing.FRAME
+        end = start + header.size
+        if end > size:
+            return _Missing.BYTES
+        if end < size and data[end] not in (MAGIC_V1, MAGIC_V2):
+            return _Missing.FRAME
+        self._doubt = None
+        self.counts.unknown += 1
+        self.counts.frames -= 1  # _scan counts it with those it has checked
+        return Frame(header.message_id, header.system, header.component, header.sequence, data[start:end])
 
     def _next_magic(self, data: bytes, position: int, size: int) -> int:
         match = _MAGIC.search(data, position)

@@ -6,9 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects.messages import Attitude, CommandAck, CommandLong, Heartbeat, ManualControl, Message, StatusText
-from link.channel import MAX_PEERS, PEER_SILENCE, RESTART_AFTER, Channel
+from link.channel import MAX_PEERS, PEER_SILENCE, Channel
 from link.core import Outgoing, Received
 from link.framer import Framer
+from link.source import RESTART_AFTER
 from tests.link.frames import demand, frame, heartbeat
 
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
@@ -80,7 +81,8 @@ def test_an_overtaken_demand_is_dropped_and_an_overtaken_command_is_not() -> Non
     channel = vehicle()
     channel.receive(demand(10), HERE, 0.0)
     assert channel.receive(demand(9), HERE, 0.0) == []
-    assert numbers(channel.receive(frame(ARM, 8), HERE, 0.0)) == [8]
+    assert numbers(channel.receive(frame(ARM, 12), HERE, 0.0)) == [12]
+    assert numbers(channel.receive(frame(DISARM, 11), HERE, 0.0)) == [11]
     assert channel.report().late == 2
 
 

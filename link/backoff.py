@@ -1,0 +1,24 @@
+"""How long to wait before the next try: soon at first, then ever less often."""
+
+from __future__ import annotations
+
+FIRST = 0.2
+"""s: a cable that was only knocked is back before the driver has understood."""
+LONGEST = 5.0
+"""s: a device that is plugged in again is found while one waits for it."""
+
+
+class Backoff:
+    """0.2, 0.4, 0.8, 1.6, 3.2, 5, 5 ... s."""
+
+    def __init__(self) -> None:
+        self._next = FIRST
+
+    def wait(self) -> float:
+        """s until the next try."""
+        wait, self._next = self._next, min(LONGEST, self._next * 2)
+        return wait
+
+    def reset(self) -> None:
+        """It works again."""
+        self._next = FIRST
