@@ -51,8 +51,8 @@ class ArmSequence:
 
     @classmethod
     def begin(cls, vehicle: VehicleState, now: float) -> ArmSequence:
-        """Start with neutral demands."""
-        return cls(vehicle, now + NEUTRAL_FIRST)
+        """Start with neutral demands, where it takes any before arming (driver 0: it obeys nobody yet)."""
+        return cls(vehicle, now if vehicle.driver == 0 else now + NEUTRAL_FIRST)
 
     def tick(self, client: CommandClient, now: float) -> None:
         """Go on when it is time."""

@@ -5,6 +5,8 @@ A demand is state: only the newest is ever sent, nothing is queued and nothing i
 
 from __future__ import annotations
 
+import math
+
 from dialects.axes import NEUTRAL, Axes
 
 DRIVING = 0.05
@@ -29,8 +31,9 @@ class DemandStream:
 
     def __init__(self) -> None:
         self._sent = NEUTRAL
-        self._sent_at = -1.0
-        self._moved_at = -SETTLE - 1.0
+        self._sent_at = -math.inf
+        self._due = -math.inf
+        self._moved_at = -math.inf
         self._streaming = False
         self._farewell = 0
 
@@ -47,29 +50,27 @@ class DemandStream:
     def due(self, demand: Axes, streaming: bool, now: float) -> Axes | None:
         """The demand to send now, or None. `streaming`: may we send; when that ends, neutral goes out a few times."""
         if self._streaming and not streaming:
-            self._farewell = FAREWELL
-            self._sent_at = now - DRIVING
+            self._farewell, self._due = FAREWELL, now
         self._streaming = streaming
         if not streaming:
             return self._goodbye(now)
         self._farewell = 0
-        return self._send(demand, now) if self._is_due(demand, now) else None
-
-    def _is_due(self, demand: Axes, now: float) -> bool:
-        since = now - self._sent_at
-        if demand != self._sent:
-            return demand.neutral or since >= CLOSEST
-        driving = not demand.neutral or now - self._moved_at < SETTLE
-        return since >= (DRIVING if driving else STANDING) - 0.001  # a tick that is a hair early is in time
+        if demand != self._sent and (demand.neutral or now - self._sent_at >= CLOSEST):
+            return self._send(demand, now, now)
+        return self._send(demand, now, self._due) if now >= self._due else None
 
     def _goodbye(self, now: float) -> Axes | None:
-        if not self._farewell or now - self._sent_at < DRIVING - 0.001:
+        if not self._farewell or now < self._due:
             return None
         self._farewell -= 1
-        return self._send(NEUTRAL, now)
+        self._moved_at = now
+        return self._send(NEUTRAL, now, self._due)
 
-    def _send(self, demand: Axes, now: float) -> Axes:
+    def _send(self, demand: Axes, now: float, due: float) -> Axes:
+        """Send, and count the period from when it was `due`: a tick that comes late must not lower the rate."""
         if not demand.neutral or not self._sent.neutral:
             self._moved_at = now
+        period = DRIVING if now - self._moved_at < SETTLE else STANDING
         self._sent, self._sent_at = demand, now
+        self._due = max(due + period, now)
         return demand

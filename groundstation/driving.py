@@ -86,7 +86,7 @@ class Driving:
         if self.ending or not self._operator.live:
             return False
         if self._commander.arms(state.system):
-            return state.driver in (None, 0, self._system)
+            return state.driver in (None, self._system)
         return state.armed and self.in_control(contact)
 
     def _demand(self, contact: Contact, axes: Axes, now: float) -> None:

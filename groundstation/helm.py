@@ -29,8 +29,8 @@ from link.runner import Runner, open_links
 
 log = logging.getLogger(__name__)
 
-TICK = 0.02
-"""s: a held key's end and a due demand are noticed within it; well below the demands' 0.05 s."""
+TICK = 0.025
+"""s: a held key's end and a due demand are noticed within it; half of the demands' period, so that they keep it."""
 
 SNAPSHOT_PERIOD = 0.1
 """s: what a person can read; the screen draws no faster."""

@@ -54,6 +54,7 @@ class Sticks:
         """The terminal reports releases. Believed from proof only: ExactKeys, a repeat or a release."""
         self.throttle_limit = self.steering_limit = _limit(limit)
         self._windows = RepeatWindows()
+        self._last_event = -math.inf
         self._held: dict[str, _Held] = {}
         self._traces: dict[str, Trace] = {}
         self._dead: dict[str, float] = {}
@@ -144,6 +145,7 @@ class Sticks:
 
     def _hold(self, push: Push, now: float) -> None:
         self._expire(now)
+        self._last_event = now
         held = self._held.get(push.key)
         if held is not None:
             self._again(held, now)
@@ -176,7 +178,9 @@ class Sticks:
             held.until = max(held.until, until)
 
     def _expire(self, now: float) -> None:
-        for key in [key for key, held in self._held.items() if now >= held.until]:
+        # A window that was just learned to be shorter holds for every key: stop_bound is a promise.
+        everything = not self.exact and now >= self._last_event + self._windows.first
+        for key in [key for key, held in self._held.items() if everything or now >= held.until]:
             del self._held[key]
 
     def _directions(self, now: float) -> tuple[float, float]:
