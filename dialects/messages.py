@@ -36,10 +36,26 @@ ParamError = rover.MAVLink_param_error_message
 RequestDataStream = rover.MAVLink_request_data_stream_message
 MessageInterval = rover.MAVLink_message_interval_message
 MissionRequestList = rover.MAVLink_mission_request_list_message
+MissionRequestPartialList = rover.MAVLink_mission_request_partial_list_message
+MissionWritePartialList = rover.MAVLink_mission_write_partial_list_message
 MissionCount = rover.MAVLink_mission_count_message
+MissionRequest = rover.MAVLink_mission_request_message
+MissionRequestInt = rover.MAVLink_mission_request_int_message
+MissionItem = rover.MAVLink_mission_item_message
+MissionItemInt = rover.MAVLink_mission_item_int_message
+MissionAck = rover.MAVLink_mission_ack_message
+MissionClearAll = rover.MAVLink_mission_clear_all_message
+MissionSetCurrent = rover.MAVLink_mission_set_current_message
+MissionCurrent = rover.MAVLink_mission_current_message
+MissionItemReached = rover.MAVLink_mission_item_reached_message
 FileTransferProtocol = rover.MAVLink_file_transfer_protocol_message
 LogRequestList = rover.MAVLink_log_request_list_message
 LogEntry = rover.MAVLink_log_entry_message
+LogRequestData = rover.MAVLink_log_request_data_message
+LogData = rover.MAVLink_log_data_message
+LogErase = rover.MAVLink_log_erase_message
+LogRequestEnd = rover.MAVLink_log_request_end_message
+ComponentMetadata = rover.MAVLink_component_metadata_message
 
 # Telemetry
 SysStatus = rover.MAVLink_sys_status_message
@@ -83,7 +99,10 @@ ACKNOWLEDGED: frozenset[int] = frozenset(
     for message in (
         *(CommandLong, CommandInt, CommandAck, CommandCancel, SetMode, StatusText, Timesync, Ping),
         *(ParamRequestList, ParamRequestRead, ParamSet, ParamValue, ParamError),
-        *(MissionRequestList, MissionCount, FileTransferProtocol, LogRequestList, LogEntry),
+        *(MissionRequestList, MissionRequestPartialList, MissionWritePartialList, MissionCount, MissionRequest),
+        *(MissionRequestInt, MissionItem, MissionItemInt, MissionAck, MissionClearAll, MissionSetCurrent),
+        *(FileTransferProtocol, LogRequestList, LogEntry, LogRequestData, LogData, LogErase, LogRequestEnd),
+        *(MissionItemReached, ComponentMetadata),
     )
 )
 """Messages that are repeated until answered, or said once. All others are state: only the newest counts."""
