@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 import pty
+import re
 import select
 import signal
 import struct
@@ -22,6 +23,9 @@ REPEAT = 0.033
 """s between the auto-repeats of a held key: 30 a second, as most systems do."""
 FIRST_REPEAT = 0.4
 """s from pressing a key to its first repeat; shorter than the longest in use (0.66 s, X11)."""
+
+
+_ESCAPES = re.compile(rb"\x1b\[[0-9;?<>=]*[a-zA-Z]")
 
 
 class Output(NamedTuple):
@@ -142,8 +146,12 @@ class GroundStation:
         """Look at the screen until `condition`."""
         deadline = time.monotonic() + within
         while not condition():
-            assert time.monotonic() < deadline, f"not within {within} s: {what}"
+            assert time.monotonic() < deadline, f"not within {within} s: {what}\n{self.drawn()}"
             self.look(0.02)
+
+    def drawn(self) -> str:
+        """The last things drawn, without colours and places: for the message of a failed test."""
+        return _ESCAPES.sub(b" ", self.screen)[-2500:].decode(errors="replace") + self.log.read_text()[-1000:]
 
     def ended(self, within: float = 10.0) -> int:
         """Wait for the program's end; returns its exit code."""
@@ -176,7 +184,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def drive(station: GroundStation, vehicle: Vehicle, relay: Relay, key: str = "i") -> None:
     """Arm through the keys and hold one until the wheels turn: every stop test starts from here."""
     station.wait_for(lambda: relay.mode() is not None, 20, "the vehicle is heard")
-    station.wait_for(lambda: b"MANUAL" in station.screen, 20, "the drive screen shows the vehicle")
+    station.wait_for(lambda: b"arms" in station.screen, 20, "the drive screen says how to arm")
     station.type("r")
     station.look(0.3)
     station.type("y")
