@@ -18,7 +18,7 @@ from groundstation.sticks import Style
 from groundstation.texts import TextLog
 from groundstation.traffic import Traffic
 from groundstation.vehicle_state import VehicleState
-from link.core import LinkReport, Outgoing, Received
+from link.core import LinkReport, Outgoing, Peer, Received
 from link.services.timesync import TimesyncClient, answer
 
 COMPONENT = 190
@@ -26,6 +26,9 @@ COMPONENT = 190
 
 HEARTBEAT_PERIOD = 1.0
 """s (MAVLink heartbeat protocol)."""
+
+GREETED_KEPT = 64
+"""Addresses of vehicles remembered; each restart of one brings another."""
 
 
 class Station:
@@ -54,6 +57,7 @@ class Station:
         self._links = LinkBook()
         self._timesync = TimesyncClient()
         self._heartbeat_due = 0.0
+        self._greeted: set[Peer] = set()
         self._told: set[str] = set()
         self._outbox: list[Outgoing] = []
         self._traffic = Traffic()
@@ -67,6 +71,7 @@ class Station:
         contact = self._fleet.admit(received, now)
         if contact is None:
             return
+        self._greet(received.peer, now)
         contact.state.receive(received, now)
         match received.message:
             case m.StatusText() as message:
@@ -201,6 +206,14 @@ class Station:
             self._heartbeat_due = now + HEARTBEAT_PERIOD
             heartbeat = m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3)
             self._outbox.append(Outgoing(heartbeat))
+
+    def _greet(self, peer: Peer, now: float) -> None:
+        """A vehicle at a new address has not heard our heartbeat yet, and obeys only who has introduced itself."""
+        if peer not in self._greeted:
+            if len(self._greeted) >= GREETED_KEPT:
+                self._greeted.clear()
+            self._greeted.add(peer)
+            self._heartbeat_due = now
 
     def _hear(self, message: m.StatusText, system: int, now: float) -> None:
         text = self.log.hear(message, system, now)

@@ -22,6 +22,8 @@ from groundstation.intents import (
     SetStyle,
     Stop,
 )
+from groundstation.station import Station
+from link.core import Peer, Received
 from tests.groundstation.fake_vehicle import OURS, Cockpit, FakeVehicle
 
 FORWARD = Push(key="i", throttle=1, steering=0)
@@ -75,9 +77,22 @@ def test_heartbeats_once_a_second_as_ground_station() -> None:
     cockpit = Cockpit()
     cockpit.run(5.0)
     beats = cockpit.vehicle.all(m.Heartbeat)
-    assert 5 <= len(beats) <= 6
+    assert 5 <= len(beats) <= 7  # one more, when the vehicle was found
     beat = beats[0][1]
     assert (beat.type, beat.autopilot, beat.base_mode, beat.system_status) == (6, 8, 0, State.ACTIVE)
+
+
+def test_a_vehicle_at_a_new_address_is_greeted_at_once() -> None:
+    # It obeys only who has shown a heartbeat, and heard none of those that went out before it was there.
+    station = Station(["udpin:127.0.0.1:14550"], now=100.0)
+    station.intend(Lease(), 100.0)
+    station.tick(100.0)
+    assert any(isinstance(each.message, m.Heartbeat) for each in station.messages_to_send())
+    for address in ("one port", "another, after a restart"):
+        beat = m.Heartbeat(10, 0, 1, 0, 3, 3)
+        station.receive(Received(beat, 1, 1, 0, Peer(0, address), introduced=True), 100.1)
+        station.tick(100.12)
+        assert any(isinstance(each.message, m.Heartbeat) for each in station.messages_to_send())
 
 
 def test_a_key_is_sent_at_once_and_then_at_20_hz() -> None:
