@@ -77,7 +77,7 @@ class Commands:
             self._safety.disarm(f"by GCS {request.system}", now)
             return Result.ACCEPTED
         if not request.introduced:
-            return self._refuse("arming", request, "its HEARTBEAT was not heard yet", now)
+            return self._refuse("arming", request, "no HEARTBEAT heard", now)
         return Result.FAILED if self._safety.arm(request.system, now, force=force in FORCE) else Result.ACCEPTED
 
     def _prearm_checks(self, request: CommandRequest, now: float) -> Result:
@@ -136,7 +136,7 @@ class Commands:
         if action not in (0, 1) or takeover not in (0, 1) or gcs not in (0, request.system):
             return Result.DENIED
         if not request.introduced:
-            return self._refuse("control", request, "its HEARTBEAT was not heard yet", now)
+            return self._refuse("control", request, "no HEARTBEAT heard", now)
         if action == 0:
             return self._give_up(request, now)
         refusal = self._control.refusal(request.system, now)
@@ -167,7 +167,7 @@ class Commands:
     def _stranger(self, system: int, introduced: bool) -> str | None:
         """Why `system` may not command, or None where it may."""
         if not introduced:
-            return "its HEARTBEAT was not heard yet"
+            return "no HEARTBEAT heard"
         return self._control.stranger(system)
 
     def _refuse(self, what: str, request: CommandRequest, why: str, now: float,

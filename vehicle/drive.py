@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects.enums import DriveType, Limit
 from vehicle.demand import Demand
-from vehicle.mixer import MIXERS, Mixed, deadband, expo
+from vehicle.mixer import MIXERS, Mixed, clamp, deadband, expo
 from vehicle.outputs import Clearance, Gate, Outputs, Permit
 from vehicle.params import Params
 from vehicle.slew import Slew, SlewLimits
@@ -69,7 +69,7 @@ class Drive:
             largest, reason = HALF, Limit.BATTERY
         if abs(throttle) > largest:
             self.limits |= reason
-        return max(-largest, min(largest, throttle))
+        return clamp(throttle, largest)
 
     def _ramps(self) -> SlewLimits:
         params = self._params

@@ -55,7 +55,14 @@ def ackermann(throttle: float, steering: float, mix: float) -> Mixed:
 
 def _unit(value: float) -> float:
     """Rounding may end at 1.0000000000000002, which the gate would refuse."""
-    return max(-1.0, min(1.0, value))
+    return clamp(value, 1.0)
+
+
+def clamp(value: float, largest: float) -> float:
+    """`value` within -largest..largest. NaN stays NaN, for the gate to see: min() would make it full speed."""
+    if value > largest:
+        return largest
+    return -largest if value < -largest else value
 
 
 MIXERS: dict[DriveType, Mixer] = {

@@ -86,7 +86,6 @@ class Rover:
         self._safety.update(now, self._drive.refused)
         self._move(now, late=late)
         self._outgoing += self._param_service.tick()
-        self._outgoing += [Outgoing(text) for text in self._texts.due(now)]
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves, about once a second."""
@@ -135,7 +134,8 @@ class Rover:
         clearance = self._safety.clearance(now, late=late)
         limited = self._safety.failsafes.action(now) >= Action.LIMIT
         self._drive.step(self._control.demand, clearance, limited=limited, now=now)
-        self._outgoing += [Outgoing(message) for message in self._telemetry.due(self._look(now))]
+        told = [*self._telemetry.due(self._look(now)), *self._texts.due(now)]
+        self._outgoing += [Outgoing(message) for message in told]
 
     def _look(self, now: float) -> View:
         since_boot = now - self._boot

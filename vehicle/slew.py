@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+ROUNDING = 1e-9
+"""Steps that add up to the whole way may miss it by a rounding error; nobody waits a cycle for that."""
+
 
 @dataclass(frozen=True, slots=True)
 class SlewLimits:
@@ -35,6 +38,9 @@ class Slew:
     def step(self, target: float, dt: float, limits: SlewLimits) -> float:
         """Move towards `target` for `dt` s; returns the new value."""
         self.waiting = False
+        if math.isnan(target):  # a ramp would make a number of it, and the gate would not see
+            self.value = target
+            return target
         self._rested = 0.0 if self.value else self._rested + dt
         if self.value and target * self.value <= 0.0:
             self._toward(0.0, limits.decel * dt)
@@ -53,4 +59,4 @@ class Slew:
 
     def _toward(self, target: float, step: float) -> None:
         difference = target - self.value
-        self.value = target if abs(difference) <= step else self.value + math.copysign(step, difference)
+        self.value = target if abs(difference) <= step + ROUNDING else self.value + math.copysign(step, difference)

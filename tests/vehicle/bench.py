@@ -1,0 +1,152 @@
+"""A rover on the bench in virtual time, with drivers that talk to it as the link would."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+from dialects import codec
+from dialects import messages as m
+from dialects.axes import Axes, manual_control
+from dialects.enums import Autopilot, Command, Result, Type
+from dialects.modes import Mode
+from link.core import Peer, Received
+from vehicle.params import Params
+from vehicle.readings import Readings
+from vehicle.rover import Rover
+from vehicle.states import State
+
+M = TypeVar("M", bound=m.Message)
+
+CYCLE = 0.02
+DRIVER, OTHER = 255, 254
+AHEAD = Axes(throttle=1.0)
+NEUTRAL = Axes()
+
+EVERYTHING = Readings(
+    roll=0.1, pitch=0.1, yaw=1.0, yaw_rate=0.1, north=1.0, east=2.0, velocity_north=0.5, velocity_east=0.5, speed=0.7,
+    latitude=48.1, longitude=11.5, altitude=500.0, gps_fix=3, gps_satellites=12, gps_hdop=0.8,
+    battery_voltage=12.0, battery_current=1.0, battery_remaining=0.9, wheel_speeds=(0.7, 0.7),
+)  # fmt: skip
+"""A rover with every sensor."""
+
+
+class Bench:
+    """`now` moves only in `wait`, a cycle of 20 ms at a time; every message the rover sends must be encodable."""
+
+    def __init__(self, now: float = 100.0, **params: float) -> None:
+        self.now = now
+        self.rover = Rover(Params(params), now=now)
+        self.readings = Readings()
+        self.sent: list[m.Message] = []
+        self.peers: list[Peer | None] = []
+        self.texts: list[str] = []
+        self._sequence = 0
+        self._next_cycle = now
+        self.wait(CYCLE)
+
+    @property
+    def throttles(self) -> tuple[float, ...]:
+        return self.rover.outputs.throttles
+
+    @property
+    def turning(self) -> bool:
+        return any(self.throttles)
+
+    @property
+    def armed(self) -> bool:
+        return self.rover.state is State.ARMED
+
+    @property
+    def mode(self) -> Mode:
+        return Mode(self.newest(m.Heartbeat).custom_mode)
+
+    def newest(self, kind: type[M]) -> M:
+        return next(message for message in reversed(self.sent) if isinstance(message, kind))
+
+    def all(self, kind: type[M]) -> list[M]:
+        return [message for message in self.sent if isinstance(message, kind)]
+
+    def say(self, message: m.Message, system: int = DRIVER, *, introduced: bool = True, sequence: int | None = None,
+            address: str = "") -> None:  # fmt: skip
+        """One message of a ground station, and what the rover answers."""
+        self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
+        peer = Peer(0, address or f"gcs {system}")
+        self.rover.receive(Received(message, system, 190, self._sequence, peer, introduced), self.now)
+        self._collect()
+
+    def heartbeat(self, system: int = DRIVER, *, introduced: bool = True) -> None:
+        self.say(m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, 4, 3), system, introduced=introduced)
+
+    def command(self, command: int, *params: float, system: int = DRIVER, target: int = 1, component: int = 1,
+                introduced: bool = True) -> Result | None:  # fmt: skip
+        """The rover's acknowledgement, None for silence."""
+        before = len(self.all(m.CommandAck))
+        one, two, three, four, five, six, seven = (*params, *(0.0,) * (7 - len(params)))
+        message = m.CommandLong(target, component, command, 0, one, two, three, four, five, six, seven)
+        self.say(message, system, introduced=introduced)
+        acks = self.all(m.CommandAck)[before:]
+        assert len(acks) <= 1
+        if not acks:
+            return None
+        assert (acks[0].command, acks[0].target_system, acks[0].target_component) == (command, system, 190)
+        return Result(acks[0].result)
+
+    def stick(self, axes: Axes, system: int = DRIVER, target: int = 1) -> None:
+        self.say(manual_control(axes, target), system)
+
+    def arm(self, system: int = DRIVER, **kwargs: bool) -> Result | None:
+        return self.command(Command.COMPONENT_ARM_DISARM, 1, system=system, **kwargs)
+
+    def set_mode(self, mode: Mode, system: int = DRIVER) -> Result | None:
+        return self.command(Command.DO_SET_MODE, 1, mode, system=system)
+
+    def drive(self, axes: Axes = AHEAD) -> None:
+        """Armed, neutral shown, and going: the danger that safety tests begin with."""
+        assert self.arm() is Result.ACCEPTED
+        self.wait(0.1, NEUTRAL)
+        self.wait(1.0, axes)
+        assert self.turning
+
+    def wait(self, seconds: float, axes: Axes | None = None, period: float = 0.05, system: int = DRIVER) -> None:
+        """Let time pass, with a driver that sends `axes` each `period` s, or a silent one."""
+        end, due = self.now + seconds, self.now
+        while self._next_cycle <= end + 1e-9:
+            self.now = self._next_cycle
+            if axes is not None and self.now >= due - 1e-9:
+                due += period
+                self.stick(axes, system)
+            self.cycle()
+        self.now = end
+
+    def cycle(self) -> None:
+        """One tick now; the next is a cycle later."""
+        self.rover.sense(self.readings, self.now)
+        self.rover.tick(self.now)
+        self._collect()
+        self._next_cycle = self.now + CYCLE
+
+    def freeze(self, seconds: float) -> None:
+        """The vehicle's process does not run for a while."""
+        self.now += seconds
+        self._next_cycle = self.now
+
+    def _collect(self) -> None:
+        for outgoing in self.rover.messages_to_send():
+            codec.encode_payload(outgoing.message)
+            self.sent.append(outgoing.message)
+            self.peers.append(outgoing.peer)
+            if isinstance(outgoing.message, m.StatusText):
+                self._read(outgoing.message)
+
+    def _read(self, message: m.StatusText) -> None:
+        """Texts longer than a message come in chunks."""
+        text = m.text_of(message)
+        if message.chunk_seq:
+            self.texts[-1] += text
+        else:
+            self.texts.append(text)
+
+
+def said(bench: Bench, part: str) -> bool:
+    """Did the driver read this?"""
+    return any(part in text for text in bench.texts)

@@ -1,0 +1,81 @@
+"""Mixers: what each wheel gets."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from dialects.enums import DriveType
+from vehicle.mixer import MIXERS, ackermann, deadband, expo, skid
+from vehicle.params import PARAMETERS
+
+UNIT = st.floats(-1, 1)
+
+
+@pytest.mark.parametrize(
+    ("throttle", "steering", "left", "right"),
+    [(1, 0, 1, 1), (-1, 0, -1, -1), (0, 1, 1, -1), (0, -1, -1, 1), (0.5, 0.25, 0.75, 0.25), (-0.5, 0.25, -0.25, -0.75)],
+)
+def test_skid_adds_and_subtracts(throttle: float, steering: float, left: float, right: float) -> None:
+    mixed = skid(throttle, steering, 0.5)
+    assert mixed.throttles == (left, right)
+    assert not mixed.saturated
+
+
+def test_skid_at_its_limit_cuts_both_alike_by_default() -> None:
+    mixed = skid(1.0, 1.0, 0.5)
+    assert mixed.throttles == pytest.approx((1.0, 0.0))
+    assert mixed.saturated
+
+
+def test_skid_can_keep_all_of_the_steering() -> None:
+    assert skid(1.0, 0.8, 1.0).throttles == pytest.approx((1.0, -0.6))
+
+
+def test_skid_can_keep_more_of_the_throttle() -> None:
+    left, right = skid(1.0, 1.0, 0.2).throttles
+    assert left == pytest.approx(1.0)
+    assert right > 0.5
+
+
+def test_reverse_keeps_the_sense_of_turning() -> None:
+    left, right = skid(-1.0, 0.5, 0.5).throttles
+    assert left > right  # clockwise, whichever way it rolls
+
+
+def test_ackermann_keeps_them_apart() -> None:
+    assert ackermann(0.3, -1.0, 0.5).throttles == (0.3, -1.0)
+
+
+@given(UNIT, UNIT, st.floats(0.2, 1), st.sampled_from(sorted(MIXERS)))
+def test_every_mixer_stays_within_full(throttle: float, steering: float, mix: float, kind: DriveType) -> None:
+    mixer = MIXERS[kind]
+    values = mixer.mix(throttle, steering, mix).throttles
+    assert len(values) == len(mixer.motors) == len(mixer.servos)
+    assert all(-1 <= value <= 1 for value in values)
+
+
+@given(st.floats(0.2, 1))
+def test_nothing_in_is_nothing_out(mix: float) -> None:
+    for mixer in MIXERS.values():
+        assert not any(mixer.mix(0.0, 0.0, mix).throttles)
+
+
+def test_every_drive_type_that_can_be_set_has_a_mixer() -> None:
+    drive_type = PARAMETERS["DRIVE_TYPE"]
+    assert set(MIXERS) == set(range(int(drive_type.low), int(drive_type.high) + 1))
+
+
+@given(UNIT, st.floats(0, 0.9))
+def test_expo_softens_and_keeps_the_ends(value: float, softness: float) -> None:
+    assert abs(expo(value, softness)) <= abs(value) + 1e-12
+    assert expo(math.copysign(1, value), softness) == pytest.approx(math.copysign(1, value))
+
+
+def test_deadband_has_no_step() -> None:
+    assert deadband(0.03, 0.03) == 0
+    assert deadband(0.031, 0.03) == pytest.approx(0.001 / 0.97)
+    assert deadband(-1.0, 0.03) == -1.0
