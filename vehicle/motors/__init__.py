@@ -3,19 +3,43 @@
 To add a driver, write a class that fits `Motors`, add one line to DRIVERS, and test it with
 tests/vehicle/motors/contract.py.
 A driver of your own needs no line: name it "module:Class".
+A driver that has settings names their type `Settings` (a msgspec.Struct) and is made with one: `Class(settings)`.
 """
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from importlib import import_module
-from typing import Protocol
+from typing import Any, Protocol
 
 DRIVERS: dict[str, str] = {
     "simulated": "vehicle.motors.simulated:SimulatedMotors",
+    "gpio": "vehicle.motors.gpio:GpioMotors",
+    "article-car": "vehicle.motors.gpio:GpioMotors",
+    "pca9685": "vehicle.motors.pca9685:Pca9685Motors",
+    "sysfs-pwm": "vehicle.motors.sysfs_pwm:SysfsPwmMotors",
+    "roboclaw": "vehicle.motors.roboclaw:RoboClawMotors",
+    "sabertooth": "vehicle.motors.sabertooth:SabertoothMotors",
 }
 """Name -> "module:Class". Imported only when asked for: a driver's library is installed only where its hardware is."""
+
+PROFILES: dict[str, dict[str, Any]] = {
+    "article-car": {
+        "bridges": [
+            {"wiring": "two-inputs", "forward": 10, "backward": 9},
+            {"wiring": "two-inputs", "forward": 8, "backward": 7},
+        ],
+        "frequency": 2000.0,
+        "limits": {"driving": 0.6, "turning": 0.4},
+    },
+}
+"""Name of a driver -> settings it begins with. A known car is a driver and its settings, no code.
+
+article-car is the car of the Circuit Cellar articles, parts 1 and 2: left motor, right motor, BCM pins; its program
+drove with 60 % duty and turned on the spot with 40 %.
+"""
 
 
 class MotorError(Exception):
@@ -24,6 +48,10 @@ class MotorError(Exception):
 
 class UnknownDriverError(MotorError):
     """There is no such driver: the user's mistake, not a fault of the hardware."""
+
+
+class MotorSettingsError(UnknownDriverError):
+    """There is no such setting, or no such value for it: the user's mistake too."""
 
 
 class Motors(Protocol):
@@ -68,30 +96,84 @@ def checked(throttles: Sequence[float], count: int) -> tuple[float, ...]:
     return tuple(throttles)
 
 
-def open_motors(name: str) -> Motors:
+def open_motors(name: str, settings: Mapping[str, Any] | None = None) -> Motors:
     """The motors of the driver `name`: a name from DRIVERS, or "module:Class".
 
-    Raises UnknownDriverError for a name that leads nowhere and MotorError where the driver cannot start.
+    `settings` is the driver's own table, with what every driver takes beside it (vehicle/motors/settings.py, Around).
+    Raises UnknownDriverError or MotorSettingsError for the user's mistakes and MotorError where the driver cannot
+    start; then nothing stays open.
     """
-    motors: Motors = _driver_class(name)()
+    table = {**PROFILES.get(name, {}), **(settings or {})}
+    driver = _driver_class(name)
+    if not table:
+        return _fitting(name, _made(name, driver, table))
+    from vehicle.motors.settings import split
+
+    around, own = split(table)
+    with ExitStack() as opened:
+        guard = around.guard()  # first: its enable pin takes the power away before the driver touches anything
+        if guard is not None:
+            opened.callback(guard.close)
+        motors = _fitting(name, _made(name, driver, own))
+        opened.callback(motors.close)
+        wrapped: Motors = around.wrap(motors, guard)
+        opened.pop_all()
+    return wrapped
+
+
+def safe_stop(name: str, settings: Mapping[str, Any] | None = None) -> list[str]:
+    """Stop motors that nobody drives any more, as after a killed daemon; never raises. What went wrong, a line each.
+
+    An empty list is the driver's word that the motors are neutral and disabled.
+    """
+    problems: list[str] = []
+    try:
+        motors = open_motors(name, settings)
+    except Exception as error:  # whatever it is, the caller has nothing better to do than to say it
+        return [f"{name}: {_line(error)}"]
+    for step in (motors.disable, motors.close):  # opened means neutral already
+        try:
+            step()
+        except Exception as error:
+            problems.append(f"{name}: {_line(error)}")
+    return problems
+
+
+def _line(error: Exception) -> str:
+    text = " ".join(str(error).split())
+    return text if isinstance(error, MotorError) else f"{type(error).__name__}: {text}"
+
+
+def _made(name: str, driver: Any, own: Mapping[str, Any]) -> Any:
+    kind = getattr(driver, "Settings", None)
+    if kind is not None:
+        from vehicle.motors.settings import parsed
+
+        return driver(parsed(own, kind))
+    if own:
+        raise MotorSettingsError(f"motor driver {name!r} takes no settings, so {', '.join(own)} cannot be set")
+    return driver()
+
+
+def _fitting(name: str, motors: Any) -> Motors:
     missing = [verb for verb in ("count", "enable", "disable", "set", "close") if not hasattr(motors, verb)]
     if missing:
         raise UnknownDriverError(f"motor driver {name!r} is none: it lacks {', '.join(missing)}")
-    return motors
+    fitting: Motors = motors
+    return fitting
 
 
-def _driver_class(name: str) -> type[Motors]:
+def _driver_class(name: str) -> Any:
     target = DRIVERS.get(name, name)
     module_name, colon, class_name = target.partition(":")
     if not (colon and module_name and class_name):
         raise UnknownDriverError(_unknown(name))
     try:
-        driver: type[Motors] = getattr(import_module(module_name), class_name)
+        return getattr(import_module(module_name), class_name)
     except ImportError as error:
         raise UnknownDriverError(f"motor driver {name!r} cannot be loaded: {error}") from error
     except AttributeError as error:
         raise UnknownDriverError(f"motor driver {name!r}: module {module_name} has no {class_name!r}") from error
-    return driver
 
 
 def _unknown(name: str) -> str:

@@ -1,16 +1,85 @@
 from __future__ import annotations
 
+from importlib import import_module
+
+import msgspec
 import pytest
 
-from vehicle.motors import DRIVERS, MotorError, Motors, UnknownDriverError, checked, open_motors
+from vehicle.motors import (
+    DRIVERS,
+    PROFILES,
+    MotorError,
+    Motors,
+    MotorSettingsError,
+    UnknownDriverError,
+    checked,
+    open_motors,
+    safe_stop,
+)
 from vehicle.motors.simulated import SimulatedMotors
 
 
 @pytest.mark.parametrize("name", DRIVERS)
-def test_every_driver_of_the_table_opens(name: str) -> None:
-    motors: Motors = open_motors(name)
-    assert motors.count >= 1
+def test_every_line_of_the_table_leads_to_a_driver(name: str) -> None:
+    module, _, class_name = DRIVERS[name].partition(":")
+    driver = getattr(import_module(module), class_name)
+    for verb in ("enable", "disable", "set", "close"):
+        assert callable(getattr(driver, verb))
+    if name != "simulated":
+        assert issubclass(driver.Settings, msgspec.Struct)
+        assert driver.Settings.__struct_config__.forbid_unknown_fields
+        assert msgspec.json.schema(driver.Settings)
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_every_profile_is_a_driver_of_the_table(name: str) -> None:
+    assert name in DRIVERS
+
+
+def test_the_simulated_motors_open_without_settings() -> None:
+    motors: Motors = open_motors("simulated")
+    assert motors.count == 2
     motors.close()
+
+
+class OwnSettings(msgspec.Struct, forbid_unknown_fields=True):
+    count: int
+
+
+class OwnMotors(SimulatedMotors):
+    """What somebody else might write."""
+
+    Settings = OwnSettings
+
+    def __init__(self, settings: OwnSettings) -> None:
+        super().__init__(settings.count)
+
+
+class BrokenMotors(SimulatedMotors):
+    def disable(self) -> None:
+        raise MotorError("the relay is welded")
+
+    def close(self) -> None:
+        raise ValueError("two\nlines")
+
+
+def test_a_driver_of_your_own_gets_its_settings() -> None:
+    assert open_motors(f"{__name__}:OwnMotors", {"count": 3}).count == 3
+    with pytest.raises(MotorSettingsError, match="motor settings: count: Expected `int`, got `str`"):
+        open_motors(f"{__name__}:OwnMotors", {"count": "three"})
+    with pytest.raises(MotorSettingsError, match="missing required field `count`"):
+        open_motors(f"{__name__}:OwnMotors")
+
+
+def test_safe_stop_never_raises_and_says_what_went_wrong() -> None:
+    assert safe_stop("simulated") == []
+    assert safe_stop(f"{__name__}:BrokenMotors") == [
+        f"{__name__}:BrokenMotors: the relay is welded",
+        f"{__name__}:BrokenMotors: ValueError: two lines",
+    ]
+    assert safe_stop("simulatd") == ["simulatd: unknown motor driver 'simulatd'; did you mean 'simulated'?"]
+    assert len(safe_stop("no_such_module:Car")) == 1
+    assert len(safe_stop("roboclaw", {"port": "/dev/nowhere"})) == 1
 
 
 def test_a_driver_of_your_own_is_named_by_module_and_class() -> None:

@@ -1,0 +1,143 @@
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from gpiozero import Device
+from gpiozero.pins.mock import MockFactory, MockPWMPin
+
+from tests.vehicle.motors.contract import Bench, MotorsContract
+from vehicle.motors import DRIVERS, MotorError, Motors, MotorSettingsError, open_motors, safe_stop
+from vehicle.motors.gpio import GpioMotors, GpioSettings, PhaseEnable, TwoInputs
+
+TWO_INPUTS = GpioSettings(bridges=(TwoInputs(10, 9), TwoInputs(8, 7)))
+PHASE_ENABLE = GpioSettings(bridges=(PhaseEnable(enable=12, phase=5), PhaseEnable(enable=13, phase=6)))
+
+
+@pytest.fixture
+def factory() -> Iterator[MockFactory]:
+    """The pins of this test, also for what opens a driver by its name."""
+    before, Device.pin_factory = Device.pin_factory, MockFactory(pin_class=MockPWMPin)
+    yield Device.pin_factory
+    Device.pin_factory.reset()
+    Device.pin_factory = before
+
+
+def output(factory: MockFactory, bridge: TwoInputs | PhaseEnable) -> float:
+    """What a motor at this bridge gets."""
+    first, second = (float(factory.pin(pin).state) for pin in bridge.pins)
+    if isinstance(bridge, TwoInputs):
+        assert first == 0.0 or second == 0.0, "both inputs of a bridge are high"
+        return first - second
+    return first * (-1.0 if second else 1.0)
+
+
+def bench_of(factory: MockFactory, motors: Any, settings: GpioSettings, core: Any = None) -> Bench:
+    core = core or motors
+    return Bench(motors, lambda: [output(factory, bridge) for bridge in settings.bridges], lambda: core.enabled)
+
+
+class TestGpioMotors(MotorsContract):
+    @pytest.fixture(params=[TWO_INPUTS, PHASE_ENABLE], ids=["two inputs", "phase and enable"])
+    def bench(self, request: pytest.FixtureRequest, factory: MockFactory) -> Bench:
+        return bench_of(factory, GpioMotors(request.param), request.param)
+
+
+@pytest.mark.parametrize(("settings", "pwm"), [(TWO_INPUTS, (10, 9, 8, 7)), (PHASE_ENABLE, (12, 13))])
+def test_the_pwm_pins_have_the_frequency(factory: MockFactory, settings: GpioSettings, pwm: tuple[int, ...]) -> None:
+    motors = GpioMotors(settings)
+    assert [factory.pin(pin).frequency for pin in pwm] == [500.0] * len(pwm)
+    motors.close()
+
+
+def test_pins_are_let_go_by_close(factory: MockFactory) -> None:
+    GpioMotors(TWO_INPUTS).close()
+    GpioMotors(TWO_INPUTS).close()
+
+
+def test_a_pin_in_use_is_said_in_one_line_and_the_others_are_let_go(factory: MockFactory) -> None:
+    other = GpioMotors(GpioSettings(bridges=(TwoInputs(8, 6),)))
+    with pytest.raises(MotorError, match="GPIO8") as caught:
+        GpioMotors(TWO_INPUTS)
+    assert "\n" not in str(caught.value)
+    other.close()
+    GpioMotors(TWO_INPUTS).close()
+
+
+def test_without_a_raspberry_pi_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Device, "pin_factory", None)
+    monkeypatch.setenv("GPIOZERO_PIN_FACTORY", "nothing")
+    with pytest.raises(MotorError, match="motor pins: Unable to find pin factory"):
+        GpioMotors(TWO_INPUTS)
+
+
+def article_car() -> Motors:
+    return open_motors("article-car")
+
+
+class TestArticleCar:
+    """The car of the articles, on its own wires: BCM 10, 9 left and 8, 7 right."""
+
+    @pytest.mark.parametrize(
+        ("throttles", "pins"),
+        [
+            ((1.0, 1.0), {10: 0.6, 9: 0.0, 8: 0.6, 7: 0.0}),
+            ((-1.0, -1.0), {10: 0.0, 9: 0.6, 8: 0.0, 7: 0.6}),
+            ((-1.0, 1.0), {10: 0.0, 9: 0.4, 8: 0.4, 7: 0.0}),
+            ((1.0, -1.0), {10: 0.4, 9: 0.0, 8: 0.0, 7: 0.4}),
+            ((0.5, 0.5), {10: 0.3, 9: 0.0, 8: 0.3, 7: 0.0}),
+            ((0.0, 0.0), {10: 0.0, 9: 0.0, 8: 0.0, 7: 0.0}),
+        ],
+        ids=["forward", "backward", "left", "right", "half forward", "stop"],
+    )
+    def test_does_what_its_own_program_did(
+        self, factory: MockFactory, throttles: tuple[float, float], pins: dict[int, float]
+    ) -> None:
+        motors = article_car()
+        motors.enable()
+        motors.set(throttles)
+        assert {pin: factory.pin(pin).state for pin in pins} == pytest.approx(pins)
+        assert [factory.pin(pin).frequency for pin in pins] == [2000.0] * 4
+
+    def test_is_in_the_table(self) -> None:
+        assert DRIVERS["article-car"] == DRIVERS["gpio"]
+
+    def test_one_setting_can_be_replaced(self, factory: MockFactory) -> None:
+        motors = open_motors("article-car", {"limits": {"driving": 1.0, "turning": 0.5}})
+        motors.enable()
+        motors.set((1.0, 1.0))
+        assert factory.pin(10).state == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        ({}, "missing required field `bridges`"),
+        ({"bridges": []}, "bridges: Expected `array` of length >= 1"),
+        ({"bridges": [{"wiring": "two-inputs", "forward": 10}]}, "missing required field `backward`"),
+        ({"bridges": [{"wiring": "two-inputs", "forward": 10, "backward": 28}]}, "backward: Expected `int` <= 27"),
+        ({"bridges": [{"wiring": "two-inputs", "forward": 10, "backward": 10}]}, "10 is used twice"),
+        ({"bridges": [{"wiring": "three", "forward": 10, "backward": 9}]}, "Invalid value 'three'"),
+        ({"bridges": [{"forward": 10, "backward": 9}]}, "missing required field `wiring`"),
+        ({"frequenzy": 500, "bridges": [{"wiring": "two-inputs", "forward": 1, "backward": 9}]}, "frequenzy"),
+        ({"frequency": 20_000}, "frequency: Expected `float` <= 10000"),
+    ],
+)
+def test_settings_are_read_strictly(factory: MockFactory, settings: dict[str, Any], says: str) -> None:
+    with pytest.raises(MotorSettingsError) as caught:
+        open_motors("gpio", settings)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_safe_stop_pulls_pins_down_that_a_killed_process_left_high(factory: MockFactory) -> None:
+    for number in (10, 7):
+        pin = factory.pin(number)
+        pin.function = "output"
+        pin.state = 1.0
+    assert output(factory, TwoInputs(10, 9)) == 1.0
+    factory.pin(10).clear_states()
+    assert safe_stop("article-car") == []
+    assert [factory.pin(pin).states[-1].state for pin in (10, 9, 8, 7)] == [0.0] * 4
+    assert all(state.state == 0.0 for state in factory.pin(10).states[1:])

@@ -1,0 +1,43 @@
+"""The I2C bus as drivers and sensors need it; smbus2 is one, and the tests bring their own. No device is known here."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+from typing import Protocol
+
+I2C_TIMEOUT = 0x0702
+"""ioctl, in units of 10 ms (linux/i2c-dev.h)."""
+PATIENCE = 2
+"""20 ms: a device that holds the clock low must not hold the control loop for the kernel's whole second."""
+
+
+class Bus(Protocol):
+    """What smbus2.SMBus does. All raise OSError where the device does not answer."""
+
+    def read_byte_data(self, i2c_addr: int, register: int) -> int:
+        """One register."""
+
+    def read_i2c_block_data(self, i2c_addr: int, register: int, length: int) -> list[int]:
+        """`length` bytes from `register` on."""
+
+    def write_byte_data(self, i2c_addr: int, register: int, value: int) -> None:
+        """One register."""
+
+    def write_i2c_block_data(self, i2c_addr: int, register: int, data: list[int]) -> None:
+        """Bytes from `register` on."""
+
+    def close(self) -> None:
+        """Let go of the bus."""
+
+
+def open_bus(number: int) -> Bus:
+    """/dev/i2c-`number`. Raises OSError, and ImportError without smbus2."""
+    try:
+        from smbus2 import SMBus
+    except ImportError as error:
+        raise ImportError(f"{error}; install it: pip install 'mavhelm[pi]'") from error
+    bus = SMBus(number)
+    with contextlib.suppress(OSError):  # an adapter that cannot set it keeps its own
+        fcntl.ioctl(bus.fd or -1, I2C_TIMEOUT, PATIENCE)
+    return bus

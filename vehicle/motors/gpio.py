@@ -1,0 +1,128 @@
+"""Brushed motors on H-bridges at the pins of a Raspberry Pi, through gpiozero and lgpio: PWM made in software.
+
+lgpio makes 0.1 Hz to 10 kHz, and gpiozero hands it whole percents (rounded down), so an output moves in 1 % steps.
+Good for wheels; no good for servos and ESCs: 1 % of their 20 ms is 200 us. Those are driven by pca9685 or sysfs-pwm.
+A pin keeps its level when the process is killed: a bridge without a timeout of its own needs `safe_stop`, a heartbeat
+pin, or both.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+import msgspec
+
+from vehicle.motors import checked
+from vehicle.motors.pins import Motor, PhaseEnableMotor, translated
+from vehicle.motors.settings import Pin, refuse_doubles
+
+
+class TwoInputs(
+    msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="wiring", tag="two-inputs"
+):  # fmt: skip
+    """IN1 and IN2, PWM on one and low on the other: DRV8833, DRV8871, L9110, MX1508, TB6612 and L298N with EN high."""
+
+    forward: Pin
+    backward: Pin
+
+    @property
+    def pins(self) -> tuple[int, int]:
+        """Both."""
+        return self.forward, self.backward
+
+
+class PhaseEnable(
+    msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="wiring", tag="phase-enable"
+):  # fmt: skip
+    """PWM and direction: Cytron MD boards, DRV8835 in its phase/enable mode, Pololu G2."""
+
+    enable: Pin
+    """PWM."""
+    phase: Pin
+    """Direction; low is forward."""
+
+    @property
+    def pins(self) -> tuple[int, int]:
+        """Both."""
+        return self.enable, self.phase
+
+
+class GpioSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Bridges in motor order, all with one PWM frequency."""
+
+    bridges: Annotated[tuple[TwoInputs | PhaseEnable, ...], msgspec.Meta(min_length=1, max_length=8)]
+    frequency: Annotated[float, msgspec.Meta(ge=10, le=10_000)] = 500.0
+    """Hz. Higher is quieter and costs the processor more; above 10 kHz lgpio refuses."""
+
+    def __post_init__(self) -> None:
+        refuse_doubles([pin for bridge in self.bridges for pin in bridge.pins])
+
+
+class GpioMotors:
+    """Fits `vehicle.motors.Motors`. Disabled is every input low: the bridge lets go and the motor coasts."""
+
+    Settings = GpioSettings
+
+    def __init__(self, settings: GpioSettings, *, pin_factory: Any = None) -> None:
+        """`pin_factory` is gpiozero's; None takes the one of this machine. Raises MotorError."""
+        self.count = len(settings.bridges)
+        self.enabled = False
+        self._bridges: list[Any] = []
+        with contextlib.ExitStack() as opened, translated("motor pins"):
+            for bridge in settings.bridges:
+                motor = _motor(bridge, pin_factory)
+                opened.callback(motor.close)
+                _pwm_frequency(motor, bridge, settings.frequency)
+                self._bridges.append(motor)
+            opened.pop_all()
+
+    def enable(self) -> None:
+        """Let the motors turn, from neutral."""
+        if not self.enabled:
+            self._stop()
+            self.enabled = True
+
+    def disable(self) -> None:
+        """Every input low."""
+        self.enabled = False
+        self._stop()
+
+    def set(self, throttles: Sequence[float]) -> None:
+        """PWM on each bridge; nothing while disabled."""
+        values = checked(throttles, self.count)
+        if self.enabled:
+            with translated("motor pins"):
+                for bridge, value in zip(self._bridges, values, strict=True):
+                    bridge.value = value
+
+    def close(self) -> None:
+        """Every input low, then the pins are let go."""
+        self.enabled = False
+        with contextlib.ExitStack() as steps, translated("motor pins"):
+            for bridge in self._bridges:
+                steps.callback(bridge.close)
+                steps.callback(bridge.stop)
+            self._bridges = []
+
+    def _stop(self) -> None:
+        with contextlib.ExitStack() as steps, translated("motor pins"):  # every bridge, also where one raises
+            for bridge in self._bridges:
+                steps.callback(bridge.stop)
+
+
+def _motor(bridge: TwoInputs | PhaseEnable, pin_factory: Any) -> Any:
+    match bridge:
+        case TwoInputs():
+            return Motor(bridge.forward, bridge.backward, pwm=True, pin_factory=pin_factory)
+        case PhaseEnable():
+            return PhaseEnableMotor(bridge.phase, bridge.enable, pwm=True, pin_factory=pin_factory)
+
+
+def _pwm_frequency(motor: Any, bridge: TwoInputs | PhaseEnable, frequency: float) -> None:
+    match bridge:
+        case TwoInputs():
+            motor.forward_device.frequency = motor.backward_device.frequency = frequency
+        case PhaseEnable():
+            motor.enable_device.frequency = frequency

@@ -1,0 +1,52 @@
+"""gpiozero, imported in the one way that suits a daemon, and its faults as MotorError; no device itself."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Iterator
+from importlib import import_module
+
+from vehicle.motors import MotorError
+
+
+def _import_lgpio() -> tuple[type[BaseException], ...]:
+    """Import lgpio away from the working directory; its error class, where it is installed.
+
+    At import lgpio changes into $LG_WD, creates a pipe there and fails where it may not, as in a service with a
+    read-only system (seen with lgpio 0.2.2.0). Pipe and directory are not needed by name once it is open.
+    """
+    home, wish = os.getcwd(), os.environ.get("LG_WD")
+    with tempfile.TemporaryDirectory(prefix="lgpio-") as directory:
+        os.environ["LG_WD"] = wish or directory
+        try:
+            return (import_module("lgpio").error,)
+        except ImportError:
+            return ()
+        finally:
+            os.chdir(home)
+            if wish is None:
+                del os.environ["LG_WD"]
+
+
+_lgpio_errors = _import_lgpio()
+
+try:
+    from gpiozero import DigitalInputDevice, DigitalOutputDevice, Motor, PhaseEnableMotor
+    from gpiozero.exc import GPIOZeroError
+except ImportError as error:
+    raise MotorError(f"{error}; install it: pip install 'mavhelm[pi]'") from error
+
+FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, *_lgpio_errors)
+
+__all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMotor", "translated"]
+
+
+@contextlib.contextmanager
+def translated(doing: str) -> Iterator[None]:
+    """Whatever a pin raises meanwhile is a MotorError. `doing` begins its text."""
+    try:
+        yield
+    except FAULTS as error:
+        raise MotorError(f"{doing}: {' '.join(str(error).split()) or type(error).__name__}") from error

@@ -1,0 +1,199 @@
+"""Basicmicro RoboClaw (two motors) in packet serial mode, over UART or USB; S1 and S2 in their packet functions.
+
+The controller stops both motors when it has heard nothing for its serial timeout. That is what stops the wheels when
+this process is killed, so no motor is enabled before the timeout was set and read back.
+Frames as in Basicmicro's user manual, "Packet Serial": address, command, data, CRC16; 0xFF for one that was taken.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Sequence
+from typing import Annotated
+
+import msgspec
+from fastcrc.crc16 import xmodem
+
+from vehicle.motors import MotorError, checked
+from vehicle.motors.patience import Patience
+from vehicle.motors.port import Port
+
+SET_TIMEOUT, READ_TIMEOUT, READ_VERSION, DRIVE_BOTH = 14, 15, 21, 34
+ACK = 0xFF
+FULL = 32767
+"""Duty of 100 %."""
+TRIES = 3
+REMIND = 1.0
+"""s between settings of the timeout while driving: a controller that lost its power for a moment has forgotten it."""
+
+
+class RoboClawSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One RoboClaw: M1 is the left motor, M2 the right one."""
+
+    port: str
+    """/dev/serial0, /dev/ttyACM0, or better a name from /dev/serial/by-id."""
+    baud: Annotated[int, msgspec.Meta(ge=2400, le=1_000_000)] = 38_400
+    """As set in the controller; over USB without meaning."""
+    address: Annotated[int, msgspec.Meta(ge=0x80, le=0x87)] = 0x80
+    timeout: Annotated[float, msgspec.Meta(ge=0.1, le=0.5)] = 0.3
+    """s of silence until the controller stops; steps of 0.1. Longer than the 0.02 s between writes, shorter than
+    half a second, in which a metre is driven."""
+    reply_time: Annotated[float, msgspec.Meta(ge=0.01, le=0.05)] = 0.02
+    """s that a reply may take. The controller throws half a frame away after 0.01 s, so not less."""
+
+    @property
+    def tenths(self) -> int:
+        """The timeout as the controller counts it, rounded down."""
+        return int(self.timeout * 10 + 1e-9)
+
+
+class RoboClawMotors:
+    """Fits `vehicle.motors.Motors`. `set` does not wait for its reply: the next `set` looks for it."""
+
+    Settings = RoboClawSettings
+
+    def __init__(self, settings: RoboClawSettings, *, clock: Callable[[], float] = time.monotonic) -> None:
+        """Raises MotorError where no RoboClaw answers."""
+        self.count = 2
+        self.enabled = False
+        self.port = Port(settings.port, settings.baud)
+        self._settings = settings
+        self._clock = clock
+        self._patience = Patience()
+        self._unanswered = 0
+        self._reminded = 0.0
+        self._tries = TRIES
+        try:
+            self.disable()
+        except MotorError:
+            self.port.close()
+            raise
+
+    def enable(self) -> None:
+        """Raises MotorError where the controller's timeout cannot be set and read back."""
+        if self.enabled:
+            return
+        wanted = self._settings.tenths
+        self._tell(DRIVE_BOTH, _duties((0.0, 0.0)))
+        self._tell(SET_TIMEOUT, bytes([wanted]))
+        found = self._ask(READ_TIMEOUT, 1)[0]
+        if found != wanted:
+            raise self._fault(f"its serial timeout is {found / 10:g} s and not {wanted / 10:g} s as set")
+        self._patience.worked()
+        self._reminded = self._clock()
+        self.enabled = True
+
+    def disable(self) -> None:
+        """Duty 0 on both, and the controller has said that it took it. Raises MotorError."""
+        self.enabled = False
+        self._tell(DRIVE_BOTH, _duties((0.0, 0.0)))
+
+    def set(self, throttles: Sequence[float]) -> None:
+        """Both duties in one frame; nothing while disabled."""
+        values = checked(throttles, self.count)
+        if not self.enabled:
+            return
+        now = self._clock()
+        try:
+            self._collect(now)
+            self._send(DRIVE_BOTH, _duties(values))
+            if now - self._reminded >= REMIND:
+                self._reminded = now
+                self._send(SET_TIMEOUT, bytes([self._settings.tenths]))
+        except OSError as error:
+            self._patience.failed(self._said(str(error)), now)
+
+    def close(self) -> None:
+        """As disabled, then the port is let go."""
+        if self.port.is_open:
+            with contextlib.ExitStack() as steps:
+                steps.callback(self.port.close)
+                self.disable()
+
+    def _collect(self, now: float) -> None:
+        """Replies to what was sent before. Any reply means that it lives and takes our frames."""
+        replies = self.port.read()
+        if ACK in replies:
+            self._unanswered = max(0, self._unanswered - replies.count(ACK))
+            self._patience.worked()
+        elif self._unanswered:
+            self._patience.waiting(self._said("no reply"), now)
+
+    def _tell(self, command: int, data: bytes) -> None:
+        """Send until it is acknowledged, together with all that was sent before. Raises MotorError."""
+        reason = ""
+        for _ in range(self._tries):
+            try:
+                self._connect()
+                self._send(command, data)
+                if self._answered():
+                    self._tries = TRIES
+                    return
+                reason = "no reply: is it on, in packet serial mode, with this address and baud rate?"
+                self._start_over()
+            except OSError as error:
+                reason = str(error)
+        self._tries = 1  # a controller known to be dead is asked in each cycle: that must not hold the loop up
+        raise self._fault(reason)
+
+    def _ask(self, command: int, length: int) -> bytes:
+        """`length` bytes of reply, checked. Raises MotorError."""
+        reason = ""
+        for _ in range(TRIES):
+            try:
+                self._connect()
+                self._start_over()
+                self.port.write(bytes([self._settings.address, command]))
+                reply = self._reply(length + 2)
+                if len(reply) == length + 2 and _sealed(bytes([self._settings.address, command]) + reply):
+                    return reply[:length]
+                reason = f"a bad reply, {reply.hex(' ') or 'none'}"
+            except OSError as error:
+                reason = str(error)
+        raise self._fault(reason)
+
+    def _connect(self) -> None:
+        if self.port.open():
+            self._unanswered = 0
+
+    def _start_over(self) -> None:
+        """Forget replies that are still to come: a frame in the making is thrown away after the time waited for it."""
+        self._unanswered = 0
+        self.port.drain()
+
+    def _send(self, command: int, data: bytes) -> None:
+        frame = bytes([self._settings.address, command]) + data
+        self.port.write(frame + xmodem(frame).to_bytes(2, "big"))
+        self._unanswered += 1
+
+    def _answered(self) -> bool:
+        while self._unanswered:
+            replies = self.port.read(self._settings.reply_time)
+            if not replies:
+                return False
+            self._unanswered = max(0, self._unanswered - replies.count(ACK))
+        return True
+
+    def _reply(self, length: int) -> bytes:
+        reply = b""
+        while len(reply) < length:
+            more = self.port.read(self._settings.reply_time)
+            if not more:
+                break
+            reply += more
+        return reply
+
+    def _fault(self, reason: str) -> MotorError:
+        return MotorError(self._said(reason))
+
+    def _said(self, reason: str) -> str:
+        return f"RoboClaw 0x{self._settings.address:02x} on {self._settings.port}: {reason}"
+
+
+def _duties(throttles: Sequence[float]) -> bytes:
+    return b"".join(round(throttle * FULL).to_bytes(2, "big", signed=True) for throttle in throttles)
+
+
+def _sealed(frame: bytes) -> bool:
+    return xmodem(frame[:-2]) == int.from_bytes(frame[-2:], "big")

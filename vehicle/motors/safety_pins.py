@@ -1,0 +1,136 @@
+"""An emergency stop, a power switch and a sign of life on GPIO pins, around any driver; they work without the rover.
+
+The stop is a normally closed contact to ground: pressed, unplugged and broken are the same. While it is open no motor
+can be enabled, `set` raises, which disarms the rover, and the enable pin is off at the edge already, from gpiozero's
+own thread. Closing it again starts nothing: the rover has to be armed again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from vehicle.motors import MotorError, Motors
+from vehicle.motors.pins import DigitalInputDevice, DigitalOutputDevice, translated
+from vehicle.motors.settings import Safety
+
+PRESSED = "the emergency stop is pressed, or its wire is open"
+
+
+class SafetyPins:
+    """The pins themselves. Made with the power off."""
+
+    def __init__(self, safety: Safety, *, pin_factory: Any = None) -> None:
+        """Raises MotorError."""
+        self.tripped = False
+        """The stop was open at some time since the power was switched on."""
+        self._enable = self._estop = self._heartbeat = None
+        with contextlib.ExitStack() as opened, translated("safety pins"):
+            opened.callback(self.close)
+            if safety.enable_pin is not None:
+                self._enable = DigitalOutputDevice(
+                    safety.enable_pin, active_high=safety.enable_active_high, pin_factory=pin_factory
+                )
+            if safety.heartbeat_pin is not None:
+                self._heartbeat = DigitalOutputDevice(safety.heartbeat_pin, pin_factory=pin_factory)
+            if safety.estop_pin is not None:
+                self._estop = DigitalInputDevice(safety.estop_pin, pull_up=True, pin_factory=pin_factory)
+                self._estop.when_deactivated = self._trip
+            opened.pop_all()
+
+    def check(self) -> None:
+        """Raises MotorError where the stop is open, or was since the power was switched on."""
+        with translated("emergency stop"):
+            if self._estop is not None and not self._estop.is_active:
+                self._trip()
+        if self.tripped:
+            raise MotorError(PRESSED)
+
+    def power_on(self) -> None:
+        """Let the motors have power. Raises MotorError where the stop is open."""
+        self.tripped = False
+        self.check()
+        with translated("enable pin"):
+            if self._enable is not None:
+                self._enable.on()
+        self.check()  # pressed in between: its edge came before `on`
+
+    def power_off(self) -> None:
+        """No power, and no sign of life."""
+        with translated("enable pin"), contextlib.ExitStack() as steps:
+            for pin in (self._heartbeat, self._enable):
+                if pin is not None:
+                    steps.callback(pin.off)
+        self.tripped = False
+
+    def beat(self) -> None:
+        """Change the heartbeat pin."""
+        if self._heartbeat is not None:
+            with translated("heartbeat pin"):
+                self._heartbeat.toggle()
+
+    def close(self) -> None:
+        """Power off and let the pins go. May come twice."""
+        pins = [pin for pin in (self._heartbeat, self._enable, self._estop) if pin is not None]
+        with translated("safety pins"), contextlib.ExitStack() as steps:
+            for pin in pins:
+                steps.callback(pin.close)
+            steps.callback(self.power_off)
+        self._enable = self._estop = self._heartbeat = None
+
+    def _trip(self) -> None:
+        """Also called from gpiozero's thread at the edge."""
+        self.tripped = True
+        if self._enable is not None:
+            self._enable.off()
+
+
+class GuardedMotors:
+    """Any motors, behind safety pins. Fits `vehicle.motors.Motors`."""
+
+    def __init__(self, motors: Motors, pins: SafetyPins) -> None:
+        self.count = motors.count
+        self._motors = motors
+        self._pins = pins
+        self._enabled = False
+
+    def enable(self) -> None:
+        """The driver first, from neutral, then the power. Raises MotorError while the stop is open."""
+        self._pins.check()
+        self._motors.enable()
+        if not self._enabled:
+            self._power_on()
+
+    def disable(self) -> None:
+        """The power first, then the driver."""
+        self._enabled = False
+        _both(self._pins.power_off, self._motors.disable)
+
+    def set(self, throttles: Sequence[float]) -> None:
+        """Set the motors and beat. Raises MotorError while the stop is open."""
+        self._pins.check()
+        self._motors.set(throttles)
+        if self._enabled:
+            self._pins.beat()
+
+    def close(self) -> None:
+        """Power off, driver closed, pins let go."""
+        self._enabled = False
+        with contextlib.ExitStack() as steps:
+            steps.callback(self._pins.close)
+            _both(self._pins.power_off, self._motors.close)
+
+    def _power_on(self) -> None:
+        try:
+            self._pins.power_on()
+        except MotorError:
+            self._motors.disable()
+            raise
+        self._enabled = True
+
+
+def _both(first: Callable[[], None], second: Callable[[], None]) -> None:
+    with contextlib.ExitStack() as steps:
+        steps.callback(second)
+        first()

@@ -1,0 +1,87 @@
+"""From a table of settings, as a TOML file has it, to checked values; and what may be put around any driver."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+
+import msgspec
+
+from vehicle.motors import Motors, MotorSettingsError
+from vehicle.motors.shaping import Limits, Shape, ShapedMotors
+
+if TYPE_CHECKING:
+    from vehicle.motors.safety_pins import SafetyPins
+
+Pin = Annotated[int, msgspec.Meta(ge=0, le=27, description="BCM number of a pin of the 40-pin header")]
+
+T = TypeVar("T")
+
+
+class Safety(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Pins beside the motors: an emergency stop, a power switch and a sign of life (vehicle/motors/safety_pins.py)."""
+
+    estop_pin: Pin | None = None
+    """Normally closed contact to ground; open, a broken wire too, is stop."""
+    enable_pin: Pin | None = None
+    """High while the motors may turn: standby of the bridges, output enable, a relay."""
+    enable_active_high: bool = True
+    """False for an enable that is active low, such as OE of a PCA9685."""
+    heartbeat_pin: Pin | None = None
+    """Changes with each write to enabled motors; a retriggerable timer cuts the power when it stands still."""
+
+    def __post_init__(self) -> None:
+        pins = [pin for pin in (self.estop_pin, self.enable_pin, self.heartbeat_pin) if pin is not None]
+        refuse_doubles(pins)
+
+
+class Around(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What every driver takes beside its own settings."""
+
+    shape: tuple[Shape, ...] = ()
+    """One for each motor, or none."""
+    limits: Limits | None = None
+    """Largest outputs of two motors that steer by their difference."""
+    safety: Safety | None = None
+
+    def guard(self) -> SafetyPins | None:
+        """The safety pins, with the power off. Raises MotorError."""
+        if self.safety is None:
+            return None
+        from vehicle.motors.safety_pins import SafetyPins
+
+        return SafetyPins(self.safety)
+
+    def wrap(self, motors: Motors, guard: SafetyPins | None) -> Motors:
+        """`motors` with all this around them. Raises MotorSettingsError."""
+        if self.shape or self.limits:
+            motors = ShapedMotors(motors, self.shape, self.limits)
+        if guard is not None:
+            from vehicle.motors.safety_pins import GuardedMotors
+
+            motors = GuardedMotors(motors, guard)
+        return motors
+
+
+def split(table: Mapping[str, Any]) -> tuple[Around, dict[str, Any]]:
+    """What goes around the driver, and the rest, which is its own. Raises MotorSettingsError."""
+    names = Around.__struct_fields__
+    around = parsed({key: value for key, value in table.items() if key in names}, Around)
+    return around, {key: value for key, value in table.items() if key not in names}
+
+
+def parsed(table: Mapping[str, Any], kind: type[T]) -> T:
+    """`table` as a `kind`. Raises MotorSettingsError, one line that says where."""
+    try:
+        return msgspec.convert(dict(table), kind)
+    except msgspec.ValidationError as error:
+        what, _, path = str(error).partition(" - at `$")
+        where = path.rstrip("`").replace("[...]", "[]")
+        raise MotorSettingsError(f"motor settings{': ' + where.lstrip('.') if where else ''}: {what}") from error
+
+
+def refuse_doubles(numbers: list[int]) -> None:
+    """Raises ValueError where a pin or channel has two jobs."""
+    doubles = sorted({number for number in numbers if numbers.count(number) > 1})
+    if doubles:
+        raise ValueError(f"{', '.join(map(str, doubles))} is used twice")

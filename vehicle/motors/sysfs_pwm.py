@@ -1,0 +1,279 @@
+"""Hardware PWM of the Raspberry Pi through /sys/class/pwm: bridges without noise, and servo pulses without jitter.
+
+A chip is found by its device (`fe20c000.pwm`), because its number moves between kernels.
+The hardware goes on with its last duty when the process is killed: `safe_stop` is what ends it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+
+from vehicle.motors import MotorError, checked
+from vehicle.motors.pulses import Idle, Pulse
+from vehicle.motors.settings import Pin, refuse_doubles
+
+ROOT = Path("/sys/class/pwm")
+RULES_WAIT = 1.0
+"""s that udev may take after an export until its rule lets the group `gpio` write (docs/pi.md)."""
+
+Number = Annotated[int, msgspec.Meta(ge=0, le=7)]
+
+
+class BridgePwm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="drives", tag="bridge"):
+    """An H-bridge with a PWM and a direction input."""
+
+    device: str
+    """Of the chip, as in its path below /sys/devices."""
+    channel: Number
+    direction: Pin
+    """Low is forward."""
+    frequency: Annotated[float, msgspec.Meta(ge=50, le=100_000)] = 20_000.0
+    """Hz; 20 kHz cannot be heard."""
+
+
+class ServoPwm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="drives", tag="servo"):
+    """An ESC or a servo."""
+
+    device: str
+    channel: Number
+    pulse: Pulse = Pulse()
+    frequency: Annotated[float, msgspec.Meta(ge=40, le=400)] = 50.0
+
+
+Output = BridgePwm | ServoPwm
+
+
+class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Outputs in motor order."""
+
+    outputs: Annotated[tuple[Output, ...], msgspec.Meta(min_length=1, max_length=4)]
+    idle: Idle = "neutral"
+    """For servo outputs; a bridge without duty is always off."""
+
+    def __post_init__(self) -> None:
+        names = [(output.device, output.channel) for output in self.outputs]
+        if len(set(names)) < len(names):
+            raise ValueError("a channel is used twice")
+        refuse_doubles([output.direction for output in self.outputs if isinstance(output, BridgePwm)])
+
+
+def write_file(path: Path, text: str) -> None:
+    """How sysfs takes a value: in one write."""
+    path.write_text(text)
+
+
+class Channel:
+    """One exported channel. Every order of writes below is one the kernel takes: duty is never more than period."""
+
+    def __init__(self, directory: Path, frequency: float, write: Callable[[Path, str], None]) -> None:
+        self.period = round(1e9 / frequency)
+        """ns"""
+        self._directory = directory
+        self._write = write
+
+    @property
+    def running(self) -> bool:
+        """The output is enabled, by us or by a process before us."""
+        return self._read("enable") == 1
+
+    def set_period(self) -> None:
+        """Ours, in place of another; without a pulse in between."""
+        if self._read("period") != self.period:
+            self.duty(0)
+            self._put("period", self.period)
+
+    def duty(self, nanoseconds: int) -> None:
+        """Length of the pulse."""
+        self._put("duty_cycle", nanoseconds)
+
+    def start(self) -> None:
+        """Let the duty out."""
+        self._put("enable", 1)
+
+    def stop(self) -> None:
+        """Duty 0 first: some drivers leave the pin at the level it had."""
+        with contextlib.ExitStack() as steps:
+            steps.callback(self._put, "enable", 0)
+            self.duty(0)
+
+    def _read(self, name: str) -> int:
+        return int((self._directory / name).read_text())
+
+    def _put(self, name: str, value: int) -> None:
+        self._write(self._directory / name, str(value))
+
+
+class Bridge:
+    """One motor on a bridge."""
+
+    def __init__(self, channel: Channel, direction: Any) -> None:
+        self._channel = channel
+        self._direction = direction
+        self._backward = False
+
+    def calm(self) -> None:
+        """No duty, output off."""
+        self._channel.stop()
+        self._channel.set_period()
+
+    def start(self) -> None:
+        """Duty 0, then on."""
+        self._channel.duty(0)
+        self._channel.start()
+
+    def set(self, throttle: float) -> None:
+        """The duty is 0 while the direction changes, so that no full pulse goes the wrong way."""
+        if throttle != 0.0 and (throttle < 0.0) != self._backward:
+            self._channel.duty(0)
+            self._backward = throttle < 0.0
+            self._direction.value = self._backward
+        self._channel.duty(round(abs(throttle) * self._channel.period))
+
+    def close(self) -> None:
+        """Let go of the pin."""
+        self._direction.close()
+
+
+class Servo:
+    """One motor behind an ESC, or a steering servo."""
+
+    def __init__(self, channel: Channel, pulse: Pulse, idle: Idle) -> None:
+        self._channel = channel
+        self._pulse = pulse
+        self._idle = idle
+
+    def calm(self) -> None:
+        """What `idle` says where there are pulses; where there are none, none."""
+        if self._channel.running and self._idle == "neutral":
+            self._channel.set_period()
+            self.set(0.0)
+        else:
+            self._channel.stop()
+            self._channel.set_period()
+
+    def start(self) -> None:
+        """Neutral, then on."""
+        self.set(0.0)
+        self._channel.start()
+
+    def set(self, throttle: float) -> None:
+        """The width of the pulse."""
+        self._channel.duty(round(self._pulse.width(throttle) * 1e9))
+
+    def close(self) -> None:
+        """Nothing to let go of: the channel stays exported, so that its permissions stay too."""
+
+
+class SysfsPwmMotors:
+    """Fits `vehicle.motors.Motors`."""
+
+    Settings = SysfsPwmSettings
+
+    def __init__(
+        self,
+        settings: SysfsPwmSettings,
+        *,
+        root: Path | None = None,
+        write: Callable[[Path, str], None] | None = None,
+        pin_factory: Any = None,
+    ) -> None:
+        """`root`, `write` and `pin_factory` are for tests. Raises MotorError."""
+        root, write = root or ROOT, write or write_file
+        self.count = len(settings.outputs)
+        self.enabled = False
+        self._outputs: list[Bridge | Servo] = []
+        with contextlib.ExitStack() as opened, _translated():
+            for wanted in settings.outputs:
+                channel = Channel(_exported(root, wanted, write), wanted.frequency, write)
+                output = _output(wanted, channel, settings.idle, pin_factory)
+                opened.callback(output.close)
+                output.calm()
+                self._outputs.append(output)
+            opened.pop_all()
+
+    def enable(self) -> None:
+        """Let the motors turn, from neutral."""
+        if not self.enabled:
+            with _translated():
+                for output in self._outputs:
+                    output.start()
+            self.enabled = True
+
+    def disable(self) -> None:
+        """Every output calm, also where one fails."""
+        self.enabled = False
+        with _translated(), contextlib.ExitStack() as steps:
+            for output in self._outputs:
+                steps.callback(output.calm)
+
+    def set(self, throttles: Sequence[float]) -> None:
+        """Set each output; nothing while disabled."""
+        values = checked(throttles, self.count)
+        if self.enabled:
+            with _translated():
+                for output, value in zip(self._outputs, values, strict=True):
+                    output.set(value)
+
+    def close(self) -> None:
+        """As disabled, then the pins are let go."""
+        with contextlib.ExitStack() as steps:
+            for output in self._outputs:
+                steps.callback(output.close)
+            self.disable()
+            self._outputs = []
+
+
+@contextlib.contextmanager
+def _translated() -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise MotorError(f"hardware PWM: {error.filename or 'sysfs'}: {error.strerror or error}") from error
+
+
+def _output(wanted: Output, channel: Channel, idle: Idle, pin_factory: Any) -> Bridge | Servo:
+    match wanted:
+        case ServoPwm():
+            return Servo(channel, wanted.pulse, idle)
+        case BridgePwm():
+            from vehicle.motors.pins import DigitalOutputDevice, translated
+
+            with translated("direction pin"):
+                return Bridge(channel, DigitalOutputDevice(wanted.direction, pin_factory=pin_factory))
+
+
+def _exported(root: Path, wanted: Output, write: Callable[[Path, str], None]) -> Path:
+    """The channel's directory. Raises MotorError, OSError."""
+    chip = _chip(root, wanted.device)
+    channels = int((chip / "npwm").read_text())
+    if wanted.channel >= channels:
+        raise MotorError(f"hardware PWM: {wanted.device} has {channels} channels, 0 to {channels - 1}")
+    directory = chip / f"pwm{wanted.channel}"
+    if not directory.exists():
+        write(chip / "export", str(wanted.channel))
+        _await_rules(directory / "enable")
+    return directory
+
+
+def _chip(root: Path, device: str) -> Path:
+    chips = {chip: chip.resolve() for chip in sorted(root.glob("pwmchip*"))}
+    for chip, real in chips.items():
+        if device in real.parts:
+            return chip
+    there = ", ".join(real.parent.parent.name for real in chips.values()) or "none (dtoverlay=pwm-2chan is missing?)"
+    raise MotorError(f"hardware PWM: no device {device!r}; there is {there}")
+
+
+def _await_rules(path: Path) -> None:
+    """Before the control loop runs; a write that is still not allowed then says so."""
+    never, waited = threading.Event(), 0.0
+    while waited < RULES_WAIT and not os.access(path, os.W_OK):
+        never.wait(0.02)
+        waited += 0.02
