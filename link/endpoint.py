@@ -18,9 +18,13 @@ class Endpoint:
     text: str
     """As the user wrote it, without `//`."""
     scheme: str
-    host: str
-    port: int
-    """1..65535"""
+    host: str = ""
+    port: int = 0
+    """1..65535, for sockets."""
+    path: str = ""
+    """Of a serial port."""
+    baud: int = 0
+    """bit/s, for serial ports."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +47,31 @@ def _host_port(scheme: str, rest: str) -> Endpoint:
     return Endpoint(text, scheme, host, int(port))
 
 
+def _path_baud(scheme: str, rest: str) -> Endpoint:
+    text = f"{scheme}:{rest}"
+    path, colon, baud = rest.rpartition(":")  # names under /dev/serial/by-path hold colons, too
+    if not colon or not path or not baud:
+        raise EndpointError(f"endpoint {text!r}: write {SCHEMES[scheme].form}, for example {scheme}:/dev/ttyAMA0:57600")
+    if not path.startswith("/"):
+        raise EndpointError(f"endpoint {text!r}: {path!r} is no path; write {scheme}:/dev/{path}:{baud}")
+    if not (baud.isascii() and baud.isdigit() and SLOWEST_BAUD <= int(baud) <= FASTEST_BAUD):
+        raise EndpointError(
+            f"endpoint {text!r}: baud rate {baud!r} is not a number from {SLOWEST_BAUD} to {FASTEST_BAUD}"
+        )
+    return Endpoint(text, scheme, path=path, baud=int(baud))
+
+
+SLOWEST_BAUD, FASTEST_BAUD = 300, 12_000_000
+"""What a radio modem of old and the fastest USB adapters take; 57600 and 921600 are usual."""
+
 SCHEMES: dict[str, Scheme] = {
     "udpin": Scheme("udpin:HOST:PORT", "wait on this address; answer whoever shows a heartbeat", _host_port),
     "udpout": Scheme("udpout:HOST:PORT", "send to this address first", _host_port),
+    "tcpin": Scheme("tcpin:HOST:PORT", "wait on this address for connections", _host_port),
+    "tcpout": Scheme("tcpout:HOST:PORT", "connect to this address, again and again", _host_port),
+    "serial": Scheme("serial:PATH:BAUD", "serial port or USB radio; unplugged, it is waited for", _path_baud),
 }
-"""Scheme -> its parser and help. link/runner.py holds the shell for each."""
+"""Scheme -> its parser and help. link/openers.py holds what opens each."""
 
 
 def parse(text: str) -> Endpoint:

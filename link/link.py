@@ -1,10 +1,11 @@
-"""What a link is to the runner: a shell around a socket or a port. To add a kind: a module beside udp.py, a line in
-endpoint.SCHEMES and one in runner.OPENERS."""
+"""What a link is: a wire (socket or port) with a channel (the conversation on it). To add a kind of wire: a module
+beside udp.py, a line in endpoint.SCHEMES and one in openers.OPENERS."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from link.channel import Channel
@@ -15,31 +16,55 @@ class LinkError(Exception):
     """A link cannot be opened; the message is one line that says what, where and what to do."""
 
 
-class Link(Protocol):
-    """A socket or port, open and not blocking."""
+Arrived = Callable[[Sequence[tuple[bytes, Hashable]]], None]
+"""Takes what arrived: bytes (a datagram, or any piece of a stream) and the address they came from."""
+Gone = Callable[[Hashable], None]
+"""Hears that the connection to an address has ended."""
+
+
+class Wire(Protocol):
+    """A socket or port, not blocking. It knows nothing of messages, only of frames that go first (transmit.py)."""
 
     endpoint: Endpoint
-    channel: Channel
     problem: str | None
     """Why it does not work now, in one line, or None."""
+    stream: bool
+    """Bytes have no datagram borders."""
+    fixed: Hashable | None
+    """The address that the user named, for wires that speak before they are spoken to."""
+    capacity: float | None
+    """Bytes/s that it takes, where that is known."""
 
-    def start(self, loop: asyncio.AbstractEventLoop, deliver: Datagrams) -> None:
-        """Hand what arrives to `deliver`."""
+    @property
+    def dropped(self) -> int:
+        """Frames that it had no room for."""
+
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+        """Hand over what arrives, from now on."""
 
     def send(self, data: bytes, address: Hashable) -> None:
-        """Put one frame on the wire, now or never; neither blocks nor raises."""
+        """Put one frame on the wire (a datagram may hold several), now or soon; neither blocks nor raises."""
 
     def close(self) -> None:
         """Free the port; safe to call once."""
 
 
-Datagrams = Callable[[Link, Sequence[tuple[bytes, Hashable]]], None]
+@dataclass(slots=True)
+class Link:
+    """A wire and the conversation on it."""
+
+    wire: Wire
+    channel: Channel
+
+    @property
+    def endpoint(self) -> Endpoint:
+        """Where it ends."""
+        return self.wire.endpoint
+
+    def close(self) -> None:
+        """Free the port."""
+        self.wire.close()
 
 
-class Opener(Protocol):
-    """Opens one kind of link."""
-
-    def __call__(
-        self, endpoint: Endpoint, index: int, *, system: int, component: int, wanted: frozenset[int] | None
-    ) -> Link:
-        """Raises LinkError with one clear line."""
+Opener = Callable[[Endpoint], Wire]
+"""Opens one kind of wire. Raises LinkError with one clear line."""

@@ -5,14 +5,15 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable, Hashable, Sequence
+from functools import partial
 from typing import Protocol, runtime_checkable
 
 from dialects.codec import EncodeError
 from dialects.messages import Message
-from link.core import Core, Outgoing, Received
-from link.endpoint import parse
-from link.link import Link, LinkError, Opener
-from link.udp import open_udp
+from link.channel import Channel
+from link.core import Core, LinkReport, Outgoing, Received
+from link.link import Link
+from link.openers import open_wires
 
 log = logging.getLogger(__name__)
 
@@ -28,24 +29,26 @@ class HearsOfSending(Protocol):
         """`message` went out under this number."""
 
 
-OPENERS: dict[str, Opener] = {"udpin": open_udp, "udpout": open_udp}
-"""Scheme of link/endpoint.py -> what opens it."""
-
-
 def open_links(
     endpoints: Sequence[str], *, system: int, component: int, wanted: frozenset[int] | None = None
 ) -> list[Link]:
     """Open all endpoints, or none: raises EndpointError or LinkError. `wanted`: see Channel."""
-    parsed = [parse(text) for text in endpoints]
-    links: list[Link] = []
-    try:
-        for index, endpoint in enumerate(parsed):
-            links.append(OPENERS[endpoint.scheme](endpoint, index, system=system, component=component, wanted=wanted))
-    except LinkError:
-        for link in links:
-            link.close()
-        raise
-    return links
+    return [
+        Link(
+            wire,
+            Channel(
+                wire.endpoint.text,
+                index,
+                system=system,
+                component=component,
+                stream=wire.stream,
+                wanted=wanted,
+                target=wire.fixed,
+                capacity=wire.capacity,
+            ),
+        )
+        for index, wire in enumerate(open_wires(endpoints))
+    ]
 
 
 class Runner:
@@ -68,7 +71,7 @@ class Runner:
         self._tick_due = loop.time()
         try:
             for link in self._links:
-                link.start(loop, self._deliver)
+                link.wire.start(loop, partial(self._deliver, link), link.channel.gone)
             self._tick()
             await self._ended
         finally:
@@ -136,7 +139,11 @@ class Runner:
     def _observe(self, now: float) -> None:
         for link in self._links:
             link.channel.forget_silent(now)
-        self._core.observe([link.channel.report(link.problem) for link in self._links], now)
+        self._core.observe([self._report(link, now) for link in self._links], now)
+
+    @staticmethod
+    def _report(link: Link, now: float) -> LinkReport:
+        return link.channel.report(link.wire.problem, now=now, dropped=link.wire.dropped)
 
     def _flush(self) -> None:
         for outgoing in self._core.messages_to_send():
@@ -148,6 +155,6 @@ class Runner:
     def _send(self, outgoing: Outgoing) -> None:
         for link in self._links:
             for data, address, sequence in link.channel.send(outgoing):
-                link.send(data, address)
+                link.wire.send(data, address)
                 if self._sent:
                     self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())

@@ -3,45 +3,46 @@
 from __future__ import annotations
 
 import asyncio
-import errno
 import socket
 from collections.abc import Hashable
 
-from link.channel import Channel
+from link.address import reason, resolve
 from link.endpoint import Endpoint
-from link.link import Datagrams, LinkError
+from link.link import Arrived, Gone, LinkError
 
 BATCH = 64
 """Datagrams read before the loop gets its turn again: a flood must not starve the control loop (about 1 ms)."""
 BUFFER = 65536
 
 
-class UdpLink:
+class UdpWire:
     """One UDP socket: `udpin` waits on an address, `udpout` speaks to one first and hears only that one."""
 
-    def __init__(self, endpoint: Endpoint, channel: Channel, sock: socket.socket) -> None:
+    def __init__(self, endpoint: Endpoint, sock: socket.socket) -> None:
         self.endpoint = endpoint
-        self.channel = channel
         self.problem: str | None = None
+        self.stream = False
+        self.fixed: Hashable | None = endpoint.text if endpoint.scheme == "udpout" else None
+        self.capacity: float | None = None
+        self.dropped = 0
         self._socket = sock
-        self._connected = endpoint.scheme == "udpout"
         self._buffer = memoryview(bytearray(BUFFER))
         self._loop: asyncio.AbstractEventLoop | None = None
 
-    def start(self, loop: asyncio.AbstractEventLoop, deliver: Datagrams) -> None:
-        """Hand arriving datagrams to `deliver` in batches."""
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+        """Hand arriving datagrams to `arrived` in batches; UDP knows no end of a connection."""
         self._loop = loop
-        loop.add_reader(self._socket, self._readable, deliver)
+        loop.add_reader(self._socket, self._readable, arrived)
 
     def send(self, data: bytes, address: Hashable) -> None:
         """One datagram, now or never."""
         try:
-            if self._connected:
+            if self.fixed is not None:
                 self._socket.send(data)
             else:
                 self._socket.sendto(data, address)  # type: ignore[call-overload]
         except (BlockingIOError, ConnectionRefusedError):
-            return  # full, or nobody listens yet: as if the network had lost it
+            self.dropped += 1  # full, or nobody listens yet: as if the network had lost it
         except OSError as error:
             self.problem = f"{self.endpoint.text}: {error.strerror}"
         else:
@@ -53,7 +54,7 @@ class UdpLink:
             self._loop.remove_reader(self._socket)
         self._socket.close()
 
-    def _readable(self, deliver: Datagrams) -> None:
+    def _readable(self, arrived: Arrived) -> None:
         batch: list[tuple[bytes, Hashable]] = []
         for _ in range(BATCH):
             try:
@@ -63,14 +64,14 @@ class UdpLink:
             except OSError as error:
                 self.problem = f"{self.endpoint.text}: {error.strerror}"
                 break
-            batch.append((bytes(self._buffer[:size]), self.channel.name if self._connected else address))
+            batch.append((bytes(self._buffer[:size]), self.fixed or address))
         if batch:
-            deliver(self, batch)
+            arrived(batch)
 
 
-def open_udp(endpoint: Endpoint, index: int, *, system: int, component: int, wanted: frozenset[int] | None) -> UdpLink:
+def open_udp(endpoint: Endpoint) -> UdpWire:
     """Open the socket. Raises LinkError with one line that says what is wrong and what to do."""
-    address, family = _resolve(endpoint)
+    address, family = resolve(endpoint, socket.SOCK_DGRAM)
     sock = socket.socket(family, socket.SOCK_DGRAM)
     sock.setblocking(False)
     try:
@@ -80,30 +81,5 @@ def open_udp(endpoint: Endpoint, index: int, *, system: int, component: int, wan
             sock.bind(address)
     except OSError as error:
         sock.close()
-        raise LinkError(_reason(endpoint, error)) from error
-    target = endpoint.text if endpoint.scheme == "udpout" else None
-    channel = Channel(endpoint.text, index, system=system, component=component, wanted=wanted, target=target)
-    return UdpLink(endpoint, channel, sock)
-
-
-def _resolve(endpoint: Endpoint) -> tuple[tuple[str, int], socket.AddressFamily]:
-    try:
-        found = socket.getaddrinfo(endpoint.host, endpoint.port, type=socket.SOCK_DGRAM)
-    except (OSError, UnicodeError) as error:
-        raise LinkError(
-            f"{endpoint.text}: host {endpoint.host!r} is not known; check its name or use its number"
-        ) from error
-    family, _, _, _, address = found[0]
-    return (str(address[0]), int(address[1])), family
-
-
-def _reason(endpoint: Endpoint, error: OSError) -> str:
-    if error.errno == errno.EADDRINUSE:
-        return (
-            f"{endpoint.text}: port {endpoint.port} is in use; stop the other program (`ss -lunp`) or take another port"
-        )
-    if error.errno == errno.EADDRNOTAVAIL:
-        return f"{endpoint.text}: {endpoint.host} is no address of this machine; use one of its own, or 0.0.0.0 for all"
-    if error.errno in (errno.EACCES, errno.EPERM):
-        return f"{endpoint.text}: not allowed; ports below 1024 belong to root, take a higher one"
-    return f"{endpoint.text}: {error.strerror}"
+        raise LinkError(reason(endpoint, error)) from error
+    return UdpWire(endpoint, sock)

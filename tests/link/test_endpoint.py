@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from link.endpoint import SCHEMES, Endpoint, EndpointError, endpoint_help, parse
-from link.runner import OPENERS
+from link.openers import OPENERS
 
 
 @pytest.mark.parametrize(
