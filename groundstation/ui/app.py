@@ -60,8 +60,8 @@ class HelmApp(App[int]):
         self._snapshot = Snapshot()
         self._pressed: dict[str, float] = {}
         self._shown_at = 0.0
-        self._closed = False
-        self._beating: asyncio.AbstractEventLoop | None = None
+        self._leaving = False
+        self._own_loop: asyncio.AbstractEventLoop | None = None
         self.drive = DriveScreen(keymap, self._send, self.perform)
 
     # ---- life ----
@@ -71,8 +71,8 @@ class HelmApp(App[int]):
         self.register_theme(THEME)
         self.theme = THEME.name
         self.push_screen(self.drive)
-        self._beating = asyncio.get_running_loop()
-        self._beating.add_reader(self._client.fileno(), self._readable)
+        self._own_loop = asyncio.get_running_loop()
+        self._own_loop.add_reader(self._client.fileno(), self._readable)
         # In this loop and in no thread: a screen that hangs must lose its lease.
         self.set_interval(TICK, self._tick)
         self.set_interval(PERIOD, self._ping)
@@ -87,14 +87,14 @@ class HelmApp(App[int]):
     def end(self, code: int = 0) -> None:
         """Leave; neutral at once."""
         self.gate.shut("quitting")
-        self._closed = True
+        self._leaving = True
         self.exit(code)
 
     def end_soon(self, code: int) -> None:
         """The same from a signal handler: takes no lock."""
-        if self._beating is None:
+        if self._own_loop is None:
             raise SystemExit(code)
-        self._beating.call_soon_threadsafe(self.end, code)
+        self._own_loop.call_soon_threadsafe(self.end, code)
 
     def on_terminal_closed(self, event: TerminalClosed) -> None:
         """Nobody can see or type any more: the same as a hang-up."""
@@ -156,7 +156,7 @@ class HelmApp(App[int]):
     def _why_shut(self, now: float) -> Shut | None:
         """Why keys must not drive now, as far as the screen knows; None when they may."""
         checks: tuple[tuple[bool, Shut], ...] = (
-            (self._closed, Shut("quitting")),
+            (self._leaving, Shut("quitting")),
             (not self._client.alive, Shut("the station has ended")),
             (self.screen is not self.drive, Shut("another screen is open", Door.STOPS)),
             (self.drive.question is not None, Shut("a question is open", Door.STOPS)),

@@ -113,12 +113,9 @@ class KeyEventParser(XTermParser):
 
     def _press(self, token: Message) -> KeyPress | None:
         match token:
-            case KeyUp(key=key):
-                return KeyPress(self._latin.get(key, key), release=True)
-            case KeyRepeat(key=key):
-                return KeyPress(self._latin.get(key, key), repeat=True)
-            case events.Key(key=key) if key not in MODIFIER_FUNCTIONAL_KEYS:
-                return KeyPress(self._latin.get(key, key))
+            case events.Key(key=key) | KeyUp(key=key) if key not in MODIFIER_FUNCTIONAL_KEYS:
+                name = self._latin.get(key, key)
+                return KeyPress(name, repeat=isinstance(token, KeyRepeat), release=isinstance(token, KeyUp))
             case events.Paste():
                 return KeyPress("paste")  # bound to nothing, and so a stop while driving
         return None
@@ -132,7 +129,7 @@ class KeyEventParser(XTermParser):
             return [_ignored(sequence)]
         found = _KEY.fullmatch(sequence)
         if found is None:
-            return super()._sequence_to_key_events(sequence, alt)
+            return self._stock(sequence, alt)
         code, alternates, modifiers, kind, text, end = found.groups(default="")
         if kind:
             self._sink.exact()
@@ -141,17 +138,21 @@ class KeyEventParser(XTermParser):
         return self._pressed(code + end, _plain(code, modifiers, text, end), alternates, kind == _REPEAT, alt)
 
     def _released(self, code: str, plain: str, alt: bool) -> Iterable[events.Key]:
-        names = [self._names.pop(code)] if code in self._names else self._stock_names(plain, alt)
-        if not names or names[0] == Keys.Ignore or names[0] in MODIFIER_FUNCTIONAL_KEYS:
+        stock = self._stock(plain, alt)
+        name = self._names.pop(code, stock[0].key if stock else Keys.Ignore)
+        if name == Keys.Ignore or name in MODIFIER_FUNCTIONAL_KEYS:
             return [_ignored(plain)]
         # The caller only reads `.key` and hands the event on, so a KeyUp may stand where keys are announced.
-        return [cast(events.Key, KeyUp(names[0]))]
+        return [cast(events.Key, KeyUp(name))]
 
-    def _stock_names(self, plain: str, alt: bool) -> list[str]:
-        return [key.key for key in super()._sequence_to_key_events(plain, alt)]
+    def _stock(self, sequence: str, alt: bool) -> list[events.Key]:
+        try:
+            return list(super()._sequence_to_key_events(sequence, alt))
+        except (ValueError, OverflowError):  # a sub-field where none belongs, a code point that does not exist
+            return [_ignored(sequence)]
 
     def _pressed(self, code: str, plain: str, alternates: str, repeat: bool, alt: bool) -> Iterable[events.Key]:
-        keys = list(super()._sequence_to_key_events(plain, alt))
+        keys = self._stock(plain, alt)
         for key in keys:
             self._names[code] = key.key
             self._remember_latin(key, alternates)
@@ -207,8 +208,8 @@ class HelmDriver(LinuxDriver):
         return 80, 24
 
     def _sigtstp_application(self, *arguments: Any) -> None:
-        # This is a signal handler, and the main thread that it stopped may hold a lock that `shut` needs. Then the other
-        # thread waits in vain, and the lease runs out instead.
+        # A signal handler: the main thread that it stopped may hold a lock that `shut` needs. Then the other thread
+        # waits in vain, and the lease runs out instead.
         shut = Thread(target=self.sink.shut, args=("the ground station was suspended",), daemon=True)
         shut.start()
         shut.join(SUSPEND_PATIENCE)

@@ -1,0 +1,132 @@
+"""Snapshots to draw, and a station that only notes what it is asked: for the tests of the screen."""
+
+from __future__ import annotations
+
+import math
+import socket
+from collections.abc import Sequence
+from typing import Any, TypeVar
+
+import msgspec
+
+from groundstation.intents import AnyIntent, Gate, Lease
+from groundstation.snapshot import HelmView, LinkView, MessageRate, Snapshot, TextLine, VehicleView
+
+NOON = 1_700_000_000.0
+"""A wall clock for log lines; the tests run in UTC."""
+
+Wanted = TypeVar("Wanted")
+
+
+class Recorder:
+    """A station that keeps the intents it gets and gives the snapshots it was offered; its descriptor is real."""
+
+    def __init__(self) -> None:
+        self.intents: list[AnyIntent] = []
+        self.alive = True
+        self._waiting: list[Snapshot] = []
+        self._ours, self._theirs = socket.socketpair()
+        self._ours.setblocking(False)
+
+    def send(self, *intents: AnyIntent) -> None:
+        """Note them."""
+        self.intents += intents
+
+    def fileno(self) -> int:
+        """Readable after `offer`."""
+        return self._ours.fileno()
+
+    def receive(self) -> Snapshot | None:
+        """The newest offered."""
+        if not self._waiting:
+            return None
+        self._ours.recv(1 << 16)
+        newest = self._waiting[-1]
+        self._waiting.clear()
+        return newest
+
+    def offer(self, snapshot: Snapshot) -> None:
+        """Let this be the newest snapshot."""
+        self._waiting.append(snapshot)
+        self._theirs.send(b"!")
+
+    def close(self) -> None:
+        """Give the descriptors back."""
+        self._ours.close()
+        self._theirs.close()
+
+    @property
+    def wishes(self) -> list[AnyIntent]:
+        """The intents without the beat and the gate."""
+        return [intent for intent in self.intents if not isinstance(intent, (Lease, Gate))]
+
+    def of(self, kind: type[Wanted]) -> list[Wanted]:
+        """Those of one kind."""
+        return [intent for intent in self.intents if isinstance(intent, kind)]
+
+
+def path(count: int = 160) -> tuple[tuple[float, float], ...]:
+    """A drive with two bends and a loop, (north, east) in m."""
+    points = []
+    north = east = 0.0
+    for step in range(count):
+        heading = 0.6 + 1.1 * math.sin(step / 18) + step / 70
+        north, east = north + 0.22 * math.cos(heading), east + 0.22 * math.sin(heading)
+        points.append((north, east))
+    return tuple(points)
+
+
+def vehicle(**changes: Any) -> VehicleView:
+    """A rover that drives a curve, armed, with everything known."""
+    track = path()
+    view = VehicleView(
+        system=1, name="Rover 1", autopilot=0, mode="MANUAL", armed=True, status=4, alive=True, silence=0.1, driver=255,
+        in_control=True, position=track[-1], home=(0.0, 0.0), track=track, heading=2.4, roll=0.06, pitch=-0.03,
+        speed=0.84, battery_voltage=11.82, battery_current=2.4, battery_remaining=0.76, gps_fix=3, gps_satellites=14,
+        demand=(0.58, 0.24), outputs=(0.71, 0.46), limits=("slew",), command_age=0.042, latency=0.0013,
+    )  # fmt: skip
+    return msgspec.structs.replace(view, **changes)
+
+
+def helm(**changes: Any) -> HelmView:
+    """A driver who holds `o`."""
+    view = HelmView(
+        style="hold", exact=True, stop_bound=0.0, held=("o",), throttle=0.6, steering=0.25, throttle_limit=0.6,
+        steering_limit=0.6, gate_open=True, sending=True, rate=20.0,
+    )  # fmt: skip
+    return msgspec.structs.replace(view, **changes)
+
+
+TEXTS = (
+    TextLine(time=NOON, severity=6, label="vehicle", text="rover 1, mavhelm vehicle 0.1, MANUAL"),
+    TextLine(time=NOON + 1, severity=6, label="ack", text="COMPONENT_ARM_DISARM accepted"),
+    TextLine(time=NOON + 20, severity=4, label="vehicle", text="battery 11.9 V below 12.0 V", count=3),
+    TextLine(time=NOON + 27, severity=2, label="vehicle", text="no MANUAL_CONTROL for 520 ms, motors stopped"),
+    TextLine(time=NOON + 28, severity=6, label="vehicle", text="control regained"),
+)
+
+RATES: Sequence[tuple[str, float, int, bool]] = (
+    ("HEARTBEAT", 1.0, 2023, False), ("ATTITUDE", 10.0, 6577, False), ("VFR_HUD", 4.0, 7363, False),
+    ("GLOBAL_POSITION_INT", 5.0, 8773, False), ("SYS_STATUS", 2.0, 1083, False), ("SERVO_OUTPUT_RAW", 5.0, 7333, False),
+    ("GPS_RAW_INT", 5.0, 7509, False), ("BATTERY_STATUS", 1.0, 1319, False), ("COMMAND_ACK", 0.0, 12, False),
+    ("STATUSTEXT", 0.2, 27, False), ("TIMESYNC", 1.0, 6264, False), ("ROVER_DRIVE_STATUS", 20.0, 9128, False),
+    ("MANUAL_CONTROL", 20.0, 7942, True), ("ROVER_OPERATOR_PRESENCE", 20.0, 7942, True), ("HEARTBEAT", 1.0, 747, True),
+)  # fmt: skip
+
+
+def snapshot(**changes: Any) -> Snapshot:
+    """All of it."""
+    picture = Snapshot(
+        number=1, uptime=60.0, endpoints=("udpin:127.0.0.1:14550",), vehicle=vehicle(), vehicles=(1,), helm=helm(),
+        links=(LinkView(name="udpin:127.0.0.1:14550", loss=0.003, round_trip=0.012, rate=55.0),), texts=TEXTS,
+        messages=tuple(MessageRate(name=name, rate=rate, count=count, sent=sent) for name, rate, count, sent in RATES),
+    )  # fmt: skip
+    return msgspec.structs.replace(picture, **changes)
+
+
+def waiting(**changes: Any) -> Snapshot:
+    """No vehicle yet."""
+    text = "waiting for a vehicle on udpin:127.0.0.1:14550"
+    return snapshot(
+        vehicle=None, vehicles=(), helm=HelmView(gate_reason="no vehicle"), texts=(), waiting=text, **changes
+    )

@@ -1,0 +1,106 @@
+"""A real pseudo-terminal with the real app in it: what the other end writes are bytes, as a terminal sends them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import fcntl
+import os
+import pty
+import signal
+import struct
+import termios
+from collections.abc import AsyncIterator, Callable, Iterable
+from threading import Thread
+from typing import TypeVar
+
+from groundstation.keymap import KEYMAPS, Keymap
+from groundstation.ui.app import HelmApp
+from groundstation.ui.output import TerminalFile
+from tests.groundstation.ui.examples import Recorder
+
+STANDARD = Keymap("standard", KEYMAPS["standard"])
+PATIENCE = 10.0
+"""s that a test waits for what must come; it comes in milliseconds."""
+
+Value = TypeVar("Value")
+
+
+class Terminal:
+    """The person's end of the pseudo-terminal: reads what is drawn, answers pings while told to."""
+
+    def __init__(self, master: int, slave: int) -> None:
+        self.drawn = bytearray()
+        self.answers = True
+        self._master, self._slave = master, slave
+        self._hung_up = False
+        self._loop = asyncio.get_running_loop()
+        # In a thread: the app's end waits for what it wrote to be read, and it ends in the test's own loop.
+        self._reader = Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def type(self, data: str | bytes) -> None:
+        """Send bytes as one write."""
+        os.write(self._master, data.encode() if isinstance(data, str) else data)
+
+    async def type_each(self, keys: Iterable[str], gap: float) -> None:
+        """Send keys, each at its own absolute time, `gap` s apart."""
+        start = self._loop.time()
+        done = self._loop.create_future()
+        keys = list(keys)
+        for number, key in enumerate(keys):
+            self._loop.call_at(start + number * gap, self.type, key)
+        self._loop.call_at(start + len(keys) * gap, done.set_result, None)
+        await done
+
+    def hang_up(self) -> None:
+        """Close this end. (The reader would keep it open, so it is woken by a last byte to read.)"""
+        if not self._hung_up:
+            self._hung_up = True
+            os.write(self._slave, b"!")
+            self._reader.join()
+
+    def _read(self) -> None:
+        with contextlib.suppress(OSError):
+            while not self._hung_up:
+                data = os.read(self._master, 1 << 16)
+                self.drawn += data
+                if self.answers:
+                    self.type(b"\x1b[0n" * data.count(b"\x1b[5n"))
+        os.close(self._master)
+
+
+async def until(wanted: Callable[[], Value]) -> Value:
+    """Wait until it is true, looking at each turn of the loop's clock; fails after PATIENCE."""
+    loop = asyncio.get_running_loop()
+    deadline = loop.time() + PATIENCE
+    while not (value := wanted()):
+        if loop.time() > deadline:
+            raise TimeoutError("it did not come")
+        turn = loop.create_future()
+        loop.call_later(0.005, turn.set_result, None)
+        await turn
+    return value
+
+
+@contextlib.asynccontextmanager
+async def app_on_a_pty(size: tuple[int, int] = (100, 30)) -> AsyncIterator[tuple[HelmApp, Recorder, Terminal]]:
+    """The app with the Drive screen up and its gate open; on leaving it is quit if it has not ended by itself."""
+    master, slave = pty.openpty()
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGTSTP, signal.SIGCONT, signal.SIGWINCH)}
+    recorder, terminal = Recorder(), Terminal(master, slave)
+    app = HelmApp(recorder, STANDARD, terminal=TerminalFile(slave, slave))
+    running = asyncio.create_task(app.run_async(mouse=False))
+    try:
+        await until(lambda: app.gate.state is None or running.done())
+        yield app, recorder, terminal
+    finally:
+        if not running.done():
+            app.end()
+        await asyncio.wait_for(running, PATIENCE)
+        recorder.close()
+        terminal.hang_up()
+        os.close(slave)
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
