@@ -15,6 +15,20 @@ from link.openers import OPENERS
         ("udpout://rover.local:14550", Endpoint("udpout:rover.local:14550", "udpout", "rover.local", 14550)),
         (" UDPIN:0.0.0.0:1/ ", Endpoint("udpin:0.0.0.0:1", "udpin", "0.0.0.0", 1)),
         ("udpout:[::1]:14550", Endpoint("udpout:[::1]:14550", "udpout", "::1", 14550)),
+        ("tcpin:0.0.0.0:5760", Endpoint("tcpin:0.0.0.0:5760", "tcpin", "0.0.0.0", 5760)),
+        (
+            "serial:/dev/ttyAMA0:57600",
+            Endpoint("serial:/dev/ttyAMA0:57600", "serial", path="/dev/ttyAMA0", baud=57600),
+        ),
+        (
+            "serial:///dev/serial/by-path/usb-0:1.2:1.0-port0:921600",
+            Endpoint(
+                "serial:/dev/serial/by-path/usb-0:1.2:1.0-port0:921600",
+                "serial",
+                path="/dev/serial/by-path/usb-0:1.2:1.0-port0",
+                baud=921600,
+            ),
+        ),
     ],
 )
 def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
@@ -35,6 +49,12 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
         ("udpin:127.0.0.1:65536", "port '65536'"),
         ("udpin:127.0.0.1:-1", "port '-1'"),
         ("udpin:127.0.0.1:\u0661", "is not a number"),
+        ("serial:/dev/ttyAMA0", "for example serial:/dev/ttyAMA0:57600"),
+        ("serial:/dev/ttyAMA0:", "for example serial:/dev/ttyAMA0:57600"),
+        ("serial:ttyAMA0:57600", "write serial:/dev/ttyAMA0:57600"),
+        ("serial:/dev/ttyAMA0:fast", "baud rate 'fast' is not a number"),
+        ("serial:/dev/ttyAMA0:0", "baud rate '0' is not a number from 300"),
+        ("serial:/dev/ttyAMA0:99999999", "baud rate '99999999'"),
     ],
 )
 def test_what_is_not_understood_is_explained(text: str, told: str) -> None:

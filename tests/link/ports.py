@@ -1,0 +1,110 @@
+"""Serial cables for tests: a pty behind a path that can be unplugged, and a cable that passes bytes at a baud rate."""
+
+from __future__ import annotations
+
+import asyncio
+import fcntl
+import os
+import pty
+import termios
+import tty
+from collections.abc import Callable, Hashable, Sequence
+from pathlib import Path
+
+from link.link import Wire
+
+
+class Cable:
+    """A pty. The program under test opens `path`; the test holds the other end."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.plug()
+
+    @property
+    def endpoint(self) -> str:
+        return f"serial:{self.path}:57600"
+
+    def plug(self) -> None:
+        """A new device under the old name, as USB does it."""
+        self.far, near = pty.openpty()
+        tty.setraw(near)
+        os.set_blocking(self.far, False)
+        self.path.symlink_to(os.ttyname(near))
+        self._near = near
+
+    def unplug(self) -> None:
+        self.path.unlink()
+        os.close(self._near)
+        os.close(self.far)
+
+    def read(self, most: int = 65536) -> bytes:
+        """What the program has written, as much as is there."""
+        try:
+            return os.read(self.far, most)
+        except BlockingIOError:
+            return b""
+
+    def write(self, data: bytes) -> None:
+        assert os.write(self.far, data) == len(data)
+
+
+class BaudCable(Cable):
+    """A cable that passes what the program writes at `baud`, as the wire of a UART would; the rest waits in the pty."""
+
+    def __init__(self, path: Path, baud: int) -> None:
+        super().__init__(path)
+        self.received = b""
+        self._per_second = baud / 10
+        self._loop = asyncio.get_running_loop()
+        self._passed_until = self._loop.time()
+        self._pass()
+
+    @property
+    def waiting(self) -> int:
+        """Bytes that the program has written and the wire has not passed yet."""
+        return int.from_bytes(fcntl.ioctl(self.far, termios.FIONREAD, bytes(4)), "little")
+
+    def _pass(self) -> None:
+        now = self._loop.time()
+        room = int((now - self._passed_until) * self._per_second)
+        if room:
+            self._passed_until += room / self._per_second
+            self.received += self.read(room)
+        self._timer = self._loop.call_later(0.001, self._pass)
+
+    def unplug(self) -> None:
+        self._timer.cancel()
+        super().unplug()
+
+
+class Heard:
+    """What a wire has handed over."""
+
+    def __init__(self, wire: Wire) -> None:
+        self.wire = wire
+        self.data: list[tuple[bytes, Hashable]] = []
+        self.gone: list[Hashable] = []
+        wire.start(asyncio.get_running_loop(), self._arrived, self.gone.append)
+
+    def _arrived(self, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
+        self.data += pieces
+
+    @property
+    def bytes(self) -> bytes:
+        return b"".join(data for data, _ in self.data)
+
+
+async def until(condition: Callable[[], object], within: float = 10.0) -> None:
+    """Let the loop run until `condition`."""
+    async with asyncio.timeout(within):
+        while not condition():
+            await _turn()
+
+
+async def _turn() -> None:
+    """Let the loop do what is due, and at least 1 ms pass."""
+    loop = asyncio.get_running_loop()
+    due = loop.create_future()
+    loop.call_later(0.001, due.set_result, None)
+    await due
