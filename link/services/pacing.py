@@ -1,0 +1,46 @@
+"""How fast bulk answers go out: a share of each peer's link, so that lists, files and logs never crowd out the rest.
+
+The services that send more than one answer to a question (parameter lists, file bursts, logs) take from one Pacer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from dialects import codec
+from dialects.messages import Message
+from link.core import Peer
+from link.rate import TokenBucket
+
+DEFAULT_RATE = 400_000.0
+"""bytes/s to a peer on a network: 1600 file frames a second, two thirds of what link/channel.py takes from a peer."""
+SHARE = 0.4
+"""Part of a slow link that bulk answers may fill: the specification says 30 to 50 % for parameters."""
+BURST_TIME = 0.05
+"""s of the rate that may go at once: two and a half control cycles, so that a late cycle loses nothing."""
+MAX_PEERS = 32
+OVERHEAD = 12
+"""Bytes of a MAVLink 2 frame around its payload."""
+
+
+class Pacer:
+    """Says when the next bulk frame may go to a peer. `rate` gives the bytes/s for one."""
+
+    def __init__(self, rate: Callable[[Peer], float] = lambda peer: DEFAULT_RATE) -> None:
+        self._rate = rate
+        self._buckets: dict[Peer, tuple[float, TokenBucket]] = {}
+
+    def take(self, peer: Peer, size: int, now: float) -> bool:
+        """True when `size` bytes may go to `peer` now."""
+        rate = self._rate(peer)
+        known = self._buckets.get(peer)
+        if known is None or known[0] != rate:
+            known = self._buckets[peer] = (rate, TokenBucket(rate, max(rate * BURST_TIME, codec.MAX_FRAME)))
+            if len(self._buckets) > MAX_PEERS:
+                del self._buckets[next(iter(self._buckets))]
+        return known[1].take(now, size)
+
+
+def frame_size(message: Message) -> int:
+    """Bytes that `message` takes on the wire, unsigned. Raises codec.EncodeError."""
+    return len(codec.encode_payload(message)) + OVERHEAD
