@@ -38,6 +38,9 @@ SNAPSHOT_PERIOD = 0.1
 END_WITHIN = 1.0
 """s for the last neutral frames (0.25 s are needed), then the process ends in any case."""
 
+EVERY_ADDRESS = ("0.0.0.0", "::")
+"""Hosts that mean "all addresses of this machine" and cannot be sent to."""
+
 LOG_SIZE = 1 << 20
 LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 
@@ -74,14 +77,15 @@ class Helm:
 
     def start_simulator(self, now: float) -> None:
         """Start a simulator that speaks to the first of our links that listens on this machine."""
-        port = next((link.endpoint.port for link in self._links if link.endpoint.scheme == "udpin"), None)
+        endpoint = next((link.endpoint for link in self._links if link.endpoint.scheme == "udpin"), None)
         if self._simulator is not None and self._simulator.running:
             return
-        if port is None:
+        if endpoint is None:
             self._say(now, "the simulator needs a link that listens, such as udpin:127.0.0.1:14550")
             return
         try:
-            self._simulator = Simulator(port)
+            host = "127.0.0.1" if endpoint.host in EVERY_ADDRESS else endpoint.host
+            self._simulator = Simulator(host, endpoint.port)
         except OSError as error:
             self._say(now, f"the simulator did not start: {error.strerror}")
 

@@ -30,13 +30,13 @@ def free_port() -> int:
 class Simulator:
     """One `vehicle --sim`. What it prints goes to a file; its last line is the reason when it ends."""
 
-    def __init__(self, port: int) -> None:
-        """Start it, sending to `port` of the loopback. Raises OSError."""
+    def __init__(self, host: str, port: int) -> None:
+        """Start it, sending to an address of this machine. Raises OSError."""
         with tempfile.NamedTemporaryFile(prefix="mavhelm-sim-", suffix=".log", delete=False) as output:
             self.output = Path(output.name)
             self._process: subprocess.Popen[bytes] = start_module(
                 "vehicle",
-                ["--sim", f"udpout:127.0.0.1:{port}"],
+                ["--sim", f"udpout:{host}:{port}"],
                 output=output,
                 new_session=True,  # Ctrl-C in the terminal is for the screen
                 prepare=_die_with_parent(),

@@ -1,0 +1,14 @@
+"""A screen process to be killed: starts a station, arms, holds a key, prints the station's pid. Run as `python -m`."""
+
+from __future__ import annotations
+
+import sys
+import threading
+
+from tests.groundstation.screen import Screen
+
+if __name__ == "__main__":
+    screen = Screen(sys.argv[1])
+    screen.hold_forward()
+    print(screen.client.pid, flush=True)
+    threading.Event().wait()

@@ -1,0 +1,102 @@
+"""The screen's side without a screen: a client, its lease, and waiting for what the snapshots say."""
+
+from __future__ import annotations
+
+import select
+import threading
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any
+
+from groundstation.client import StationClient
+from groundstation.intents import Arm, ExactKeys, Gate, Lease, Push
+from groundstation.sitl import free_port
+from groundstation.snapshot import Snapshot
+from tests.groundstation.udp_vehicle import UdpVehicle
+
+FORWARD = Push(key="i", throttle=1, steering=0)
+
+
+class Screen:
+    """Starts a station process on a free port; renews the lease until told otherwise."""
+
+    def __init__(self, *endpoints: str, **options: Any) -> None:
+        endpoints = endpoints or (f"udpin:127.0.0.1:{free_port()}",)
+        self.client = StationClient.start([] if options.get("sitl") else endpoints, **options)
+        self.snapshot = Snapshot()
+        self.client.send(Lease(), Gate(open=True))
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._renew, daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Screen:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.freeze()
+        self.client.close()
+
+    @property
+    def endpoint(self) -> str:
+        return self.client.endpoints[0]
+
+    def freeze(self) -> None:
+        """Stop renewing the lease."""
+        self._stop.set()
+        self._thread.join()
+
+    def see(self, condition: Callable[[Snapshot], bool], within: float = 5.0) -> Snapshot:
+        """Wait for a snapshot of which `condition` is true."""
+        deadline = time.monotonic() + within
+        while time.monotonic() < deadline and self.client.alive:
+            select.select([self.client.fileno()], [], [], 0.2)
+            newest = self.client.receive()
+            if newest is not None:
+                self.snapshot = newest
+                if condition(newest):
+                    return newest
+        raise AssertionError(f"not seen within {within} s (alive: {self.client.alive}); last: {self.snapshot}")
+
+    def drive(self, vehicle: UdpVehicle) -> None:
+        """Arm and hold `i`; returns when the vehicle has heard the demand."""
+        self.hold_forward()
+        until(lambda: any(x == 600 for _, x in vehicle.demands(0.0)))
+
+    def hold_forward(self) -> None:
+        """Arm and hold `i`; returns when the station says that it sends the demand."""
+        self.see(lambda snapshot: snapshot.vehicle is not None)
+        self.client.send(Arm())
+        self.see(lambda snapshot: snapshot.vehicle is not None and snapshot.vehicle.armed)
+        self.see(lambda snapshot: snapshot.helm.gate_open)
+        self.client.send(ExactKeys(), FORWARD)
+        self.see(lambda snapshot: snapshot.helm.throttle > 0)
+
+    def _renew(self) -> None:
+        while not self._stop.wait(0.1):
+            self.client.send(Lease())
+
+
+def until(condition: Callable[[], bool], within: float = 5.0) -> None:
+    """Wait for something that no descriptor tells."""
+    deadline, waiting = time.monotonic() + within, threading.Event()
+    while not condition():
+        assert time.monotonic() < deadline, f"not within {within} s"
+        waiting.wait(0.01)
+
+
+def running(pid: int) -> bool:
+    """Is there a process that has not ended? A zombie has."""
+    try:
+        with open(f"/proc/{pid}/stat", "rb") as status:
+            return status.read().rpartition(b")")[2].split()[0] != b"Z"
+    except OSError:
+        return False
+
+
+def children(pid: int) -> list[int]:
+    """Processes whose parent is `pid`."""
+    with open(f"/proc/{pid}/task/{pid}/children", encoding="ascii") as listed:
+        return [int(child) for child in listed.read().split()]
