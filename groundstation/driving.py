@@ -29,12 +29,18 @@ class Driving:
 
     def advance(self, now: float) -> None:
         """Make the demands that are due."""
-        demand = self._operator.demand(self.obstacle(now) is None, now)
+        self.look(now)
+        demand = self._operator.demand(now)
         for contact in self._fleet:
             chosen = contact is self._fleet.selected
             axes = contact.stream.due(demand if chosen else NEUTRAL, chosen and self._may_stream(contact), now)
             if axes is not None:
                 self._demand(contact, axes, now)
+
+    def look(self, now: float) -> None:
+        """Notice when keys begin to drive, and when they may no more: before a key is taken, and with each advance."""
+        if self._operator.allow(self.obstacle(now) is None, now) and self._fleet.selected is not None:
+            self._fleet.selected.stream.hurry(now)
 
     def messages_to_send(self) -> list[Outgoing]:
         """The demands to send now; empties what it returns."""

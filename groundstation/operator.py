@@ -6,6 +6,8 @@ the screen's own loop renews it, and without it keys drive nothing and the stati
 
 from __future__ import annotations
 
+import math
+
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import Operator as Flag
 from dialects.messages import RoverOperatorPresence, boot_ms
@@ -21,6 +23,10 @@ drawing (0.1 s); a frozen screen then means neutral well within 0.5 s."""
 
 THAW = 0.5
 """s for which a screen that came back must renew before keys drive: what was typed while it froze comes in a heap."""
+
+NEUTRAL_LEAD = 0.15
+"""s of neutral demands (three frames or four) before keys drive: the vehicle wants to see neutral after arming, a new
+mode or driver, and a key pressed in that very moment would otherwise have to be let go and pressed again."""
 
 OLDEST_AGE = 0xFFFF
 """last_input_age_ms: older, or none."""
@@ -43,6 +49,7 @@ class Operator:
         self._thawed_at = 0.0
         self._gate = Gate(open=False, reason="starting")
         self._driving_allowed = False
+        self._allowed_at = -math.inf
         self._touched: float | None = None
 
     # ---- the screen ----
@@ -95,12 +102,20 @@ class Operator:
         else:
             self.sticks.swallow(push, now)
 
-    def demand(self, allowed: bool, now: float) -> Axes:
-        """What the keys ask for, where they may. Keys held while they might not have to be pressed anew."""
-        if allowed and not self._driving_allowed:
+    def allow(self, allowed: bool, now: float) -> bool:
+        """May keys drive from now on? True when they begin to; those that are held must be pressed anew."""
+        begins = allowed and not self._driving_allowed
+        if begins:
             self.sticks.block(now)
+            self._allowed_at = now
         self._driving_allowed = allowed
-        return self.sticks.axes(now) if allowed else NEUTRAL
+        return begins
+
+    def demand(self, now: float) -> Axes:
+        """What the keys ask for, where they may."""
+        if not self._driving_allowed or now - self._allowed_at < NEUTRAL_LEAD:
+            return NEUTRAL
+        return self.sticks.axes(now)
 
     # ---- what is told ----
 

@@ -124,6 +124,7 @@ class Station:
         """Take what the operator wants; what follows from it is ready to be sent."""
         if not isinstance(intent, (i.Lease, i.Gate, i.ExactKeys, i.Quit)):
             self.operator.touch(now)
+        self._driving.look(now)
         method = _INTENTS.get(type(intent))
         if method is not None:
             method(self, intent, now)

@@ -253,6 +253,18 @@ def test_disarm_is_at_once() -> None:
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.05)
 
 
+@pytest.mark.parametrize("wait", [0.0, 0.05, 0.2])
+def test_a_key_pressed_right_after_arming_drives(wait: float) -> None:
+    """The vehicle wants to see neutral first; the station says it before it lets the first key through."""
+    drive = Drive()
+    drive.run(2.0)
+    drive.tell(i.Arm())
+    drive.until(lambda: drive.station.snapshot(drive.world.now, 0).helm.gate_open)
+    drive.run(wait)
+    drive.held = "i"
+    drive.until(lambda: drive.power > 0.5, within=1.0)
+
+
 def test_arming_with_a_key_held_does_not_drive_off() -> None:
     drive = Drive()
     drive.run(2.0)
