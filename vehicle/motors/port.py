@@ -19,8 +19,6 @@ class Port:
 
     def __init__(self, path: str, baud: int) -> None:
         self.path = path
-        self.sent = 0
-        """Bytes written since it was made."""
         self._baud = baud
         self._serial: Any = None
 
@@ -44,7 +42,6 @@ class Port:
             if self._serial.out_waiting > QUEUE:
                 raise BlockingIOError(f"{self.path}: the port does not take what is sent")
             written = os.write(self._serial.fileno(), frame)
-            self.sent += written
             if written != len(frame):
                 termios.tcflush(self._serial.fileno(), termios.TCOFLUSH)
                 raise BlockingIOError(f"{self.path}: the port took half a frame")
