@@ -39,8 +39,10 @@ def test_31_for_another_system_is_ignored(target: int) -> None:
     bench.wait(1.2)
     assert not bench.turning
     bench.stick(NEUTRAL, target=target)
-    bench.stick(AHEAD, target=target)
-    assert not bench.turning
+    for _ in range(5):
+        bench.stick(AHEAD, target=target)
+        bench.wait(CYCLE)
+        assert not bench.turning
 
 
 def test_32_of_another_ground_station_is_ignored_counted_and_said_once() -> None:
@@ -246,8 +248,11 @@ class TestOverride:
         bench = self.armed()
         self.repeat(bench, 0.2, chan1=1500, chan3=1500)
         self.repeat(bench, chan3=1700)
-        assert bench.turning
-        self.repeat(bench, chan1=1500)
+        before = bench.throttles[0]
+        assert before > 0.4
+        self.repeat(bench, 0.5, chan1=1500)  # 0.6 s after the last throttle
+        assert bench.throttles[0] < before
+        self.repeat(bench, 0.5, chan1=1500)
         assert not bench.turning
 
     @pytest.mark.parametrize("pulse", [700, 799, 2201, 65534, 1])
@@ -409,6 +414,20 @@ class TestOwner:
         bench.wait(0.1, AHEAD, system=OTHER)
         assert bench.turning
         assert said(bench, f"GCS {OTHER} is in control")
+
+    def test_the_owner_may_ask_again_while_it_drives(self) -> None:
+        bench = Bench()
+        bench.drive()
+        assert self.ask(bench, DRIVER) is Result.ACCEPTED
+        bench.wait(0.2, AHEAD)
+        assert bench.throttles == (1.0, 1.0)
+
+    def test_who_has_shown_no_heartbeat_cannot_ask(self) -> None:
+        bench = Bench()
+        request = Command.REQUEST_OPERATOR_CONTROL
+        assert bench.command(request, 1, 0, 10, 0, introduced=False) is Result.FAILED
+        bench.wait(1.1)
+        assert bench.newest(m.ControlStatus).gcs_main == 0
 
     def test_a_silent_owner_can_be_relieved(self) -> None:
         bench = Bench()

@@ -43,6 +43,16 @@ class TestManualLoss:
         assert ended <= 0.9
         assert said(bench, "manual control lost: stopping")
 
+    def test_a_demand_just_too_late_is_too_late_also_before_the_cycle_that_would_see_it(self) -> None:
+        bench = Bench()
+        bench.drive()
+        bench.stick(AHEAD)
+        bench.wait(0.45)
+        bench.now += 0.005
+        bench.stick(AHEAD)
+        bench.wait(0.6, AHEAD)
+        assert not bench.turning
+
     def test_it_falls_without_rising_again(self) -> None:
         bench = Bench()
         bench.drive()
@@ -252,6 +262,18 @@ class TestBattery:
         assert bench.set_mode(Mode.MANUAL) is Result.FAILED
         assert bench.set_mode(Mode.HOLD) is Result.ACCEPTED
         bench.wait(9.8, NEUTRAL)
+        assert not bench.armed
+
+    def test_who_arms_by_force_gets_the_whole_countdown(self) -> None:
+        bench = Bench()
+        self.drained(bench, 9.0)
+        bench.wait(60.0)
+        assert bench.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.ACCEPTED
+        bench.wait(0.5, NEUTRAL)
+        assert bench.mode is Mode.HOLD
+        bench.wait(9.0, NEUTRAL)
+        assert bench.armed
+        bench.wait(1.0, NEUTRAL)
         assert not bench.armed
 
     def test_without_a_sensor_there_is_no_failsafe(self) -> None:
