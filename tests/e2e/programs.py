@@ -189,5 +189,6 @@ def drive(station: GroundStation, vehicle: Vehicle, relay: Relay, key: str = "i"
     station.look(0.3)
     station.type("y")
     station.wait_for(relay.armed, 10, f"armed; the vehicle said {relay.texts()}")
+    station.wait_for(lambda: b"hold i to drive" in station.screen, 5, "the drive screen says that keys drive")
     station.hold(key, vehicle.at_full)
     assert vehicle.turning()
