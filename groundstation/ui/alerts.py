@@ -137,7 +137,7 @@ def _settings(now: Situation) -> Iterator[Alert]:
 def _hint(now: Situation) -> Iterator[Alert]:
     vehicle, helm = now.snapshot.vehicle, now.snapshot.helm
     if vehicle is None:
-        yield Alert(Level.HINT, now.snapshot.waiting or "waiting for a vehicle")
+        yield Alert(Level.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves")
     elif not vehicle.armed:
         yield Alert(Level.HINT, f"disarmed: {now.key('vehicle.arm')}, then {CONFIRM_KEY}, arms {vehicle.name}")
     elif vehicle.mode != "MANUAL":

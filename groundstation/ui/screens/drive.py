@@ -47,14 +47,15 @@ class DriveScreen(Screen[None]):
     def __init__(self, keymap: Keymap, send: Callable[[AnyIntent], None], ask_app: Callable[[Action], None]) -> None:
         super().__init__()
         self._keymap, self._send, self._ask_app = keymap, send, ask_app
-        self._snapshot = Snapshot()
+        self.snapshot = Snapshot()
+        """What is shown."""
         self.question: Action | None = None
         """The action that waits for its second key."""
 
     def compose(self) -> ComposeResult:
         """Every instrument has its place; drive.tcss says where."""
         simulator = self._keymap.keys("app.simulator")
-        self._status = Status(StatusValue(self._snapshot), id="status")
+        self._status = Status(StatusValue(self.snapshot), id="status")
         self._track, self._tape = Track(TrackValue(), id="track"), Tape(None, id="tape")
         self._speed, self._horizon = Speed(" -.--", id="speed"), Horizon(None, id="horizon")
         self._sticks, self._keycaps = Sticks((), id="sticks"), Keycaps(self._keymap, id="keycaps")
@@ -108,7 +109,7 @@ class DriveScreen(Screen[None]):
         self, snapshot: Snapshot, *, pressed: frozenset[str], shut: Shut | None, terminal: float | None, alive: bool
     ) -> None:
         """Give every instrument its part of the snapshot; each draws only what changed."""
-        self._snapshot = snapshot
+        self.snapshot = snapshot
         vehicle = snapshot.vehicle
         self.set_class(vehicle is None, "-waiting")
         self._status.show(StatusValue(snapshot, terminal))
@@ -132,7 +133,7 @@ class DriveScreen(Screen[None]):
 
     def light(self, pressed: frozenset[str]) -> None:
         """Light the caps of keys that are down."""
-        self._keycaps.show(KeycapsValue.of(self._snapshot.helm, pressed, self._keymap))
+        self._keycaps.show(KeycapsValue.of(self.snapshot.helm, pressed, self._keymap))
 
     def on_key(self, event: events.Key) -> None:
         """What the screen itself does on keys; what drives and stops went its way in the input thread."""
@@ -143,12 +144,12 @@ class DriveScreen(Screen[None]):
             self._answer(event.key)
         elif action is not None:
             self.request(action)
-        elif event.key == "enter" and self._snapshot.vehicle is None:
+        elif event.key == "enter" and self.snapshot.vehicle is None:
             self._send(StartSimulator())
 
     def request(self, action: Action) -> None:
         """Ask first where the action wants it. Intents without a question have been sent already."""
-        vehicle = self._snapshot.vehicle
+        vehicle = self.snapshot.vehicle
         if action.when_armed is not None and vehicle is not None and vehicle.armed:
             return
         if action.confirm and vehicle is not None:

@@ -54,7 +54,7 @@ class HelpScreen(Screen[None]):
             for action in ACTIONS.values():
                 keys = self._keymap.keys(action.id)
                 if action.group == group and keys:
-                    yield f"  {_written(keys, confirm=action.confirm):<18}", RED if group == "stop" else YELLOW
+                    yield f"  {_written(keys, confirm=action.confirm):<14}", RED if group == "stop" else YELLOW
                     yield f"{action.help}\n", ""
             yield "\n", ""
         for note in _NOTES:

@@ -58,7 +58,9 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         if value == self._value:
             return
         self._value = value
-        if not self.size or self.size != self._drawn_for:  # not laid out yet, or hidden
+        if not self.size or self.size != self._drawn_for:  # not laid out yet, or hidden: drawn when it comes to that
+            self._drawn_for = Size(0, 0)
+            self.refresh()
             return
         old, new = self._strips, self.draw(*self.size)
         self._strips = new

@@ -30,20 +30,33 @@ class Waiting(Instrument[Snapshot]):
     def _lines(self) -> list[list[Part]]:
         snapshot = self.value
         turn = _SPINNER[int(snapshot.uptime * 4) % len(_SPINNER)]
-        waiting = snapshot.waiting or "waiting for a vehicle"
-        lines: list[list[Part]] = [[(f"{turn} ", style(BLUE, bold=True)), (waiting, style(WHITE, bold=True))], []]
-        lines += [[("  link ", style(DIM)), (endpoint, style(TEXT))] for endpoint in snapshot.endpoints]
-        lines += [[("  link ", style(DIM)), (link.problem, style(RED))] for link in snapshot.links if link.problem]
+        lines: list[list[Part]] = [
+            [("  m a v h e l m", style(BLUE, bold=True)), ("   the helm of a MAVLink vehicle", style(DIM))],
+            [],
+            [
+                (f"{turn} ", style(BLUE, bold=True)),
+                (snapshot.waiting or "waiting for a vehicle", style(WHITE, bold=True)),
+            ],
+        ]
+        lines += [
+            [("  ", style()), (f"{link.name}: {link.problem}", style(RED))] for link in snapshot.links if link.problem
+        ]
         lines.append([])
-        return lines + (self._simulator_state(snapshot.simulator) if snapshot.simulator else self._offer())
-
-    def _simulator_state(self, state: str) -> list[list[Part]]:
-        return [[("  simulator ", style(DIM)), (state, style(RED if "ended" in state else GREEN))]]
+        state = snapshot.simulator
+        if state:
+            lines.append([("  simulator: ", style(DIM)), (state, style(RED if "ended" in state else GREEN))])
+        return lines if state and "ended" not in state else lines + self._offer()
 
     def _offer(self) -> list[list[Part]]:
+        key = style(YELLOW, bold=True)
         return [
-            [("  No vehicle at hand? ", style(TEXT)), ("ENTER", style(YELLOW, bold=True)), (" or ", style(DIM)),
-             (self._simulator_key, style(YELLOW, bold=True)), (" starts a simulated rover.", style(TEXT))],
-            [("  A real one: tell it to send to this address, e.g. ", style(DIM))],
+            [
+                ("  ENTER", key),
+                (" or ", style(DIM)),
+                (self._simulator_key, key),
+                (" starts a simulated rover.", style(TEXT)),
+            ],
+            [],
+            [("  A real vehicle is told to send here, for ours with", style(DIM))],
             [("    vehicle udpout:<address of this computer>:14550", style(TEXT))],
-        ]  # fmt: skip
+        ]

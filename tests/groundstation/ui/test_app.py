@@ -1,0 +1,190 @@
+"""Keys on the screen, and what the screen itself does: by Textual's Pilot."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from groundstation.intents import (
+    Arm,
+    ClearEmergencyStop,
+    Disarm,
+    EmergencyStop,
+    Gate,
+    Lease,
+    Push,
+    StartSimulator,
+    Stop,
+)
+from groundstation.snapshot import LinkView
+from groundstation.ui.gate import Door
+from groundstation.ui.screens.help import HelpScreen
+from tests.groundstation.ui.examples import snapshot, vehicle, waiting
+from tests.groundstation.ui.pilots import console
+from tests.groundstation.ui.ptys import until
+
+DISARMED = snapshot(vehicle=vehicle(armed=False))
+STOPPED = snapshot(vehicle=vehicle(armed=False, emergency_stop=True))
+
+
+async def test_a_drive_key_is_a_push() -> None:
+    async with console() as screen:
+        await screen.press("i", "up", "w")
+        assert [push.key for push in screen.station.of(Push)] == ["i", "up", "w"]
+
+
+async def test_the_lease_is_renewed_by_the_loop_and_not_without_it() -> None:
+    """The loop stands still in this test's own code: no thread of ours may renew meanwhile."""
+    async with console() as screen:
+        await until(lambda: len(screen.station.of(Lease)) > 3)
+        before = len(screen.station.of(Lease))
+        _busy_for(0.5)
+        assert len(screen.station.of(Lease)) == before
+        await until(lambda: len(screen.station.of(Lease)) > before)
+
+
+def _busy_for(seconds: float) -> None:
+    import time
+
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        pass
+
+
+async def test_arming_asks_and_a_second_key_answers() -> None:
+    async with console(picture=DISARMED) as screen:
+        await screen.press("r")
+        assert screen.station.of(Arm) == []
+        await until(lambda: "Arm? y = yes" in screen.text)
+        await screen.press("y")
+        assert screen.station.of(Arm) == [Arm()]
+
+
+@pytest.mark.parametrize("key", ["n", "space", "i", "escape", "r"])
+async def test_any_other_key_is_a_no(key: str) -> None:
+    async with console(picture=DISARMED) as screen:
+        await screen.press("r", key, "y")
+        assert screen.station.of(Arm) == []
+
+
+async def test_the_gate_is_shut_while_a_question_is_open() -> None:
+    async with console(picture=DISARMED) as screen:
+        await screen.press("r")
+        await until(lambda: screen.app.gate.state is not None)
+        assert screen.app.gate.state is not None
+        assert screen.app.gate.state.door is Door.STOPS
+        await screen.press("n")
+        await until(lambda: screen.app.gate.state is None)
+
+
+async def test_disarming_is_one_key_and_no_question() -> None:
+    async with console() as screen:
+        await screen.press("r")
+        assert screen.station.of(Disarm) == [Disarm()]
+        assert screen.app.drive.question is None
+
+
+async def test_the_emergency_stop_is_released_with_two_keys() -> None:
+    async with console(picture=STOPPED) as screen:
+        await screen.press("t", "y")
+        assert screen.station.of(ClearEmergencyStop) == [ClearEmergencyStop()]
+
+
+@pytest.mark.parametrize("opener", ["question_mark", "ctrl+p"])
+async def test_another_screen_is_neutral_and_still_stops(opener: str) -> None:
+    async with console() as screen:
+        await screen.press(opener)
+        await until(lambda: screen.app.screen is not screen.app.drive)
+        assert screen.station.of(Gate)[-1].open is False
+        assert screen.station.of(Stop)
+        await screen.press("exclamation_mark")
+        assert screen.station.of(EmergencyStop)
+        assert not screen.station.of(Disarm)
+
+
+async def test_help_shows_every_key_and_goes_back() -> None:
+    async with console(size=(100, 50)) as screen:
+        await screen.press("question_mark")
+        assert isinstance(screen.app.screen, HelpScreen)
+        assert "Motors off and locked" in screen.text
+        await screen.press("escape")
+        await until(lambda: screen.app.gate.state is None)
+        assert screen.app.screen is screen.app.drive
+
+
+async def test_an_action_of_the_palette_is_done() -> None:
+    async with console() as screen:
+        await screen.press("ctrl+p")
+        await until(lambda: screen.app.screen is not screen.app.drive)
+        for letter in "disarm":
+            await screen.press(letter)
+        await until(lambda: "Disarm" in screen.text)
+        await screen.press("down", "enter")
+        await until(lambda: screen.station.of(Disarm))
+
+
+@pytest.mark.parametrize("key", ["ctrl+q", "ctrl+c"])
+@pytest.mark.parametrize("first", [(), ("question_mark",), ("ctrl+p",)])
+async def test_quit_needs_no_question_and_works_everywhere(key: str, first: tuple[str, ...]) -> None:
+    async with console() as screen:
+        await screen.press(*first, key)
+        assert screen.app.return_value == 0
+        assert screen.station.of(Gate)[-1].reason == "quitting"
+
+
+async def test_without_a_vehicle_enter_starts_the_simulator() -> None:
+    async with console(picture=waiting()) as screen:
+        assert "waiting for a vehicle on udpin:127.0.0.1:14550" in screen.text
+        await screen.press("enter")
+        assert screen.station.of(StartSimulator) == [StartSimulator()]
+        await screen.press("f5")
+        assert len(screen.station.of(StartSimulator)) == 2
+
+
+async def test_with_a_vehicle_enter_starts_nothing() -> None:
+    async with console() as screen:
+        await screen.press("enter")
+        assert not screen.station.of(StartSimulator)
+
+
+async def test_a_small_terminal_says_what_it_needs_and_still_stops() -> None:
+    async with console(size=(70, 20)) as screen:
+        assert "needs 80 x 24" in screen.text
+        assert screen.station.of(Gate)[-1].open is False
+        await screen.press("space", "exclamation_mark")
+        assert screen.station.of(EmergencyStop)
+
+
+async def test_growing_opens_the_gate() -> None:
+    async with console(size=(70, 20)) as screen:
+        await screen.pilot.resize_terminal(80, 24)
+        await until(lambda: screen.app.gate.state is None)
+        await screen.show(snapshot())
+        assert "you drive" in screen.text
+
+
+async def test_a_dead_station_is_said() -> None:
+    async with console() as screen:
+        screen.station.alive = False
+        await until(lambda: "the station process has ended" in screen.text)
+        assert screen.station.of(Gate)[-1].reason == "the station has ended"
+
+
+async def test_held_keys_light_up_at_once() -> None:
+    async with console(picture=snapshot(vehicle=vehicle(), helm=snapshot().helm)) as screen:
+        before = screen.app.drive.query_one("#keycaps").render_line(0)  # type: ignore[attr-defined]
+        await screen.pilot.press("u")
+        assert screen.app.drive.query_one("#keycaps").render_line(0) != before  # type: ignore[attr-defined]
+
+
+async def test_numbers_that_are_none_do_not_break_the_screen() -> None:
+    nan = math.nan
+    strange = vehicle(
+        position=(nan, math.inf), heading=nan, roll=nan, pitch=math.inf, speed=nan, battery_voltage=nan,
+        battery_remaining=nan, demand=(nan, nan), outputs=(nan, math.inf), command_age=nan, latency=math.inf,
+    )  # fmt: skip
+    for size in ((80, 24), (140, 45)):
+        links = (LinkView(name="x", loss=nan, round_trip=nan),)
+        async with console(size, snapshot(vehicle=strange, links=links)) as screen:
+            assert "ARMED" in screen.text

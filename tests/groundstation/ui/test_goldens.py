@@ -1,0 +1,71 @@
+"""Whole frames, as text that can be read in a diff. GOLDEN=write pytest ... writes them anew; then read the diff."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+
+import pytest
+
+from groundstation.snapshot import Snapshot
+from tests.groundstation.ui.examples import helm, snapshot, vehicle, waiting
+from tests.groundstation.ui.pilots import console
+
+GOLDEN = Path(__file__).parent / "golden"
+SMALL, WIDE = (80, 24), (140, 45)
+
+STANDING = snapshot(
+    vehicle=vehicle(
+        armed=False, driver=0, in_control=False, speed=0.0, demand=(0.0, 0.0), outputs=(0.0, 0.0), limits=("disarmed",)
+    ),
+    helm=helm(
+        held=(), throttle=0.0, steering=0.0, gate_open=False, gate_reason="disarmed", exact=False, stop_bound=0.75,
+        sending=False, rate=0.0,
+    ),
+)  # fmt: skip
+STOPPED = snapshot(vehicle=vehicle(emergency_stop=True, armed=False, failsafes=("estop",), outputs=(0.0, 0.0)))
+UNKNOWN = snapshot(
+    vehicle=vehicle(
+        name="ArduPilot rover 1", driver=None, position=None, home=None, track=(), heading=None, roll=None, pitch=None,
+        speed=math.nan, battery_voltage=None, battery_remaining=None, gps_fix=0, gps_satellites=None, demand=None,
+        outputs=(), command_age=None, latency=None,
+    )
+)  # fmt: skip
+
+FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
+    "drive_80x24": (SMALL, snapshot(), ()),
+    "drive_140x45": (WIDE, snapshot(), ()),
+    "latched_80x24": (SMALL, snapshot(helm=helm(style="latch", stop_bound=math.inf, exact=False)), ()),
+    "disarmed_80x24": (SMALL, STANDING, ()),
+    "question_80x24": (SMALL, STANDING, ("r",)),
+    "emergency_80x24": (SMALL, STOPPED, ()),
+    "unknown_80x24": (SMALL, UNKNOWN, ()),
+    "waiting_80x24": (SMALL, waiting(), ()),
+    "waiting_140x45": (WIDE, waiting(simulator="ended with code 1: no free port"), ()),
+    "too_small_60x20": ((60, 20), snapshot(), ()),
+    "help_80x24": (SMALL, snapshot(), ("question_mark",)),
+}
+
+
+@pytest.mark.parametrize("name", FRAMES)
+async def test_the_frame_is_the_golden_one(name: str) -> None:
+    size, picture, keys = FRAMES[name]
+    async with console(size, picture) as screen:
+        await screen.press(*keys)
+        if keys:
+            await screen.show(picture)
+        shown = screen.text
+    file = GOLDEN / f"{name}.txt"
+    if os.environ.get("GOLDEN") == "write":
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(shown, "utf-8")
+    assert shown == file.read_text("utf-8")
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_no_frame_is_wider_or_higher_than_its_terminal(name: str) -> None:
+    (width, height), _, _ = FRAMES[name]
+    lines = (GOLDEN / f"{name}.txt").read_text("utf-8").splitlines()
+    assert len(lines) <= height
+    assert max(map(len, lines)) <= width
