@@ -34,14 +34,9 @@ class EmergencyLock:
     clearing: bool = False
     """The operator has asked to release it; asking for the opposite meanwhile would race with that."""
 
-    @property
-    def confirmed(self) -> bool:
-        """Nothing is left to ask for."""
-        return self.switched and self.disarmed and not self.vehicle.armed
-
     def tick(self, client: CommandClient, now: float) -> None:
         """Ask again for what is not answered, or answered and not true."""
-        if self.confirmed or self.clearing or now < self.due:
+        if self.clearing or now < self.due:
             return
         self.due = now + AGAIN
         if not self.switched:

@@ -160,6 +160,17 @@ def test_disarm_that_never_becomes_true_is_told() -> None:
     assert cockpit.view.refusal == "disarm: Rover 1 still says armed"
 
 
+def test_disarm_during_arming_ends_the_arming() -> None:
+    vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
+    cockpit = cockpit_with(vehicle)
+    cockpit.do(Arm())
+    cockpit.run(0.05)
+    cockpit.do(Disarm())
+    cockpit.run(2.0)
+    assert [command.param1 for command in vehicle.commands(ARM)] == [0]
+    assert not cockpit.view.armed
+
+
 def test_mode_by_name() -> None:
     cockpit = armed()
     cockpit.do(SetMode(mode="HOLD"))

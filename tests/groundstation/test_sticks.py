@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from dialects.axes import NEUTRAL, Axes
@@ -280,6 +280,9 @@ _EVENTS = st.lists(st.tuples(_KEYS, st.floats(0.0, 1.5)), max_size=60)
 
 
 @given(_EVENTS)
+@example(
+    [(I, 0.0), (I, 0.5), (J, 0.0), (I, 0.0)]
+)  # the last one teaches a shorter window while `j` is held by the longer
 @settings(max_examples=300)
 def test_timer_drive_never_outlives_its_last_event_by_more_than_the_bound(events: list[tuple[Push, float]]) -> None:
     sticks, now = Sticks(limit=1.0), 0.0
