@@ -1,0 +1,189 @@
+"""Frames between wires by system and component id, as MAVLink's routing rules say, without decoding or changing one.
+
+Rules (mavlink.io/en/guide/routing.html): a frame for everybody goes to every other peer, a frame for one system only
+where that system was heard; never back to where it came from, nor to where its sender is at home; SETUP_SIGNING and
+RADIO_STATUS stay where they are; what cannot be verified (unknown ids, signatures) is forwarded all the same, but only
+verified frames teach routes. A frame that arrives over two redundant links goes on once. Every table has a cap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from typing import NamedTuple
+
+from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V2, MAGIC_V2
+from dialects.messages import RadioStatus, SystemTime
+from dialects.targets import TARGETS, target_of
+from link.frame import Frame
+from link.routes import Key, RoutedPeer, RouteTable, Source
+
+SETUP_SIGNING = 256
+KEPT = frozenset({SETUP_SIGNING, RadioStatus.id})
+"""Never forwarded: a key, and what concerns one radio only."""
+
+REDUNDANT_WITHIN = 1.0
+"""s in which the same frame over another link is the same frame: more than the slowest radio adds, and less than 256
+frames of one sender take, unless it sends more of them than redundant links carry."""
+MAX_FOLLOWED = 256
+"""Systems and components whose frames are compared between redundant links."""
+MAX_TARGETS = 256
+"""Targets of one source whose destinations are remembered."""
+
+_EVERYBODY: Key = (0, 0)
+_LOOKED_AT = KEPT | {SystemTime.id}
+
+
+class Delivery(NamedTuple):
+    """Frames to send to one address of one wire, in this order."""
+
+    port: int
+    address: Hashable
+    frames: list[bytes]
+
+
+class Router:
+    """What the table decides for each frame. `ports`: see RouteTable.
+
+    `own` are the ids of the host that routes beside its own work: what is for it alone ends here, and its own frames
+    that come back are dropped.
+    """
+
+    def __init__(self, ports: Sequence[tuple[bool, Hashable | None]], *, own: Key | None = None) -> None:
+        self.table = RouteTable(ports)
+        self.duplicates = 0
+        """Frames that redundant links brought again."""
+        self.tape: list[bytes] | None = None
+        """Where it is a list: every frame that arrives, in order, for a recorder to take away."""
+        self._own = own
+        self._recent: dict[Key, list[tuple[float, RoutedPeer, bytes] | None]] = {}
+        """Source -> its newest frame of each number."""
+        self._boot_times: dict[Key, int] = {}
+        self._loaded: list[RoutedPeer] = []
+
+    def receive(self, port: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
+        """Take what arrived on a wire; returns what to send where. `now` in s, monotonic."""
+        peers = self.table.peers_of(port)
+        for data, address in pieces:
+            peer = peers.get(address)
+            if peer is None:
+                self._hear_stranger(port, data, address, now)
+                continue
+            peer.bytes_in += len(data)
+            frames = peer.framer.feed(data, now)
+            if frames:
+                self._forward(peer, frames, now)
+        return self._collect()
+
+    def tick(self, now: float) -> list[Delivery]:
+        """Give up half frames that are overdue (call it every 50 ms or so) and forget who is silent."""
+        for peer in list(self.table.everybody()):
+            frames = peer.framer.expire(now)
+            if frames:
+                self._forward(peer, frames, now)
+        self.table.expire(now)
+        known = self.table.known()
+        for followed in (self._recent, self._boot_times):
+            for key in followed.keys() - known:
+                del followed[key]
+        return self._collect()
+
+    # ---- the way of a frame ----
+
+    def _hear_stranger(self, port: int, data: bytes, address: Hashable, now: float) -> None:
+        """Noise makes no peer: on UDP only a verified frame does. A connection is one as it is."""
+        peer = self.table.stranger(port, address, now)
+        if peer is None:
+            return
+        peer.bytes_in += len(data)
+        frames = peer.framer.feed(data, now)
+        if self.table.is_stream(port) or any(frame.message_id in CRC_EXTRA for frame in frames):
+            self.table.admit(peer, now)
+            self._forward(peer, frames, now)
+        else:
+            self.table.dismiss(peer)
+
+    def _forward(self, peer: RoutedPeer, frames: list[Frame], now: float) -> None:
+        """The hot path: a known source and a known target cost three calls a frame."""
+        peer.heard = now
+        sources, loaded = peer.sources, self._loaded
+        if self.tape is not None:
+            self.tape += [frame.raw for frame in frames]
+        for frame in frames:
+            message_id, system, component, sequence, raw = frame
+            source = sources.get((system, component)) or self._learn(peer, frame, now)
+            if source is None:
+                continue
+            source.count(sequence, now)
+            if self._ends_here(peer, source, frame, now):
+                continue
+            target = target_of(message_id, raw) if message_id in TARGETS else _EVERYBODY
+            for destination in self._destinations(peer, source, target):
+                if not destination.waiting:
+                    loaded.append(destination)
+                destination.waiting.append(raw)
+
+    def _learn(self, peer: RoutedPeer, frame: Frame, now: float) -> Source | None:
+        """The entry of a source that is new here; None for frames that go nowhere."""
+        key = (frame.system, frame.component)
+        if not frame.system or not frame.component or key == self._own:
+            return None
+        source = Source(key, frame.sequence, now)
+        if frame.message_id not in CRC_EXTRA or not self.table.learn(peer, source):
+            return source  # this frame goes its way, but it teaches nothing
+        if key not in self._recent and len(self._recent) < MAX_FOLLOWED:
+            self._recent[key] = [None] * 256
+        return source
+
+    def _ends_here(self, peer: RoutedPeer, source: Source, frame: Frame, now: float) -> bool:
+        """Is it one that another link has brought already, or one that must stay?"""
+        message_id, _, _, sequence, raw = frame
+        recent = self._recent.get(source.key)
+        if recent is not None:
+            before = recent[sequence]
+            if before and before[1] is not peer and now - before[0] < REDUNDANT_WITHIN and _same(before[2], raw):
+                self.duplicates += 1
+                return True
+            recent[sequence] = (now, peer, raw)
+        return message_id in _LOOKED_AT and self._stays(source, frame)
+
+    def _stays(self, source: Source, frame: Frame) -> bool:
+        """Messages that are more than freight: two stay here, SYSTEM_TIME tells of a restart and goes on."""
+        if frame.message_id in KEPT:
+            return True
+        boot_time = int.from_bytes(frame.payload[8:12], "little")
+        if boot_time < self._boot_times.get(source.key, 0):
+            self.table.keep_only(source)
+        if source.key in self._boot_times or len(self._boot_times) < MAX_FOLLOWED:
+            self._boot_times[source.key] = boot_time
+        return False
+
+    def _destinations(self, origin: RoutedPeer, source: Source, target: Key) -> tuple[RoutedPeer, ...]:
+        """Where a frame for `target` goes; remembered until the table changes."""
+        if source.epoch != self.table.epoch or len(source.destinations) > MAX_TARGETS:
+            source.destinations, source.epoch = {}, self.table.epoch
+        found = source.destinations.get(target)
+        if found is None:
+            found = source.destinations[target] = tuple(
+                peer
+                for peer in (() if target == self._own else self.table.candidates(target))
+                if peer is not origin and source.key not in peer.sources and (peer.sources or peer.fixed)
+            )
+        return found
+
+    def _collect(self) -> list[Delivery]:
+        deliveries: list[Delivery] = []
+        for peer in self._loaded:
+            frames, peer.waiting = peer.waiting, []
+            peer.frames_out += len(frames)
+            peer.bytes_out += sum(map(len, frames))
+            deliveries.append(Delivery(peer.port, peer.address, frames))
+        self._loaded = []
+        return deliveries
+
+
+def _same(one: bytes, other: bytes) -> bool:
+    """Are two frames the same but for their signatures, which differ from link to link?"""
+    if one == other:
+        return True
+    end = HEADER_V2 + one[1] + CRC_SIZE
+    return one[0] == MAGIC_V2 and one[:end] == other[:end]
