@@ -1,0 +1,225 @@
+"""The mission protocol of a vehicle: its three plans (mission, fence, rally), uploaded, downloaded and cleared.
+
+Rules (mavlink.io/en/services/mission.html): an upload is asked for item by item and counts only when it is complete
+and valid; until then the old plan stays. One upload a plan at a time, a second sender is DENIED. What a plan means is
+the vehicle's work, and so is saving it. The other half is mission_client.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from dialects import messages as m
+from dialects.enums import MissionResult, MissionType
+from link.core import Outgoing, Received
+from link.services.mission_items import Items, MissionItem, PlanRules, to_message
+from link.services.mission_upload import Sender, Upload, sender_of
+
+REMEMBER = 10.0
+"""s in which the last item, said again because our answer was lost, is answered again."""
+
+_Begin = m.MissionCount | m.MissionWritePartialList
+_Item = m.MissionItem | m.MissionItemInt
+
+
+class Planner(Protocol):
+    """What the vehicle says to its plans."""
+
+    def may_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
+        """ACCEPTED, or the answer to who may not change this plan now."""
+
+    def changed(self, kind: MissionType, items: Items, now: float) -> None:
+        """The plan is a new one; save it."""
+
+    def select(self, sequence: int, received: Received, now: float) -> None:
+        """Go on with this item of the mission, or tell the driver why not."""
+
+    def current(self) -> m.MissionCurrent:
+        """Where the mission stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Ended:
+    """The end of an upload, to be said again when it got lost."""
+
+    sender: Sender
+    last: int
+    at: float
+    ack: Outgoing
+
+
+class MissionServer:
+    """Keeps the plans of one system and component. `rules` has a line for each kind of plan that is offered."""
+
+    def __init__(
+        self, planner: Planner, rules: Mapping[MissionType, PlanRules], *, system: int, component: int
+    ) -> None:
+        self._planner = planner
+        self._rules = rules
+        self._ids = (system, component)
+        self._plans: dict[MissionType, Items] = dict.fromkeys(rules, ())
+        self._uploads: dict[MissionType, Upload] = {}
+        self._ended: dict[MissionType, _Ended] = {}
+
+    def plan(self, kind: MissionType) -> Items:
+        """The plan in force."""
+        return self._plans[kind]
+
+    def load(self, kind: MissionType, items: Sequence[MissionItem]) -> MissionResult:
+        """Put a saved plan in force, where it passes the rules; the planner is not told."""
+        verdict = self._rules[kind].judge(items)
+        if verdict is MissionResult.ACCEPTED:
+            self._plans[kind] = tuple(items)
+        return verdict
+
+    def receive(self, received: Received, now: float) -> list[Outgoing]:
+        """Answer one message; nothing where it is not for us or its sender has shown no HEARTBEAT."""
+        message = received.message
+        target = (getattr(message, "target_system", None), getattr(message, "target_component", None))
+        if not received.introduced or target[0] != self._ids[0] or target[1] not in (0, self._ids[1]):
+            return []
+        answer = self._reading(received)
+        return self._writing(received, now) if answer is None else answer
+
+    def tick(self, now: float) -> list[Outgoing]:
+        """Ask again for what did not come, give up what does not come at all."""
+        outgoing: list[Outgoing] = []
+        for kind, upload in list(self._uploads.items()):
+            if upload.overdue(now):
+                del self._uploads[kind]
+                outgoing.append(_ack(upload.sender, kind, MissionResult.CANCELLED))
+            else:
+                outgoing += upload.ask_again(now)
+        return outgoing
+
+    # ---- reading ----
+
+    def _reading(self, received: Received) -> list[Outgoing] | None:
+        sender = sender_of(received)
+        match received.message:
+            case m.MissionRequestList() as message:
+                return [self._count(message, sender)]
+            case m.MissionRequestInt() | m.MissionRequest() as message:
+                return [self._item(message, sender)]
+            case m.MissionRequestPartialList() as message:
+                return [_ack(sender, message.mission_type, MissionResult.UNSUPPORTED)]
+        return None
+
+    def _count(self, message: m.MissionRequestList, sender: Sender) -> Outgoing:
+        kind = self._kind(message.mission_type)
+        if kind is None:
+            return _ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
+        return Outgoing(m.MissionCount(sender.system, sender.component, len(self.plan(kind)), kind), sender.peer)
+
+    def _item(self, message: m.MissionRequestInt | m.MissionRequest, sender: Sender) -> Outgoing:
+        kind = self._kind(message.mission_type)
+        if kind is None:
+            return _ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
+        items = self.plan(kind)
+        if message.seq >= len(items):
+            return _ack(sender, kind, MissionResult.INVALID_SEQUENCE)
+        current = kind is MissionType.MISSION and self._planner.current().seq == message.seq
+        target = (sender.system, sender.component)
+        return Outgoing(to_message(items[message.seq], message.seq, kind, target, current=current), sender.peer)
+
+    # ---- writing ----
+
+    def _writing(self, received: Received, now: float) -> list[Outgoing]:
+        match received.message:
+            case m.MissionCount() | m.MissionWritePartialList() as message:
+                return [self._begin(message, received, now)]
+            case m.MissionItem() | m.MissionItemInt() as message:
+                return self._take(message, sender_of(received), now)
+            case m.MissionClearAll() as message:
+                verdict = self._clear(message, received, now)
+                return [_ack(sender_of(received), message.mission_type, verdict)]
+            case m.MissionSetCurrent() as message:
+                self._planner.select(message.seq, received, now)
+                return [Outgoing(self._planner.current())]
+        return []
+
+    def _begin(self, message: _Begin, received: Received, now: float) -> Outgoing:
+        sender, kind = sender_of(received), self._kind(message.mission_type)
+        if kind is None:
+            return _ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
+        verdict = self._may_begin(kind, received, now)
+        if verdict is not MissionResult.ACCEPTED:
+            return _ack(sender, kind, verdict)
+        return (
+            self._whole(message, sender, kind, now)
+            if isinstance(message, m.MissionCount)
+            else self._part(message, sender, kind, now)
+        )
+
+    def _may_begin(self, kind: MissionType, received: Received, now: float) -> MissionResult:
+        """The same sender may begin again at any time."""
+        busy = self._uploads.get(kind)
+        if busy and busy.sender != sender_of(received):
+            return MissionResult.DENIED
+        return self._planner.may_write(received, kind, now)
+
+    def _whole(self, message: m.MissionCount, sender: Sender, kind: MissionType, now: float) -> Outgoing:
+        rules = self._rules[kind]
+        if message.count > rules.capacity:
+            return _ack(sender, kind, MissionResult.NO_SPACE)
+        upload = Upload(sender, kind, rules, end=message.count, now=now)
+        if not message.count:
+            return self._end(upload, rules.check(()), -1, now)
+        self._uploads[kind] = upload
+        return upload.ask(now)
+
+    def _part(self, message: m.MissionWritePartialList, sender: Sender, kind: MissionType, now: float) -> Outgoing:
+        items, first, last = self.plan(kind), message.start_index, message.end_index
+        if not 0 <= first <= last < len(items):
+            return _ack(sender, kind, MissionResult.INVALID_SEQUENCE)
+        upload = Upload(sender, kind, self._rules[kind], items=items, first=first, end=last + 1, now=now)
+        self._uploads[kind] = upload
+        return upload.ask(now)
+
+    def _take(self, message: _Item, sender: Sender, now: float) -> list[Outgoing]:
+        kind = self._kind(message.mission_type)
+        if kind is None:
+            return []
+        upload = self._uploads.get(kind)
+        if upload is None or upload.sender != sender:
+            return self._said_again(self._ended.get(kind), message, sender, now)
+        answer = upload.take(message, now)
+        return answer if isinstance(answer, list) else [self._end(upload, answer, message.seq, now)]
+
+    def _end(self, upload: Upload, verdict: MissionResult, last: int, now: float) -> Outgoing:
+        kind = upload.kind
+        self._uploads.pop(kind, None)
+        if verdict is MissionResult.ACCEPTED:
+            self._plans[kind] = upload.items
+            self._planner.changed(kind, upload.items, now)
+        ack = _ack(upload.sender, kind, verdict)
+        self._ended[kind] = _Ended(upload.sender, last, now, ack)
+        return ack
+
+    @staticmethod
+    def _said_again(ended: _Ended | None, message: _Item, sender: Sender, now: float) -> list[Outgoing]:
+        if ended is None or ended.sender != sender or message.seq != ended.last or now - ended.at > REMEMBER:
+            return []
+        return [ended.ack]
+
+    def _clear(self, message: m.MissionClearAll, received: Received, now: float) -> MissionResult:
+        number = message.mission_type
+        kinds = [kind for kind in self._rules if number in (kind, MissionType.ALL)]
+        verdicts = [self._may_begin(kind, received, now) for kind in kinds] or [MissionResult.UNSUPPORTED]
+        refused = next((verdict for verdict in verdicts if verdict is not MissionResult.ACCEPTED), None)
+        if refused is not None:
+            return refused
+        for kind in kinds:
+            self._uploads.pop(kind, None)
+            self._plans[kind] = ()
+            self._planner.changed(kind, (), now)
+        return MissionResult.ACCEPTED
+
+    def _kind(self, number: int) -> MissionType | None:
+        return next((kind for kind in self._rules if kind == number), None)
+
+
+def _ack(sender: Sender, kind: int, verdict: MissionResult) -> Outgoing:
+    return Outgoing(m.MissionAck(sender.system, sender.component, verdict, kind), sender.peer)
