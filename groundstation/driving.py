@@ -26,6 +26,8 @@ class Driving:
         self._demands: dict[int, list[Message]] = {}
         """Newest demand a vehicle, with its proof of life: state, so a newer one replaces it."""
         self._changed: ManualControl | None = None
+        self._changed_at = 0.0
+        """When the demand in `_changed` was asked for: what we need to send it is part of the latency."""
 
     def advance(self, now: float) -> None:
         """Make the demands that are due."""
@@ -54,7 +56,7 @@ class Driving:
         self._operator.meter.add(now)
         contact = self._fleet.get(message.target)
         if message is self._changed and contact is not None:
-            contact.state.latency.sent(sequence, now)
+            contact.state.latency.sent(sequence, self._changed_at)
 
     @property
     def finished(self) -> bool:
@@ -99,7 +101,7 @@ class Driving:
         state = contact.state
         message = manual_control(axes, state.system, axis_map(state.autopilot))
         if axes != self._operator.sent:
-            self._changed = message
+            self._changed, self._changed_at = message, now
         self._operator.sent = axes
         messages: list[Message] = [message]
         if state.speaks_ours:

@@ -26,8 +26,11 @@ class LatencyMeter:
         while len(self._sent) > MEMORY:
             self._sent.popitem(last=False)
 
-    def obeyed(self, sequence: int, now: float) -> None:
-        """The vehicle says that it obeys the demand with this number. Only the first word for it counts."""
+    def obeyed(self, sequence: int, now: float, age: float) -> None:
+        """The vehicle says that it obeys the demand with this number. Only the first word for it counts.
+
+        `age` is that of the demand when the vehicle spoke, s: it may have waited for the next turn of its telemetry.
+        """
         sent = self._sent.pop(sequence, None)
         if sent is not None and now - sent <= TOO_OLD:
-            self.newest = now - sent
+            self.newest = max(0.0, now - sent - age)

@@ -39,18 +39,18 @@ def test_degrees_become_metres_from_the_first_position() -> None:
 def test_latency_counts_the_first_word_for_a_changed_demand_only() -> None:
     meter = LatencyMeter()
     meter.sent(7, 1.0)
-    meter.obeyed(6, 1.01)
+    meter.obeyed(6, 1.01, 0.0)
     assert meter.newest is None
-    meter.obeyed(7, 1.02)
+    meter.obeyed(7, 1.05, 0.03)
     assert meter.newest == pytest.approx(0.02)
-    meter.obeyed(7, 1.22)
+    meter.obeyed(7, 1.22, 0.0)
     assert meter.newest == pytest.approx(0.02)
 
 
 def test_a_number_of_the_last_lap_says_nothing() -> None:
     meter = LatencyMeter()
     meter.sent(7, 1.0)
-    meter.obeyed(7, 20.0)
+    meter.obeyed(7, 20.0, 0.0)
     assert meter.newest is None
 
 
