@@ -93,13 +93,18 @@ class Control:
 
     def manual(self, received: Received, message: ManualControl, now: float) -> bool:
         """Take a MANUAL_CONTROL; True where it is the demand now."""
-        if not self._listens(received, message.target, now) or self._echo_is_stale(now):
+        if not self._listens(received, message.target, now):
             return False
         if self.demand and self.demand.sequence == received.sequence:
             return False  # the same packet again: a replay
         demand = from_manual_control(message, received.system, received.sequence, now)
         self.invalid_axes += sum(abs(axis) > 1000 and axis != INVALID_AXIS for axis in (message.x, message.r))
-        return demand is not None and self._use(demand, now)
+        if demand is None:
+            return False
+        if not self._echo_is_stale():
+            return self._use(demand, now)
+        # An old wish to stop is still a wish to stop; it is no proof of a stick at rest now.
+        return self._refuse_old(now) if demand.moving(self.band) else self._use(demand, now, proof=False)
 
     def rc_override(self, received: Received, message: RcChannelsOverride, now: float) -> bool:
         """Take an RC_CHANNELS_OVERRIDE; True where it is the demand now."""
@@ -152,10 +157,10 @@ class Control:
         """Demands up to this are neutral."""
         return self._params["MAN_DEADBAND"] / 100
 
-    def _use(self, demand: Demand, now: float) -> bool:
+    def _use(self, demand: Demand, now: float, *, proof: bool = True) -> bool:
         self.lapse(now)
         self.demand = demand
-        if demand.neutral(self.band):
+        if proof and demand.neutral(self.band):
             self.neutral_seen = True
         return True
 
@@ -170,10 +175,11 @@ class Control:
         self._texts.say_once(f"demand {received.system}", Severity.WARNING, text, now)
         return False
 
-    def _echo_is_stale(self, now: float) -> bool:
-        if not self.presence.known or self.presence.echo_age <= self._params["OPR_ECHO_MAX"]:
-            return False
+    def _echo_is_stale(self) -> bool:
+        return self.presence.known and self.presence.echo_age > self._params["OPR_ECHO_MAX"]
+
+    def _refuse_old(self, now: float) -> bool:
         self.refused_stale += 1
         text = "Demands refused: they are old when they arrive (OPR_ECHO_MAX)"
         self._texts.say_once("demand stale", Severity.WARNING, text, now)
-        return True
+        return False

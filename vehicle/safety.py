@@ -132,7 +132,8 @@ class Safety:
         if blocking and OFFERED[mode].manual:
             return " and ".join(RULES[cause].words for cause in Failsafe if cause & blocking)
         self.intended = mode
-        self.failsafes.acknowledge()
+        if OFFERED[mode].manual:  # HOLD is everybody's to choose: it must not end a countdown to disarming
+            self.failsafes.acknowledge()
         if mode is not self.mode:
             self.mode = mode
             self._control.reset() if OFFERED[mode].manual else self._control.close()

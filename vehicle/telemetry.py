@@ -38,12 +38,14 @@ class Stream:
     """What it tells at once when it changes."""
     fixed: bool = False
     """Its rate is not for others to choose."""
+    steady: bool = False
+    """A full radio does not slow it down."""
 
 
 STREAMS: tuple[Stream, ...] = (
-    Stream(m.Heartbeat, 1, status.heartbeat, fixed=True,
+    Stream(m.Heartbeat, 1, status.heartbeat, fixed=True, steady=True,
            change=lambda view: (view.safety.state, view.safety.mode)),
-    Stream(m.RoverDriveStatus, 5, status.drive_status,
+    Stream(m.RoverDriveStatus, 5, status.drive_status, steady=True,  # the driver echoes its time (OPR_ECHO_MAX)
            change=lambda view: (view.control.demand and (view.control.demand.throttle, view.control.demand.steering),
                                 view.control.neutral_seen, view.safety.armed)),
     Stream(m.RoverFailsafeStatus, 1, status.failsafe_status,
@@ -136,7 +138,7 @@ class Telemetry:
             return None
         clock.sent, clock.told = view.now, key
         if on_time and clock.interval is not None:
-            step = clock.interval if stream.fixed else clock.interval * self._stretch
+            step = clock.interval if stream.steady else clock.interval * self._stretch
             # After a pause the missed ones are left out.
             clock.due = max(clock.due + step, view.now + FASTEST)
         return stream.build(view)

@@ -174,6 +174,7 @@ def test_a_full_radio_halves_the_rates_and_an_empty_one_brings_them_back() -> No
     slow = counts(bench, 10.0)
     assert slow[m.Attitude] == pytest.approx(2, abs=0.2)
     assert slow[m.Heartbeat] == pytest.approx(1, abs=0.11)
+    assert slow[m.RoverDriveStatus] == pytest.approx(5, abs=0.2)
     bench.say(m.RadioStatus(0, 0, 100, 0, 0, 0, 0), 51, introduced=False)
     bench.wait(1.0)
     assert counts(bench, 10.0)[m.Attitude] == pytest.approx(4, abs=0.2)

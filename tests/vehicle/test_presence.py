@@ -1,0 +1,119 @@
+"""ROVER_OPERATOR_PRESENCE: is there a person behind the demand, and is it new?"""
+
+from __future__ import annotations
+
+from dialects import messages as m
+from dialects.axes import Axes
+from dialects.modes import Mode
+from tests.vehicle.bench import AHEAD, NEUTRAL, OTHER, Bench, said
+
+
+def say(bench: Bench, echo: int, age: int = 0, session: int = 1, flags: int = 1) -> None:
+    bench.say(m.RoverOperatorPresence(1, 1, 0, echo, session, 1, age, flags))
+
+
+def drive(bench: Bench, seconds: float, axes: Axes, delay: float = 0.1, age: int = 0) -> None:
+    """20 Hz of a driver who has seen the vehicle's words of `delay` s ago."""
+    for _ in range(round(seconds / 0.05)):
+        say(bench, int((bench.now - 100.0 - delay) * 1000), age=age)
+        bench.stick(axes)
+        bench.wait(0.05)
+
+
+def going() -> Bench:
+    bench = Bench()
+    bench.wait(2.0)
+    bench.arm()
+    drive(bench, 0.2, NEUTRAL)
+    drive(bench, 1.0, AHEAD)
+    assert bench.turning
+    return bench
+
+
+def test_demands_that_are_old_when_they_arrive_are_refused() -> None:
+    bench = going()
+    drive(bench, 1.2, AHEAD, delay=0.6)
+    assert not bench.turning
+    assert said(bench, "they are old when they arrive")
+
+
+def test_a_stop_is_obeyed_however_old() -> None:
+    bench = going()
+    drive(bench, 0.1, NEUTRAL, delay=2.0)
+    assert bench.throttles[0] < 1.0
+    drive(bench, 0.4, NEUTRAL, delay=2.0)
+    assert not bench.turning
+
+
+def test_an_old_neutral_is_no_stick_at_rest() -> None:
+    bench = Bench()
+    bench.wait(2.0)
+    bench.arm()
+    drive(bench, 0.5, NEUTRAL, delay=2.0)
+    drive(bench, 0.5, AHEAD)
+    assert not bench.turning
+
+
+def test_an_echo_of_a_former_boot_is_refused() -> None:
+    bench = going()
+    for _ in range(30):
+        say(bench, 0x7FFFFFFF)
+        bench.stick(AHEAD)
+        bench.wait(0.05)
+    assert not bench.turning
+
+
+def test_no_echo_yet_is_no_reason() -> None:
+    bench = going()
+    for _ in range(20):
+        say(bench, 0)
+        bench.stick(AHEAD)
+        bench.wait(0.05)
+    assert bench.turning
+
+
+def test_a_key_that_nobody_touches_stops_after_the_timeout() -> None:
+    bench = going()
+    drive(bench, 0.5, AHEAD, age=9_000)
+    assert bench.turning
+    drive(bench, 0.5, AHEAD, age=10_200)
+    assert not bench.turning
+    assert said(bench, "no sign of the operator: stopping")
+    drive(bench, 2.0, AHEAD, age=12_000)
+    assert bench.mode is Mode.HOLD
+
+
+def test_a_new_key_press_is_the_operator_again_and_neutral_comes_first() -> None:
+    bench = going()
+    drive(bench, 0.5, AHEAD, age=10_200)
+    assert not bench.turning
+    drive(bench, 0.5, AHEAD)
+    assert not bench.turning
+    drive(bench, 0.1, NEUTRAL)
+    drive(bench, 0.1, AHEAD)
+    assert bench.turning
+
+
+def test_a_lost_input_device_stops_at_once() -> None:
+    bench = going()
+    for _ in range(10):
+        say(bench, 0, flags=4)
+        bench.stick(AHEAD)
+        bench.wait(0.05)
+    assert not bench.turning
+
+
+def test_a_new_session_begins_with_neutral() -> None:
+    bench = going()
+    for _ in range(10):
+        say(bench, 0, session=2)
+        bench.stick(AHEAD)
+        bench.wait(0.05)
+    assert not bench.turning
+
+
+def test_of_others_it_says_nothing() -> None:
+    bench = going()
+    bench.say(m.RoverOperatorPresence(1, 1, 0, 1, 9, 1, 65535, 4), OTHER)
+    drive(bench, 0.2, AHEAD)
+    assert bench.turning
