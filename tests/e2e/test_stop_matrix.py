@@ -1,8 +1,8 @@
 """The stop matrix: real programs, and every way in which a driver can vanish. Wheels turn first, then they stop.
 
-The bounds of docs/safety.md (outputs begin to fall within 0.5 s of the last valid demand, and are neutral within 1 s) are
-held to the millisecond in virtual time by tests/test_stops.py. Here a shared machine with two cores may be late itself:
-NOISE is what we grant it.
+The bounds of docs/safety.md (outputs begin to fall within 0.5 s of the last valid demand, and are neutral within 1 s)
+are held to the millisecond in virtual time by tests/test_stops.py. Here a shared machine with two cores may be late
+itself: NOISE is what we grant it.
 """
 
 from __future__ import annotations

@@ -1,0 +1,125 @@
+"""The first command of the README in a real terminal: arm, hold a key, see the rover go, let go, see it stand."""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+pytestmark = [
+    pytest.mark.e2e,
+    pytest.mark.tmux,
+    pytest.mark.timeout(120),
+    pytest.mark.skipif(
+        shutil.which("tmux") is None and "MAVHELM_CI" not in os.environ,
+        reason="tmux is not installed: `sudo apt install tmux` to run this test",
+    ),
+]
+
+PAUSE = 0.04
+"""s between two looks or two key repeats."""
+
+
+class Tmux:
+    """A tmux server of its own with one window."""
+
+    def __init__(self, folder: Path, columns: int, lines: int, *arguments: str) -> None:
+        self._socket = str(folder / "tmux")
+        program = [sys.executable, "-m", "groundstation", *arguments, "--log-file", str(folder / "station.log")]
+        size = ["-x", str(columns), "-y", str(lines)]
+        self._run("-f", "/dev/null", "new-session", "-d", *size, *program)
+        self._run("set-option", "-g", "remain-on-exit", "on")
+
+    def _run(self, *words: str) -> str:
+        done = subprocess.run(["tmux", "-S", self._socket, *words], capture_output=True, text=True, timeout=20)
+        return done.stdout
+
+    def screen(self) -> str:
+        """What a person sees."""
+        return self._run("capture-pane", "-p")
+
+    def press(self, *keys: str) -> None:
+        """Press keys, in tmux's names."""
+        self._run("send-keys", *keys)
+
+    def until(self, condition: Callable[[str], bool], within: float, holding: str | None = None) -> str:
+        """Look until the screen is as it should be, with a key held meanwhile; returns the screen."""
+        deadline = time.monotonic() + within
+        while not condition(screen := self.screen()):
+            assert time.monotonic() < deadline, f"not within {within} s:\n{screen}"
+            if holding:
+                self.press(holding)
+            select.select([], [], [], PAUSE)
+        return screen
+
+    def exit_code(self) -> int | None:
+        """How the program ended, or None while it runs."""
+        dead, _, code = self._run("list-panes", "-F", "#{pane_dead} #{pane_dead_status}").strip().partition(" ")
+        return int(code) if dead == "1" and code else None
+
+    def end(self) -> None:
+        """Close the terminal and all in it."""
+        self._run("kill-server")
+
+
+@pytest.fixture
+def tmux(tmp_path: Path) -> Iterator[Callable[..., Tmux]]:
+    """Opens a terminal; closed at the end of the test."""
+    opened: list[Tmux] = []
+
+    def build(columns: int, lines: int, *arguments: str) -> Tmux:
+        opened.append(Tmux(tmp_path, columns, lines, *arguments))
+        return opened[-1]
+
+    yield build
+    for each in opened:
+        each.end()
+
+
+def home_distance(screen: str) -> float:
+    """m between the rover and its home, as the map tells."""
+    found = re.search(r"home\s+([\d.]+) m", screen)
+    return float(found[1]) if found else 0.0
+
+
+def speed_shown(screen: str) -> bool:
+    """Does the drive panel show a motor output?"""
+    return bool(re.search(r"left\s.*\+[1-9]\d*%", screen))
+
+
+@pytest.mark.parametrize(("columns", "lines"), [(80, 24), (140, 45)])
+def test_the_first_drive(tmux: Callable[..., Tmux], columns: int, lines: int) -> None:
+    terminal = tmux(columns, lines, "--sitl")
+    terminal.until(lambda screen: "DISARMED" in screen and "arms" in screen, 20)
+    terminal.press("r")
+    terminal.until(lambda screen: "Arm?" in screen, 5)
+    terminal.press("y")
+    terminal.until(lambda screen: "hold i to drive" in screen, 10)
+    terminal.until(lambda screen: home_distance(screen) > 1.0 and speed_shown(screen), 20, holding="i")
+    stood = terminal.until(lambda screen: re.search(r"left\s.*\+0%", screen) is not None, 5)
+    assert home_distance(stood) > 1.0
+    terminal.press("r")
+    terminal.until(lambda screen: "DISARMED" in screen, 5)
+    terminal.press("C-q")
+    terminal.until(lambda _: terminal.exit_code() is not None, 10)
+    assert terminal.exit_code() == 0
+    assert "Traceback" not in terminal.screen()
+
+
+def test_waiting_offers_the_simulator(tmux: Callable[..., Tmux]) -> None:
+    from tests.e2e.relay import free_port
+
+    port = free_port()
+    terminal = tmux(80, 24, f"udpin:127.0.0.1:{port}")
+    waiting = terminal.until(lambda screen: "waiting for a vehicle" in screen, 20)
+    assert str(port) in waiting
+    terminal.press("F5")
+    terminal.until(lambda screen: "DISARMED" in screen, 20)
