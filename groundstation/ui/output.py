@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import os
+import select
 import sys
-import termios
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
-_STANDARD = (1, 2)
+_KEYBOARD, _STANDARD = 0, (1, 2)
+
+PATIENCE = 0.1
+"""s between looks whether a terminal that takes nothing was given up."""
 
 MAX_FLUSH = 0.5
 """s that a terminal may take for a frame (one is 10 kB): as long as it may be silent, see ping.py."""
@@ -37,13 +40,15 @@ class TerminalFile:
         return len(text)
 
     def flush(self) -> None:
-        """Write what was kept. Blocks while the terminal takes nothing; then the screen stands still and says so."""
+        """Write what was kept. Waits while the terminal takes nothing; the screen stands still and `stuck` says so."""
         data = "".join(self._buffer).encode("utf-8", "replace")
         self._buffer.clear()
         self._flushing_since = time.monotonic()
         while data and not self.gone:
             try:
                 data = data[os.write(self._descriptor, data) :]
+            except BlockingIOError:
+                select.select([], [self._descriptor], [], PATIENCE)
             except OSError:
                 self.gone = True
         self._flushing_since = None
@@ -58,10 +63,8 @@ class TerminalFile:
         return not self.gone and os.isatty(self._descriptor)
 
     def abandon(self) -> None:
-        """Give up a terminal that takes nothing any more; wakes a flush that waits for it."""
+        """Give up a terminal that takes nothing any more; a flush that waits for it ends within PATIENCE."""
         self.gone = True
-        with contextlib.suppress(OSError, termios.error):
-            termios.tcflush(self._descriptor, termios.TCOFLUSH)
 
 
 @contextlib.contextmanager
@@ -70,12 +73,12 @@ def only_the_screen(log_file: Path | None) -> Iterator[TerminalFile]:
     sys.stdout.flush()
     sys.stderr.flush()
     saved = [os.dup(descriptor) for descriptor in _STANDARD]
-    terminal = next((descriptor for descriptor in saved if os.isatty(descriptor)), saved[-1])
+    terminal = _opened_anew(next((descriptor for descriptor in saved if os.isatty(descriptor)), saved[-1]))
     log = os.open(log_file or os.devnull, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o600)
     try:
         for descriptor in _STANDARD:
             os.dup2(log, descriptor)
-        yield TerminalFile(terminal, sys.stdin.fileno())
+        yield TerminalFile(terminal, _KEYBOARD)
     finally:
         for descriptor, old in zip(_STANDARD, saved, strict=True):
             with contextlib.suppress(OSError, ValueError):
@@ -83,3 +86,15 @@ def only_the_screen(log_file: Path | None) -> Iterator[TerminalFile]:
             os.dup2(old, descriptor)
             os.close(old)
         os.close(log)
+        os.close(terminal)
+
+
+def _opened_anew(descriptor: int) -> int:
+    """The same terminal without blocking. Our shell shares the open file, so its own must not be changed.
+
+    Where that is refused (a terminal of another user, after su) it blocks, and the end may be less kind (ending.py).
+    """
+    try:
+        return os.open(os.ttyname(descriptor), os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
+    except OSError:
+        return os.dup(descriptor)

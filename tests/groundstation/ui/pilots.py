@@ -12,6 +12,7 @@ from textual.pilot import Pilot
 from groundstation.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import Snapshot
 from groundstation.ui.app import HelmApp
+from groundstation.ui.gate import STARTING
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
 from tests.groundstation.ui.ptys import until
@@ -51,9 +52,11 @@ async def console(
     """The app at work: a picture is shown and, where the size allows, keys drive."""
     station = Recorder()
     app = HelmApp(station, Keymap(keymap, KEYMAPS[keymap]))
-    async with app.run_test(size=size) as pilot:
-        await until(lambda: app.gate.state is None or app.drive.too_small)
-        made = Console(app, station, pilot)
-        await made.show(snapshot() if picture is None else picture)
-        yield made
-    station.close()
+    try:
+        async with app.run_test(size=size) as pilot:
+            await until(lambda: app.gate.state != STARTING)
+            made = Console(app, station, pilot)
+            await made.show(snapshot() if picture is None else picture)
+            yield made
+    finally:
+        station.close()

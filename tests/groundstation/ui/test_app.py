@@ -19,7 +19,6 @@ from groundstation.intents import (
 )
 from groundstation.snapshot import LinkView
 from groundstation.ui.gate import Door
-from groundstation.ui.screens.help import HelpScreen
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import until
@@ -106,7 +105,7 @@ async def test_another_screen_is_neutral_and_still_stops(opener: str) -> None:
 async def test_help_shows_every_key_and_goes_back() -> None:
     async with console(size=(100, 50)) as screen:
         await screen.press("question_mark")
-        assert isinstance(screen.app.screen, HelpScreen)
+        assert type(screen.app.screen).__name__ == "HelpScreen"
         assert "Motors off and locked" in screen.text
         await screen.press("escape")
         await until(lambda: screen.app.gate.state is None)
@@ -173,9 +172,9 @@ async def test_a_dead_station_is_said() -> None:
 
 async def test_held_keys_light_up_at_once() -> None:
     async with console(picture=snapshot(vehicle=vehicle(), helm=snapshot().helm)) as screen:
-        before = screen.app.drive.query_one("#keycaps").render_line(0)  # type: ignore[attr-defined]
+        before = screen.app.drive.query_one("#keycaps").render_line(0)
         await screen.pilot.press("u")
-        assert screen.app.drive.query_one("#keycaps").render_line(0) != before  # type: ignore[attr-defined]
+        assert screen.app.drive.query_one("#keycaps").render_line(0) != before
 
 
 async def test_numbers_that_are_none_do_not_break_the_screen() -> None:
