@@ -62,12 +62,14 @@ def _starters() -> dict[str, Start]:
         TEXTUAL: Start(python("tests.benchmarks.bare_textual"), "bare textual ready"),
         f"{VEHICLE}, ready": Start(python("vehicle", "--sim", f"udpout:{endpoint}"), "ready", terminal=False),
         f"{GROUND}, first paint": Start(python("groundstation", f"udpin:{endpoint}"), "waiting for a vehicle"),
-        f"{GROUND} --sitl, rover on the screen": Start(python("groundstation", "--sitl"), "MANUAL"),
+        f"{GROUND} --sitl, rover on the screen": Start(python("groundstation", "--sitl"), "DISARMED"),
     }
 
 
 def _starts(options: Options, goals: list[Goal]) -> Table:
     seen: dict[str, list[list[float]]] = {}
+    for start in _starters().values():
+        _start_time(start)  # the first one writes byte code
     for number in range(ROUNDS):
         for name, start in _starters().items():
             options.say(f"cost: round {number + 1} of {ROUNDS}, start of {name}")

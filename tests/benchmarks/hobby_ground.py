@@ -17,7 +17,7 @@ from typing import Any
 mavutil: Any = importlib.import_module("pymavlink.mavutil")
 
 FULL = 1000
-KEYS = {b"i": (FULL, 0), b",": (-FULL, 0), b"j": (0, -FULL), b"l": (0, FULL), b"k": (0, 0), b" ": (0, 0)}
+KEYS = {b"i": (FULL, 0), b"w": (FULL, 0), b"k": (0, 0), b" ": (0, 0)}
 """Key -> x and r of MANUAL_CONTROL."""
 
 

@@ -21,7 +21,7 @@ KEYS = 60
 """Keys of one contender in one round: 180 in all."""
 QUICK_KEYS = 14
 
-DRIVE_KEYS = (b"i", b"j", b",", b"l")
+DRIVE_KEYS = (b"i", b"w")
 STOP_KEYS = (b"k", b" ")
 
 QUIET = 0.06
@@ -161,7 +161,7 @@ def running(contender: Contender) -> Iterator[Rig]:
         stack.callback(ground.end)
         vehicle = on_pipe(watch, vehicle_argv)
         stack.callback(vehicle.end)
-        ground.wait_for("MANUAL" if contender.arms else "ready", 20)
+        ground.wait_for("DISARMED" if contender.arms else "ready", 20)
         yield Rig(ground, vehicle, feed, watch)
 
 

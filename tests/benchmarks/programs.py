@@ -57,6 +57,8 @@ class Program:
         )
         os.close(program_end)
         watch.add(terminal, self._read)
+        self._end = os.pidfd_open(self.process.pid)  # readable when it has ended: an end that wakes the watch
+        watch.add(self._end, lambda: False)
 
     @property
     def pid(self) -> int:
@@ -94,8 +96,9 @@ class Program:
         if not self._watch.until(lambda: self.process.poll() is not None, END_WITHIN):
             self.process.kill()
             self.process.wait()
-        self._watch.remove(self._terminal)
-        os.close(self._terminal)
+        for descriptor in (self._terminal, self._end):
+            self._watch.remove(descriptor)
+            os.close(descriptor)
 
     def _read(self) -> bool:
         try:
@@ -155,6 +158,7 @@ def _own_terminal() -> None:
 
 
 def _environment() -> Mapping[str, str]:
-    """Ours, with a plain terminal of the size that the pty has."""
-    kept = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES", "TEXTUAL")}
+    """Ours, with a plain terminal of the size that the pty has, and byte code kept as on a user's machine."""
+    left_out = ("COLUMNS", "LINES", "PYTHONDONTWRITEBYTECODE")
+    kept = {name: value for name, value in os.environ.items() if name not in left_out}
     return kept | {"TERM": "xterm-256color", "PYTHONUNBUFFERED": "1"}
