@@ -6,6 +6,25 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
+class Computer:
+    """How the computer on board is; for ONBOARD_COMPUTER_STATUS and for what follows from a weak supply or heat."""
+
+    temperature: float | None = None
+    """Degrees Celsius of the processor."""
+    load: float | None = None
+    """Processes that want to run, a processor each: 1 is busy, more is too much. Mean of a minute."""
+    memory_used: int | None = None
+    """bytes"""
+    memory_total: int | None = None
+    uptime: float | None = None
+    """s"""
+    under_voltage: bool | None = None
+    """The supply is too weak now."""
+    throttled: bool | None = None
+    """The processor is slowed down now, by heat or by a weak supply."""
+
+
+@dataclass(frozen=True, slots=True)
 class Readings:
     """The newest of every sensor; None where there is none. Units are SI; angles in rad, yaw clockwise from north."""
 
@@ -36,6 +55,7 @@ class Readings:
     """0..1"""
     wheel_speeds: tuple[float, ...] = ()
     """m/s of each wheel, in motor order."""
+    computer: Computer | None = None
 
 
 NO_READINGS = Readings()

@@ -33,14 +33,14 @@ def _import_lgpio() -> tuple[type[BaseException], ...]:
 _lgpio_errors = _import_lgpio()
 
 try:
-    from gpiozero import DigitalInputDevice, DigitalOutputDevice, Motor, PhaseEnableMotor
+    from gpiozero import DigitalInputDevice, DigitalOutputDevice, Motor, PhaseEnableMotor, RotaryEncoder
     from gpiozero.exc import GPIOZeroError
 except ImportError as error:
     raise MotorError(f"{error}; install it: pip install 'mavhelm[pi]'") from error
 
 FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, *_lgpio_errors)
 
-__all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMotor", "translated"]
+__all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMotor", "RotaryEncoder", "translated"]
 
 
 @contextlib.contextmanager

@@ -75,9 +75,14 @@ def parsed(table: Mapping[str, Any], kind: type[T]) -> T:
     try:
         return msgspec.convert(dict(table), kind)
     except msgspec.ValidationError as error:
-        what, _, path = str(error).partition(" - at `$")
-        where = path.rstrip("`").replace("[...]", "[]")
-        raise MotorSettingsError(f"motor settings{': ' + where.lstrip('.') if where else ''}: {what}") from error
+        raise MotorSettingsError(f"motor settings{told(error)}") from error
+
+
+def told(error: msgspec.ValidationError) -> str:
+    """What is wrong and where, to stand after the name of the table."""
+    what, _, path = str(error).partition(" - at `$")
+    where = path.strip(".`")
+    return f": {where}: {what}" if where else f": {what}"
 
 
 def refuse_doubles(numbers: list[int]) -> None:

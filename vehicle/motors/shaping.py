@@ -43,7 +43,7 @@ def shaped(throttle: float, shape: Shape) -> float:
     """`throttle` -1..1 in the motor's own range."""
     if throttle == 0.0:
         return 0.0
-    size = shape.minimum + (shape.maximum - shape.minimum) * abs(throttle)
+    size = min(shape.maximum, shape.minimum + (shape.maximum - shape.minimum) * abs(throttle))  # min: rounding
     return math.copysign(size, -throttle if shape.reversed else throttle)
 
 
@@ -52,7 +52,7 @@ def limited(left: float, right: float, limits: Limits) -> tuple[float, float]:
     straight, turn = abs(left + right), abs(left - right)
     if straight + turn == 0.0:
         return 0.0, 0.0
-    factor = (limits.driving * straight + limits.turning * turn) / (straight + turn)
+    factor = min(1.0, (limits.driving * straight + limits.turning * turn) / (straight + turn))
     return left * factor, right * factor
 
 

@@ -1,0 +1,99 @@
+from __future__ import annotations
+
+from typing import Any, Generic, TypeVar
+
+import pytest
+
+from vehicle.readings import NO_READINGS, Computer, Readings
+from vehicle.sensors import Sensors
+from vehicle.sensors.gps import GpsReading
+from vehicle.sensors.gpsd import Fix, Sky
+from vehicle.sensors.power import Power
+from vehicle.sensors.suite import SensorSettingsError, Sources, Suite, open_sensors, sensor_settings
+
+T = TypeVar("T")
+
+
+class Given(Generic[T]):
+    """A source with a fixed value."""
+
+    def __init__(self, value: T | None, fault: str | None = None) -> None:
+        self.fault = fault
+        self.closed = False
+        self._value = value
+
+    def latest(self, now: float) -> T | None:
+        return self._value
+
+    def close(self) -> None:
+        self.closed = True
+        if self.fault:
+            raise OSError(self.fault)
+
+
+def test_everything_becomes_one_reading() -> None:
+    computer = Computer(temperature=50.0)
+    suite: Sensors = Suite(
+        Sources(
+            battery=Given(Power(12.1, 1.5)),
+            gps=Given(GpsReading(Fix(3, 1.0, 2.0, 3.0, 0.4, 0.5), Sky(9, 0.8))),
+            encoders=Given((0.4, 0.6)),
+            computer=Given(computer),
+        )
+    )
+    assert suite.read(0.0) == Readings(
+        battery_voltage=12.1,
+        battery_current=1.5,
+        gps_fix=3,
+        latitude=1.0,
+        longitude=2.0,
+        altitude=3.0,
+        velocity_north=0.4,
+        velocity_east=0.5,
+        gps_satellites=9,
+        gps_hdop=0.8,
+        wheel_speeds=(0.4, 0.6),
+        speed=0.5,
+        computer=computer,
+    )
+
+
+def test_nothing_there_and_nothing_known_is_nothing() -> None:
+    assert Suite(Sources()).read(0.0) == NO_READINGS
+    nothing = Suite(Sources(Given(None), Given(None), Given(None), Given(None)))
+    assert nothing.read(0.0) == NO_READINGS
+
+
+def test_faults_are_listed_and_every_sensor_is_closed() -> None:
+    battery, gps = Given[Power](None, "no chip"), Given[GpsReading](None)
+    suite = Suite(Sources(battery=battery, gps=gps))
+    assert suite.faults() == ["no chip"]
+    with pytest.raises(OSError, match="no chip"):
+        suite.close()
+    assert battery.closed
+    assert gps.closed
+
+
+async def test_sensors_that_are_not_there_do_not_keep_the_rover_from_starting() -> None:
+    suite = open_sensors(sensor_settings({"battery": {"kind": "ina219", "bus": 99}, "gps": {"port": 1}}))
+    try:
+        readings = suite.read(0.0)
+        assert readings.battery_voltage is None
+        assert readings.gps_fix is None
+    finally:
+        suite.close()
+
+
+@pytest.mark.parametrize(
+    ("table", "says"),
+    [
+        ({"batery": {}}, "sensor settings: Object contains unknown field `batery`"),
+        ({"battery": {"kind": "ina999"}}, "sensor settings: battery.kind: Invalid enum value 'ina999'"),
+        ({"gps": {"port": 0}}, "sensor settings: gps.port: Expected `int` >= 1"),
+        ({"encoders": {"wheels": [{"a": 5, "b": 5}]}}, "sensor settings: encoders: 5 is used twice"),
+    ],
+)
+def test_settings_are_read_strictly(table: dict[str, Any], says: str) -> None:
+    with pytest.raises(SensorSettingsError) as caught:
+        sensor_settings(table)
+    assert says in str(caught.value)

@@ -1,0 +1,100 @@
+"""The connection to gpsd: asks it to watch, keeps the newest fix, and comes back when it was lost."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass
+from typing import Annotated
+
+import msgspec
+
+from vehicle.sensors.gpsd import Fix, Sky, parse
+from vehicle.sensors.latest import Latest
+
+MAX_AGE = 3.0
+"""s that a fix counts: the failsafe's time for a lost GPS; receivers give one each second at least."""
+SKY_AGE = 10.0
+"""s that the satellites count: gpsd reports them less often."""
+RETRY = (0.2, 5.0)
+"""s until the next attempt, doubled from the first to the last."""
+LINE = 65_536
+"""bytes of the longest line: a SKY of 100 satellites has 12 000. A longer one is not gpsd's; begin anew."""
+SILENCE = 60.0
+"""s without a line after which the connection is tried anew: a gpsd on another machine may be gone without a word."""
+WATCH = b'?WATCH={"enable":true,"json":true};\n'
+
+
+class GpsSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where gpsd is."""
+
+    host: str = "127.0.0.1"
+    port: Annotated[int, msgspec.Meta(ge=1, le=65535)] = 2947
+
+
+@dataclass(frozen=True, slots=True)
+class GpsReading:
+    """The newest fix, and the sky as far as it is known."""
+
+    fix: Fix
+    sky: Sky
+
+
+class Gpsd:
+    """A `Source`. Made inside a running event loop, where it has a task until it is closed."""
+
+    def __init__(self, settings: GpsSettings, *, clock: Callable[[], float] | None = None) -> None:
+        loop = asyncio.get_running_loop()
+        self._settings = settings
+        self._clock = clock or loop.time
+        self._fix = Latest[Fix](MAX_AGE)
+        self._sky = Latest[Sky](SKY_AGE)
+        self._task = loop.create_task(self._run())
+
+    @property
+    def fault(self) -> str | None:
+        """Why there is no connection."""
+        return self._fix.fault
+
+    def latest(self, now: float) -> GpsReading | None:
+        """None without a fresh report; a report without a fix is one."""
+        fix = self._fix.at(now)
+        return None if fix is None else GpsReading(fix, self._sky.at(now) or Sky())
+
+    def close(self) -> None:
+        """End the task."""
+        self._task.cancel()
+
+    async def _run(self) -> None:
+        wait, longest = RETRY
+        while True:
+            heard = False
+            try:
+                async for line in self._lines():
+                    heard = self._take(line) or heard
+                raise ConnectionError("the connection was closed")
+            except (OSError, ValueError) as error:  # ValueError: a line that does not end
+                self._fix.missed(OSError(f"gpsd at {self._settings.host}:{self._settings.port}: {error}"))
+            wait = RETRY[0] if heard else min(2 * wait, longest)
+            await asyncio.sleep(wait)
+
+    async def _lines(self) -> AsyncIterator[bytes]:
+        reader, writer = await asyncio.open_connection(self._settings.host, self._settings.port, limit=LINE)
+        try:
+            writer.write(WATCH)
+            while line := await asyncio.wait_for(reader.readline(), SILENCE):
+                yield line
+        finally:
+            writer.close()
+
+    def _take(self, line: bytes) -> bool:
+        """True where it was about the position."""
+        match parse(line):
+            case Fix() as fix:
+                self._fix.take(fix, self._clock())
+                return True
+            case Sky() as sky:
+                self._sky.take(sky, self._clock())
+                return True
+            case None:
+                return False

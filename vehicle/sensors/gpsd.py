@@ -1,0 +1,99 @@
+"""What gpsd says, from its JSON to a position; pure, the connection is vehicle/sensors/gps.py.
+
+gpsd sends one object a line: TPV is the fix, SKY the satellites (man gpsd_json). The rest, bad lines and values that
+are no position are passed over.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from typing import Any
+
+MODE_FIX = {1: 1, 2: 2, 3: 3}
+"""TPV mode -> GPS_FIX_TYPE: no fix, 2D, 3D."""
+STATUS_FIX = {2: 4, 3: 6, 4: 5}
+"""TPV status of a 3D fix -> GPS_FIX_TYPE: DGPS, RTK fixed, RTK float."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """One report; degrees, m, m/s. None for what it did not say."""
+
+    fix: int
+    """GPS_FIX_TYPE."""
+    latitude: float | None = None
+    longitude: float | None = None
+    altitude: float | None = None
+    """Above mean sea level."""
+    velocity_north: float | None = None
+    velocity_east: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Sky:
+    """How good it can be."""
+
+    satellites: int | None = None
+    """In use."""
+    hdop: float | None = None
+
+
+def parse(line: bytes) -> Fix | Sky | None:
+    """One line of gpsd's; None for what is not about the position. Never raises."""
+    try:
+        report = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(report, dict):
+        return None
+    match report.get("class"):
+        case "TPV":
+            return _fix(report)
+        case "SKY":
+            return _sky(report)
+        case _:
+            return None
+
+
+def _fix(report: dict[str, Any]) -> Fix:
+    fix = MODE_FIX.get(_whole(report, "mode") or 0, 0)
+    latitude, longitude = _number(report, "lat", 90.0), _number(report, "lon", 180.0)
+    if fix < 2 or latitude is None or longitude is None:
+        return Fix(min(fix, 1))
+    if fix == 3:
+        fix = STATUS_FIX.get(_whole(report, "status") or 0, 3)
+    altitude = _number(report, "altMSL", 1e5)
+    if altitude is None:
+        altitude = _number(report, "alt", 1e5)  # before gpsd 3.20
+    return Fix(fix, latitude, longitude, altitude if fix >= 3 else None, *_velocity(report))
+
+
+def _velocity(report: dict[str, Any]) -> tuple[float | None, float | None]:
+    speed, track = _number(report, "speed", 1e3), _number(report, "track", 360.0)
+    if speed is None or (track is None and speed):
+        return None, None
+    heading = math.radians(track or 0.0)  # a receiver that stands has no track
+    return speed * math.cos(heading), speed * math.sin(heading)
+
+
+def _sky(report: dict[str, Any]) -> Sky | None:
+    satellites = _whole(report, "uSat")
+    listed = report.get("satellites")
+    if satellites is None and isinstance(listed, list):  # before gpsd 3.21
+        satellites = sum(1 for one in listed if isinstance(one, dict) and one.get("used") is True)
+    hdop = _number(report, "hdop", 1e3)
+    return None if satellites is None and hdop is None else Sky(satellites, hdop)
+
+
+def _number(report: dict[str, Any], name: str, largest: float) -> float | None:
+    value = report.get(name)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    return float(value) if abs(value) <= largest else None  # also false for NaN
+
+
+def _whole(report: dict[str, Any], name: str) -> int | None:
+    value = report.get(name)
+    return value if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= 255 else None

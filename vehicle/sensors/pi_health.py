@@ -1,0 +1,73 @@
+"""How the Raspberry Pi is: temperature, load, memory, supply, from files that the kernel keeps; cheap, but files."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from vehicle.readings import Computer
+
+PERIOD, MAX_AGE = 1.0, 5.0
+"""s between readings, and how long one counts."""
+
+THERMAL = "sys/class/thermal/thermal_zone0/temp"
+THROTTLED = "sys/devices/platform/soc/soc:firmware/get_throttled"
+"""What `vcgencmd get_throttled` prints, in hexadecimal; only on Raspberry Pi's own kernels."""
+UNDER_VOLTAGE, CAPPED, SLOWED, WARM = 0x1, 0x2, 0x4, 0x8
+"""Bits of it that are about now; the same shifted by 16 are about any time since boot."""
+VOLTAGE_MONITOR = "rpi_volt"
+"""hwmon's name for the supply; on kernels without the file above."""
+
+T = TypeVar("T")
+
+
+class PiHealth:
+    """`sample` reads everything once; what this computer does not have is None."""
+
+    def __init__(self, root: Path = Path("/")) -> None:
+        """`root` is for tests."""
+        self._root = root
+
+    def sample(self) -> Computer:
+        """Never raises for a file that is missing or says something else."""
+        used, total = self._known(self._memory) or (None, None)
+        under_voltage, throttled = self._known(self._throttled) or (None, None)
+        if under_voltage is None:
+            under_voltage = self._known(self._monitor)
+        return Computer(
+            temperature=self._known(lambda: int(self._text(THERMAL)) / 1000),
+            load=self._known(lambda: float(self._text("proc/loadavg").split()[0]) / (os.cpu_count() or 1)),
+            memory_used=used,
+            memory_total=total,
+            uptime=self._known(lambda: float(self._text("proc/uptime").split()[0])),
+            under_voltage=under_voltage,
+            throttled=throttled,
+        )
+
+    def _text(self, path: str) -> str:
+        return (self._root / path).read_text()
+
+    @staticmethod
+    def _known(read: Callable[[], T]) -> T | None:
+        with contextlib.suppress(OSError, ValueError, IndexError, KeyError):
+            return read()
+        return None
+
+    def _memory(self) -> tuple[int, int]:
+        lines = (line.partition(":") for line in self._text("proc/meminfo").splitlines())
+        kilobytes = {name: int(rest.split()[0]) for name, _, rest in lines}
+        total = kilobytes["MemTotal"]
+        return (total - kilobytes["MemAvailable"]) * 1024, total * 1024
+
+    def _throttled(self) -> tuple[bool, bool]:
+        bits = int(self._text(THROTTLED), 16)
+        return bool(bits & UNDER_VOLTAGE), bool(bits & (CAPPED | SLOWED | WARM))
+
+    def _monitor(self) -> bool | None:
+        for name in sorted((self._root / "sys/class/hwmon").glob("hwmon*/name")):
+            if name.read_text().strip() == VOLTAGE_MONITOR:
+                return bool(int((name.parent / "in0_lcrit_alarm").read_text()))
+        return None

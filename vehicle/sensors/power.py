@@ -1,0 +1,103 @@
+"""Voltage and current of the battery from an INA219 or INA260 on the I2C bus; what they mean is vehicle/battery.py's.
+
+Registers as in Texas Instruments' data sheets (SBOS448G, SBOS656C). No calibration register is used: the current comes
+from the shunt voltage itself, so a chip that lost its power gives right values again at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import msgspec
+
+from vehicle.i2c import Bus, open_bus
+
+PERIOD, MAX_AGE = 0.2, 2.0
+"""s between readings, and how long one counts: shorter than the 5 s after which the battery sensor counts as silent."""
+
+
+@dataclass(frozen=True, slots=True)
+class Power:
+    """V and A; positive is out of the battery."""
+
+    voltage: float
+    current: float
+
+
+class PowerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The chip, and where it is."""
+
+    kind: Literal["ina219", "ina260"]
+    bus: Annotated[int, msgspec.Meta(ge=0)] = 1
+    address: Annotated[int, msgspec.Meta(ge=0x40, le=0x4F)] = 0x40
+    shunt: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.1
+    """ohm, of an INA219: 0.1 on most boards, which measures up to 3.2 A. An INA260 has its own inside."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chip:
+    """How one kind of chip is read."""
+
+    configuration: int
+    """For register 0: continuous, averaged over tens of ms, because motors draw in pulses."""
+    power: Callable[[int, int, float], Power]
+    """From the registers 1 and 2, and the shunt's resistance."""
+
+
+def ina219(shunt_register: int, bus_register: int, shunt: float) -> Power:
+    """10 uV a step over the shunt, signed; 4 mV a step on the bus, above three flag bits."""
+    return Power(voltage=(bus_register >> 3) * 0.004, current=signed(shunt_register) * 10e-6 / shunt)
+
+
+def ina260(current_register: int, bus_register: int, shunt: float) -> Power:
+    """1.25 mA and 1.25 mV a step; its shunt is calibrated in the factory."""
+    return Power(voltage=bus_register * 1.25e-3, current=signed(current_register) * 1.25e-3)
+
+
+def signed(register: int) -> int:
+    """16 bits as two's complement."""
+    return register - 0x10000 if register & 0x8000 else register
+
+
+CHIPS: dict[str, Chip] = {
+    "ina219": Chip(0x3FFF, ina219),  # 32 V, 320 mV, 128 samples of both: 68 ms each
+    "ina260": Chip(0x6527, ina260),  # 16 samples of both, 1.1 ms each
+}
+
+
+class PowerMonitor:
+    """`sample` reads the chip once. It opens the bus when it must, so a chip that is plugged in later is found."""
+
+    def __init__(self, settings: PowerSettings, *, open_bus: Callable[[int], Bus] = open_bus) -> None:
+        self._settings = settings
+        self._chip = CHIPS[settings.kind]
+        self._open = open_bus
+        self._bus: Bus | None = None
+
+    def sample(self) -> Power:
+        """Raises OSError, ImportError."""
+        try:
+            bus = self._ready()
+            return self._chip.power(self._register(bus, 1), self._register(bus, 2), self._settings.shunt)
+        except OSError as error:
+            self.close()
+            settings = self._settings
+            where = f"{settings.kind} at 0x{settings.address:02x} on I2C bus {settings.bus}"
+            raise OSError(f"{where}: {error.strerror or error}") from error
+
+    def close(self) -> None:
+        """Let go of the bus; the next sample opens it again."""
+        bus, self._bus = self._bus, None
+        if bus is not None:
+            bus.close()
+
+    def _ready(self) -> Bus:
+        if self._bus is None:
+            self._bus = self._open(self._settings.bus)
+            self._bus.write_i2c_block_data(self._settings.address, 0, list(self._chip.configuration.to_bytes(2, "big")))
+        return self._bus
+
+    def _register(self, bus: Bus, number: int) -> int:
+        return int.from_bytes(bytes(bus.read_i2c_block_data(self._settings.address, number, 2)), "big")

@@ -1,0 +1,128 @@
+"""All sensors of a real rover as one `Sensors`: each is asked for its newest value, none can stop the others."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from vehicle.motors.settings import told
+from vehicle.readings import Computer, Readings
+from vehicle.sensors.encoders import Encoders, EncoderSettings
+from vehicle.sensors.gps import Gpsd, GpsReading, GpsSettings
+from vehicle.sensors.latest import Source
+from vehicle.sensors.pi_health import MAX_AGE as HEALTH_AGE
+from vehicle.sensors.pi_health import PERIOD as HEALTH_PERIOD
+from vehicle.sensors.pi_health import PiHealth
+from vehicle.sensors.power import MAX_AGE as POWER_AGE
+from vehicle.sensors.power import PERIOD as POWER_PERIOD
+from vehicle.sensors.power import Power, PowerMonitor, PowerSettings
+from vehicle.sensors.sampler import Sampler
+
+
+class SensorSettingsError(Exception):
+    """There is no such setting, or no such value for it. The text is one clear line."""
+
+
+class SensorSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Which sensors there are; a table left out is a sensor that is not there."""
+
+    battery: PowerSettings | None = None
+    gps: GpsSettings | None = None
+    encoders: EncoderSettings | None = None
+    computer: bool = True
+    """Watch the Pi itself."""
+
+
+@dataclass
+class Sources:
+    """What there is; any of them may be somebody else's."""
+
+    battery: Source[Power] | None = None
+    gps: Source[GpsReading] | None = None
+    encoders: Source[tuple[float, ...]] | None = None
+    computer: Source[Computer] | None = None
+
+    def present(self) -> list[Source[Any]]:
+        """Those that there are."""
+        everything: list[Source[Any] | None] = [self.battery, self.gps, self.encoders, self.computer]
+        return [source for source in everything if source is not None]
+
+
+class Suite:
+    """Fits `vehicle.sensors.Sensors`."""
+
+    def __init__(self, sources: Sources) -> None:
+        self._sources = sources
+
+    def read(self, now: float) -> Readings:
+        """The newest of everything."""
+        sources = self._sources
+        values: dict[str, Any] = {}
+        if (power := _newest(sources.battery, now)) is not None:
+            values.update(battery_voltage=power.voltage, battery_current=power.current)
+        if (position := _newest(sources.gps, now)) is not None:
+            values.update(_position(position))
+        if wheels := _newest(sources.encoders, now):
+            values.update(wheel_speeds=wheels, speed=sum(wheels) / len(wheels))
+        return Readings(computer=_newest(sources.computer, now), **values)
+
+    def faults(self) -> list[str]:
+        """Why a sensor gives nothing, a line each."""
+        return [source.fault for source in self._sources.present() if source.fault is not None]
+
+    def close(self) -> None:
+        """Let go of every sensor."""
+        with contextlib.ExitStack() as steps:
+            for source in self._sources.present():
+                steps.callback(source.close)
+
+
+def sensor_settings(table: Mapping[str, Any]) -> SensorSettings:
+    """Settings from a file's table. Raises SensorSettingsError, one line that says where."""
+    try:
+        return msgspec.convert(dict(table), SensorSettings)
+    except msgspec.ValidationError as error:
+        raise SensorSettingsError(f"sensor settings{told(error)}") from error
+
+
+def open_sensors(settings: SensorSettings) -> Suite:
+    """The sensors of `settings`, reading already. To be called in a running event loop.
+
+    A sensor that is not there yet is looked for again and again; only encoders raise, MotorError, for want of pins.
+    """
+    sources = Sources()
+    if settings.encoders is not None:
+        sources.encoders = Encoders(settings.encoders)  # first: it is the only one that raises
+    if settings.battery is not None:
+        sources.battery = _sampled(PowerMonitor(settings.battery).sample, POWER_PERIOD, POWER_AGE)
+    if settings.gps is not None:
+        sources.gps = Gpsd(settings.gps)
+    if settings.computer:
+        sources.computer = _sampled(PiHealth().sample, HEALTH_PERIOD, HEALTH_AGE)
+    return Suite(sources)
+
+
+def _sampled(sample: Callable[[], Any], period: float, max_age: float) -> Sampler[Any]:
+    return Sampler(sample, period=period, max_age=max_age)
+
+
+def _newest(source: Source[Any] | None, now: float) -> Any:
+    return None if source is None else source.latest(now)
+
+
+def _position(reading: GpsReading) -> dict[str, Any]:
+    fix, sky = reading.fix, reading.sky
+    return {
+        "gps_fix": fix.fix,
+        "latitude": fix.latitude,
+        "longitude": fix.longitude,
+        "altitude": fix.altitude,
+        "velocity_north": fix.velocity_north,
+        "velocity_east": fix.velocity_east,
+        "gps_satellites": sky.satellites,
+        "gps_hdop": sky.hdop,
+    }
