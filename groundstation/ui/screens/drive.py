@@ -12,7 +12,7 @@ from textual.widgets import Static
 
 from groundstation.intents import AnyIntent, StartSimulator
 from groundstation.keymap import CONFIRM_KEY, Action, Keymap
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.alerts import Situation, alerts
 from groundstation.ui.colours import BLUE, GREEN
 from groundstation.ui.gate import Shut
@@ -36,6 +36,9 @@ from groundstation.ui.widgets.waiting import Waiting
 SMALLEST = (80, 24)
 """Columns and rows below which the console would lose something that a driver must see."""
 
+SLOW = 0.5
+"""s between pictures of what nobody drives by: charts and tables. Each moves all its lines, and over ssh that costs."""
+
 
 class DriveScreen(Screen[None]):
     """One picture of one snapshot."""
@@ -49,6 +52,7 @@ class DriveScreen(Screen[None]):
         self._keymap, self._send, self._ask_app = keymap, send, ask_app
         self.snapshot = Snapshot()
         """What is shown."""
+        self._slow_at = -SLOW
         self.question: Action | None = None
         """The action that waits for its second key."""
 
@@ -125,11 +129,15 @@ class DriveScreen(Screen[None]):
         self._sticks.show(bars(snapshot))
         self.light(pressed)
         self._footer.show(vehicle.armed)
-        if self.has_class("-wide"):
-            self._speeds.add(snapshot.uptime, vehicle.speed)
-            self._battery.add(snapshot.uptime, vehicle.battery_voltage)
-            self._rates.show(snapshot.messages)
-            self._links.show(snapshot.links)
+        if self.has_class("-wide") and not 0 <= snapshot.uptime - self._slow_at < SLOW:
+            self._slow_at = snapshot.uptime
+            self._show_slow(snapshot, vehicle)
+
+    def _show_slow(self, snapshot: Snapshot, vehicle: VehicleView) -> None:
+        self._speeds.add(snapshot.uptime, vehicle.speed)
+        self._battery.add(snapshot.uptime, vehicle.battery_voltage)
+        self._rates.show(snapshot.messages)
+        self._links.show(snapshot.links)
 
     def light(self, pressed: frozenset[str]) -> None:
         """Light the caps of keys that are down."""

@@ -40,9 +40,7 @@ class Chart(Instrument[Samples]):
         self._kept: deque[tuple[float, tuple[float | None, ...]]] = deque()
 
     def add(self, now: float, *values: float | None) -> None:
-        """Keep a sample, four a second at most: the eye sees no more, and each one moves the whole line."""
-        if self._kept and now - self._kept[-1][0] < 0.25:
-            return
+        """Keep a sample; the oldest leave after SPAN."""
         self._kept.append((now, tuple(known(value) for value in values)))
         while self._kept[0][0] < now - SPAN:
             self._kept.popleft()
