@@ -152,6 +152,7 @@ class Helm:
         state = f"simulator {self._simulator.state}"
         if not self._simulator.running and self._station.simulator != self._simulator.state:
             self._say(now, state)
+            log.error("the simulator said:\n%s", self._simulator.said)
         self._station.simulator = self._simulator.state
 
     def _say(self, now: float, text: str) -> None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import signal
 import socket
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
-from pathlib import Path
 
 from groundstation.processes import end_process, start_module
 
@@ -18,6 +18,9 @@ PR_SET_PDEATHSIG = 1
 
 END_TIMEOUT = 1.0
 """s for the simulator to stop its motors and end, before it is killed."""
+
+KEPT = 4000
+"""Bytes of its output that are looked at: the last words, with a traceback."""
 
 
 def free_port() -> int:
@@ -28,19 +31,18 @@ def free_port() -> int:
 
 
 class Simulator:
-    """One `vehicle --sim`. What it prints goes to a file; its last line is the reason when it ends."""
+    """One `vehicle --sim`. What it prints is kept; the last line is the reason when it ends."""
 
     def __init__(self, host: str, port: int) -> None:
         """Start it, sending to an address of this machine. Raises OSError."""
-        with tempfile.NamedTemporaryFile(prefix="mavhelm-sim-", suffix=".log", delete=False) as output:
-            self.output = Path(output.name)
-            self._process: subprocess.Popen[bytes] = start_module(
-                "vehicle",
-                ["--sim", f"udpout:{host}:{port}"],
-                output=output,
-                new_session=True,  # Ctrl-C in the terminal is for the screen
-                prepare=_die_with_parent(),
-            )
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115  # it has no name: nothing is left behind, come what may
+        self._process: subprocess.Popen[bytes] = start_module(
+            "vehicle",
+            ["--sim", f"udpout:{host}:{port}"],
+            output=self._output,
+            new_session=True,  # Ctrl-C in the terminal is for the screen
+            prepare=_die_with_parent(),
+        )
 
     @property
     def running(self) -> bool:
@@ -54,15 +56,21 @@ class Simulator:
         if code is None:
             return "running"
         how = f"ended by {signal.Signals(-code).name}" if code < 0 else f"ended with code {code}"
-        last = _last_line(self.output)
-        return f"{how}: {last}" if last else how
+        lines = self.said.strip().split("\n")
+        return f"{how}: {lines[-1]}" if lines[-1] else how
+
+    @property
+    def said(self) -> str:
+        """The end of what it printed."""
+        size = os.fstat(self._output.fileno()).st_size
+        return os.pread(self._output.fileno(), KEPT, max(0, size - KEPT)).decode("utf-8", "replace")
 
     def close(self) -> None:
-        """End it; its output is kept only where it ended by itself."""
+        """End it."""
         if self.running:
             self._process.terminate()
             end_process(self._process, END_TIMEOUT)
-            self.output.unlink(missing_ok=True)
+        self._output.close()
 
 
 def _die_with_parent() -> Callable[[], None] | None:
@@ -75,11 +83,3 @@ def _die_with_parent() -> Callable[[], None] | None:
         prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
     return prepare
-
-
-def _last_line(path: Path) -> str:
-    try:
-        lines = path.read_text(encoding="utf-8", errors="replace").split("\n")
-    except OSError:
-        return ""
-    return next((line.strip() for line in reversed(lines) if line.strip()), "")
