@@ -285,7 +285,7 @@ class Channel:
     def _nothing_but_noise(self, counts: Counts) -> str | None:
         if self._capacity is None:
             return None
-        return noise_hint(self.name, self._bytes_received, counts)
+        return noise_hint(self.name, self._bytes_received, counts.frames + counts.unknown)
 
     def _source_counts(self) -> dict[tuple[int, int], SourceCount]:
         totals: dict[tuple[int, int], SourceCount] = {}

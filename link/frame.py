@@ -81,8 +81,8 @@ class Counts:
             self.mismatches[number] = self.mismatches.get(number, 0) + times
 
 
-def noise_hint(name: str, received: int, counts: Counts) -> str | None:
+def noise_hint(name: str, received: int, frames: int) -> str | None:
     """What to tell of a wire that has brought `received` bytes, when none of them made a frame."""
-    if received < NOISE_ENOUGH or counts.frames or counts.unknown:
+    if received < NOISE_ENOUGH or frames:
         return None
     return f"{name}: {received} bytes and no MAVLink frame among them; wrong baud rate?"

@@ -14,6 +14,7 @@ from link.channel import Channel
 from link.core import Core, LinkReport, Outgoing, Received
 from link.link import Link
 from link.openers import open_wires
+from link.router import Delivery, Router
 
 log = logging.getLogger(__name__)
 
@@ -52,12 +53,17 @@ def open_links(
 
 
 class Runner:
-    """Drives `core`: messages in at once, messages out at once, a tick every `period` s at absolute deadlines."""
+    """Drives `core`: messages in at once, messages out at once, a tick every `period` s at absolute deadlines.
 
-    def __init__(self, core: Core, links: Sequence[Link], *, period: float) -> None:
+    With several links it also forwards between them (router.py), as MAVLink asks of every system that has more than
+    one: two ground stations on two links of a vehicle hear each other. `route` false leaves that out.
+    """
+
+    def __init__(self, core: Core, links: Sequence[Link], *, period: float, route: bool | None = None) -> None:
         self._core = core
         self._links = links
         self._period = period
+        self._router = _router(links) if links and (len(links) > 1 if route is None else route) else None
         self._sent = core.sent if isinstance(core, HearsOfSending) else None
         self._ended: asyncio.Future[None] | None = None
         self._report_due = 0.0
@@ -70,8 +76,8 @@ class Runner:
         self._ended = loop.create_future()
         self._tick_due = loop.time()
         try:
-            for link in self._links:
-                link.wire.start(loop, partial(self._deliver, link), link.channel.gone)
+            for index, link in enumerate(self._links):
+                link.wire.start(loop, partial(self._deliver, index), partial(self._gone, index))
             self._tick()
             await self._ended
         finally:
@@ -106,14 +112,26 @@ class Runner:
         except Exception as error:
             self._ended.set_exception(error)
 
-    def _deliver(self, link: Link, datagrams: Sequence[tuple[bytes, Hashable]]) -> None:
-        self._guard(lambda: self._receive(link, datagrams))
+    def _deliver(self, index: int, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
+        self._guard(lambda: self._receive(index, pieces))
 
-    def _receive(self, link: Link, datagrams: Sequence[tuple[bytes, Hashable]]) -> None:
+    def _gone(self, index: int, address: Hashable) -> None:
+        self._links[index].channel.gone(address)
+        if self._router:
+            self._router.table.gone(index, address)
+
+    def _receive(self, index: int, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
         now = asyncio.get_running_loop().time()
-        for data, address in datagrams:
-            self._hand_over(link.channel.receive(data, address, now), now)
+        for data, address in pieces:
+            self._hand_over(self._links[index].channel.receive(data, address, now), now)
         self._flush()
+        if self._router:  # after our own answers: what is for us comes first
+            self._forward(self._router.receive(index, pieces, now))
+
+    def _forward(self, deliveries: Sequence[Delivery]) -> None:
+        for port, address, frames in deliveries:
+            for frame in frames:
+                self._links[port].wire.send(frame, address)
 
     def _hand_over(self, messages: list[Received], now: float) -> None:
         for received in messages:
@@ -130,6 +148,8 @@ class Runner:
         now = asyncio.get_running_loop().time()
         for link in self._links:
             self._hand_over(link.channel.tick(now), now)
+        if self._router:
+            self._forward(self._router.tick(now))
         if now >= self._report_due:
             self._report_due = now + REPORT_PERIOD
             self._observe(now)
@@ -158,3 +178,7 @@ class Runner:
                 link.wire.send(data, address)
                 if self._sent:
                     self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())
+
+
+def _router(links: Sequence[Link]) -> Router:
+    return Router([(link.wire.stream, link.wire.fixed) for link in links], own=links[0].channel.ids)

@@ -1,0 +1,168 @@
+"""The command line of the bridge: words in, wires joined. It only reads and refuses; bridge.py does the work."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import gc
+import logging
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, NoReturn
+
+from link.bridge.bridge import Bridge
+from link.bridge.recorder import Recorder, RecorderError
+from link.bridge.screens import Screen, Teller, print_json
+from link.bridge.status import Status
+from link.endpoint import EndpointError, endpoint_help, parse
+from link.link import LinkError, Wire
+from link.openers import open_wires
+
+log = logging.getLogger(__name__)
+
+EXAMPLES = """\
+examples:
+  bridge serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550        an autopilot, for every ground station that comes
+  bridge serial:/dev/ttyACM0:921600 udpout:192.168.1.20:14550 udpin:127.0.0.1:14551
+  bridge udpin:0.0.0.0:14550 tcpin:0.0.0.0:5760 --json --tlog logs
+
+endpoints (two or more):
+{endpoints}
+
+exit codes: 0 asked to stop (SIGTERM, Ctrl-C, SIGHUP), 2 a mistake on the command line.
+"""
+
+SWITCH_INTERVAL = 0.0005
+"""s that the table's thread may hold up the loop at a time; Python's own 5 ms would show in the latency."""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says a mistake in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"bridge: {message} (bridge --help shows how)\n")
+
+
+class _Version(argparse.Action):
+    """Looks the version up only when asked."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from importlib.metadata import version
+
+        print(f"bridge (mavhelm) {version('mavhelm')}")
+        parser.exit()
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the bridge; the exit code."""
+    parser = _parser()
+    asked = parser.parse_args(argv)
+    _check(asked.endpoints, parser)
+    logging.basicConfig(level=logging.INFO, format="bridge: %(message)s", stream=sys.stderr)
+    try:
+        with ExitStack() as stack:
+            asyncio.run(_serve(asked, stack))
+    except (LinkError, RecorderError) as error:
+        parser.exit(2, f"bridge: {error}\n")
+    except KeyboardInterrupt:  # before the loop takes signals
+        return 0
+    return 0
+
+
+async def _serve(asked: argparse.Namespace, stack: ExitStack) -> None:
+    wires = open_wires(asked.endpoints)
+    recorder = _recorder(asked.tlog, wires, stack)
+    bridge = Bridge(wires, _screen(asked, stack), recorder=recorder, join=not asked.one_frame)
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+        loop.add_signal_handler(number, bridge.stop)
+    sys.setswitchinterval(SWITCH_INTERVAL)
+    gc.collect()
+    gc.freeze()  # a full collection would hold frames up for 20 ms
+    log.info("ready, %s", " + ".join(asked.endpoints))
+    await bridge.run()
+    log.info("stopped")
+
+
+def _recorder(folder: Path | None, wires: Sequence[Wire], stack: ExitStack) -> Recorder | None:
+    if folder is None:
+        return None
+    try:
+        recorder = Recorder(folder)
+    except RecorderError:
+        for wire in wires:
+            wire.close()
+        raise
+    stack.callback(recorder.close)
+    log.info("recording to %s", recorder.path)
+    return recorder
+
+
+def _screen(asked: argparse.Namespace, stack: ExitStack) -> Callable[[Status], None]:
+    """Where the status goes: a table on a terminal, else what goes wrong to the log, with --json every line as well."""
+    if sys.stdout.isatty() and not asked.quiet and not asked.json:
+        return Screen(_live_table(stack)).show
+    teller = Teller()
+    if not asked.json:
+        return teller.show
+    screen = Screen(print_json)
+
+    def both(status: Status) -> None:
+        screen.show(status)
+        teller.show(status)
+
+    return both
+
+
+def _live_table(stack: ExitStack) -> Callable[[Status], None]:
+    from rich.console import Console
+
+    from link.bridge.table import LiveTable
+
+    table = LiveTable(Console())
+    stack.callback(table.close)
+    return table.draw
+
+
+def _check(endpoints: Sequence[str], parser: _Parser) -> None:
+    if len(endpoints) < 2:
+        parser.error("a bridge has two ends or more, for example serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550")
+    for endpoint in endpoints:
+        if endpoints.count(endpoint) > 1:
+            parser.error(f"{endpoint} is named twice")
+
+
+def _endpoint(text: str) -> str:
+    try:
+        return parse(text).text
+    except EndpointError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def _parser() -> _Parser:
+    parser = _Parser(
+        prog="bridge",
+        description="Joins MAVLink endpoints: forwards frames by system and component id and changes none.",
+        epilog=EXAMPLES.format(endpoints=endpoint_help()),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("endpoints", nargs="*", metavar="ENDPOINT", type=_endpoint, help="one end of the bridge")
+    shown = parser.add_mutually_exclusive_group()
+    shown.add_argument("--json", action="store_true", help="print the status as one line of JSON a second")
+    shown.add_argument("--quiet", action="store_true", help="no table; log only what goes wrong")
+    parser.add_argument("--tlog", metavar="DIR", type=Path, help="record all frames to a telemetry log in DIR")
+    parser.add_argument(
+        "--one-frame",
+        action="store_true",
+        help="never join waiting frames in a datagram, for receivers that read only the first",
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,126 @@
+"""Wires joined by the router: what arrives on one goes out on others, at once. It decides nothing; router.py does."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Hashable, Sequence
+from functools import partial
+
+from link.bridge.recorder import Recorder
+from link.bridge.status import Status, StatusMeter
+from link.link import Wire
+from link.router import Delivery, Router
+
+TICK = 0.05
+"""s between two looks at half frames and silent peers: half of what a framer waits (framer.PARTIAL_DEADLINE)."""
+STATUS_PERIOD = 1.0
+"""s between two lines or pictures of the status."""
+DATAGRAM = 1400
+"""Bytes at most when frames that wait are joined: below every usual MTU."""
+
+
+class Bridge:
+    """Forwards between `wires` until stop(). `tell` is handed the status once a second; `recorder` every frame.
+
+    `join` puts frames that wait anyway into one datagram; none is ever delayed for that. False is for receivers that
+    read only the first frame of a datagram.
+    """
+
+    def __init__(
+        self,
+        wires: Sequence[Wire],
+        tell: Callable[[Status], None],
+        *,
+        recorder: Recorder | None = None,
+        join: bool = True,
+    ) -> None:
+        self._wires = wires
+        self._tell = tell
+        self._recorder = recorder
+        self._join = join
+        self._router = Router([(wire.stream, wire.fixed) for wire in wires])
+        self._router.tape = [] if recorder else None
+        self._meter = StatusMeter(wires, self._router)
+        self._loop = asyncio.get_running_loop()
+        self._ended: asyncio.Future[None] = self._loop.create_future()
+
+    async def run(self) -> None:
+        """Forward until stop(); frees the ports at the end."""
+        timers = [
+            self._loop.create_task(self._every(period, step))
+            for period, step in ((TICK, self._tick), (STATUS_PERIOD, self._tell_status))
+        ]
+        for timer in timers:
+            timer.add_done_callback(self._timer_ended)
+        try:
+            for port, wire in enumerate(self._wires):
+                wire.start(self._loop, partial(self._arrived, port), partial(self._router.table.gone, port))
+            await self._ended
+        finally:
+            for timer in timers:
+                timer.cancel()
+            for wire in self._wires:
+                wire.close()
+
+    def stop(self) -> None:
+        """Let run() return."""
+        if not self._ended.done():
+            self._ended.set_result(None)
+
+    def _timer_ended(self, timer: asyncio.Task[None]) -> None:
+        """They end only by a fault of ours, which ends the bridge, or because it ends."""
+        if not timer.cancelled() and (fault := timer.exception()) and not self._ended.done():
+            self._ended.set_exception(fault)
+
+    def _arrived(self, port: int, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
+        for delivery in self._router.receive(port, pieces, self._loop.time()):
+            self._send(delivery)
+        if self._recorder:
+            self._record(self._recorder)
+
+    def _send(self, delivery: Delivery) -> None:
+        port, address, frames = delivery
+        wire = self._wires[port]
+        if len(frames) > 1 and self._join and not wire.stream:
+            frames = joined(frames)
+        for data in frames:
+            wire.send(data, address)
+
+    def _record(self, recorder: Recorder) -> None:
+        tape = self._router.tape
+        if tape:
+            self._router.tape = []
+            recorder.add(time.time_ns() // 1000, tape)
+
+    def _tick(self) -> None:
+        for delivery in self._router.tick(self._loop.time()):
+            self._send(delivery)
+        if self._recorder:
+            self._record(self._recorder)
+            self._recorder.hand_over()
+
+    def _tell_status(self) -> None:
+        self._tell(self._meter.read(self._loop.time(), self._recorder.problem if self._recorder else None))
+
+    async def _every(self, period: float, step: Callable[[], None]) -> None:
+        due = self._loop.time()
+        while True:
+            step()
+            due = max(due + period, self._loop.time())
+            await asyncio.sleep(due - self._loop.time())
+
+
+def joined(frames: Sequence[bytes]) -> list[bytes]:
+    """Frames as datagrams of at most DATAGRAM bytes, in order; no frame is divided."""
+    datagrams: list[bytes] = []
+    group: list[bytes] = []
+    size = 0
+    for frame in frames:
+        if group and size + len(frame) > DATAGRAM:
+            datagrams.append(b"".join(group))
+            group, size = [], 0
+        group.append(frame)
+        size += len(frame)
+    datagrams.append(b"".join(group))
+    return datagrams

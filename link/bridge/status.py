@@ -1,0 +1,136 @@
+"""What the bridge tells once a second: links and routes, as rates of the last second and totals."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from link.frame import noise_hint
+from link.link import Wire
+from link.router import Router
+from link.traffic import PortReport, RouteReport
+
+
+@dataclass(frozen=True, slots=True)
+class LinkStatus:
+    """One link. Rates are those of the last second; `loss` is 0..1; counts are since the start."""
+
+    endpoint: str
+    problem: str | None
+    peers: int
+    frames_in_per_s: float
+    bytes_in_per_s: float
+    frames_out_per_s: float
+    bytes_out_per_s: float
+    loss: float
+    """Share of frames that did not arrive here in the last second, by their numbers."""
+    lost: int
+    crc_errors: int
+    noise_bytes: int
+    unknown: int
+    """Frames of ids that we do not know, forwarded all the same."""
+    dropped: int
+    """Frames that this link had no room for."""
+
+
+@dataclass(frozen=True, slots=True)
+class RouteStatus:
+    """One system and component, where it was heard."""
+
+    system: int
+    component: int
+    endpoint: str
+    address: str
+    silence: float
+    """s since it was last heard there."""
+    frames_per_s: float
+    lost: int
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """All of it."""
+
+    links: tuple[LinkStatus, ...]
+    routes: tuple[RouteStatus, ...]
+    duplicates: int
+    """Frames that redundant links brought again."""
+    refused_peers: int
+    recorder_problem: str | None = None
+
+    def plain(self) -> dict[str, Any]:
+        """For JSON."""
+        return asdict(self)
+
+
+class StatusMeter:
+    """Makes rates of two readings."""
+
+    def __init__(self, wires: Sequence[Wire], router: Router) -> None:
+        self._wires = wires
+        self._router = router
+        self._ports = router.table.ports()
+        self._received: dict[tuple[int, int, int, Hashable], int] = {}
+        self._at: float | None = None
+
+    def read(self, now: float, recorder_problem: str | None = None) -> Status:
+        """The status, with the rates since the last reading."""
+        period = now - self._at if self._at is not None and now > self._at else 1.0
+        ports, before = self._router.table.ports(), self._ports
+        routes = self._router.table.routes(now)
+        status = Status(
+            links=tuple(
+                _link(wire, port, past, period) for wire, port, past in zip(self._wires, ports, before, strict=True)
+            ),
+            routes=tuple(self._route(route, period) for route in routes),
+            duplicates=self._router.duplicates,
+            refused_peers=self._router.table.refused_peers,
+            recorder_problem=recorder_problem,
+        )
+        self._at, self._ports = now, ports
+        self._received = {_key(route): route.received for route in routes}
+        return status
+
+    def _route(self, route: RouteReport, period: float) -> RouteStatus:
+        return RouteStatus(
+            system=route.system,
+            component=route.component,
+            endpoint=self._wires[route.port].endpoint.text,
+            address=address_text(route.address),
+            silence=round(route.silence, 3),
+            frames_per_s=round((route.received - self._received.get(_key(route), 0)) / period, 1),
+            lost=route.lost,
+        )
+
+
+def address_text(address: Hashable) -> str:
+    """`HOST:PORT` of a socket's address; the name of a fixed one."""
+    if isinstance(address, tuple) and len(address) >= 2:
+        return f"{address[0]}:{address[1]}"
+    return str(address)
+
+
+def _key(route: RouteReport) -> tuple[int, int, int, Hashable]:
+    return route.system, route.component, route.port, route.address
+
+
+def _link(wire: Wire, port: PortReport, past: PortReport, period: float) -> LinkStatus:
+    name = wire.endpoint.text
+    hint = noise_hint(name, port.bytes_in, port.frames_in) if wire.capacity is not None else None
+    received, lost = port.received - past.received, port.lost - past.lost
+    return LinkStatus(
+        endpoint=name,
+        problem=wire.problem or hint,
+        peers=port.peers,
+        frames_in_per_s=round((port.frames_in - past.frames_in) / period, 1),
+        bytes_in_per_s=round((port.bytes_in - past.bytes_in) / period, 1),
+        frames_out_per_s=round((port.frames_out - past.frames_out) / period, 1),
+        bytes_out_per_s=round((port.bytes_out - past.bytes_out) / period, 1),
+        loss=round(max(0, lost) / (received + lost), 4) if received > 0 and lost > 0 else 0.0,
+        lost=port.lost,
+        crc_errors=port.crc_errors,
+        noise_bytes=port.noise_bytes,
+        unknown=port.unknown,
+        dropped=wire.dropped,
+    )

@@ -1,0 +1,75 @@
+"""The live table of links and routes on a terminal."""
+
+from __future__ import annotations
+
+from rich.console import Console, Group
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from link.bridge.status import LinkStatus, RouteStatus, Status
+
+LINK_COLUMNS = ("link", "peers", "in /s", "in B/s", "out /s", "out B/s", "loss", "CRC", "noise B", "unknown", "dropped")
+ROUTE_COLUMNS = ("system", "component", "link", "address", "/s", "lost", "silent")
+QUIET_AFTER = 3.0
+"""s of silence that deserve a look: three missing heartbeats."""
+
+
+class LiveTable:
+    """Draws on `console` until close()."""
+
+    def __init__(self, console: Console) -> None:
+        self._live = Live(console=console, auto_refresh=False)
+        self._live.start()
+
+    def draw(self, status: Status) -> None:
+        """Replace the picture."""
+        self._live.update(picture(status), refresh=True)
+
+    def close(self) -> None:
+        """Leave the last picture and give the terminal back."""
+        self._live.stop()
+
+
+def picture(status: Status) -> Group:
+    """Both tables, and what is wrong below them."""
+    problems = [link.problem for link in status.links] + [status.recorder_problem]
+    lines = [Text(problem, style="red") for problem in problems if problem]
+    return Group(_links(status), _routes(status), *lines)
+
+
+def _links(status: Status) -> Table:
+    table = _table("links", LINK_COLUMNS)
+    for link in status.links:
+        table.add_row(*_link(link), style="red" if link.problem else None)
+    return table
+
+
+def _link(link: LinkStatus) -> list[Text]:
+    rates = (link.frames_in_per_s, link.bytes_in_per_s, link.frames_out_per_s, link.bytes_out_per_s)
+    counts = (link.crc_errors, link.noise_bytes, link.unknown, link.dropped)
+    cells = [link.endpoint, str(link.peers), *(f"{rate:.0f}" for rate in rates), f"{link.loss:.1%}", *map(str, counts)]
+    return [Text(cell) for cell in cells]
+
+
+def _routes(status: Status) -> Table:
+    table = _table("routes", ROUTE_COLUMNS)
+    for route in status.routes:
+        table.add_row(*_route(route), style="yellow" if route.silence > QUIET_AFTER else None)
+    if status.duplicates:
+        table.caption = f"{status.duplicates} frames came again over a redundant link"
+    return table
+
+
+def _route(route: RouteStatus) -> list[Text]:
+    where = "" if route.address == route.endpoint else route.address
+    numbers = (f"{route.frames_per_s:.0f}", str(route.lost), f"{route.silence:.1f} s")
+    return [Text(cell) for cell in (str(route.system), str(route.component), route.endpoint, where, *numbers)]
+
+
+def _table(title: str, columns: tuple[str, ...]) -> Table:
+    table = Table(title=title, title_justify="left")
+    for column in columns:
+        named = column in ("link", "address")
+        table.add_column(column, justify="left" if named else "right", no_wrap=not named, overflow="fold")
+    return table
