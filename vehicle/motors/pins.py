@@ -31,6 +31,9 @@ def _import_lgpio() -> tuple[type[BaseException], ...]:
 
 
 _lgpio_errors = _import_lgpio()
+# Not gpiozero's search through four libraries: two of them are dead, one has no PWM, and the reason why lgpio did not
+# work would be lost.
+os.environ.setdefault("GPIOZERO_PIN_FACTORY", "lgpio")
 
 try:
     from gpiozero import DigitalInputDevice, DigitalOutputDevice, Motor, PhaseEnableMotor, RotaryEncoder
@@ -38,7 +41,7 @@ try:
 except ImportError as error:
     raise MotorError(f"{error}; install it: pip install 'mavhelm[pi]'") from error
 
-FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, *_lgpio_errors)
+FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, ImportError, *_lgpio_errors)
 
 __all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMotor", "RotaryEncoder", "translated"]
 

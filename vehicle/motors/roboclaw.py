@@ -23,6 +23,8 @@ SET_TIMEOUT, READ_TIMEOUT, READ_VERSION, DRIVE_BOTH = 14, 15, 21, 34
 ACK = 0xFF
 FULL = 32767
 """Duty of 100 %."""
+LONGEST = 52
+"""bytes of the longest reply: a version of 48 with its end and CRC."""
 TRIES = 3
 REMIND = 1.0
 """s between settings of the timeout while driving: a controller that lost its power for a moment has forgotten it."""
@@ -77,7 +79,7 @@ class RoboClawMotors:
         wanted = self._settings.tenths
         self._tell(DRIVE_BOTH, _duties((0.0, 0.0)))
         self._tell(SET_TIMEOUT, bytes([wanted]))
-        found = self._ask(READ_TIMEOUT, 1)[0]
+        found = self._ask(READ_TIMEOUT, lambda data: len(data) == 1)[0]
         if found != wanted:
             raise self._fault(f"its serial timeout is {found / 10:g} s and not {wanted / 10:g} s as set")
         self._patience.worked()
@@ -103,6 +105,10 @@ class RoboClawMotors:
                 self._send(SET_TIMEOUT, bytes([self._settings.tenths]))
         except OSError as error:
             self._patience.failed(self._said(str(error)), now)
+
+    def version(self) -> str:
+        """Model and firmware, as it calls itself. Waits for the reply: not for the control loop. Raises MotorError."""
+        return self._ask(READ_VERSION, lambda data: data.endswith(b"\0")).decode("ascii", "replace").strip("\n\0")
 
     def close(self) -> None:
         """As disabled, then the port is let go."""
@@ -137,17 +143,18 @@ class RoboClawMotors:
         self._tries = 1  # a controller known to be dead is asked in each cycle: that must not hold the loop up
         raise self._fault(reason)
 
-    def _ask(self, command: int, length: int) -> bytes:
-        """`length` bytes of reply, checked. Raises MotorError."""
+    def _ask(self, command: int, complete: Callable[[bytes], bool]) -> bytes:
+        """The data of a reply, once it is `complete` and its CRC is right. Raises MotorError."""
         reason = ""
-        for _ in range(TRIES):
+        question = bytes([self._settings.address, command])
+        for _ in range(self._tries):
             try:
                 self._connect()
                 self._start_over()
-                self.port.write(bytes([self._settings.address, command]))
-                reply = self._reply(length + 2)
-                if len(reply) == length + 2 and _sealed(bytes([self._settings.address, command]) + reply):
-                    return reply[:length]
+                self.port.write(question)
+                reply = self._reply(complete)
+                if complete(reply[:-2]) and _sealed(question + reply):
+                    return reply[:-2]
                 reason = f"a bad reply, {reply.hex(' ') or 'none'}"
             except OSError as error:
                 reason = str(error)
@@ -175,9 +182,9 @@ class RoboClawMotors:
             self._unanswered = max(0, self._unanswered - replies.count(ACK))
         return True
 
-    def _reply(self, length: int) -> bytes:
+    def _reply(self, complete: Callable[[bytes], bool]) -> bytes:
         reply = b""
-        while len(reply) < length:
+        while not complete(reply[:-2]) and len(reply) < LONGEST:
             more = self.port.read(self._settings.reply_time)
             if not more:
                 break

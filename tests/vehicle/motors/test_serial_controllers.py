@@ -188,6 +188,13 @@ class TestRoboClaw(SerialContract):
         with pytest.raises(MotorError, match="a bad reply"):
             motors.enable()
 
+    def test_it_tells_its_version(self, line: OnPty) -> None:
+        motors = RoboClawMotors(RoboClawSettings(port=line.path))
+        assert motors.version() == "USB Roboclaw 2x7a v4.2.8"
+        line.controller.mute = True
+        with pytest.raises(MotorError, match="a bad reply, none"):
+            motors.version()
+
     def test_no_reply_at_start_is_said_with_what_to_look_at(self, line: OnPty) -> None:
         line.controller.mute = True
         with pytest.raises(MotorError, match="no reply: is it on, in packet serial mode") as caught:
