@@ -27,7 +27,7 @@ from groundstation.ui.palette import Actions
 from groundstation.ui.ping import PERIOD
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.help import HelpScreen
-from groundstation.ui.terminal import PING, HelmDriver, KeyUp, TerminalClosed
+from groundstation.ui.terminal import PING, HelmDriver, KeyRepeat, KeyUp, TerminalClosed
 
 TICK = 0.1
 """s between renewals of the lease: a third of what the station allows."""
@@ -178,7 +178,8 @@ class HelmApp(App[int]):
             if action is not None and action.id == "app.quit":
                 self.end()
                 return
-            self._light(event.key)
+            if not isinstance(event, KeyRepeat):  # of a key that counts as held the snapshot tells
+                self._light(event.key)
         await super().on_event(event)
         if isinstance(event, (events.Key, events.AppBlur, events.AppFocus)):
             self.gate.set(self._why_shut(self._clock()))

@@ -121,7 +121,7 @@ def _command(snapshot: Snapshot) -> list[Field]:
         return []
     age, latency = known(vehicle.command_age), known(vehicle.latency)
     if age is not None and age < 10:
-        colour = GREEN if age < OLD_COMMAND else AMBER if age < STALE_COMMAND else RED
+        colour = DIM if not vehicle.armed else GREEN if age < OLD_COMMAND else AMBER if age < STALE_COMMAND else RED
         fields.append(_field(1, "cmd", f"{1000 * age:.0f} ms", colour))
     if latency is not None:
         fields.append(_field(3, "key→motor", f"{1000 * latency:.1f} ms", TEXT if latency < 0.1 else AMBER))

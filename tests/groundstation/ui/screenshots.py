@@ -1,0 +1,96 @@
+"""Pictures for the documents: the real app, station and simulator drive a while, and what is shown then is kept.
+
+python -m tests.groundstation.ui.screenshots docs    writes docs/console_80x24.svg, docs/console_140x45.svg ...,
+and PNG files of them where rsvg-convert (Debian: librsvg2-bin, with fonts-jetbrains-mono) is installed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import shutil
+import subprocess
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+from textual.pilot import Pilot
+
+from groundstation.client import StationClient
+from groundstation.keymap import KEYMAPS, Keymap
+from groundstation.ui.app import HelmApp
+from tests.groundstation.ui import frames
+
+SIZES = ((80, 24), (140, 45))
+
+DRIVE: tuple[tuple[str, float], ...] = (
+    ("i", 5.0), ("o", 1.1), ("i", 4.0), ("u", 1.6), ("i", 4.0), ("o", 0.9), ("i", 3.0), ("u", 2.4), ("i", 3.0),
+    ("o", 0.7),
+)  # fmt: skip
+"""Keys and how long each is held, s."""
+
+GAP = 0.05
+"""s between two repeats of a held key."""
+
+
+@asynccontextmanager
+async def armed_app(size: tuple[int, int]) -> AsyncIterator[tuple[HelmApp, Pilot[int]]]:
+    """The app with a simulated rover that is armed."""
+    client = StationClient.start([], sitl=True, speed=0.8)
+    try:
+        app = HelmApp(client, Keymap("standard", KEYMAPS["standard"]))
+        async with app.run_test(size=size) as pilot:
+            await _until(pilot, lambda: app.drive.snapshot.vehicle is not None)
+            await pilot.press("r", "y")
+            await _until(pilot, lambda: app.drive.snapshot.vehicle is not None and app.drive.snapshot.vehicle.armed)
+            yield app, pilot
+    finally:
+        client.close()
+
+
+async def _until(pilot: Pilot[int], wanted: Callable[[], bool]) -> None:
+    async with asyncio.timeout(20.0):
+        while not wanted():
+            await pilot.pause(GAP)
+
+
+async def _hold(pilot: Pilot[int], key: str, seconds: float) -> None:
+    loop = asyncio.get_running_loop()
+    end = loop.time() + seconds
+    while loop.time() < end:
+        await pilot.press(key)
+        await pilot.pause(GAP)
+
+
+async def pictures(size: tuple[int, int]) -> dict[str, str]:
+    """Name -> SVG."""
+    made = {}
+    async with armed_app(size) as (app, pilot):
+        for key, seconds in DRIVE:
+            await _hold(pilot, key, seconds)
+        made["console"] = frames.svg(app)
+        await pilot.press("exclamation_mark")
+        await pilot.pause(1.0)
+        made["emergency"] = frames.svg(app)
+        await pilot.press("question_mark")
+        await pilot.pause(0.5)
+        made["help"] = frames.svg(app)
+    return made
+
+
+def main() -> None:
+    """Write them all."""
+    parser = argparse.ArgumentParser(description="Make the pictures of the documents.")
+    parser.add_argument("folder", type=Path)
+    folder = parser.parse_args().folder
+    for width, height in SIZES:
+        for name, svg in asyncio.run(pictures((width, height))).items():
+            file = folder / f"{name}_{width}x{height}.svg"
+            file.write_text(svg, "utf-8")
+            if converter := shutil.which("rsvg-convert"):
+                subprocess.run([converter, "-o", file.with_suffix(".png"), file], check=True)
+            print(file)
+
+
+if __name__ == "__main__":
+    main()
