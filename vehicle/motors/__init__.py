@@ -12,7 +12,10 @@ import difflib
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from importlib import import_module
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from vehicle.motors.settings import Around
 
 DRIVERS: dict[str, str] = {
     "simulated": "vehicle.motors.simulated:SimulatedMotors",
@@ -103,22 +106,27 @@ def open_motors(name: str, settings: Mapping[str, Any] | None = None) -> Motors:
     Raises UnknownDriverError or MotorSettingsError for the user's mistakes and MotorError where the driver cannot
     start; then nothing stays open.
     """
-    table = {**PROFILES.get(name, {}), **(settings or {})}
-    driver = _driver_class(name)
-    if not table:
-        return _fitting(name, _made(name, driver, table))
-    from vehicle.motors.settings import split
-
-    around, own = split(table)
+    driver, own, around = _understood(name, settings)
     with ExitStack() as opened:
         guard = around.guard()  # first: its enable pin takes the power away before the driver touches anything
         if guard is not None:
             opened.callback(guard.close)
-        motors = _fitting(name, _made(name, driver, own))
+        motors = _fitting(name, driver() if own is None else driver(own))
         opened.callback(motors.close)
         wrapped: Motors = around.wrap(motors, guard)
         opened.pop_all()
     return wrapped
+
+
+def check_settings(name: str, settings: Mapping[str, Any] | None = None) -> None:
+    """Raise what `open_motors` would raise for the user's mistakes, without touching the hardware."""
+    _understood(name, settings)
+
+
+def settings_type(name: str) -> type | None:
+    """The msgspec.Struct of a driver's own settings; None where it has none. Raises UnknownDriverError."""
+    kind: type | None = getattr(_driver_class(name), "Settings", None)
+    return kind
 
 
 def safe_stop(name: str, settings: Mapping[str, Any] | None = None) -> list[str]:
@@ -144,15 +152,17 @@ def _line(error: Exception) -> str:
     return text if isinstance(error, MotorError) else f"{type(error).__name__}: {text}"
 
 
-def _made(name: str, driver: Any, own: Mapping[str, Any]) -> Any:
-    kind = getattr(driver, "Settings", None)
-    if kind is not None:
-        from vehicle.motors.settings import parsed
+def _understood(name: str, settings: Mapping[str, Any] | None) -> tuple[Any, Any, Around]:
+    """The driver's class, its own settings or None where it takes none, and what goes around it."""
+    from vehicle.motors.settings import parsed, split
 
-        return driver(parsed(own, kind))
+    driver, kind = _driver_class(name), settings_type(name)
+    around, own = split({**PROFILES.get(name, {}), **(settings or {})})
+    if kind is not None:
+        return driver, parsed(own, kind), around
     if own:
         raise MotorSettingsError(f"motor driver {name!r} takes no settings, so {', '.join(own)} cannot be set")
-    return driver()
+    return driver, None, around
 
 
 def _fitting(name: str, motors: Any) -> Motors:

@@ -12,9 +12,11 @@ from vehicle.motors import (
     Motors,
     MotorSettingsError,
     UnknownDriverError,
+    check_settings,
     checked,
     open_motors,
     safe_stop,
+    settings_type,
 )
 from vehicle.motors.simulated import SimulatedMotors
 
@@ -69,6 +71,15 @@ def test_a_driver_of_your_own_gets_its_settings() -> None:
         open_motors(f"{__name__}:OwnMotors", {"count": "three"})
     with pytest.raises(MotorSettingsError, match="missing required field `count`"):
         open_motors(f"{__name__}:OwnMotors")
+
+
+def test_settings_can_be_checked_without_the_hardware() -> None:
+    check_settings("roboclaw", {"port": "/dev/nowhere"})
+    with pytest.raises(MotorSettingsError, match="unknown field `prot`"):
+        check_settings("roboclaw", {"prot": "/dev/nowhere"})
+    with pytest.raises(UnknownDriverError, match="did you mean 'roboclaw'"):
+        check_settings("robotclaw")
+    assert settings_type("simulated") is None
 
 
 def test_safe_stop_never_raises_and_says_what_went_wrong() -> None:

@@ -1,0 +1,34 @@
+"""The tables in docs/pi.md are settings that the drivers and sensors take."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from vehicle.motors import DRIVERS, check_settings
+from vehicle.sensors.suite import sensor_settings
+
+GUIDE = (Path(__file__).parents[2] / "docs" / "pi.md").read_text()
+TABLES = [tomllib.loads(text) for text in re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)]
+MOTORS = [table["motors"] for table in TABLES if "motors" in table]
+
+
+@pytest.mark.parametrize("table", MOTORS, ids=lambda table: table["driver"])
+def test_a_motor_table_is_right(table: dict[str, Any]) -> None:
+    check_settings(table["driver"], {key: value for key, value in table.items() if key != "driver"})
+
+
+def test_a_sensor_table_is_right() -> None:
+    tables = [table["sensors"] for table in TABLES if "sensors" in table]
+    assert tables
+    for table in tables:
+        sensor_settings(table)
+
+
+def test_every_driver_has_its_wiring() -> None:
+    missing = [name for name in DRIVERS if name != "simulated" and f"(`{name}`)" not in GUIDE]
+    assert missing == []
