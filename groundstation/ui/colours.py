@@ -19,7 +19,7 @@ AMBER = "#ffb04d"
 YELLOW = "#ffd75f"
 RED = "#ff5f5f"
 DEEP_RED = "#b3261e"
-SKY, GROUND = "#1d5f8c", "#6b4a2b"
+SKY, GROUND = "#2b7cb8", "#573a20"
 WHITE = "#ffffff"
 BLACK = "#0b0e14"
 
