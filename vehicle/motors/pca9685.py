@@ -1,7 +1,7 @@
 """ESCs and servos on a PCA9685 board over I2C (Adafruit's 16-channel board and its many copies).
 
-The chip goes on with its last pulses when nobody speaks to it: it has no timeout. What stops it after the daemon is
-`safe_stop`, or its OE pin as `safety.enable_pin` with `enable_active_high = false`.
+The chip goes on with its last pulses when nobody speaks to it: it has no timeout. What ends them after the daemon is
+`safe_stop`, or a timer at its OE pin that `safety.heartbeat_pin` keeps awake.
 Registers are named as in NXP's data sheet, rev. 4, 7.3.
 """
 
@@ -58,6 +58,8 @@ class Pca9685Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     def __post_init__(self) -> None:
         refuse_doubles([channel.channel for channel in self.channels])
+        for channel in self.channels:
+            channel.pulse.must_fit(self.frequency)
 
     @property
     def prescale(self) -> int:

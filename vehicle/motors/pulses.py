@@ -29,6 +29,12 @@ class Pulse(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         if not self.min_us <= self.trim_us < self.max_us:
             raise ValueError(f"min {self.min_us:g} <= trim {self.trim_us:g} < max {self.max_us:g} us must hold")
 
+    def must_fit(self, frequency: float) -> None:
+        """Raises ValueError where the longest pulse fills its period: the output would never be low again."""
+        period = 1e6 / frequency
+        if self.max_us > 0.95 * period:  # also where a chip's own clock makes the period some percent shorter
+            raise ValueError(f"max {self.max_us:g} us does not fit into {frequency:g} Hz, {period:g} us")
+
     def width(self, throttle: float) -> float:
         """s, for -1..1."""
         side = self.max_us - self.trim_us if throttle >= 0.0 else self.trim_us - self.min_us

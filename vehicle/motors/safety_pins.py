@@ -54,7 +54,11 @@ class SafetyPins:
         with translated("enable pin"):
             if self._enable is not None:
                 self._enable.on()
-        self.check()  # pressed in between: its edge came before `on`
+        try:
+            self.check()  # pressed in between: its edge came before `on`
+        except MotorError:
+            self.power_off()
+            raise
 
     def power_off(self) -> None:
         """No power, and no sign of life."""

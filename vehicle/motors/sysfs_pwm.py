@@ -7,21 +7,16 @@ The hardware goes on with its last duty when the process is killed: `safe_stop` 
 from __future__ import annotations
 
 import contextlib
-import os
-import threading
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import msgspec
 
-from vehicle.motors import MotorError, checked
+from vehicle.motors import MotorError, checked, pwm_channel
 from vehicle.motors.pulses import Idle, Pulse
+from vehicle.motors.pwm_channel import Channel, exported
 from vehicle.motors.settings import Pin, refuse_doubles
-
-ROOT = Path("/sys/class/pwm")
-RULES_WAIT = 1.0
-"""s that udev may take after an export until its rule lets the group `gpio` write (docs/pi.md)."""
 
 Number = Annotated[int, msgspec.Meta(ge=0, le=7)]
 
@@ -46,6 +41,9 @@ class ServoPwm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_fiel
     pulse: Pulse = Pulse()
     frequency: Annotated[float, msgspec.Meta(ge=40, le=400)] = 50.0
 
+    def __post_init__(self) -> None:
+        self.pulse.must_fit(self.frequency)
+
 
 Output = BridgePwm | ServoPwm
 
@@ -62,52 +60,6 @@ class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         if len(set(names)) < len(names):
             raise ValueError("a channel is used twice")
         refuse_doubles([output.direction for output in self.outputs if isinstance(output, BridgePwm)])
-
-
-def write_file(path: Path, text: str) -> None:
-    """How sysfs takes a value: in one write."""
-    path.write_text(text)
-
-
-class Channel:
-    """One exported channel. Every order of writes below is one the kernel takes: duty is never more than period."""
-
-    def __init__(self, directory: Path, frequency: float, write: Callable[[Path, str], None]) -> None:
-        self.period = round(1e9 / frequency)
-        """ns"""
-        self._directory = directory
-        self._write = write
-
-    @property
-    def running(self) -> bool:
-        """The output is enabled, by us or by a process before us."""
-        return self._read("enable") == 1
-
-    def set_period(self) -> None:
-        """Ours, in place of another; without a pulse in between."""
-        if self._read("period") != self.period:
-            self.duty(0)
-            self._put("period", self.period)
-
-    def duty(self, nanoseconds: int) -> None:
-        """Length of the pulse."""
-        self._put("duty_cycle", nanoseconds)
-
-    def start(self) -> None:
-        """Let the duty out."""
-        self._put("enable", 1)
-
-    def stop(self) -> None:
-        """Duty 0 first: some drivers leave the pin at the level it had."""
-        with contextlib.ExitStack() as steps:
-            steps.callback(self._put, "enable", 0)
-            self.duty(0)
-
-    def _read(self, name: str) -> int:
-        return int((self._directory / name).read_text())
-
-    def _put(self, name: str, value: int) -> None:
-        self._write(self._directory / name, str(value))
 
 
 class Bridge:
@@ -185,13 +137,13 @@ class SysfsPwmMotors:
         pin_factory: Any = None,
     ) -> None:
         """`root`, `write` and `pin_factory` are for tests. Raises MotorError."""
-        root, write = root or ROOT, write or write_file
+        root, write = root or pwm_channel.ROOT, write or pwm_channel.write_file
         self.count = len(settings.outputs)
         self.enabled = False
         self._outputs: list[Bridge | Servo] = []
         with contextlib.ExitStack() as opened, _translated():
             for wanted in settings.outputs:
-                channel = Channel(_exported(root, wanted, write), wanted.frequency, write)
+                channel = Channel(exported(root, wanted.device, wanted.channel, write), wanted.frequency, write)
                 output = _output(wanted, channel, settings.idle, pin_factory)
                 opened.callback(output.close)
                 output.calm()
@@ -247,33 +199,3 @@ def _output(wanted: Output, channel: Channel, idle: Idle, pin_factory: Any) -> B
 
             with translated("direction pin"):
                 return Bridge(channel, DigitalOutputDevice(wanted.direction, pin_factory=pin_factory))
-
-
-def _exported(root: Path, wanted: Output, write: Callable[[Path, str], None]) -> Path:
-    """The channel's directory. Raises MotorError, OSError."""
-    chip = _chip(root, wanted.device)
-    channels = int((chip / "npwm").read_text())
-    if wanted.channel >= channels:
-        raise MotorError(f"hardware PWM: {wanted.device} has {channels} channels, 0 to {channels - 1}")
-    directory = chip / f"pwm{wanted.channel}"
-    if not directory.exists():
-        write(chip / "export", str(wanted.channel))
-        _await_rules(directory / "enable")
-    return directory
-
-
-def _chip(root: Path, device: str) -> Path:
-    chips = {chip: chip.resolve() for chip in sorted(root.glob("pwmchip*"))}
-    for chip, real in chips.items():
-        if device in real.parts:
-            return chip
-    there = ", ".join(real.parent.parent.name for real in chips.values()) or "none (dtoverlay=pwm-2chan is missing?)"
-    raise MotorError(f"hardware PWM: no device {device!r}; there is {there}")
-
-
-def _await_rules(path: Path) -> None:
-    """Before the control loop runs; a write that is still not allowed then says so."""
-    never, waited = threading.Event(), 0.0
-    while waited < RULES_WAIT and not os.access(path, os.W_OK):
-        never.wait(0.02)
-        waited += 0.02

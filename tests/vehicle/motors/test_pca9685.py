@@ -194,6 +194,7 @@ def test_no_bus_is_said_in_one_line() -> None:
         ({"channels": [{"channel": 16}]}, "Expected `int` <= 15"),
         ({"channels": [{"channel": 1}, {"channel": 1}]}, "1 is used twice"),
         ({"channels": [{"channel": 1, "pulse": {"trim_us": 2100}}]}, "min 1000 <= trim 2100 < max 2000 us must hold"),
+        ({"channels": [{"channel": 1, "pulse": {"max_us": 2450}}], "frequency": 400}, "does not fit into 400 Hz, 2500"),
         ({"channels": [{"channel": 1}], "idle": "full"}, "Invalid enum value 'full'"),
         ({"channels": [{"channel": 1}], "frequency": 1600}, "Expected `float` <= 400"),
     ],

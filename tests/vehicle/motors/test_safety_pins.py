@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import pytest
 from gpiozero import Device
@@ -110,6 +111,29 @@ def test_pressed_nothing_can_be_enabled_or_tested(pins: MockFactory) -> None:
     guarded.motors.disable()
     guarded.motors.enable()
     assert guarded.powered()
+
+
+def test_pressed_in_the_very_moment_of_switching_on_the_power_goes_off_again(pins: MockFactory) -> None:
+    class Pressing:
+        """An enable pin that is switched on just after somebody pressed."""
+
+        def __init__(self, pin: Any) -> None:
+            self.off = self.close = pin.off
+            self._pin = pin
+
+        def on(self) -> None:
+            press(pins)
+            self._pin.on()
+            assert pins.pin(ENABLE).state
+
+    safety = SafetyPins(ALL, pin_factory=pins)
+    safety._enable = Pressing(safety._enable)
+    wheels = SimulatedMotors()
+    release(pins)
+    with pytest.raises(MotorError, match="emergency stop"):
+        GuardedMotors(wheels, safety).enable()
+    assert not pins.pin(ENABLE).state
+    assert not wheels.enabled
 
 
 def test_an_input_without_a_wire_is_pressed(pins: MockFactory) -> None:

@@ -11,6 +11,7 @@ from tests.vehicle.motors.contract import Bench, MotorsContract
 from tests.vehicle.motors.fake_sysfs import FakeSysfs
 from vehicle.motors import MotorError, MotorSettingsError, open_motors, safe_stop
 from vehicle.motors.pulses import Pulse
+from vehicle.motors.pwm_channel import exported
 from vehicle.motors.sysfs_pwm import BridgePwm, ServoPwm, SysfsPwmMotors, SysfsPwmSettings
 
 DEVICE = "fe20c000.pwm"
@@ -137,8 +138,8 @@ def test_another_period_is_replaced_with_no_duty_on_it(sysfs: FakeSysfs, pins: M
 def test_safe_stop_ends_the_pulses_of_a_killed_process(
     idle: str, after: float | None, sysfs: FakeSysfs, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("vehicle.motors.sysfs_pwm.ROOT", sysfs.root)
-    monkeypatch.setattr("vehicle.motors.sysfs_pwm.write_file", sysfs.write)
+    monkeypatch.setattr("vehicle.motors.pwm_channel.ROOT", sysfs.root)
+    monkeypatch.setattr("vehicle.motors.pwm_channel.write_file", sysfs.write)
     outputs = [{"drives": "servo", "device": DEVICE, "channel": channel} for channel in (0, 1)]
     killed = open_motors("sysfs-pwm", {"outputs": outputs, "idle": idle})
     killed.enable()
@@ -149,8 +150,8 @@ def test_safe_stop_ends_the_pulses_of_a_killed_process(
 
 
 def test_safe_stop_ends_the_duty_of_a_killed_process(sysfs: FakeSysfs, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vehicle.motors.sysfs_pwm.ROOT", sysfs.root)
-    monkeypatch.setattr("vehicle.motors.sysfs_pwm.write_file", sysfs.write)
+    monkeypatch.setattr("vehicle.motors.pwm_channel.ROOT", sysfs.root)
+    monkeypatch.setattr("vehicle.motors.pwm_channel.write_file", sysfs.write)
     monkeypatch.setattr(Device, "pin_factory", MockFactory())
     killed = opened(BRIDGES, sysfs, MockFactory())
     killed.enable()
@@ -177,6 +178,10 @@ def test_disable_tries_every_output_and_says_what_failed(sysfs: FakeSysfs, pins:
         ([], "length >= 1"),
         ([{"drives": "servo", "device": DEVICE, "channel": 0}] * 2, "a channel is used twice"),
         ([{"drives": "bridge", "device": DEVICE, "channel": 0}], "missing required field `direction`"),
+        (
+            [{"drives": "servo", "device": DEVICE, "channel": 0, "frequency": 400, "pulse": {"max_us": 2450}}],
+            "does not fit into 400 Hz",
+        ),
         ([{"drives": "lamp", "device": DEVICE, "channel": 0}], "Invalid value 'lamp'"),
     ],
 )
@@ -184,3 +189,18 @@ def test_settings_are_read_strictly(outputs: list[Any], says: str) -> None:
     with pytest.raises(MotorSettingsError) as caught:
         open_motors("sysfs-pwm", {"outputs": outputs})
     assert says in str(caught.value)
+
+
+def test_a_freshly_exported_channel_is_waited_for_until_it_may_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = iter([False, False, True])
+    asked: list[Path] = []
+
+    def access(path: Path, mode: int) -> bool:
+        asked.append(path)
+        return next(answers)
+
+    monkeypatch.setattr("vehicle.motors.pwm_channel.os.access", access)
+    exported(FakeSysfs(tmp_path).root, DEVICE, 1, lambda path, text: None)
+    assert [path.name for path in asked] == ["enable"] * 3
