@@ -18,10 +18,14 @@ from typing import Any
 import msgspec
 
 from dialects.enums import Severity
+from dialects.messages import printable
+from groundstation.farewell import Farewell
 from groundstation.intents import Lease, Quit, StartSimulator, Stop
 from groundstation.sitl import Simulator, free_port
+from groundstation.snapshot import HelmView, Snapshot, TextLine
 from groundstation.station import COMPONENT, Station
 from groundstation.sticks import Style
+from groundstation.texts import MAX_LENGTH
 from groundstation.wire import MAX_PACKET, NEVER_LATE, TOO_LATE, Failure, Hello, decode_down, encode
 from link.endpoint import EndpointError, parse
 from link.link import Link, LinkError
@@ -52,15 +56,16 @@ class Helm:
         self._station = station
         self._links = links
         self._pipe = pipe
-        self._runner = Runner(station, links, period=TICK)
+        self._core = Farewell(station)
+        self._runner = Runner(self._core, links, period=TICK, broken=self._broke)
         self._simulator: Simulator | None = None
-        self._error: BaseException | None = None
-        self._ending = False
+        self._picture = Snapshot()
+        self._broken = self._ending = False
 
-    async def run(self) -> None:
-        """Run until the screen is gone or says so. Raises what went wrong inside."""
+    async def run(self) -> int:
+        """Run until the screen is gone or says so. The exit code: 1 where something broke inside."""
         loop = asyncio.get_running_loop()
-        loop.set_exception_handler(self._broken)
+        loop.set_exception_handler(self._broke_outside)
         for number in (signal.SIGTERM, signal.SIGHUP):
             loop.add_signal_handler(number, self._end)
         loop.add_reader(self._pipe, self._listen)
@@ -72,8 +77,7 @@ class Helm:
             loop.remove_reader(self._pipe)
             if self._simulator is not None:
                 self._simulator.close()
-        if self._error is not None:
-            raise self._error
+        return 1 if self._broken else 0
 
     def start_simulator(self, now: float) -> None:
         """Start a simulator that speaks to the first of our links that listens on this machine."""
@@ -131,11 +135,18 @@ class Helm:
         """Snapshots at absolute deadlines, and the simulator's end."""
         loop = asyncio.get_running_loop()
         due = loop.time()
-        while True:
-            self._watch_simulator(loop.time())
-            self._send(self._station.snapshot(loop.time(), time.time()))
+        while not self._broken:
+            try:
+                self._draw(loop.time())
+            except Exception as error:  # nobody waits for this task: it would go unseen
+                self._broke(error)
             due = max(due + SNAPSHOT_PERIOD, loop.time())
             await asyncio.sleep(due - loop.time())
+
+    def _draw(self, now: float) -> None:
+        self._watch_simulator(now)
+        self._picture = self._station.snapshot(now, time.time())
+        self._send(self._picture)
 
     def _send(self, message: msgspec.Struct) -> None:
         """Now or never: a screen that does not read gets a newer picture later."""
@@ -174,15 +185,34 @@ class Helm:
 
     def _end_when_finished(self, deadline: float) -> None:
         loop = asyncio.get_running_loop()
-        if self._station.finished or loop.time() >= deadline:
+        if self._core.finished or loop.time() >= deadline:
             self._runner.stop()
         else:
             loop.call_later(TICK, self._end_when_finished, deadline)
 
-    def _broken(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-        """An exception in a callback must end the process: a station that half works must not look alive."""
-        self._error = context.get("exception") or RuntimeError(str(context.get("message")))
-        self._runner.stop()
+    def _broke(self, error: BaseException) -> None:
+        """A bug of ours, anywhere: neutral several times, then the end. What half works must not look alive."""
+        if self._broken:
+            return
+        self._broken = self._ending = True
+        now = asyncio.get_running_loop().time()
+        what = printable(f"the station broke ({type(error).__name__}: {error}): neutral, and the end")
+        log.critical(what, exc_info=error)
+        self._core.begin(now)
+        self._runner.wake()
+        self._send(last_picture(self._picture, what, time.time()))
+        self._end_when_finished(now + END_WITHIN)
+
+    def _broke_outside(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """In a callback of the loop that is not the runner's."""
+        self._broke(context.get("exception") or RuntimeError(str(context.get("message"))))
+
+
+def last_picture(picture: Snapshot, what: str, wall: float) -> Snapshot:
+    """The newest picture that there is, with the reason why no other comes."""
+    line = TextLine(time=wall, severity=Severity.CRITICAL, label="station", text=what[:MAX_LENGTH])
+    stopped = HelmView(style=picture.helm.style, exact=picture.helm.exact, gate_reason="the station broke")
+    return msgspec.structs.replace(picture, number=picture.number + 1, helm=stopped, texts=(*picture.texts, line))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -217,11 +247,10 @@ def _run(options: argparse.Namespace, endpoints: tuple[str, ...], links: list[Li
     gc.collect()
     gc.freeze()  # what is imported lives as long as we do; without it a full pass stops the sender for 30 ms
     try:
-        asyncio.run(helm.run())
+        return asyncio.run(helm.run())
     except Exception:
         log.exception("the station broke")
         return 1
-    return 0
 
 
 def _log_to(path: Path | None) -> None:
@@ -229,9 +258,7 @@ def _log_to(path: Path | None) -> None:
     handler: logging.Handler = logging.NullHandler()
     if path is not None:
         handler = logging.handlers.RotatingFileHandler(path, maxBytes=LOG_SIZE, backupCount=1, encoding="utf-8")
-    logging.basicConfig(
-        level=logging.INFO, handlers=[handler], format="%(asctime)s %(levelname)s %(name)s: %(message)s"
-    )
+    logging.basicConfig(level=logging.INFO, handlers=[handler], format=LOG_FORMAT)
     logging.captureWarnings(True)
 
 

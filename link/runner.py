@@ -57,10 +57,22 @@ class Runner:
 
     With several links it also forwards between them (router.py), as MAVLink asks of every system that has more than
     one: two ground stations on two links of a vehicle hear each other. `route` false leaves that out.
+
+    `broken` takes what goes wrong inside instead of run(): who names it may say last words over links that still work,
+    and then calls stop().
     """
 
-    def __init__(self, core: Core, links: Sequence[Link], *, period: float, route: bool | None = None) -> None:
+    def __init__(
+        self,
+        core: Core,
+        links: Sequence[Link],
+        *,
+        period: float,
+        route: bool | None = None,
+        broken: Callable[[Exception], None] | None = None,
+    ) -> None:
         self._core = core
+        self._broken = broken
         self._links = links
         self._period = period
         self._router = _router(links) if links and (len(links) > 1 if route is None else route) else None
@@ -110,7 +122,10 @@ class Runner:
         try:
             step()
         except Exception as error:
-            self._ended.set_exception(error)
+            if self._broken is None:
+                self._ended.set_exception(error)
+            else:
+                self._broken(error)
 
     def _deliver(self, index: int, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
         self._guard(lambda: self._receive(index, pieces))

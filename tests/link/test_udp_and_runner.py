@@ -129,6 +129,29 @@ async def test_what_the_core_raises_ends_the_run_and_frees_the_port() -> None:
         sock.bind(("127.0.0.1", port))
 
 
+async def test_last_words_go_out_after_the_core_has_raised(ground: socket.socket) -> None:
+    """Who takes the error himself may speak on, and says when it is over."""
+    runner: list[Runner] = []
+    errors: list[Exception] = []
+
+    def fail(core: Recorder) -> bool:
+        if not errors:
+            raise ZeroDivisionError("a bug")
+        return len(core.ticks) > 5
+
+    def broken(error: Exception) -> None:
+        errors.append(error)
+        core.outbox.append(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+
+    core = Recorder(fail, runner)
+    links = open_links([f"udpout:127.0.0.1:{ground.getsockname()[1]}"], system=1, component=1)
+    runner.append(Runner(core, links, period=0.01, broken=broken))
+    async with asyncio.timeout(20):
+        await runner[0].run()
+    assert [str(error) for error in errors] == ["a bug"]
+    assert ground.recv(300)[7] == Heartbeat.id
+
+
 async def test_a_message_that_cannot_be_encoded_is_logged_and_the_rest_goes_out(
     ground: socket.socket, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -1,0 +1,46 @@
+"""The station process with a bug in it, which the drive style "fail in <method>" calls up. Run as `python -m`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from groundstation import helm
+from groundstation.intents import AnyIntent, SetStyle
+from groundstation.station import Station
+
+ORDER = "fail in "
+
+
+class BrokenStation(Station):
+    """Raises in the method that was named, from then on."""
+
+    _bug = ""
+
+    def intend(self, intent: AnyIntent, now: float) -> None:
+        if isinstance(intent, SetStyle) and intent.style.startswith(ORDER):
+            self._bug = intent.style.removeprefix(ORDER)
+        self._work("intend")
+        super().intend(intent, now)
+
+    def _work(self, method: str) -> None:
+        if self._bug == method:
+            raise ZeroDivisionError("a bug\nof ours")
+
+
+def _with_bug(name: str) -> Callable[..., Any]:
+    method = getattr(Station, name)
+
+    def call(self: BrokenStation, *arguments: Any) -> Any:
+        self._work(name)
+        return method(self, *arguments)
+
+    return call
+
+
+for _name in ("receive", "tick", "observe", "messages_to_send", "sent", "snapshot"):
+    setattr(BrokenStation, _name, _with_bug(_name))
+
+if __name__ == "__main__":
+    vars(helm)["Station"] = BrokenStation
+    raise SystemExit(helm.main())
