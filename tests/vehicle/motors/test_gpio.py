@@ -51,6 +51,14 @@ def test_the_pwm_pins_have_the_frequency(factory: MockFactory, settings: GpioSet
     motors.close()
 
 
+def test_enabling_begins_with_low_inputs_whatever_happened_to_them_meanwhile(factory: MockFactory) -> None:
+    motors = GpioMotors(TWO_INPUTS)
+    factory.pin(10).state = 1.0
+    motors.enable()
+    assert output(factory, TwoInputs(10, 9)) == 0.0
+    motors.close()
+
+
 def test_pins_are_let_go_by_close(factory: MockFactory) -> None:
     GpioMotors(TWO_INPUTS).close()
     GpioMotors(TWO_INPUTS).close()

@@ -286,6 +286,15 @@ class TestSabertooth(SerialContract):
         motors.set((0.5, 0.5))
         line.until(lambda: line.controller.timeout == 0.3)
 
+    def test_a_stop_gets_through_a_line_that_was_full(self, bench: Bench, line: OnPty) -> None:
+        motors: Any = bench.motors
+        self.drive(bench)
+        line.deaf.set()
+        assert fault_of(motors, calls=100_000)
+        motors.disable()
+        line.deaf.clear()
+        line.until(lambda: line.controller.outputs == [0.0, 0.0])
+
     def test_frames_are_those_of_the_manual(self, line: OnPty) -> None:
         """Its example: address 130, command 0, data 64, checksum 66."""
         motors = SabertoothMotors(SabertoothSettings(port=line.path, address=130, timeout_proven=True))

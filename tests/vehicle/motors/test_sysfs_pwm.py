@@ -134,6 +134,15 @@ def test_another_period_is_replaced_with_no_duty_on_it(sysfs: FakeSysfs, pins: M
     assert sysfs.pulse(0) is None
 
 
+def test_a_running_servo_gets_another_period_with_no_pulse_on_it(sysfs: FakeSysfs, pins: MockFactory) -> None:
+    killed = opened(SERVOS, sysfs, pins)
+    killed.enable()
+    killed.set((1.0, 1.0))
+    sysfs.writes.clear()
+    opened(SysfsPwmSettings(outputs=(ServoPwm(DEVICE, 0, frequency=100),)), sysfs, pins)
+    assert sysfs.writes == [("duty_cycle", 0), ("period", 10_000_000), ("duty_cycle", 1_500_000)]
+
+
 @pytest.mark.parametrize(("idle", "after"), [("neutral", 0.0015), ("off", None)])
 def test_safe_stop_ends_the_pulses_of_a_killed_process(
     idle: str, after: float | None, sysfs: FakeSysfs, monkeypatch: pytest.MonkeyPatch
