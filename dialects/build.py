@@ -11,6 +11,7 @@ import contextlib
 import io
 import py_compile
 import shutil
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -38,22 +39,35 @@ def generate(target: Path = MODULE) -> Path:
             shutil.copy(installed / name, scratch)
         xml = Path(shutil.copy(XML, scratch))
         module = Path(scratch) / target.name
-        _mavgen(xml, module)
-        code = "\n".join([module.read_text("utf-8"), *_codec(_messages(Path(scratch)))]) + "\n"
-    target.write_text(code, "utf-8")
+        with _quiet():
+            _mavgen(xml, module)
+            messages = _messages(Path(scratch))
+        code = "\n".join([module.read_text("utf-8"), *_codec(messages)]) + "\n"
+    whole = target.with_suffix(".new")
+    whole.write_text(code, "utf-8")
+    whole.replace(target)  # a program that starts meanwhile finds the old module or the new one, never half of it
     checked = py_compile.PycInvalidationMode.CHECKED_HASH
     return Path(str(py_compile.compile(str(target), doraise=True, invalidation_mode=checked)))
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """mavgen talks a lot; it is shown only when something goes wrong."""
+    chatter = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(chatter), contextlib.redirect_stderr(chatter):
+            yield
+    except BaseException:
+        sys.stderr.write(chatter.getvalue())
+        raise
 
 
 def _mavgen(xml: Path, output: Path) -> None:
     options = mavgen.Opts(
         str(output), wire_protocol=mavparse.PROTOCOL_2_0, language="Python3", validate=True, strict_units=True
     )
-    chatter = io.StringIO()
-    with contextlib.redirect_stdout(chatter), contextlib.redirect_stderr(chatter):
-        done = mavgen.mavgen(options, [str(xml)])
-    if not done:
-        raise RuntimeError(f"mavgen refused {XML}:\n{chatter.getvalue()}")
+    if not mavgen.mavgen(options, [str(xml)]):
+        raise RuntimeError(f"mavgen refused {XML}; it says why above")
 
 
 def _messages(folder: Path) -> list[Any]:

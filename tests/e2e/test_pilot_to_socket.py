@@ -1,0 +1,40 @@
+"""Keys on the screen, by Textual's Pilot, to MANUAL_CONTROL on a real socket, through the real station process."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from groundstation.client import StationClient
+from groundstation.keymap import KEYMAPS, Keymap
+from groundstation.ui.app import HelmApp
+from tests.e2e.relay import free_port
+from tests.groundstation.udp_vehicle import UdpVehicle
+from tests.groundstation.ui.ptys import until
+
+pytestmark = pytest.mark.e2e
+
+
+async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path: Path) -> None:
+    endpoint = f"udpin:127.0.0.1:{free_port()}"
+    client = StationClient.start([endpoint], log_file=tmp_path / "log")
+    app = HelmApp(client, Keymap("standard", KEYMAPS["standard"]))
+    try:
+        with UdpVehicle(endpoint) as vehicle:
+            async with app.run_test(size=(80, 24)) as pilot:
+                await until(lambda: app.drive.snapshot.vehicle is not None)
+                await pilot.press("r", "y")
+                await until(lambda: vehicle.core.armed)
+                await until(lambda: app.drive.snapshot.helm.gate_open)
+                pressed = time.monotonic()
+                await pilot.press("i")
+                await until(lambda: any(x == 600 for _, x in vehicle.demands(pressed)))
+                await pilot.press("space")
+                await until(lambda: vehicle.demands(pressed)[-1][1] == 0)
+                stopped = time.monotonic()
+                await until(lambda: len(vehicle.demands(stopped)) > 3)
+                assert {x for _, x in vehicle.demands(stopped)} == {0}
+    finally:
+        client.close()

@@ -1,0 +1,59 @@
+"""What the docs say is there: every file, test, parameter and command that they name."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from vehicle.params import PARAMETERS
+
+ROOT = Path(__file__).parents[1]
+DOCS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
+FOLDERS = ("dialects", "link", "vehicle", "groundstation", "tests", "docs", ".ci")
+
+
+def quoted(text: str) -> list[str]:
+    """What stands between backticks, outside code blocks."""
+    return re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
+
+
+def functions(path: Path) -> set[str]:
+    """Names of the functions in a test file."""
+    return {
+        node.name
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+    }
+
+
+@pytest.mark.parametrize("doc", DOCS, ids=lambda path: path.name)
+def test_files_and_tests_that_a_document_names_exist(doc: Path) -> None:
+    for words in quoted(doc.read_text()):
+        name, _, test = words.partition("::")
+        if name.split("/")[0] not in FOLDERS or "/" not in name or " " in name or "*" in name:
+            continue
+        assert (ROOT / name).exists(), f"{doc.name} names {name}"
+        if test:
+            assert test in functions(ROOT / name), f"{doc.name} names {words}"
+
+
+@pytest.mark.parametrize("doc", DOCS, ids=lambda path: path.name)
+def test_links_between_documents_lead_somewhere(doc: Path) -> None:
+    for target in re.findall(r"\]\(([^)#:]+)\)", doc.read_text()):
+        assert (doc.parent / target).exists(), f"{doc.name} links to {target}"
+
+
+def test_parameters_in_the_safety_document_have_their_defaults() -> None:
+    text = (ROOT / "docs/safety.md").read_text()
+    named = re.findall(r"\b([A-Z]+(?:_[A-Z0-9]+)+) (\d+(?:\.\d+)?) s", text)
+    assert len(named) >= 6
+    for name, value in named:
+        assert PARAMETERS[name].default == float(value), name
+
+
+def test_ci_runs_the_test_command_of_the_readme() -> None:
+    assert ".venv/bin/pytest" in (ROOT / "README.md").read_text()
+    assert ".venv/bin/pytest" in (ROOT / ".ci/run").read_text()
