@@ -1,0 +1,85 @@
+"""Component metadata: the files that tell a ground station what this vehicle's parameters mean, and where they are.
+
+Built once, from the parameter table. Schemas: mavlink/component_metadata/{general,parameter}.schema.json; their
+version is 1 because QGroundControl refuses every other. Source: mavlink.io/en/services/component_information.html.
+"""
+
+from __future__ import annotations
+
+import json
+import lzma
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from dialects import messages as m
+from link.services.ftp import crc32
+from link.services.param import Setting
+
+GENERAL_FILE, PARAMETER_FILE = "general.json.xz", "parameter.json.xz"
+PARAMETER_TYPE = 1
+"""COMP_METADATA_TYPE_PARAMETER."""
+VERSION = 1
+DICTIONARY = 1 << 16
+"""Bytes of the compressor's window: the files are smaller, and the usual 8 MB window takes 94 MB to compress with."""
+DECIMALS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Metadata:
+    """The files as they are served at the root of MAVLink FTP."""
+
+    general: bytes
+    parameters: bytes
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """By name."""
+        return {GENERAL_FILE: self.general, PARAMETER_FILE: self.parameters}
+
+    def message(self, time_boot_ms: int) -> m.ComponentMetadata:
+        """COMPONENT_METADATA: where the general file is, and the checksum by which it may be kept for later."""
+        return m.ComponentMetadata(time_boot_ms, crc32(self.general), _uri(GENERAL_FILE).encode())
+
+
+def build(table: Sequence[Setting], *, vendor: str, model: str, version: str) -> Metadata:
+    """All files. `version` is that of the vehicle's program: three numbers with points between."""
+    parameters = _compressed({"version": VERSION, "parameters": [_parameter(setting) for setting in table]})
+    general = {
+        "version": VERSION,
+        "vendorName": vendor,
+        "modelName": model,
+        "firmwareVersion": version,
+        "metadataTypes": [{"type": PARAMETER_TYPE, "uri": _uri(PARAMETER_FILE), "fileCrc": crc32(parameters)}],
+    }
+    return Metadata(_compressed(general), parameters)
+
+
+def _parameter(setting: Setting) -> dict[str, Any]:
+    described = {
+        "name": setting.name,
+        "type": "Float",
+        "shortDesc": setting.description,
+        "longDesc": setting.description + (". Not while armed." if setting.safety else ""),
+        "units": setting.unit,
+        "default": setting.default,
+        "min": setting.low,
+        "max": setting.high,
+        "decimalPlaces": 0 if setting.whole else DECIMALS,
+        "rebootRequired": setting.needs_reboot,
+        "readOnly": setting.read_only,
+        "group": setting.name.partition("_")[0],
+        "category": "Standard",
+    }
+    return described | ({"increment": 1} if setting.whole else {})
+
+
+def _compressed(content: dict[str, Any]) -> bytes:
+    """With the checksum that even the smallest decompressor knows (xz-embedded, in QGroundControl and MAVSDK)."""
+    plain = json.dumps(content, separators=(",", ":")).encode()
+    filters = [{"id": lzma.FILTER_LZMA2, "preset": 6, "dict_size": DICTIONARY}]
+    return lzma.compress(plain, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC32, filters=filters)
+
+
+def _uri(name: str) -> str:
+    return f"mftp:///{name}"
