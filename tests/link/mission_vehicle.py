@@ -1,0 +1,98 @@
+"""A vehicle with plans, for the tests of the mission protocol."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from dialects import messages as m
+from dialects.enums import MissionResult, MissionType
+from link.core import Received
+from link.services.mission import MissionServer
+from link.services.mission_items import ItemRule, Items, MissionItem, Place, PlanRules
+from tests.link.services_world import from_gcs, messages
+
+NAV_WAYPOINT, NAV_LOITER_TIME, DO_JUMP, FENCE_CIRCLE = 16, 19, 177, 5003
+RULES = {
+    MissionType.MISSION: PlanRules(
+        {
+            NAV_WAYPOINT: ItemRule(Place.NEEDED),
+            NAV_LOITER_TIME: ItemRule(Place.OPTIONAL, {1: (0.0, 3600.0)}),
+            DO_JUMP: ItemRule(ranges={1: (0, 99), 2: (-1, 100)}),
+        },
+        capacity=300,
+        check=lambda items: (
+            MissionResult.ACCEPTED
+            if all(item.params[0] < len(items) for item in items if item.command == DO_JUMP)
+            else MissionResult.INVALID_PARAM1
+        ),
+    ),
+    MissionType.FENCE: PlanRules({FENCE_CIRCLE: ItemRule(Place.NEEDED, {1: (1, 1000)})}, capacity=10),
+    MissionType.RALLY: PlanRules({5100: ItemRule(Place.NEEDED)}, capacity=10),
+}
+
+
+def waypoint(number: int = 0, **changes: Any) -> MissionItem:
+    values: dict[str, Any] = {
+        "command": NAV_WAYPOINT,
+        "frame": 3,
+        "params": (0.0, 1.0, 0.0, math.nan),
+        "x": 473977420 + number * 100,
+        "y": 85455940,
+        "z": 0.5,
+    }
+    return MissionItem(**(values | changes))
+
+
+def plain(items: Items) -> list[str]:
+    """Items as text: NaN is not equal to itself."""
+    return [repr(item) for item in items]
+
+
+@dataclass
+class Vehicle:
+    """A server, and what it told its vehicle."""
+
+    verdict: MissionResult = MissionResult.ACCEPTED
+    changes: list[tuple[MissionType, int]] = field(default_factory=list)
+    selected: list[int] = field(default_factory=list)
+    at: int = 0
+
+    def __post_init__(self) -> None:
+        self.server = MissionServer(self, RULES, system=1, component=1)
+
+    def may_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
+        return self.verdict
+
+    def changed(self, kind: MissionType, items: Items, now: float) -> None:
+        self.changes.append((kind, len(items)))
+
+    def select(self, sequence: int, received: Received, now: float) -> None:
+        self.selected.append(sequence)
+        self.at = sequence
+
+    def current(self) -> m.MissionCurrent:
+        return m.MissionCurrent(self.at)
+
+    def ask(self, message: m.Message, now: float = 0.0, **who: Any) -> list[Any]:
+        return messages(self.server.receive(from_gcs(message, **who), now))
+
+    def give(self, item: MissionItem, sequence: int, now: float = 0.0, kind: int = 0, **who: Any) -> list[Any]:
+        return self.ask(item_int(item, sequence, kind), now, **who)
+
+    def tick(self, now: float) -> list[Any]:
+        return messages(self.server.tick(now))
+
+    @property
+    def plan(self) -> Items:
+        return self.server.plan(MissionType.MISSION)
+
+    def upload(self, items: list[MissionItem]) -> None:
+        self.ask(m.MissionCount(1, 1, len(items)))
+        for sequence, item in enumerate(items):
+            self.give(item, sequence)
+
+
+def item_int(item: MissionItem, sequence: int, kind: int = 0) -> m.MissionItemInt:
+    return m.MissionItemInt(1, 1, sequence, item.frame, item.command, 0, 1, *item.params, item.x, item.y, item.z, kind)
