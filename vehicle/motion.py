@@ -52,7 +52,7 @@ def local_position_ned(view: View) -> m.Message | None:
         time_boot_ms=view.boot_ms,
         x=real(readings.north),
         y=real(readings.east),
-        z=-_above_home(view),
+        z=-real(_above_home(view)),
         vx=real(readings.velocity_north),
         vy=real(readings.velocity_east),
         vz=0.0,

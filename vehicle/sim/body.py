@@ -10,7 +10,7 @@ import random
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from vehicle.readings import Readings
+from vehicle.readings import Computer, Readings
 from vehicle.sim.battery import NOMINAL_VOLTAGE, Battery
 from vehicle.sim.chassis import Chassis, Motion, SkidChassis
 
@@ -41,6 +41,17 @@ GPS_MEMORY = 30.0
 """s ... which wanders and does not jump: errors this far apart no longer know of each other."""
 ANGLE_NOISE = 0.003
 """rad, standard deviation of a cheap IMU at rest."""
+
+COMPUTER = Computer(
+    temperature=48.0,
+    load=0.1,
+    memory_used=400 * 2**20,
+    memory_total=2 * 2**30,
+    uptime=60.0,
+    under_voltage=False,
+    throttled=False,
+)
+"""A Raspberry Pi without a worry."""
 
 
 class Home(NamedTuple):
@@ -133,6 +144,7 @@ class SimulatedBody:
             battery_current=battery.current,
             battery_remaining=battery.remaining,
             wheel_speeds=motion.wheel_speeds,
+            computer=COMPUTER,
         )
 
     def _jitter(self) -> float:

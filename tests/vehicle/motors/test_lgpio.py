@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from gpiozero import Device
 
+import vehicle.motors.pins  # noqa: F401 - before lgpio: see test_it_leaves_nothing_in_the_working_directory
 from vehicle.motors import Motors, open_motors
 
 lgpio = pytest.importorskip("lgpio")
