@@ -30,7 +30,7 @@ class Planner(Protocol):
     def may_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         """ACCEPTED, or the answer to who may not change this plan now."""
 
-    def changed(self, kind: MissionType, items: Items, now: float) -> None:
+    def changed(self, kind: MissionType, items: Items) -> None:
         """The plan is a new one; save it."""
 
     def select(self, sequence: int, received: Received, now: float) -> None:
@@ -72,6 +72,14 @@ class MissionServer:
         verdict = self._rules[kind].judge(items)
         if verdict is MissionResult.ACCEPTED:
             self._plans[kind] = tuple(items)
+        return verdict
+
+    def replace(self, kind: MissionType, items: Sequence[MissionItem]) -> MissionResult:
+        """Put a plan in force that came in another way than by upload, e.g. as a file; the planner is told."""
+        busy = kind in self._uploads
+        verdict = MissionResult.DENIED if busy else self.load(kind, items)
+        if verdict is MissionResult.ACCEPTED:
+            self._planner.changed(kind, self.plan(kind))
         return verdict
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
@@ -193,7 +201,7 @@ class MissionServer:
         self._uploads.pop(kind, None)
         if verdict is MissionResult.ACCEPTED:
             self._plans[kind] = upload.items
-            self._planner.changed(kind, upload.items, now)
+            self._planner.changed(kind, upload.items)
         ack = _ack(upload.sender, kind, verdict)
         self._ended[kind] = _Ended(upload.sender, last, now, ack)
         return ack
@@ -214,7 +222,7 @@ class MissionServer:
         for kind in kinds:
             self._uploads.pop(kind, None)
             self._plans[kind] = ()
-            self._planner.changed(kind, (), now)
+            self._planner.changed(kind, ())
         return MissionResult.ACCEPTED
 
     def _kind(self, number: int) -> MissionType | None:

@@ -138,7 +138,7 @@ def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
     """The item of either message. Floats that are no int32 become NOWHERE."""
     if isinstance(message, m.MissionItem):
         scale = DEGREES if message.frame in GLOBAL_FRAMES else LOCAL
-        x, y = _scaled(message.x, scale), _scaled(message.y, scale)
+        x, y = scaled(message.x, scale), scaled(message.y, scale)
     else:
         x, y = message.x, message.y
     return MissionItem(
@@ -152,9 +152,10 @@ def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
     )
 
 
-def _scaled(value: float, scale: float) -> int:
-    scaled = value * scale
-    return round(scaled) if abs(scaled) < NOWHERE else NOWHERE  # NaN is not less than anything
+def scaled(value: float, scale: float) -> int:
+    """`value` times `scale` as an int32; NOWHERE for what is none."""
+    number = value * scale
+    return round(number) if abs(number) < NOWHERE else NOWHERE  # NaN is not less than anything
 
 
 def to_message(

@@ -65,7 +65,7 @@ class Vehicle:
     def may_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         return self.verdict
 
-    def changed(self, kind: MissionType, items: Items, now: float) -> None:
+    def changed(self, kind: MissionType, items: Items) -> None:
         self.changes.append((kind, len(items)))
 
     def select(self, sequence: int, received: Received, now: float) -> None:

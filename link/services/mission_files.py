@@ -1,0 +1,100 @@
+"""Plans as files: the text format that MAVProxy, Mission Planner and QGroundControl read ("QGC WPL 110"), and a folder
+for MAVLink FTP whose files are the plans in force.
+
+A line has, with tabs between: number, current, frame, command, parameters 1..4, latitude, longitude, altitude,
+autocontinue. ArduPilot's tools put home into line 0; here every line is an item, as on the wire.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from dialects.enums import MissionResult, MissionType
+from link.services.ftp import FtpError
+from link.services.ftp_files import Bytes, Content, Entry, Query
+from link.services.mission import MissionServer
+from link.services.mission_items import DEGREES, GLOBAL_FRAMES, LOCAL, Items, MissionItem, scaled
+
+HEADER = "QGC WPL 110"
+FIELDS = 12
+NAMES: dict[str, MissionType] = {
+    "mission.waypoints": MissionType.MISSION,
+    "fence.waypoints": MissionType.FENCE,
+    "rally.waypoints": MissionType.RALLY,
+}
+
+
+class PlanFileError(ValueError):
+    """A file that is no plan; the message is one clear line."""
+
+
+def write(items: Sequence[MissionItem]) -> bytes:
+    """The file of a plan. Nothing of an item is lost, NaN included."""
+    lines = [HEADER, *(_line(number, item) for number, item in enumerate(items))]
+    return ("\n".join(lines) + "\n").encode("ascii")
+
+
+def read(data: bytes) -> Items:
+    """The plan of a file. Raises PlanFileError."""
+    text = data.decode("ascii", "replace")
+    header, *lines = text.splitlines() or [""]
+    if header.strip() != HEADER:
+        raise PlanFileError(f"line 1 is not {HEADER!r}")
+    return tuple(_item(number, line) for number, line in enumerate(lines, start=2) if line.strip())
+
+
+def _line(number: int, item: MissionItem) -> str:
+    scale = DEGREES if item.frame in GLOBAL_FRAMES else LOCAL
+    place = (f"{item.x / scale:.7f}", f"{item.y / scale:.7f}", repr(item.z))
+    head = (number, 0, item.frame, item.command)
+    return "\t".join(map(str, (*head, *map(repr, item.params), *place, int(item.autocontinue))))
+
+
+def _item(number: int, line: str) -> MissionItem:
+    fields = line.split()
+    if len(fields) != FIELDS:
+        raise PlanFileError(f"line {number} has {len(fields)} fields, not {FIELDS}")
+    try:
+        frame, command = int(fields[2]), int(fields[3])
+        one, two, three, four, x, y, z = map(float, fields[4:11])
+        autocontinue = bool(int(fields[11]))
+    except ValueError as error:
+        raise PlanFileError(f"line {number}: {error}") from error
+    scale = DEGREES if frame in GLOBAL_FRAMES else LOCAL
+    return MissionItem(command, frame, (one, two, three, four), scaled(x, scale), scaled(y, scale), z, autocontinue)
+
+
+class PlanFolder:
+    """The plans of a MissionServer as files; writing one puts it in force, where `allowed` lets its kind be changed."""
+
+    def __init__(self, server: MissionServer, allowed: Callable[[MissionType], bool] = lambda kind: True) -> None:
+        self._server = server
+        self._allowed = allowed
+
+    @property
+    def writable(self) -> bool:
+        """Under the names of the plans."""
+        return True
+
+    def entries(self) -> list[Entry]:
+        """One file a plan, also where it is empty."""
+        return [Entry(name, len(write(self._server.plan(kind)))) for name, kind in NAMES.items()]
+
+    def open(self, name: str, query: Query) -> Content | None:
+        """The plan as it is now."""
+        return Bytes(write(self._server.plan(NAMES[name]))) if name in NAMES and not query else None
+
+    def store(self, name: str, data: bytes) -> FtpError | None:
+        """Put the plan in force, or say FAIL where it is none or breaks the rules."""
+        kind = NAMES.get(name)
+        if kind is None or not self._allowed(kind):
+            return FtpError.PROTECTED
+        try:
+            items = read(data)
+        except PlanFileError:
+            return FtpError.FAIL
+        return None if self._server.replace(kind, items) is MissionResult.ACCEPTED else FtpError.FAIL
+
+    def remove(self, name: str) -> FtpError | None:
+        """The plan is empty after this."""
+        return self.store(name, HEADER.encode()) if name in NAMES else FtpError.NOT_FOUND
