@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from dialects import codec
-from dialects.messages import Message
 from link.core import Peer
 from link.rate import TokenBucket
 
@@ -41,6 +40,6 @@ class Pacer:
         return known[1].take(now, size)
 
 
-def frame_size(message: Message) -> int:
-    """Bytes that `message` takes on the wire, unsigned. Raises codec.EncodeError."""
-    return len(codec.encode_payload(message)) + OVERHEAD
+def share(baud: float | None) -> float:
+    """bytes/s for bulk answers on a serial line of `baud` (10 bits a byte), or on a network (None)."""
+    return DEFAULT_RATE if baud is None else min(DEFAULT_RATE, baud / 10 * SHARE)

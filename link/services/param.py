@@ -16,12 +16,11 @@ from dialects import messages as m
 from dialects.enums import ParamFault
 from link.core import Outgoing, Peer, Received
 from link.services.pacing import OVERHEAD, Pacer
-from link.services.param_values import REAL32, same, shortest
+from link.services.param_values import NAME_SIZE, REAL32, same, shortest
 
 RUN_PERIOD = 1.0
 """s between the starts of two lists to one peer: less than the 2 s after which MAVProxy asks again."""
 MAX_RUNS = 16
-NAME_SIZE = 16
 VALUE_FRAME = m.ParamValue.unpacker.size + OVERHEAD
 
 

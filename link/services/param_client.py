@@ -9,8 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dialects import messages as m
+from dialects.enums import ParamFault
 from link.core import Outgoing, Received
-from link.services.param_values import REAL32, from_wire, same, to_wire
+from link.services.param_values import NAME_SIZE, REAL32, from_wire, is_float32, same, to_wire
 
 QUIET = 1.0
 """s without a new parameter before holes are filled: a 57600 baud radio with telemetry takes 0.3 s for a value."""
@@ -47,7 +48,7 @@ class ParamOutcome:
     value: float | None
     """What the vehicle says it is now; None: it said nothing."""
     fault: int | None
-    """MAV_PARAM_ERROR, where it sent one."""
+    """MAV_PARAM_ERROR, where it sent one, or of ours where the wish cannot be said."""
 
     @property
     def done(self) -> bool:
@@ -107,13 +108,14 @@ class ParamClient:
 
     def set(self, name: str, value: float, now: float) -> None:
         """Set a parameter; a newer wish for the same one replaces the older."""
-        self._asked[name] = asked = _Asked(value)
-        self._ask(name, asked, now)
+        if is_float32(value):
+            self._wish(name, value, now)
+        else:
+            self._outcomes.append(ParamOutcome(name, value, None, ParamFault.VALUE_OUT_OF_RANGE))
 
     def read(self, name: str, now: float) -> None:
         """Ask for one parameter."""
-        self._asked[name] = asked = _Asked(None)
-        self._ask(name, asked, now)
+        self._wish(name, None, now)
 
     def receive(self, received: Received, now: float) -> None:
         """Take PARAM_VALUE and PARAM_ERROR of the vehicle; others are ignored."""
@@ -145,6 +147,14 @@ class ParamClient:
         """Sets and reads that ended since the last call."""
         outcomes, self._outcomes = self._outcomes, []
         return outcomes
+
+    def _wish(self, name: str, wanted: float | None, now: float) -> None:
+        """Ask, unless the name cannot be said: cut to 16 characters it would be another parameter's."""
+        if len(name) > NAME_SIZE or not name.isascii() or not name:
+            self._outcomes.append(ParamOutcome(name, wanted, None, ParamFault.DOES_NOT_EXIST))
+            return
+        self._asked[name] = asked = _Asked(wanted)
+        self._ask(name, asked, now)
 
     def _value(self, message: m.ParamValue, now: float) -> None:
         value = from_wire(message.param_value, message.param_type, bytewise=self._bytewise)
@@ -194,7 +204,7 @@ class ParamClient:
         self._due = now + QUIET
 
     def _ask(self, name: str, asked: _Asked, now: float) -> None:
-        encoded = name.encode("ascii", "replace")
+        encoded = name.encode("ascii")
         if asked.wanted is None:
             self._outbox.append(Outgoing(m.ParamRequestRead(*self._target, encoded, -1)))
         else:

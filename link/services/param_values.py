@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import struct
 
 REAL32 = 9
 """MAV_PARAM_TYPE_REAL32."""
+NAME_SIZE = 16
+"""Bytes of `param_id`."""
 
 _FORMATS: dict[int, tuple[str, int, int]] = {
     1: ("<I", 0, 0xFF),
@@ -51,6 +54,14 @@ def shortest(value: float) -> float:
         if _FLOAT.pack(short) == packed:
             return short
     return value
+
+
+def is_float32(value: float) -> bool:
+    """Is there a finite float32 near it?"""
+    try:
+        return math.isfinite(_FLOAT.unpack(_FLOAT.pack(value))[0])
+    except OverflowError:
+        return False
 
 
 def same(one: float, other: float) -> bool:

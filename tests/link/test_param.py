@@ -12,7 +12,7 @@ from link.core import Outgoing
 from link.services.param import RUN_PERIOD, check
 from link.services.param_values import REAL32
 from tests.link.param_vehicle import TABLE, Vehicle, big_table, faults, values
-from tests.link.services_world import OTHER_PEER, PEER, from_gcs
+from tests.link.services_world import OTHER_PEER, PEER, from_gcs, messages
 
 
 def test_a_set_is_answered_to_all_with_the_value_that_is_in_force() -> None:
@@ -127,6 +127,14 @@ def test_reading_by_name_and_by_index(name: bytes, index: int) -> None:
 @pytest.mark.parametrize(("name", "index"), [(b"", -2), (b"", 5), (b"", 32767), (b"", -32768), (b"NO_SUCH", -1)])
 def test_what_cannot_be_read_is_answered_by_an_error(name: bytes, index: int) -> None:
     assert faults(Vehicle().ask(m.ParamRequestRead(1, 1, name, index))) == [ParamFault.DOES_NOT_EXIST]
+
+
+def test_what_the_vehicle_changes_itself_is_told_to_all() -> None:
+    vehicle = Vehicle()
+    vehicle.values.set("MAN_DEADBAND", 9.0)
+    outgoing = vehicle.server.announce(["MAN_DEADBAND"])
+    assert values(messages(outgoing)) == [("MAN_DEADBAND", 9.0)]
+    assert [each.peer for each in outgoing] == [None]
 
 
 # ---- lists ----

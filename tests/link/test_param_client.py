@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -87,6 +89,23 @@ def test_a_vehicle_that_answers_with_another_value_has_refused() -> None:
         client.receive(from_vehicle(m.ParamValue(b"SPEED", 1.0, REAL32, 9, 3)), at)
     [outcome] = client.outcomes()
     assert (outcome.done, outcome.value, outcome.fault) == (False, 1.0, None)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 1e39])
+def test_what_is_no_float32_is_refused_before_it_is_sent(value: float) -> None:
+    client = ParamClient(255, 190, target_system=1)
+    client.set("SPEED", value, 0.0)
+    assert [outcome.fault for outcome in client.outcomes()] == [ParamFault.VALUE_OUT_OF_RANGE]
+    assert client.messages_to_send() == []
+
+
+@pytest.mark.parametrize("name", ["SEVENTEEN_LETTERS", "GRÖSSE", ""])
+def test_a_name_that_would_become_anothers_is_not_sent(name: str) -> None:
+    client = ParamClient(255, 190, target_system=1)
+    client.set(name, 1.0, 0.0)
+    client.read(name, 0.0)
+    assert [outcome.fault for outcome in client.outcomes()] == [ParamFault.DOES_NOT_EXIST] * 2
+    assert client.messages_to_send() == []
 
 
 def test_silence_ends_too() -> None:
