@@ -7,10 +7,11 @@ station that repeats an old demand, moves nothing.
 
 from __future__ import annotations
 
-from dialects.enums import Severity
+from dialects.enums import DriveType, Severity
 from dialects.messages import INVALID_AXIS, ManualControl, RcChannelsOverride, RoverOperatorPresence
 from link.core import Received
 from vehicle.demand import Demand, Override, from_manual_control
+from vehicle.mixer import MIXERS
 from vehicle.params import Params
 from vehicle.presence import Presence
 from vehicle.texts import Texts
@@ -97,7 +98,8 @@ class Control:
             return False
         if self.demand and self.demand.sequence == received.sequence:
             return False  # the same packet again: a replay
-        demand = from_manual_control(message, received.system, received.sequence, now)
+        sideways = MIXERS[DriveType(int(self._params["DRIVE_TYPE"]))].sideways
+        demand = from_manual_control(message, received.system, received.sequence, now, sideways=sideways)
         self.invalid_axes += sum(abs(axis) > 1000 and axis != INVALID_AXIS for axis in (message.x, message.r))
         if demand is None:
             return False

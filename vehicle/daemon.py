@@ -171,10 +171,12 @@ def _build(settings: Settings, params: Params, rover: Rover) -> Machine:
 def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sensors]:
     motors = SimulatedMotors()
     frame = Frame(top_speed=params["SPEED_MAX"], track_width=params["TRACK_WIDTH"], wheelbase=params["WHEELBASE"])
-    chassis = CHASSIS[int(params["DRIVE_TYPE"])](frame)
+    chassis = CHASSIS.get(int(params["DRIVE_TYPE"]))
+    if chassis is None:
+        raise SettingsError("the simulator drives DRIVE_TYPE 1 (skid steering) and 2 (Ackermann) only")
     body = SimulatedBody(
         lambda: motors.outputs,
-        chassis=chassis,
+        chassis=chassis(frame),
         battery=Battery(simulation.battery),
         home=simulation.home,
         seed=simulation.seed,

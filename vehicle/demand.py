@@ -27,22 +27,31 @@ class Demand:
     system: int
     sequence: int
     """Packet sequence number of the message."""
+    sideways: float | None = None
+    """To the right, of vehicles that can; the others and most drivers have no such stick."""
 
     def neutral(self, band: float) -> bool:
-        """Both sticks are at rest."""
-        return all(axis is not None and abs(axis) <= band for axis in (self.throttle, self.steering))
+        """All sticks are at rest."""
+        sideways = self.sideways or 0.0
+        return all(axis is not None and abs(axis) <= band for axis in (self.throttle, self.steering, sideways))
 
     def moving(self, band: float) -> bool:
         """Any stick asks for motion."""
-        return any(axis is not None and abs(axis) > band for axis in (self.throttle, self.steering))
+        return any(axis is not None and abs(axis) > band for axis in (self.throttle, self.steering, self.sideways))
 
 
-def from_manual_control(message: ManualControl, system: int, sequence: int, now: float) -> Demand | None:
-    """The demand of a MANUAL_CONTROL; None where no axis of ours is valid. Axes: dialects/axes.py."""
+def from_manual_control(
+    message: ManualControl, system: int, sequence: int, now: float, *, sideways: bool = False
+) -> Demand | None:
+    """The demand of a MANUAL_CONTROL; None where no axis of ours is valid. Axes: dialects/axes.py.
+
+    `sideways`: this vehicle can, and y, which the specification calls roll, asks for it.
+    """
     throttle, steering = axes.demand(message)
-    if throttle is None and steering is None:
+    side = message.y / axes.FULL if sideways and abs(message.y) <= axes.FULL else None
+    if throttle is None and steering is None and side is None:
         return None
-    return Demand(throttle, steering, now, system, sequence)
+    return Demand(throttle, steering, now, system, sequence, side)
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,9 @@ class Drive:
         band = self._params["MAN_DEADBAND"] / 100
         throttle = expo(deadband(demand.throttle or 0.0, band), self._params["MANUAL_EXPO"])
         steering = expo(deadband(demand.steering or 0.0, band), self._params["MANUAL_STR_EXPO"])
-        mixed: Mixed = self.mixer.mix(self._cap(throttle, limited), steering, self._params["MOT_STR_THR_MIX"])
+        sideways = self._cap(deadband(demand.sideways or 0.0, band), limited)
+        mix = self._params["MOT_STR_THR_MIX"]
+        mixed: Mixed = self.mixer.mix(self._cap(throttle, limited), steering, mix, sideways)
         if mixed.saturated:
             self.limits |= Limit.SATURATED
         return mixed.throttles

@@ -1,6 +1,6 @@
-"""Throttle and steering -> one value for each motor; no ramps and no limits in time.
+"""Throttle, steering and sideways -> one value for each motor; no ramps and no limits in time.
 
-To add an arrangement of wheels, write a function (throttle, steering, mix) -> values and add one line to MIXERS.
+To add an arrangement of wheels, write a function (throttle, steering, mix, sideways) -> values and a line in MIXERS.
 """
 
 from __future__ import annotations
@@ -24,13 +24,15 @@ class Mixed:
 class Mixer:
     """How one arrangement of wheels is driven."""
 
-    mix: Callable[[float, float, float], Mixed]
+    mix: Callable[[float, float, float, float], Mixed]
     motors: tuple[str, ...]
     servos: tuple[int, ...]
     """Servo output (1..16) of each motor in SERVO_OUTPUT_RAW: ArduRover's default wiring."""
+    sideways: bool = False
+    """It can move to the side without turning."""
 
 
-def skid(throttle: float, steering: float, mix: float) -> Mixed:
+def skid(throttle: float, steering: float, mix: float, sideways: float = 0.0) -> Mixed:
     """Left, right. Beyond the limit `mix` (MOT_STR_THR_MIX) shares what there is: 0.5 cuts both, 1 keeps steering.
 
     ArduRover's rule (AP_MotorsUGV::output_skid_steering) with equal thrust both ways. Steering is clockwise positive.
@@ -48,9 +50,22 @@ def skid(throttle: float, steering: float, mix: float) -> Mixed:
     return Mixed((_unit(throttle + steering), _unit(throttle - steering)), saturated=True)
 
 
-def ackermann(throttle: float, steering: float, mix: float) -> Mixed:
+def ackermann(throttle: float, steering: float, mix: float, sideways: float = 0.0) -> Mixed:
     """Throttle and steering servo, apart, as in a car."""
     return Mixed((throttle, steering))
+
+
+FOUR_WHEELS: tuple[tuple[int, int, int], ...] = ((1, 1, 1), (1, -1, -1), (1, 1, -1), (1, -1, 1))
+"""What throttle, steering and sideways give to front left, front right, rear left and rear right: ArduRover's factors
+(AP_MotorsUGV::setup_omni, OMNIX and mecanum) in our order. Seen from above, the axles of omni wheels and the rollers of
+mecanum wheels form an X."""
+
+
+def four_wheels(throttle: float, steering: float, mix: float, sideways: float = 0.0) -> Mixed:
+    """Each wheel its sum; beyond the limit all are cut by the same factor, so that the direction stays."""
+    sums = [throttle * ahead + steering * turn + sideways * side for ahead, turn, side in FOUR_WHEELS]
+    largest = max(1.0, *(abs(each) for each in sums))
+    return Mixed(tuple(_unit(each / largest) for each in sums), saturated=largest > 1.0)
 
 
 def _unit(value: float) -> float:
@@ -65,9 +80,13 @@ def clamp(value: float, largest: float) -> float:
     return -largest if value < -largest else value
 
 
+CORNERS = ("front left", "front right", "rear left", "rear right")
+
 MIXERS: dict[DriveType, Mixer] = {
     DriveType.SKID: Mixer(skid, ("left", "right"), (1, 3)),
     DriveType.ACKERMANN: Mixer(ackermann, ("throttle", "steering"), (3, 1)),
+    DriveType.OMNI: Mixer(four_wheels, CORNERS, (4, 1, 3, 2), sideways=True),
+    DriveType.MECANUM: Mixer(four_wheels, CORNERS, (4, 1, 3, 2), sideways=True),
 }
 """DRIVE_TYPE -> mixer."""
 

@@ -24,11 +24,15 @@ class Parameter:
     safety: bool = False
     whole: bool = False
     """Only whole numbers."""
+    needs_reboot: bool = False
+    """Counts only after a restart."""
+    read_only: bool = False
+    """No ground station sets it: it must fit the hardware, or is pinned by the file of settings."""
 
 
 TABLE: tuple[Parameter, ...] = (
     # Identity
-    Parameter("MAV_SYSID", 1, 1, 255, "", "System id of this vehicle; after a restart", whole=True),
+    Parameter("MAV_SYSID", 1, 1, 255, "", "System id of this vehicle; after a restart", whole=True, needs_reboot=True),
     Parameter("MAV_GCS_SYSID", 0, 0, 255, "", "Only this ground station may take control; 0: the first that arms",
               safety=True, whole=True),
     # Manual driving
@@ -55,7 +59,9 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("BATT_LOW_TIMER", 10, 1, 120, "s", "The voltage must be low for so long; motors pull it down"),
     Parameter("DISARM_DELAY", 300, 0, 3600, "s", "Disarm after so long without a demand; 0: never"),
     # Motors
-    Parameter("DRIVE_TYPE", 1, 1, 2, "", "1 skid steering, 2 Ackermann", safety=True, whole=True),
+    Parameter("DRIVE_TYPE", 1, 1, 4, "", "1 skid steering, 2 Ackermann, 3 omni, 4 mecanum: "
+              "belongs to the hardware, set it where the vehicle starts", whole=True,
+              needs_reboot=True, read_only=True),
     Parameter("MOT_SLEWRATE", 250, 10, 1000, "%/s", "Acceleration of each motor", safety=True),
     Parameter("MOT_DECEL", 250, 250, 10000, "%/s", "Deceleration of each motor; 250 is from full to zero in 0.4 s",
               safety=True),

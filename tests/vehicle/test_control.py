@@ -76,6 +76,52 @@ def test_34_an_axis_out_of_range_is_neutral_and_not_clamped(wild: int) -> None:
     assert not bench.turning
 
 
+def test_y_moves_a_vehicle_sideways_that_can() -> None:
+    bench = Bench(DRIVE_TYPE=4)
+    bench.drive()
+    for _ in range(20):
+        bench.say(axes(y=1000))
+        bench.wait(0.04)
+    assert bench.throttles == (1.0, -1.0, -1.0, 1.0)
+
+
+@pytest.mark.parametrize("kind", [1, 2])
+def test_y_means_nothing_to_the_others(kind: int) -> None:
+    """QGroundControl sends it for every vehicle."""
+    bench = Bench(DRIVE_TYPE=kind)
+    bench.arm()
+    bench.say(axes(y=1000))
+    bench.say(axes(x=500, y=-1000))
+    bench.wait(CYCLE)
+    assert bench.turning
+    for _ in range(20):
+        bench.say(axes(y=1000))
+        bench.wait(0.04)
+    assert not bench.turning
+
+
+def test_a_stick_held_to_the_side_is_not_neutral() -> None:
+    bench = Bench(DRIVE_TYPE=4)
+    bench.arm()
+    for side in (1000, 500, 1000):
+        bench.say(axes(y=side))
+        bench.wait(CYCLE)
+        assert not bench.turning
+    bench.say(axes())
+    bench.say(axes(y=500))
+    bench.wait(CYCLE)
+    assert bench.turning
+
+
+def test_y_out_of_range_is_no_demand() -> None:
+    bench = Bench(DRIVE_TYPE=4)
+    bench.drive()
+    for _ in range(20):
+        bench.say(axes(y=1001))
+        bench.wait(0.04)
+    assert not bench.turning
+
+
 def test_a_frame_without_any_valid_axis_is_no_demand() -> None:
     bench = Bench()
     bench.drive()

@@ -184,6 +184,13 @@ def test_a_bad_endpoint_or_parameter_is_the_users_mistake(caplog: pytest.LogCapt
     assert "MAN_TIMEOUT" in said(caplog)
 
 
+@pytest.mark.parametrize("kind", [3, 4])
+def test_a_drive_that_the_simulator_lacks_is_the_users_mistake(caplog: pytest.LogCaptureFixture, kind: float) -> None:
+    settings = Settings(("udpout:127.0.0.1:9",), simulation=Simulation(), params={"DRIVE_TYPE": kind})
+    assert daemon.run(settings) == MISTAKE
+    assert said(caplog) == "the simulator drives DRIVE_TYPE 1 (skid steering) and 2 (Ackermann) only"
+
+
 def test_a_motor_log_that_cannot_be_written_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
     settings = Settings(("udpout:127.0.0.1:9",), simulation=Simulation(), motor_log="/no/such/folder/motors")
     assert daemon.run(settings) == MISTAKE

@@ -28,17 +28,24 @@ def run(drive: Drive, wish: Demand | None, cycles: int = 100, *, limited: bool =
 
 
 @pytest.mark.parametrize("wrong", [demand(math.nan), demand(0.0, math.nan), demand(math.nan, math.nan)])
-@pytest.mark.parametrize("kind", [1, 2])
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("largest", [100, 50])
 def test_nan_becomes_zero_and_not_speed(wrong: Demand, kind: int, largest: float) -> None:
     drive = Drive(Params({"DRIVE_TYPE": kind, "MOT_THR_MAX": largest}), 0.0)
     assert any(run(drive, demand(1.0)).throttles)
     for cycle in range(1, 5):
         outputs = drive.step(wrong, CLEARED, limited=False, now=2.0 + cycle * CYCLE)
-        assert outputs == Outputs((0.0, 0.0), enabled=False)
+        assert outputs == Outputs((0.0,) * len(drive.mixer.motors), enabled=False)
         assert drive.refused == cycle
     assert any(run(drive, demand(1.0), start=3.0).throttles)
     assert drive.refused == 0
+
+
+def test_a_sideways_demand_that_is_no_number_becomes_zero() -> None:
+    drive = Drive(Params({"DRIVE_TYPE": 4}), 0.0)
+    assert any(run(drive, Demand(0.0, 0.0, 0.0, 255, 0, sideways=1.0)).throttles)
+    wrong = Demand(0.0, 0.0, 0.0, 255, 0, sideways=math.nan)
+    assert drive.step(wrong, CLEARED, limited=False, now=2.1) == Outputs((0.0,) * 4, enabled=False)
 
 
 def test_three_cycles_of_nan_are_hold() -> None:

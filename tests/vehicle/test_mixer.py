@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects.enums import DriveType
-from vehicle.mixer import MIXERS, ackermann, deadband, expo, skid
+from vehicle.mixer import MIXERS, ackermann, deadband, expo, four_wheels, skid
 from vehicle.params import PARAMETERS
 
 UNIT = st.floats(-1, 1)
@@ -50,10 +50,43 @@ def test_ackermann_keeps_them_apart() -> None:
     assert ackermann(0.3, -1.0, 0.5).throttles == (0.3, -1.0)
 
 
-@given(UNIT, UNIT, st.floats(0.2, 1), st.sampled_from(sorted(MIXERS)))
-def test_every_mixer_stays_within_full(throttle: float, steering: float, mix: float, kind: DriveType) -> None:
+@pytest.mark.parametrize(
+    ("demand", "wheels"),
+    [
+        ((1.0, 0.0, 0.0), (1, 1, 1, 1)),
+        ((0.0, 1.0, 0.0), (1, -1, 1, -1)),  # clockwise: the left wheels ahead
+        ((0.0, 0.0, 1.0), (1, -1, -1, 1)),  # to the right: the wheels of each side against each other
+        ((-0.5, 0.0, 0.25), (-0.25, -0.75, -0.75, -0.25)),
+    ],
+)
+def test_four_wheels_go_ahead_turn_and_slide(demand: tuple[float, float, float], wheels: tuple[float, ...]) -> None:
+    throttle, steering, sideways = demand
+    mixed = four_wheels(throttle, steering, 0.5, sideways)
+    assert mixed.throttles == wheels
+    assert not mixed.saturated
+
+
+def test_four_wheels_at_their_limit_keep_the_direction() -> None:
+    mixed = four_wheels(1.0, 0.5, 0.5, 0.5)
+    assert mixed.throttles == pytest.approx((1.0, 0.0, 0.5, 0.5))
+    assert mixed.saturated
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_no_number_is_not_made_one(place: int) -> None:
+    """The gate must see it."""
+    demand = [0.5, 0.5, 0.5]
+    demand[place] = math.nan
+    throttle, steering, sideways = demand
+    assert all(map(math.isnan, four_wheels(throttle, steering, 0.5, sideways).throttles))
+
+
+@given(UNIT, UNIT, UNIT, st.floats(0.2, 1), st.sampled_from(sorted(MIXERS)))
+def test_every_mixer_stays_within_full(
+    throttle: float, steering: float, sideways: float, mix: float, kind: DriveType
+) -> None:
     mixer = MIXERS[kind]
-    values = mixer.mix(throttle, steering, mix).throttles
+    values = mixer.mix(throttle, steering, mix, sideways).throttles
     assert len(values) == len(mixer.motors) == len(mixer.servos)
     assert all(-1 <= value <= 1 for value in values)
 
@@ -61,7 +94,7 @@ def test_every_mixer_stays_within_full(throttle: float, steering: float, mix: fl
 @given(st.floats(0.2, 1))
 def test_nothing_in_is_nothing_out(mix: float) -> None:
     for mixer in MIXERS.values():
-        assert not any(mixer.mix(0.0, 0.0, mix).throttles)
+        assert not any(mixer.mix(0.0, 0.0, mix, 0.0).throttles)
 
 
 def test_every_drive_type_that_can_be_set_has_a_mixer() -> None:
