@@ -16,6 +16,9 @@ from link.services.command import CommandClient, Outcome
 REASON_WITHIN = 1.0
 """s between a refusal and the vehicle's text that says why; either may come first."""
 
+QUIET = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
+"""Commands that the station sends by itself: their answers are not told to the operator."""
+
 DISARM_AGAIN, DISARM_GIVE_UP = 1.5, 6.0
 """s after which a heartbeat that still says armed makes us ask again, and after which we say so instead."""
 
@@ -42,6 +45,7 @@ class Commander:
         self._refusals: dict[int, tuple[str, float]] = {}
         self._reasons: dict[int, tuple[str, float]] = {}
         self._modes: dict[int, str] = {}
+        self._quiet: list[Outcome] = []
 
     # ---- orders ----
 
@@ -77,6 +81,10 @@ class Commander:
         """Ask for one message, silently."""
         self._send(vehicle, now, Command.REQUEST_MESSAGE, message_id)
 
+    def set_rate(self, vehicle: VehicleState, message_id: int, rate: float, now: float) -> None:
+        """Ask for a message `rate` times a second, silently."""
+        self._send(vehicle, now, Command.SET_MESSAGE_INTERVAL, message_id, round(1e6 / rate))
+
     def emergency_stop(self, vehicle: VehicleState, now: float) -> None:
         """Motors off and locked; asked for until it is true."""
         self._arming = None
@@ -102,6 +110,11 @@ class Commander:
     def busy(self, command: Command) -> bool:
         """Is a command of this kind not answered yet?"""
         return self._client.waits(command)
+
+    def quiet_outcomes(self) -> list[Outcome]:
+        """How the station's own questions ended, since the last call."""
+        quiet, self._quiet = self._quiet, []
+        return quiet
 
     def refusal(self, system: int) -> str | None:
         """What this vehicle refused last and why."""
@@ -165,9 +178,11 @@ class Commander:
 
     def _settle(self, now: float) -> None:
         for outcome in self._client.outcomes():
-            if outcome.command != Command.REQUEST_MESSAGE:
+            if outcome.command in QUIET:
+                self._quiet.append(outcome)
+            else:
                 self._tell(outcome, now)
-            self._act(outcome, now)
+                self._act(outcome, now)
 
     def _act(self, outcome: Outcome, now: float) -> None:
         system = outcome.target_system

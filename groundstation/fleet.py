@@ -9,6 +9,7 @@ from dialects.enums import Autopilot, Severity, Type
 from dialects.messages import Heartbeat, Message
 from groundstation.cadence import DemandStream
 from groundstation.foreign import SettingsCheck
+from groundstation.streams import StreamRequests
 from groundstation.texts import TextLog
 from groundstation.vehicle_state import VehicleState
 from link.core import Received
@@ -22,6 +23,9 @@ class Contact:
     """A vehicle and what the station keeps beside its picture."""
 
     state: VehicleState
+    streams: StreamRequests
+    link: int
+    """Index of the link on which it was heard last."""
     settings: SettingsCheck | None = None
     stream: DemandStream = field(default_factory=DemandStream)
     lost_at: float | None = None
@@ -61,13 +65,17 @@ class Fleet:
     def admit(self, received: Received, now: float) -> Contact | None:
         """The contact that a message belongs to; a vehicle's HEARTBEAT makes a new one."""
         contact = self._contacts.get(received.system)
+        if contact is not None:
+            contact.link = received.peer.link
         if contact is not None or not is_vehicle(received.message) or len(self._contacts) >= MAX_VEHICLES:
             return contact
         state = VehicleState(received.system, received.component)
         state.receive(received, now)
-        contact = self._contacts[received.system] = Contact(state)
+        target = (state.system, state.component)
+        contact = Contact(state, StreamRequests(target, now), received.peer.link)
+        self._contacts[received.system] = contact
         if SettingsCheck.wanted(state.autopilot):
-            contact.settings = SettingsCheck(self._system, (state.system, state.component))
+            contact.settings = SettingsCheck(self._system, target)
         self.selected = self.selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact
@@ -82,6 +90,7 @@ class Fleet:
             elif contact.lost_at is not None and monitor.alive(now):
                 self._log.add(now, "station", f"{name} is back after {now - contact.lost_at:.1f} s", Severity.NOTICE)
                 contact.lost_at = None
+                contact.streams.restart(now)
 
 
 def is_vehicle(message: Message) -> bool:

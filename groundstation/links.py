@@ -38,6 +38,12 @@ class LinkBook:
         """The links as the screen shows them."""
         return tuple(_view(samples, round_trip) for _, samples in sorted(self._samples.items()))
 
+    def capacity(self, link: int) -> float | None:
+        """Bytes/s that a link takes now; None where nobody knows."""
+        samples = self._samples.get(link)
+        report = samples[-1].report if samples else None
+        return None if report is None or report.capacity is None else report.capacity * report.headroom
+
     @property
     def hears_bytes(self) -> bool:
         """Did any link receive anything in the window?"""

@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, Severity, State, Type
+from dialects.enums import Autopilot, Severity, State, Type
 from groundstation import intents as i
 from groundstation.commanding import Commander
 from groundstation.driving import Driving
 from groundstation.fleet import Contact, Fleet
+from groundstation.inquiry import Inquiry
 from groundstation.links import LinkBook, problem
 from groundstation.operator import Operator
 from groundstation.snapshot import Snapshot, VehicleView
@@ -58,6 +59,7 @@ class Station:
         self._commander = Commander(self.log, system, COMPONENT)
         self._driving = Driving(self.operator, self._fleet, self._commander, system)
         self._links = LinkBook()
+        self._inquiry = Inquiry(self._fleet, self._commander, self._links, self.log)
         self._timesync = TimesyncClient()
         self._heartbeat_due = 0.0
         self._greeted: set[Peer] = set()
@@ -77,11 +79,10 @@ class Station:
             return
         self._greet(received.peer, now)
         contact.state.receive(received, now)
+        self._inquiry.receive(contact, received.message, now)
         match received.message:
             case m.StatusText() as message:
                 self._hear(message, received.system, now)
-            case m.ParamValue() as message:
-                self._read_setting(contact, message, now)
             case m.RoverDriveStatus() as message if message.source_system == self._system:
                 contact.state.latency.obeyed(message.source_seq, now, message.demand_age_ms / 1000)
         if contact is self._fleet.selected:
@@ -96,7 +97,8 @@ class Station:
         self.log.expire(now)
         self._fleet.watch(now)
         self._commander.tick(now)
-        self._inquire(now)
+        if self.operator.live:
+            self._inquiry.tick(now)
         if self.operator.live and not self._driving.ending:
             self._live(now)
         self._driving.advance(now)
@@ -115,7 +117,8 @@ class Station:
         """What to send now; empties what it returns."""
         outbox, self._outbox = self._outbox, []
         demands = self._driving.messages_to_send()
-        return demands + self._commander.messages_to_send() + self._timesync.messages_to_send() + outbox
+        orders = self._commander.messages_to_send() + self._inquiry.messages_to_send()
+        return demands + orders + self._timesync.messages_to_send() + outbox
 
     def sent(self, message: m.Message, sequence: int, now: float) -> None:
         """A message went out under this packet sequence."""
@@ -225,22 +228,6 @@ class Station:
         text = self.log.hear(message, system, now)
         if text is not None:
             self._commander.heard(system, text, message.severity, now)
-
-    def _read_setting(self, contact: Contact, message: m.ParamValue, now: float) -> None:
-        warning = contact.settings.receive(message) if contact.settings else None
-        if warning:
-            self.log.add(now, "station", f"{contact.state.name}: {warning}", Severity.WARNING)
-
-    def _inquire(self, now: float) -> None:
-        """Ask each vehicle, one thing at a time, for what it tells only when asked."""
-        for contact in self._fleet if self.operator.live else ():
-            if contact.state.speaks_ours and not contact.asked_info:
-                contact.asked_info = True
-                contact.questions += [m.RoverDriveInfo.id, m.HomePosition.id]
-            if contact.questions and not self._commander.busy(Command.REQUEST_MESSAGE):
-                self._commander.ask_for(contact.state, contact.questions.pop(0), now)
-            if contact.settings is not None:
-                self._outbox += [Outgoing(message) for message in contact.settings.tick(now)]
 
     # ---- what is told ----
 

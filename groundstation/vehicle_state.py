@@ -176,7 +176,7 @@ class VehicleState:
 
     def _servos(self, message: m.ServoOutputRaw, now: float) -> None:
         channels = _MOTOR_CHANNELS.get(self.autopilot, ())
-        self._motors = tuple(_within((getattr(message, channel) - 1500) / 500) for channel in channels)
+        self._motors = tuple(_pulse(getattr(message, channel)) for channel in channels)
 
     # ---- readings ----
 
@@ -222,6 +222,11 @@ def _demand(drive: m.RoverDriveStatus | None) -> tuple[float, float] | None:
 def _outputs(drive: m.RoverDriveStatus, info: m.RoverDriveInfo | None) -> tuple[float, ...]:
     count = min(4, info.motor_count) if info else 2
     return tuple(_within(value / 10_000) for value in drive.output[:count])
+
+
+def _pulse(microseconds: int) -> float:
+    """1000 to 2000 us as -1..1. An output that is not used (0), or that the vehicle does not know, moves nothing."""
+    return _within((microseconds - 1500) / 500) if microseconds not in (0, UNKNOWN_U16) else 0.0
 
 
 def _within(value: float) -> float:

@@ -9,6 +9,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, ModeFlag, Result, State, Type
 from dialects.messages import boot_ms
 from dialects.modes import Mode, base_mode
+from groundstation.farewell import Farewell
 from groundstation.intents import AnyIntent, Gate, Lease
 from groundstation.snapshot import HelmView, Snapshot, VehicleView
 from groundstation.station import Station
@@ -17,6 +18,8 @@ from link.memory import LossyPipe
 from tests.world import World
 
 OURS = 255
+QUESTIONS = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
+"""Commands that change nothing which a HEARTBEAT tells."""
 MessageT = TypeVar("MessageT", bound=m.Message)
 
 
@@ -106,7 +109,7 @@ class FakeVehicle:
         elif command in self.reasons:
             self.say(m.StatusText(4, self.reasons[command]))
         self.say(m.CommandAck(command, result, target_system=source, target_component=190))
-        if result is Result.ACCEPTED:
+        if result is Result.ACCEPTED and command not in QUESTIONS:
             self.beat()
 
     def _obey(self, message: m.CommandLong, source: int) -> None:
@@ -130,8 +133,9 @@ class Cockpit:
     def __init__(self, vehicle: FakeVehicle | None = None, *, loss: float = 0.0) -> None:
         self.vehicle = vehicle or FakeVehicle()
         self.station = Station(["udpin:127.0.0.1:14550"], session=7, now=100.0)
+        self.core = Farewell(self.station)
         up, down = LossyPipe(loss=loss, seed=1), LossyPipe(loss=loss, seed=2)
-        self.world = World(self.station, self.vehicle, up=up, down=down)
+        self.world = World(self.core, self.vehicle, up=up, down=down)
         self.leasing = True
         self._lease_due = 0.0
         self.do(Lease(), Gate(open=True))

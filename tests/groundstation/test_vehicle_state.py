@@ -147,6 +147,11 @@ def test_ardupilots_servos_are_its_outputs() -> None:
     assert view(heartbeat(), servos).outputs == ()
 
 
+def test_a_servo_output_that_is_not_used_moves_nothing() -> None:
+    servos = m.ServoOutputRaw(0, 0, 0, 0, 65535, 0, 0, 0, 0, 0)
+    assert view(heartbeat(autopilot=Autopilot.ARDUPILOT), servos).outputs == (0.0, 0.0)
+
+
 def test_not_a_number_is_not_shown() -> None:
     seen = view(
         m.Attitude(0, math.nan, math.inf, math.nan, 0, 0, 0),

@@ -1,0 +1,74 @@
+"""What the station asks each vehicle by itself: what it is, telemetry, dangerous settings. Not the operator's orders.
+
+Nothing here moves anything, and the operator hears of bad news only.
+"""
+
+from __future__ import annotations
+
+from dialects import messages as m
+from dialects.enums import Command, Severity
+from groundstation.commanding import Commander
+from groundstation.fleet import Contact, Fleet
+from groundstation.links import LinkBook
+from groundstation.streams import rate
+from groundstation.texts import TextLog
+from link.core import Outgoing
+
+
+class Inquiry:
+    """Asks one thing at a time, because commands of a kind are answered one at a time."""
+
+    def __init__(self, fleet: Fleet, commander: Commander, links: LinkBook, log: TextLog) -> None:
+        self._fleet = fleet
+        self._commander = commander
+        self._links = links
+        self._log = log
+        self._outbox: list[Outgoing] = []
+
+    def receive(self, contact: Contact, message: m.Message, now: float) -> None:
+        """Take a message of a vehicle."""
+        contact.streams.receive(message, now)
+        if isinstance(message, m.ParamValue) and contact.settings:
+            warning = contact.settings.receive(message)
+            if warning:
+                self._log.add(now, "station", f"{contact.state.name}: {warning}", Severity.WARNING)
+
+    def tick(self, now: float) -> None:
+        """Ask who is there for what is due."""
+        self._take_answers()
+        for contact in self._fleet:
+            if contact.lost_at is None:
+                self._ask(contact, now)
+                self._ask_for_telemetry(contact, now)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """What to send now; empties what it returns."""
+        outbox, self._outbox = self._outbox, []
+        return outbox
+
+    def _take_answers(self) -> None:
+        for outcome in self._commander.quiet_outcomes():
+            contact = self._fleet.get(outcome.target_system)
+            if contact is not None and outcome.command == Command.SET_MESSAGE_INTERVAL:
+                contact.streams.answered(outcome)
+
+    def _ask(self, contact: Contact, now: float) -> None:
+        if contact.state.speaks_ours and not contact.asked_info:
+            contact.asked_info = True
+            contact.questions += [m.RoverDriveInfo.id, m.HomePosition.id]
+        if contact.questions and not self._commander.busy(Command.REQUEST_MESSAGE):
+            self._commander.ask_for(contact.state, contact.questions.pop(0), now)
+        if contact.settings is not None:
+            self._outbox += [Outgoing(message) for message in contact.settings.tick(now)]
+
+    def _ask_for_telemetry(self, contact: Contact, now: float) -> None:
+        """Never of our own rover: it tells what is needed, and sizes that to the link itself."""
+        if contact.state.speaks_ours:
+            return
+        capacity = self._links.capacity(contact.link)
+        self._outbox += [Outgoing(message) for message in contact.streams.groups(capacity, now)]
+        if self._commander.busy(Command.SET_MESSAGE_INTERVAL):
+            return
+        message = contact.streams.next(contact.state.autopilot, now)
+        if message is not None:
+            self._commander.set_rate(contact.state, message, rate(message, capacity), now)

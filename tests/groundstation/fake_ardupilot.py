@@ -1,0 +1,116 @@
+"""A vehicle that behaves as ArduRover 4.7 was measured to (design/ardupilot.md): it holds the last demand for 3 s."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from dialects import messages as m
+from dialects.enums import Autopilot, Command, DataStream, Result
+from dialects.messages import INVALID_AXIS, boot_ms
+from dialects.modes import Mode
+from groundstation.streams import WANTED
+from link.core import Received
+from tests.groundstation.fake_vehicle import FakeVehicle
+
+LATCH = 3.0
+"""RC_OVERRIDE_TIME, s."""
+
+NOT_KNOWN = (Command.REQUEST_OPERATOR_CONTROL, Command.DO_SET_SAFETY_SWITCH_STATE)
+
+
+class FakeArduPilot(FakeVehicle):
+    """Axes y and z, one ground station by its system id, no arming with throttle, telemetry when asked."""
+
+    def __init__(self, *, station: int = 255, mode: Mode = Mode.MANUAL, autopilot: int = Autopilot.ARDUPILOT) -> None:
+        super().__init__(autopilot=autopilot, driver=None, mode=mode)
+        self.answers = dict.fromkeys(NOT_KNOWN, Result.UNSUPPORTED)
+        self.parameters = {"RC_OVERRIDE_TIME": LATCH, "FS_GCS_ENABLE": 0.0, "FS_THR_ENABLE": 1.0}
+        self.rates = dict.fromkeys(WANTED, 1.0)
+        """Hz, of each message that it sends."""
+        self.turning: list[tuple[float, int, int]] = []
+        """Time, steering and throttle whenever one of them changed."""
+        self._station = station
+        self._steering = self._throttle = 0
+        self._demand_at = 0.0
+        self._due = dict.fromkeys(WANTED, 0.0)
+
+    @property
+    def moves(self) -> bool:
+        """Do the motors get power?"""
+        return bool(self.turning and any(self.turning[-1][1:]))
+
+    @property
+    def stopped_at(self) -> float:
+        """Since when they get none."""
+        assert not self.moves
+        return self.turning[-1][0]
+
+    def receive(self, received: Received, now: float) -> None:
+        """Demands of its ground station, group requests, and what FakeVehicle knows."""
+        message = received.message
+        if isinstance(message, m.ManualControl) and received.system == self._station and message.target == 1:
+            self._steering, self._throttle = (0 if axis == INVALID_AXIS else axis for axis in (message.y, message.z))
+            self._demand_at = now
+        elif isinstance(message, m.RequestDataStream):
+            group = DataStream(message.req_stream_id)
+            for number in (number for number, wanted in WANTED.items() if wanted.group is group):
+                self.rates[number] = float(message.req_message_rate)
+        self._allow_arming()
+        super().receive(received, now)
+        self._drive(now)
+
+    def tick(self, now: float) -> None:
+        """Let go of an old demand, tell."""
+        super().tick(now)
+        if now - self._demand_at > LATCH:
+            self._steering = self._throttle = 0
+        self._drive(now)
+        for number, due in self._due.items():
+            if self.rates[number] and now >= due:
+                self._due[number] = max(due, now - 0.1) + 1 / self.rates[number]
+                self.say(_TELEMETRY[number](self, now))
+
+    def reboot(self) -> None:
+        """Everything that was asked of it is forgotten."""
+        self.armed = False
+        self.rates = dict.fromkeys(WANTED, 1.0)
+
+    def servo(self, value: int) -> int:
+        """The pulse for -1000..1000, us."""
+        return 1500 + value // 2
+
+    def _allow_arming(self) -> None:
+        if self._throttle:
+            self.answers[Command.COMPONENT_ARM_DISARM] = Result.FAILED
+            self.reasons[Command.COMPONENT_ARM_DISARM] = b"Arm: Throttle (RC3) is not neutral"
+        else:
+            self.answers.pop(Command.COMPONENT_ARM_DISARM, None)
+
+    def _obey(self, message: m.CommandLong, source: int) -> None:
+        if message.command == Command.SET_MESSAGE_INTERVAL:
+            self.rates[int(message.param1)] = 1e6 / message.param2
+        else:
+            super()._obey(message, source)
+
+    def _drive(self, now: float) -> None:
+        drives = self.armed and self.mode is Mode.MANUAL
+        outputs = (self._steering, self._throttle) if drives else (0, 0)
+        if not self.turning or self.turning[-1][1:] != outputs:
+            self.turning.append((now, *outputs))
+
+
+def _servos(vehicle: FakeArduPilot, now: float) -> m.Message:
+    steering, throttle = vehicle.turning[-1][1:]
+    return m.ServoOutputRaw(0, 0, vehicle.servo(steering), 0, vehicle.servo(throttle), 0, 0, 0, 0, 0)
+
+
+_TELEMETRY: dict[int, Callable[[FakeArduPilot, float], m.Message]] = {
+    m.Attitude.id: lambda _, now: m.Attitude(boot_ms(now), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
+    m.LocalPositionNed.id: lambda _, now: m.LocalPositionNed(boot_ms(now), 1.0, 2.0, 0.0, 0.0, 0.0, 0.0),
+    m.GlobalPositionInt.id: lambda _, now: m.GlobalPositionInt(boot_ms(now), 1, 1, 0, 0, 0, 0, 0, 0),
+    m.ServoOutputRaw.id: _servos,
+    m.VfrHud.id: lambda *_: m.VfrHud(0.0, 1.0, 0, 0, 0.0, 0.0),
+    m.SysStatus.id: lambda *_: m.SysStatus(0, 0, 0, 0, 12000, 100, 80, 0, 0, 0, 0, 0, 0),
+    m.GpsRawInt.id: lambda *_: m.GpsRawInt(0, 3, 0, 0, 0, 0, 0, 0, 0, 9),
+    m.BatteryStatus.id: lambda *_: m.BatteryStatus(0, 0, 0, 0, [12000] + [65535] * 9, 100, 0, 0, 80),
+}
