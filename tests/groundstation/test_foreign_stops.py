@@ -1,0 +1,177 @@
+"""The stop matrix for a vehicle that holds the last demand for 3 s: here only what WE send can stop it in time.
+
+Virtual time; each test first sees the motors turn, and the first shows what happens where nobody says neutral.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Command
+from dialects.modes import Mode
+from groundstation.intents import Arm, Disarm, EmergencyStop, ExactKeys, Gate, Push, Quit, Release, SetStyle, Stop
+from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
+from tests.groundstation.fake_vehicle import Cockpit
+
+FORWARD = Push(key="i", throttle=1, steering=0)
+LEFT = Push(key="j", throttle=0, steering=-1)
+
+
+def driving(style: str = "hold", vehicle: FakeArduPilot | None = None) -> tuple[Cockpit, FakeArduPilot]:
+    """Armed, a key held, the motors turn."""
+    vehicle = vehicle or FakeArduPilot(mode=Mode.HOLD)
+    cockpit = Cockpit(vehicle)
+    cockpit.run(2.0)
+    cockpit.do(SetStyle(style=style), Arm())
+    cockpit.run(2.0)
+    assert (cockpit.view.armed, cockpit.view.mode) == (True, "MANUAL")
+    cockpit.do(ExactKeys(), FORWARD, *([LEFT] if style == "hold" else []))
+    cockpit.run(1.0)
+    assert vehicle.moves
+    return cockpit, vehicle
+
+
+def assert_stopped_by_us(cockpit: Cockpit, vehicle: FakeArduPilot, since: float, within: float = 0.05) -> None:
+    """Neutral long before it lets go by itself, and for good."""
+    cockpit.run(1.0)
+    assert not vehicle.moves
+    assert vehicle.stopped_at - since <= within
+    at, newest = [(at, each) for at, each in vehicle.all(m.ManualControl) if at <= vehicle.stopped_at][-1]
+    assert (newest.y, newest.z) == (0, 0)
+    assert at == vehicle.stopped_at, "it stopped because it was told"
+    cockpit.run(10.0)
+    assert vehicle.stopped_at - since <= within, "nothing moves later"
+
+
+def test_the_danger_is_real() -> None:
+    cockpit, vehicle = driving()
+    cut = cockpit.now
+    cockpit.world.cut()
+    cockpit.run(LATCH - 0.1)
+    assert vehicle.moves
+    cockpit.run(0.5)
+    assert vehicle.stopped_at - cut == pytest.approx(LATCH, abs=0.1)
+
+
+def test_key_released() -> None:
+    cockpit, vehicle = driving()
+    released = cockpit.now
+    cockpit.do(Release(key="i"), Release(key="j"))
+    assert_stopped_by_us(cockpit, vehicle, released)
+
+
+@pytest.mark.parametrize("style", ["hold", "latch", "step"])
+def test_stop_key(style: str) -> None:
+    cockpit, vehicle = driving(style)
+    at = cockpit.now
+    cockpit.do(Stop())
+    assert_stopped_by_us(cockpit, vehicle, at)
+
+
+@pytest.mark.parametrize("style", ["hold", "latch", "step"])
+def test_screen_frozen(style: str) -> None:
+    cockpit, vehicle = driving(style)
+    frozen = cockpit.now
+    cockpit.leasing = False
+    assert_stopped_by_us(cockpit, vehicle, frozen, within=0.45)
+
+
+@pytest.mark.parametrize("style", ["hold", "latch", "step"])
+def test_gate_closed(style: str) -> None:
+    cockpit, vehicle = driving(style)
+    closed = cockpit.now
+    cockpit.do(Gate(open=False, reason="help is open"))
+    assert_stopped_by_us(cockpit, vehicle, closed)
+
+
+@pytest.mark.parametrize("style", ["hold", "latch", "step"])
+def test_quit(style: str) -> None:
+    cockpit, vehicle = driving(style)
+    at = cockpit.now
+    cockpit.do(Quit())
+    assert_stopped_by_us(cockpit, vehicle, at)
+    assert cockpit.station.finished
+
+
+@pytest.mark.parametrize("style", ["hold", "latch", "step"])
+def test_station_exception(style: str) -> None:
+    cockpit, vehicle = driving(style)
+    at = cockpit.now
+    cockpit.core.begin(at)
+    cockpit.world.settle()
+    assert_stopped_by_us(cockpit, vehicle, at)
+    assert cockpit.core.finished
+
+
+def test_disarmed_and_emergency_stop() -> None:
+    for order in (Disarm(), EmergencyStop()):
+        cockpit, vehicle = driving()
+        at = cockpit.now
+        cockpit.do(order)
+        cockpit.run(1.0)
+        assert not vehicle.armed
+        assert vehicle.stopped_at - at <= 0.05
+
+
+def test_neutral_flows_while_it_stands_armed() -> None:
+    cockpit, vehicle = driving()
+    cockpit.do(Release(key="i"), Release(key="j"))
+    cockpit.run(2.0)
+    start = cockpit.now
+    cockpit.run(20.0)
+    idle = [at for at, each in vehicle.all(m.ManualControl) if at >= start]
+    assert len(idle) >= 5 * 20 - 1
+    assert max(after - before for before, after in pairwise(idle)) <= 0.2 + 0.02
+    assert not vehicle.moves
+
+
+def test_arming_waits_for_neutral_and_says_why_it_was_refused() -> None:
+    vehicle = FakeArduPilot()
+    vehicle._station = 254  # another ground station holds its throttle; ours is not heard
+    cockpit = Cockpit(vehicle)
+    cockpit.run(1.5)
+    vehicle._throttle, vehicle._demand_at = 400, cockpit.now
+    cockpit.do(Arm())
+    cockpit.run(1.0)
+    assert not vehicle.armed
+    assert cockpit.view.refusal == "arm failed: Arm: Throttle (RC3) is not neutral"
+    vehicle._station = 255
+    cockpit.do(Arm())
+    cockpit.run(1.0)
+    assert vehicle.armed
+    first_arm = next(at for at, each in vehicle.all(m.CommandLong) if each.command == Command.COMPONENT_ARM_DISARM)
+    assert any(at < first_arm for at, _ in vehicle.all(m.ManualControl)), "neutral went before"
+
+
+def test_a_vehicle_of_another_station_does_not_move_and_we_say_whose_it_is() -> None:
+    vehicle = FakeArduPilot(station=252)
+    vehicle.parameters["MAV_GCS_SYSID"] = 252.0
+    cockpit = Cockpit(vehicle)
+    cockpit.run(3.0)
+    assert "it obeys ground station 252 only and we are 255: use --system" in cockpit.view.warnings
+    cockpit.do(Arm())
+    cockpit.run(1.0)
+    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.run(1.0)
+    assert not vehicle.moves
+
+
+def test_parameters_that_it_does_not_have_are_answered_by_silence_and_asked_for_three_times() -> None:
+    vehicle = FakeArduPilot()
+    cockpit = Cockpit(vehicle)
+    cockpit.run(10.0)
+    asked = [each.param_id for _, each in vehicle.all(m.ParamRequestRead)]
+    assert asked.count("SYSID_MYGCS") == 3
+    assert asked.count("RC_OVERRIDE_TIME") == 1
+    assert any("drives on for 3 s" in warning for warning in cockpit.view.warnings)
+
+
+def test_what_the_driver_sees_of_it() -> None:
+    cockpit, _ = driving()
+    assert cockpit.view.outputs == pytest.approx((-0.6, 0.6)), "servo 1 steers, servo 3 drives"
+    assert cockpit.view.name == "ArduPilot rover 1"
+    assert cockpit.view.battery_voltage == pytest.approx(12.0)
+    assert cockpit.view.in_control
