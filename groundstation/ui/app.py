@@ -141,6 +141,8 @@ class HelmApp(App[int]):
     # ---- the beat ----
 
     def _tick(self) -> None:
+        if not self.screen_stack:
+            return  # the app has taken its screens down, and timers live a little longer
         now = self._clock()
         self._client.send(Lease())
         self.gate.set(self._why_shut(now))
@@ -181,7 +183,7 @@ class HelmApp(App[int]):
             if not isinstance(event, KeyRepeat):  # of a key that counts as held the snapshot tells
                 self._light(event.key)
         await super().on_event(event)
-        if isinstance(event, (events.Key, events.AppBlur, events.AppFocus)):
+        if isinstance(event, (events.Key, events.AppBlur, events.AppFocus)) and self.screen_stack:
             self.gate.set(self._why_shut(self._clock()))
 
     def on_key_up(self, event: KeyUp) -> None:

@@ -193,3 +193,11 @@ async def test_numbers_that_are_none_do_not_break_the_screen() -> None:
         links = (LinkView(name="x", loss=nan, round_trip=nan),)
         async with console(size, snapshot(vehicle=strange, links=links)) as screen:
             assert "ARMED" in screen.text
+
+
+async def test_a_beat_after_the_screens_are_gone_is_no_fault() -> None:
+    # Textual takes the screens down before it stops the timers.
+    async with console() as screen:
+        app = screen.app
+    assert not app.screen_stack
+    app._tick()
