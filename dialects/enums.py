@@ -163,12 +163,22 @@ class Sensor(IntFlag):
     """MAV_SYS_STATUS_SENSOR: the bits of SYS_STATUS that a rover may have."""
 
     GYRO = rover.MAV_SYS_STATUS_SENSOR_3D_GYRO
+    COMPASS = rover.MAV_SYS_STATUS_SENSOR_3D_MAG
     GPS = rover.MAV_SYS_STATUS_SENSOR_GPS
     MOTOR_OUTPUTS = rover.MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
     GEOFENCE = rover.MAV_SYS_STATUS_GEOFENCE
     AHRS = rover.MAV_SYS_STATUS_AHRS
     BATTERY = rover.MAV_SYS_STATUS_SENSOR_BATTERY
     PREARM = rover.MAV_SYS_STATUS_PREARM_CHECK
+
+
+class Estimated(IntFlag):
+    """ESTIMATOR_STATUS_FLAGS, as far as a rover on flat ground has them."""
+
+    ATTITUDE = rover.ESTIMATOR_ATTITUDE
+    VELOCITY = rover.ESTIMATOR_VELOCITY_HORIZ
+    POSITION_RELATIVE = rover.ESTIMATOR_POS_HORIZ_REL
+    POSITION_ABSOLUTE = rover.ESTIMATOR_POS_HORIZ_ABS
 
 
 class Capability(IntFlag):

@@ -67,6 +67,7 @@ GlobalPositionInt = rover.MAVLink_global_position_int_message
 GpsRawInt = rover.MAVLink_gps_raw_int_message
 ServoOutputRaw = rover.MAVLink_servo_output_raw_message
 RcChannels = rover.MAVLink_rc_channels_message
+EstimatorStatus = rover.MAVLink_estimator_status_message
 HomePosition = rover.MAVLink_home_position_message
 ExtendedSysState = rover.MAVLink_extended_sys_state_message
 AutopilotVersion = rover.MAVLink_autopilot_version_message

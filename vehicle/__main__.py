@@ -110,7 +110,7 @@ def _settings(asked: argparse.Namespace, parser: _Parser) -> Settings:
     simulation = daemon.Simulation(
         home=Home(*asked.home) if asked.home else Home(),
         battery=1.0 if asked.sim_battery is None else asked.sim_battery,
-        seed=asked.sim_seed,
+        seed=1 if asked.sim_seed is None else asked.sim_seed,
     )
     return daemon.Settings(
         endpoints=tuple(asked.endpoints) or (GROUND_STATION,),
@@ -220,7 +220,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--verbose": {"action": "store_true", "help": "log more"},
     "--home": {"metavar": "LAT,LON", "type": _home, "help": "where the simulated rover starts, degrees"},
     "--sim-battery": {"metavar": "CHARGE", "type": _charge, "help": "its charge, 0 to 1 (default 1)"},
-    "--sim-seed": {"metavar": "N", "type": int, "help": "give its GPS and angles noise, from this seed"},
+    "--sim-seed": {"metavar": "N", "type": int, "help": "of the noise of its sensors (default 1)"},
     "--version": {"action": _Version, "nargs": 0, "help": "show the version and end"},
 }  # fmt: skip
 """Every option, in the order of --help."""

@@ -53,8 +53,8 @@ class Simulation:
     home: Home = field(default_factory=Home)
     battery: float = 1.0
     """Charge at the start, 0..1."""
-    seed: int | None = None
-    """Seed of the sensors' noise; None: no noise."""
+    seed: int = 1
+    """Of the sensors' noise."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,17 @@
-"""Messages about motion: attitude, position, speed, GPS, servos, channels. Builders only; None without the sensor."""
+"""Messages about motion: attitude, position, speed, GPS, servos, channels. Builders only; None without the sensor.
+
+Where the rover is comes from the estimate, what one sensor says (GPS_RAW_INT) from the readings.
+"""
 
 from __future__ import annotations
 
 import math
 
 from dialects import messages as m
+from dialects.enums import Estimated
 from vehicle.demand import STEERING_CHANNEL, THROTTLE_CHANNEL, Override, pulse
+from vehicle.estimator import Estimate
 from vehicle.fields import INT16, INT32, UINT8, UINT16, real, whole
-from vehicle.readings import Readings
 from vehicle.view import View
 
 RSSI_UNKNOWN = 255
@@ -15,28 +19,28 @@ RSSI_UNKNOWN = 255
 
 def attitude(view: View) -> m.Message | None:
     """ATTITUDE."""
-    readings = view.readings
-    if readings.yaw is None:
+    readings, estimate = view.readings, view.estimate
+    if estimate.yaw is None:
         return None
     return m.Attitude(
         time_boot_ms=view.boot_ms,
         roll=real(readings.roll),
         pitch=real(readings.pitch),
-        yaw=math.remainder(real(readings.yaw), math.tau),
+        yaw=estimate.yaw,
         rollspeed=0.0,
         pitchspeed=0.0,
-        yawspeed=real(readings.yaw_rate),
+        yawspeed=real(estimate.yaw_rate),
     )
 
 
 def vfr_hud(view: View) -> m.Message:
     """VFR_HUD: speed over ground, heading and throttle, also where only the throttle is known."""
     readings, throttles = view.readings, view.drive.outputs.throttles
-    speed = abs(real(readings.speed))
+    speed = abs(view.estimate.speed or 0.0)
     return m.VfrHud(
         airspeed=speed,
         groundspeed=speed,
-        heading=_heading(readings, 1.0, unknown=0) % 360,
+        heading=_heading(view.estimate, 1.0, unknown=0) % 360,
         throttle=whole(max(abs(value) for value in throttles), UINT16, 100),
         alt=real(readings.altitude),
         climb=0.0,
@@ -45,36 +49,54 @@ def vfr_hud(view: View) -> m.Message:
 
 def local_position_ned(view: View) -> m.Message | None:
     """LOCAL_POSITION_NED."""
-    readings = view.readings
-    if readings.north is None or readings.east is None:
+    estimate = view.estimate
+    if not estimate.moving_place:
         return None
+    velocity = estimate.velocity
     return m.LocalPositionNed(
         time_boot_ms=view.boot_ms,
-        x=real(readings.north),
-        y=real(readings.east),
+        x=estimate.place.north,
+        y=estimate.place.east,
         z=-real(_above_home(view)),
-        vx=real(readings.velocity_north),
-        vy=real(readings.velocity_east),
+        vx=velocity.north,
+        vy=velocity.east,
         vz=0.0,
     )
 
 
 def global_position_int(view: View) -> m.Message | None:
     """GLOBAL_POSITION_INT."""
-    readings = view.readings
-    if readings.latitude is None or readings.longitude is None:
+    globe, velocity = view.estimate.globe, view.estimate.velocity
+    if globe is None:
         return None
     return m.GlobalPositionInt(
         time_boot_ms=view.boot_ms,
-        lat=whole(readings.latitude, INT32, 1e7),
-        lon=whole(readings.longitude, INT32, 1e7),
-        alt=whole(readings.altitude, INT32, 1000),
+        lat=whole(globe[0], INT32, 1e7),
+        lon=whole(globe[1], INT32, 1e7),
+        alt=whole(view.readings.altitude, INT32, 1000),
         relative_alt=whole(_above_home(view), INT32, 1000),
-        vx=whole(readings.velocity_north, INT16, 100),
-        vy=whole(readings.velocity_east, INT16, 100),
+        vx=whole(velocity.north, INT16, 100),
+        vy=whole(velocity.east, INT16, 100),
         vz=0,
-        hdg=_heading(readings, 100.0, unknown=m.UINT16_MAX),
+        hdg=_heading(view.estimate, 100.0, unknown=m.UINT16_MAX),
     )
+
+
+def estimator_status(view: View) -> m.Message:
+    """ESTIMATOR_STATUS: which parts of the estimate may be believed. Test ratios are not kept: 0."""
+    estimate = view.estimate
+    holds = {
+        Estimated.ATTITUDE: estimate.yaw is not None,
+        Estimated.VELOCITY: estimate.yaw is not None and estimate.speed is not None,
+        Estimated.POSITION_RELATIVE: estimate.moving_place,
+        Estimated.POSITION_ABSOLUTE: estimate.good,
+    }
+    return m.EstimatorStatus(
+        time_usec=view.boot_us,
+        flags=sum(flag for flag, there in holds.items() if there),
+        vel_ratio=0.0, pos_horiz_ratio=0.0, pos_vert_ratio=0.0, mag_ratio=0.0, hagl_ratio=0.0, tas_ratio=0.0,
+        pos_horiz_accuracy=real(estimate.accuracy, math.nan), pos_vert_accuracy=math.nan,
+    )  # fmt: skip
 
 
 def gps_raw_int(view: View) -> m.Message | None:
@@ -123,8 +145,8 @@ def _above_home(view: View) -> float:
     return real(view.readings.altitude) - (view.home.altitude if view.home else real(view.readings.altitude))
 
 
-def _heading(readings: Readings, scale: float, unknown: int) -> int:
+def _heading(estimate: Estimate, scale: float, unknown: int) -> int:
     """Yaw as 0..360 degrees x `scale`."""
-    if readings.yaw is None or not math.isfinite(readings.yaw):
+    if estimate.yaw is None:
         return unknown
-    return whole(math.degrees(readings.yaw) % 360, UINT16, scale, unknown)
+    return whole(math.degrees(estimate.yaw) % 360, UINT16, scale, unknown)

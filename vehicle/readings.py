@@ -1,4 +1,7 @@
-"""What the sensors say, as one value a cycle; reading them is vehicle/sensors' and vehicle/sim's work."""
+"""What the sensors say, raw, as one value a cycle; reading them is vehicle/sensors' and vehicle/sim's work.
+
+What is believed of them is vehicle/estimator.py's.
+"""
 
 from __future__ import annotations
 
@@ -31,15 +34,14 @@ class Readings:
     roll: float | None = None
     pitch: float | None = None
     yaw: float | None = None
+    """What the compass says."""
     yaw_rate: float | None = None
-    """rad/s, clockwise positive."""
-    north: float | None = None
-    """m from the origin."""
-    east: float | None = None
+    """rad/s, clockwise positive; what the gyro says."""
     velocity_north: float | None = None
+    """m/s over ground by GPS."""
     velocity_east: float | None = None
     speed: float | None = None
-    """m/s along the nose, negative backwards."""
+    """m/s along the nose by wheels, negative backwards."""
     latitude: float | None = None
     """Degrees."""
     longitude: float | None = None

@@ -12,6 +12,7 @@ from vehicle import status
 from vehicle.commands import Commands
 from vehicle.control import Control
 from vehicle.drive import Drive
+from vehicle.estimator import Estimate, Estimator
 from vehicle.failsafe import Action
 from vehicle.fields import UINT8, UINT32, whole
 from vehicle.outputs import Outputs
@@ -28,8 +29,6 @@ from vehicle.view import Home, View
 
 COMPONENT = 1
 """MAV_COMP_ID_AUTOPILOT1: QGroundControl makes a vehicle only of this one."""
-FIX_3D = 3
-"""GPS_FIX_TYPE_3D_FIX."""
 ROUND_TRIP_UNKNOWN = m.UINT16_MAX
 
 
@@ -43,6 +42,7 @@ class Rover:
         self._wall_clock = wall_clock
         self._system = int(params["MAV_SYSID"])
         self._readings = NO_READINGS
+        self._estimator = Estimator()
         self._home: Home | None = None
         self._outgoing: list[Outgoing] = []
         self._texts = Texts()
@@ -108,9 +108,10 @@ class Rover:
     def sense(self, readings: Readings, now: float) -> None:
         """Take the newest readings."""
         self._readings = readings
+        estimate = self._estimator.sense(readings, now)
         self._safety.battery.sense(readings.battery_voltage, now)
         if self._home is None:
-            self._home = _home(readings)
+            self._home = _home(estimate, readings)
 
     def motor_failed(self, reason: str, now: float) -> None:
         """The motor driver reports an error: zero, disarm, and no arming until `motor_repaired`."""
@@ -145,6 +146,7 @@ class Rover:
             unix_time=None if self._wall_clock is None else self._wall_clock + since_boot,
             params=self._params,
             readings=self._readings,
+            estimate=self._estimator.estimate,
             safety=self._safety,
             control=self._control,
             drive=self._drive,
@@ -203,9 +205,8 @@ class Rover:
         self._outgoing += self._commands.messages_to_send() + self._requests.messages_to_send()
 
 
-def _home(readings: Readings) -> Home | None:
+def _home(estimate: Estimate, readings: Readings) -> Home | None:
     """Where the rover stands at its first 3D fix."""
-    latitude, longitude = readings.latitude, readings.longitude
-    if latitude is None or longitude is None or (readings.gps_fix or 0) < FIX_3D:
+    if estimate.globe is None:
         return None
-    return Home(latitude, longitude, readings.altitude or 0.0, readings.north or 0.0, readings.east or 0.0)
+    return Home(*estimate.globe, readings.altitude or 0.0, *estimate.place)

@@ -63,6 +63,7 @@ STREAMS: tuple[Stream, ...] = (
     Stream(m.VfrHud, 4, motion.vfr_hud, DataStream.EXTRA2),
     Stream(m.LocalPositionNed, 4, motion.local_position_ned, DataStream.POSITION),
     Stream(m.GlobalPositionInt, 2, motion.global_position_int, DataStream.POSITION),
+    Stream(m.EstimatorStatus, 1, motion.estimator_status, DataStream.EXTENDED_STATUS),
     Stream(m.ServoOutputRaw, 2, motion.servo_output_raw, DataStream.RC_CHANNELS),
     Stream(m.RcChannels, 2, motion.rc_channels, DataStream.RC_CHANNELS),
     Stream(m.HomePosition, 0, status.home_position, change=lambda view: view.home),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from dialects.messages import boot_ms
 from vehicle.control import Control
 from vehicle.drive import Drive
+from vehicle.estimator import Estimate
 from vehicle.params import Params
 from vehicle.readings import Readings
 from vehicle.safety import Safety
@@ -33,6 +34,7 @@ class View:
     """s since 1970, where the computer knows it."""
     params: Params
     readings: Readings
+    estimate: Estimate
     safety: Safety
     control: Control
     drive: Drive

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TypeVar
 
 from dialects import codec
@@ -23,7 +24,7 @@ AHEAD = Axes(throttle=1.0)
 NEUTRAL = Axes()
 
 EVERYTHING = Readings(
-    roll=0.1, pitch=0.1, yaw=1.0, yaw_rate=0.1, north=1.0, east=2.0, velocity_north=0.5, velocity_east=0.5, speed=0.7,
+    roll=0.1, pitch=0.1, yaw=math.pi / 4, yaw_rate=0.0, velocity_north=0.5, velocity_east=0.5, speed=0.7,
     latitude=48.1, longitude=11.5, altitude=500.0, gps_fix=3, gps_satellites=12, gps_hdop=0.8,
     battery_voltage=12.0, battery_current=1.0, battery_remaining=0.9, wheel_speeds=(0.7, 0.7),
 )  # fmt: skip

@@ -19,7 +19,7 @@ from vehicle.readings import Readings
 RATES = {
     m.Heartbeat: 1, m.SysStatus: 1, m.BatteryStatus: 0.5, m.CurrentMode: 0.5, m.ControlStatus: 1, m.SystemTime: 1,
     m.VfrHud: 4, m.Attitude: 4, m.GlobalPositionInt: 2, m.LocalPositionNed: 4, m.GpsRawInt: 1, m.ServoOutputRaw: 2,
-    m.RcChannels: 2, m.RoverDriveStatus: 5, m.RoverFailsafeStatus: 1,
+    m.RcChannels: 2, m.RoverDriveStatus: 5, m.RoverFailsafeStatus: 1, m.EstimatorStatus: 1,
 }  # fmt: skip
 """The design's "streams at start", Hz."""
 
@@ -86,9 +86,9 @@ def test_numbers_arrive_in_their_units() -> None:
         4500,
         12,
     )
-    assert (position.alt, position.relative_alt, position.hdg) == (500_000, 0, 5730)
+    assert (position.alt, position.relative_alt, position.hdg) == (500_000, 0, 4500)
     assert (battery.voltages[0], battery.current_battery, battery.battery_remaining) == (12_000, 100, 90)
-    assert bench.newest(m.Attitude).yaw == pytest.approx(1.0)
+    assert bench.newest(m.Attitude).yaw == pytest.approx(math.pi / 4)
     assert bench.newest(m.VfrHud).groundspeed == pytest.approx(0.7)
 
 

@@ -1,21 +1,20 @@
 """The sensors of the simulated rover: it moves with what the motors get, and says what a real rover would measure.
 
-Deterministic: the same outputs at the same times give the same readings; noise, where wanted, comes from a seed.
+Readings are what sensors say and nothing else; where the rover really is, `motion` tells to tests only. Deterministic:
+the same outputs at the same times give the same readings; noise (noise.py), where wanted, comes from a seed.
 """
 
 from __future__ import annotations
 
 import math
-import random
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from vehicle.place import Origin, Point
 from vehicle.readings import Computer, Readings
 from vehicle.sim.battery import NOMINAL_VOLTAGE, Battery
 from vehicle.sim.chassis import Chassis, Motion, SkidChassis
-
-EARTH_RADIUS = 6378137.0
-"""m, WGS 84 at the equator; flat around home, good to centimetres over the kilometre that this rover drives."""
+from vehicle.sim.noise import Fix, Instruments, Noise
 
 LONGEST_STEP = 0.02
 """s; one control cycle. Longer gaps are cut into such steps, so that the lag of motors and servo stays true."""
@@ -34,13 +33,6 @@ LEAN = 0.02
 """rad for each m/s2: tyres and chassis give, so the nose lifts when pulling away and the body leans out of a turn."""
 LEAN_LAG = 0.1
 """s; the same tyres swing no faster."""
-
-GPS_WANDER = 0.8
-"""m, standard deviation of a small receiver in the open ..."""
-GPS_MEMORY = 30.0
-"""s ... which wanders and does not jump: errors this far apart no longer know of each other."""
-ANGLE_NOISE = 0.003
-"""rad, standard deviation of a cheap IMU at rest."""
 
 COMPUTER = Computer(
     temperature=48.0,
@@ -75,15 +67,21 @@ class SimulatedBody:
         battery: Battery | None = None,
         home: Home | None = None,
         seed: int | None = None,
+        noise: Noise | None = None,
     ) -> None:
+        """Without a `seed` the sensors are perfect; `noise` says how bad they are with one."""
         self._outputs = outputs
         self._chassis = chassis or SkidChassis()
         self._battery = battery or Battery()
         self._home = home or Home()
-        self._noise = None if seed is None else random.Random(seed)
+        self._instruments = None if seed is None else Instruments(seed, noise)
         self._time: float | None = None
         self._roll = self._pitch = 0.0
-        self._gps_error = (0.0, 0.0)
+
+    @property
+    def motion(self) -> Motion:
+        """The truth, which no sensor knows."""
+        return self._chassis.motion
 
     def read(self, now: float) -> Readings:
         """Let the world move on to `now`, then measure it."""
@@ -104,8 +102,8 @@ class SimulatedBody:
         keep = math.exp(-dt / LEAN_LAG)
         self._pitch = _lean(motion.acceleration, self._pitch, keep)
         self._roll = _lean(-motion.speed * motion.yaw_rate, self._roll, keep)
-        if self._noise is not None:
-            self._gps_error = self._wander(self._noise, dt)
+        if self._instruments is not None:
+            self._instruments.step(dt)
 
     def _motor_current(self, throttles: Sequence[float], strength: float) -> float:
         """A from the battery. A motor takes more the further its wheel is behind, and by its duty of the time."""
@@ -115,25 +113,20 @@ class SimulatedBody:
         pairs = zip(throttles, self._chassis.motion.wheel_speeds, strict=False)  # a steering servo has no wheel
         return sum(abs(wanted) * (RUNNING * abs(wanted) + STALL * abs(wanted - wheel / top)) for wanted, wheel in pairs)
 
-    def _wander(self, noise: random.Random, dt: float) -> tuple[float, float]:
-        keep = math.exp(-dt / GPS_MEMORY)
-        spread = GPS_WANDER * math.sqrt(1 - keep * keep)
-        north, east = self._gps_error
-        return (north * keep + noise.gauss(0.0, spread), east * keep + noise.gauss(0.0, spread))
-
     def _measure(self) -> Readings:
-        motion, battery = self._chassis.motion, self._battery
-        latitude, longitude = self._place(motion)
+        motion, battery, instruments = self._chassis.motion, self._battery, self._instruments
+        true = Fix(motion.north, motion.east, motion.speed * math.cos(motion.yaw), motion.speed * math.sin(motion.yaw))
+        fix = true if instruments is None else instruments.gps(true)
+        wheels = motion.wheel_speeds if instruments is None else instruments.wheels(motion.wheel_speeds)
+        latitude, longitude = Origin(*self._home[:2]).globe(Point(fix.north, fix.east))
         return Readings(
-            roll=self._roll + self._jitter(),
-            pitch=self._pitch + self._jitter(),
-            yaw=motion.yaw,
-            yaw_rate=motion.yaw_rate,
-            north=motion.north,
-            east=motion.east,
-            velocity_north=motion.speed * math.cos(motion.yaw),
-            velocity_east=motion.speed * math.sin(motion.yaw),
-            speed=motion.speed,
+            roll=self._roll if instruments is None else instruments.angle(self._roll),
+            pitch=self._pitch if instruments is None else instruments.angle(self._pitch),
+            yaw=motion.yaw if instruments is None else instruments.compass(motion.yaw),
+            yaw_rate=motion.yaw_rate if instruments is None else instruments.gyro(motion.yaw_rate),
+            velocity_north=fix.velocity_north,
+            velocity_east=fix.velocity_east,
+            speed=sum(wheels) / len(wheels),
             latitude=latitude,
             longitude=longitude,
             altitude=self._home.altitude,
@@ -143,19 +136,9 @@ class SimulatedBody:
             battery_voltage=battery.voltage,
             battery_current=battery.current,
             battery_remaining=battery.remaining,
-            wheel_speeds=motion.wheel_speeds,
+            wheel_speeds=wheels,
             computer=COMPUTER,
         )
-
-    def _jitter(self) -> float:
-        return 0.0 if self._noise is None else self._noise.gauss(0.0, ANGLE_NOISE)
-
-    def _place(self, motion: Motion) -> tuple[float, float]:
-        """Latitude and longitude in degrees, with the receiver's error."""
-        home = self._home
-        north, east = motion.north + self._gps_error[0], motion.east + self._gps_error[1]
-        width = EARTH_RADIUS * math.cos(math.radians(home.latitude))
-        return (home.latitude + math.degrees(north / EARTH_RADIUS), home.longitude + math.degrees(east / width))
 
 
 def _lean(acceleration: float, angle: float, keep: float) -> float:

@@ -19,8 +19,9 @@ def read_for(body: SimulatedBody, seconds: float, start: float = 0.0) -> Reading
 
 
 def test_a_rover_at_rest_measures_rest() -> None:
-    readings = read_for(SimulatedBody(lambda: (0.0, 0.0), home=Home(50.0, 8.0, 100.0)), 1.0)
-    assert (readings.north, readings.east, readings.speed, readings.yaw) == (0.0, 0.0, 0.0, 0.0)
+    body = SimulatedBody(lambda: (0.0, 0.0), home=Home(50.0, 8.0, 100.0))
+    readings = read_for(body, 1.0)
+    assert (body.motion.north, body.motion.east, readings.speed, readings.yaw) == (0.0, 0.0, 0.0, 0.0)
     assert (readings.roll, readings.pitch, readings.yaw_rate) == (0.0, 0.0, 0.0)
     assert (readings.latitude, readings.longitude, readings.altitude) == (50.0, 8.0, 100.0)
     assert readings.gps_fix == 3
@@ -46,10 +47,10 @@ def test_it_follows_the_motors_only_while_they_have_power() -> None:
 
 
 def test_driving_north_raises_the_latitude() -> None:
-    readings = read_for(SimulatedBody(lambda: (1.0, 1.0), home=Home(50.0, 8.0)), 10.0)
-    assert readings.north is not None
-    assert readings.north > 10.0
-    assert readings.latitude == pytest.approx(50.0 + readings.north / 111_320, abs=1e-6)
+    body = SimulatedBody(lambda: (1.0, 1.0), home=Home(50.0, 8.0))
+    readings = read_for(body, 10.0)
+    assert body.motion.north > 10.0
+    assert readings.latitude == pytest.approx(50.0 + body.motion.north / 111_320, abs=1e-6)
     assert readings.longitude == 8.0
     assert (readings.velocity_north, readings.velocity_east) == (readings.speed, 0.0)
 
@@ -62,9 +63,9 @@ def test_driving_east_raises_the_longitude() -> None:
         now += 0.02
     throttles[0] = (1.0, 1.0)
     readings = read_for(body, 10.0, now)
-    assert readings.east is not None
-    assert readings.east > 5.0
-    assert readings.longitude == pytest.approx(8.0 + readings.east / 111_320 / math.cos(math.radians(60)), abs=1e-6)
+    east = body.motion.east
+    assert east > 5.0
+    assert readings.longitude == pytest.approx(8.0 + east / 111_320 / math.cos(math.radians(60)), abs=1e-6)
 
 
 def test_the_nose_lifts_and_the_body_leans_out_of_a_turn() -> None:
@@ -102,22 +103,40 @@ def test_a_car_is_steered_by_its_second_output() -> None:
 
 def test_how_often_it_is_read_hardly_matters() -> None:
     often, seldom = SimulatedBody(lambda: (1.0, 0.8)), SimulatedBody(lambda: (1.0, 0.8))
-    readings = read_for(often, 2.0)
+    read_for(often, 2.0)
     seldom.read(0.0)
-    assert seldom.read(2.0).north == pytest.approx(readings.north)
+    seldom.read(2.0)
+    assert seldom.motion.north == pytest.approx(often.motion.north)
 
 
 def test_a_long_stop_of_the_process_is_left_out() -> None:
     body = SimulatedBody(lambda: (1.0, 1.0))
     body.read(0.0)
-    assert (body.read(3600.0).north or 0) < 10.0
+    body.read(3600.0)
+    assert body.motion.north < 10.0
 
 
 def test_noise_is_repeatable_and_small() -> None:
-    def measured(seed: int | None) -> Readings:
-        return read_for(SimulatedBody(lambda: (0.0, 0.0), home=Home(50.0, 8.0), seed=seed), 30.0)
+    def measured(seed: int | None) -> tuple[Readings, SimulatedBody]:
+        body = SimulatedBody(lambda: (0.0, 0.0), home=Home(50.0, 8.0), seed=seed)
+        return read_for(body, 30.0), body
 
-    assert measured(1) == measured(1)
-    assert measured(1).latitude != measured(2).latitude
-    assert measured(1).latitude == pytest.approx(50.0, abs=1e-4)  # 11 m
-    assert measured(1).north == 0.0  # what the rover really does is not noisy
+    assert measured(1)[0] == measured(1)[0]
+    assert measured(1)[0].latitude != measured(2)[0].latitude
+    assert measured(1)[0].latitude == pytest.approx(50.0, abs=1e-5)  # 1 m
+    assert measured(1)[1].motion.north == 0.0  # what the rover really does is not noisy
+
+
+def test_the_gps_speaks_five_times_a_second_and_every_sensor_lies_a_little() -> None:
+    body = SimulatedBody(lambda: (1.0, 0.9), seed=3)
+    readings = [body.read(cycle / 50) for cycle in range(500)]
+    assert len({each.latitude for each in readings}) == pytest.approx(50, abs=1)
+    motion, last = body.motion, readings[-1]
+    for told, true in (
+        (last.yaw, motion.yaw),
+        (last.yaw_rate, motion.yaw_rate),
+        (last.speed, motion.speed),
+        (last.velocity_north, motion.speed * math.cos(motion.yaw)),
+    ):
+        assert told != true
+        assert told == pytest.approx(true, abs=0.3)

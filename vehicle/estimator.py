@@ -1,0 +1,229 @@
+"""Where the rover is and how it moves: a complementary filter over gyro, compass, wheels and GPS. It steers nothing.
+
+Fast sensors carry the estimate from cycle to cycle, slow ones pull it back to the truth:
+
+    gyro - bias --integrate--> yaw <--HEADING_TIME-- compass + offset; the pull also teaches the gyro's bias
+    GPS course while moving --OFFSET_TIME--> offset of the compass (mounting, declination, iron in the chassis)
+    wheels along yaw --integrate--> position <--POSITION_TIME-- GPS; one fix far off is left out, many are believed
+
+Each pull begins as a plain mean (gain 1/n) and settles at its time constant, so that the first seconds are not lost.
+Receivers of this class wander by decimetres over half a minute: POSITION_TIME hides the wander as far as the drift of
+wheels and heading allows. Without wheels the GPS gives the speed; without compass its course gives the heading.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from vehicle.place import Origin, Point, wrap
+from vehicle.readings import Readings
+
+HEADING_TIME = 3.0
+"""s; a magnetometer's noise is gone by then, a gyro's bias of 1 deg/s has made 3 degrees."""
+BIAS_TIME = 20.0
+"""s until the gyro's bias is learned."""
+BIAS_MAX = 0.1
+"""rad/s: a larger one is no bias but a broken gyro."""
+OFFSET_TIME = 15.0
+"""s of straight driving until the compass's offset is learned."""
+POSITION_TIME = 20.0
+COURSE_SPEED = 0.4
+"""m/s from which on the GPS knows a course: its velocity is good to 0.05 m/s."""
+COURSE_RATE = 0.3
+"""rad/s of turn up to which course and heading are taken for the same."""
+GPS_LOST = 3.0
+"""s without a fix (vehicle.md, position lost)."""
+GPS_SAME = 1.0
+"""s after which an unchanged fix counts as a new one: a receiver at rest may repeat itself."""
+FIX_3D = 3
+OUTLIER = 5.0
+"""m; a fix this far off, and more than three times the accuracy, is left out ..."""
+OUTLIERS = 10
+"""... but this many in a row are right and we are wrong."""
+ACCURACY_MAX = 5.0
+"""m; with less the position is not good."""
+DRIFT = 0.03
+"""m of error for each metre by wheels."""
+BLIND_DRIFT = 0.1
+"""m/s of error without wheels and GPS."""
+LONGEST_STEP = 0.5
+"""s; after a longer gap nobody knows what happened."""
+
+
+class Estimate(NamedTuple):
+    """What is believed now; None where nothing is known. SI, rad, yaw clockwise from north; built each cycle."""
+
+    yaw: float | None = None
+    yaw_rate: float | None = None
+    speed: float | None = None
+    """Along the nose, negative backwards."""
+    place: Point = Point(0.0, 0.0)
+    moving_place: bool = False
+    """`place` follows the rover: by wheels and heading from the start, or by GPS."""
+    origin: Origin | None = None
+    """Where 0/0 is; None before the first 3D fix."""
+    accuracy: float = math.inf
+    """m; of the place on the globe."""
+    good: bool = False
+    """The place is good enough to drive by: a fix lately, a heading, and accuracy."""
+
+    @property
+    def velocity(self) -> Point:
+        """m/s north and east; 0 where the speed or heading is not known."""
+        return Point(0.0, 0.0).moved(self.yaw or 0.0, self.speed or 0.0)
+
+    @property
+    def globe(self) -> tuple[float, float] | None:
+        """Latitude and longitude in degrees."""
+        return None if self.origin is None else self.origin.globe(self.place)
+
+
+class _Gain:
+    """How much of an error is taken away by the n-th of measurements that come each `dt`."""
+
+    def __init__(self, time: float) -> None:
+        self._time = time
+        self._count = 0
+
+    def next(self, dt: float) -> float:
+        self._count += 1
+        return max(1.0 / self._count, dt / (self._time + dt))
+
+
+class Estimator:
+    """The filter. `sense` each cycle."""
+
+    def __init__(self) -> None:
+        self.estimate = Estimate()
+        self._at: float | None = None
+        self._yaw: float | None = None
+        self._bias = self._offset = 0.0
+        self._offset_gain = _Gain(OFFSET_TIME)
+        self._speed: float | None = None
+        self._north = self._east = 0.0
+        self._place_gain = _Gain(POSITION_TIME)
+        self._origin: Origin | None = None
+        self._fix: tuple[float | None, ...] = ()
+        self._fix_at = -math.inf
+        self._outliers = 0
+        self._drift = 0.0
+
+    def sense(self, readings: Readings, now: float) -> Estimate:
+        """Take the readings of this cycle; numbers that cannot be are taken for missing ones."""
+        dt = 0.0 if self._at is None else max(0.0, min(LONGEST_STEP, now - self._at))
+        self._at = now
+        rate = _sane(readings.yaw_rate, 50.0)
+        self._turn(rate, _sane(readings.yaw, 1e6), dt)
+        wheels = _sane(readings.speed, 50.0)
+        if wheels is not None:
+            self._speed = wheels
+        self._move(dt, wheels is not None)
+        fix = self._new_fix(readings, now)
+        if fix is not None:
+            self._take_fix(fix, readings, now, rate, wheels is not None)
+        self.estimate = self._believed(rate, wheels, now)
+        return self.estimate
+
+    def _turn(self, rate: float | None, compass: float | None, dt: float) -> None:
+        if self._yaw is None:
+            self._yaw = compass
+            return
+        if rate is not None:
+            self._yaw += (rate - self._bias) * dt
+        if compass is not None:
+            error = wrap(compass + self._offset - self._yaw)
+            self._yaw += error * dt / (HEADING_TIME + dt) if rate is not None else error
+            if rate is not None:
+                self._learn_bias(-error * dt / (HEADING_TIME * BIAS_TIME))
+        self._yaw = wrap(self._yaw)
+
+    def _move(self, dt: float, wheels: bool) -> None:
+        if self._yaw is None or self._speed is None:
+            return
+        way = self._speed * dt
+        self._north += way * math.cos(self._yaw)
+        self._east += way * math.sin(self._yaw)
+        self._drift += DRIFT * abs(way) if wheels else BLIND_DRIFT * dt
+
+    def _new_fix(self, readings: Readings, now: float) -> tuple[float, float] | None:
+        """Latitude and longitude, once for each time that the receiver says something."""
+        latitude, longitude = _sane(readings.latitude, 90.0), _sane(readings.longitude, 180.0)
+        if latitude is None or longitude is None or (readings.gps_fix or 0) < FIX_3D:
+            return None
+        fix = (latitude, longitude, readings.velocity_north, readings.velocity_east)
+        if fix == self._fix and now - self._fix_at < GPS_SAME:
+            return None
+        self._fix = fix
+        return latitude, longitude
+
+    def _take_fix(
+        self, fix: tuple[float, float], readings: Readings, now: float, rate: float | None, wheels: bool
+    ) -> None:
+        north, east = _sane(readings.velocity_north, 50.0), _sane(readings.velocity_east, 50.0)
+        if north is not None and east is not None:
+            self._take_velocity(north, east, rate, readings.yaw is not None, wheels)
+        dt = min(GPS_SAME, now - self._fix_at)
+        self._fix_at = now
+        if self._origin is None:  # what was driven before the first fix stays as it is
+            self._origin = Origin(*Origin(*fix).globe(Point(-self._north, -self._east)))
+        error = self._origin.point(*fix)
+        north_off, east_off = error.north - self._north, error.east - self._east
+        if self._is_outlier(math.hypot(north_off, east_off)):
+            return
+        gain = self._place_gain.next(dt)
+        self._north += gain * north_off
+        self._east += gain * east_off
+        self._drift *= 1.0 - gain
+
+    def _is_outlier(self, distance: float) -> bool:
+        if distance <= max(OUTLIER, 3.0 * self._drift):
+            self._outliers = 0
+            return False
+        self._outliers += 1
+        if self._outliers < OUTLIERS:
+            return True
+        self._place_gain = _Gain(POSITION_TIME)  # begins with a gain of 1: the fix is believed
+        self._outliers = 0
+        return False
+
+    def _take_velocity(self, north: float, east: float, rate: float | None, compass: bool, wheels: bool) -> None:
+        speed = math.hypot(north, east)
+        if not wheels:
+            along = speed if self._yaw is None else north * math.cos(self._yaw) + east * math.sin(self._yaw)
+            self._speed = along if self._speed is None else (self._speed + along) / 2
+        if speed < COURSE_SPEED or abs(rate or 0.0) > COURSE_RATE:
+            return
+        course = math.atan2(east, north) + (math.pi if (self._speed or 0.0) < 0.0 else 0.0)
+        if self._yaw is None:
+            self._yaw = wrap(course)
+            return
+        change = wrap(course - self._yaw) * self._offset_gain.next(0.2)
+        if compass:
+            self._offset = wrap(self._offset + change)
+        else:
+            self._learn_bias(-change / BIAS_TIME)
+        self._yaw = wrap(self._yaw + change)
+
+    def _learn_bias(self, change: float) -> None:
+        self._bias = max(-BIAS_MAX, min(BIAS_MAX, self._bias + change))
+
+    def _believed(self, rate: float | None, wheels: float | None, now: float) -> Estimate:
+        since = now - self._fix_at
+        if wheels is None and since > GPS_LOST:
+            self._speed = None
+        accuracy = math.inf if self._origin is None else 1.0 + self._drift
+        return Estimate(
+            yaw=self._yaw,
+            yaw_rate=None if rate is None else rate - self._bias,
+            speed=self._speed,
+            place=Point(self._north, self._east),
+            moving_place=self._origin is not None or (self._yaw is not None and wheels is not None),
+            origin=self._origin,
+            accuracy=accuracy,
+            good=self._yaw is not None and since <= GPS_LOST and accuracy <= ACCURACY_MAX,
+        )
+
+
+def _sane(value: float | None, largest: float) -> float | None:
+    return value if value is not None and -largest <= value <= largest else None  # NaN is not
