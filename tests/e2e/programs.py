@@ -42,12 +42,13 @@ class Output(NamedTuple):
 
 
 class Vehicle:
-    """`python -m vehicle --sim` with a motor log."""
+    """`python -m vehicle --sim` with a motor log, on a UDP port of this machine or any other endpoint."""
 
-    def __init__(self, folder: Path, port: int, *options: str) -> None:
+    def __init__(self, folder: Path, port: int | str, *options: str) -> None:
         self.motor_log = folder / "motors.log"
         self.errors = folder / "vehicle.err"
-        command = [sys.executable, "-m", "vehicle", "--sim", f"udpout:127.0.0.1:{port}", *options]
+        endpoint = port if isinstance(port, str) else f"udpout:127.0.0.1:{port}"
+        command = [sys.executable, "-m", "vehicle", "--sim", endpoint, *options]
         with self.errors.open("wb") as errors:
             self.process = subprocess.Popen(
                 [*command, "--motor-log", str(self.motor_log)], stdout=errors, stderr=errors, stdin=subprocess.DEVNULL
