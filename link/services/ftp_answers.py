@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from link.services.ftp import MAX_DATA, FtpError, FtpPacket, Op, crc32
-from link.services.ftp_files import Bytes, Content, Entry, Place, Tree
+from link.services.ftp_files import Bytes, Content, Entry, Location, Tree
 from link.services.ftp_sessions import Client, Session, Sessions
 
 CRC_PIECE = 64 * 1024
@@ -126,7 +126,7 @@ class Answers:
         data = content.read(0, content.size)
         return None if data is None else self._begin_writing(question, place, bytearray(data), now)
 
-    def _begin_writing(self, question: Question, place: Place, data: bytearray, now: float) -> Answer:
+    def _begin_writing(self, question: Question, place: Location, data: bytearray, now: float) -> Answer:
         session = Session(question.client, question.request.session, now, Bytes(b""), place, data)
         return self._sessions.add(session, now) or b""
 
@@ -155,7 +155,7 @@ class Answers:
         """The tree has the shape it has."""
         return FtpError.PROTECTED
 
-    def _writable(self, question: Question) -> Place | FtpError:
+    def _writable(self, question: Question) -> Location | FtpError:
         place = self._tree.find(question.request.data)
         if place is None or not place.name or place.query:
             return FtpError.NOT_FOUND

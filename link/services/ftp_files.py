@@ -148,7 +148,7 @@ class MemoryFolder:
         return None
 
 
-class Place(NamedTuple):
+class Location(NamedTuple):
     """Where a path leads: a folder, and the name of a file in it (empty: the folder itself)."""
 
     folder: Folder
@@ -163,7 +163,7 @@ class Tree:
         self._root = root
         self._folders = folders
 
-    def find(self, raw: bytes) -> Place | None:
+    def find(self, raw: bytes) -> Location | None:
         """Where the path `raw` (as it came) leads, or None where it leads nowhere or is none."""
         text = _text(raw)
         if text is None:
@@ -174,13 +174,13 @@ class Tree:
             return None
         match parts:
             case []:
-                return Place(self._root, "", {})
+                return Location(self._root, "", {})
             case [name] if name in self._folders:
-                return Place(self._folders[name], "", {})
+                return Location(self._folders[name], "", {})
             case [name]:
-                return Place(self._root, name, _query(query))
+                return Location(self._root, name, _query(query))
             case [folder, name] if folder in self._folders:
-                return Place(self._folders[folder], name, _query(query))
+                return Location(self._folders[folder], name, _query(query))
         return None
 
     def listing(self, folder: Folder) -> list[Entry]:

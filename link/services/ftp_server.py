@@ -23,7 +23,8 @@ BURST_LENGTH = 200
 """Messages until a client must ask again: 48 kB, so that one who has gone costs no more."""
 MAX_CLIENTS = 16
 """Stored answers, and questions that wait; the oldest is forgotten."""
-BURST_FRAME = m.FileTransferProtocol.unpacker.size + OVERHEAD
+FRAME_OVERHEAD = m.FileTransferProtocol.unpacker.size - MAX_DATA + OVERHEAD
+"""Bytes of a frame around its data."""
 _Kept = TypeVar("_Kept")
 _OPENING = (Op.OPEN, Op.CREATE, Op.OPEN_TO_WRITE)
 
@@ -116,7 +117,7 @@ class FtpServer:
         outgoing: list[Outgoing] = []
         while session.burst:
             data = session.content.read(session.burst.offset, session.burst.size)
-            if not data or not self._pacer.take(session.client.peer, BURST_FRAME, now):
+            if not data or not self._pacer.take(session.client.peer, FRAME_OVERHEAD + len(data), now):
                 break
             session.used = now
             outgoing.append(_piece(session, session.burst, data))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from link.core import Peer, Received
 from link.services.ftp import FtpError
-from link.services.ftp_files import Content, Place
+from link.services.ftp_files import Content, Location
 
 MAX_SESSIONS = 16
 MAX_EACH = 4
@@ -54,7 +54,7 @@ class Session:
     number: int
     used: float
     content: Content
-    writes: Place | None = None
+    writes: Location | None = None
     """Where it goes when it is closed, for a file that is written."""
     data: bytearray | None = None
     """What was written so far."""
