@@ -76,11 +76,14 @@ def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
     newest, oldest = samples[-1], samples[0]
     seconds = newest.time - oldest.time
     received = newest.vehicle.received - oldest.vehicle.received
-    lost = newest.vehicle.lost - oldest.vehicle.lost
+    # Frames of ids that we do not know (a quarter of ArduPilot's) arrive, and leave gaps in the numbers all the same.
+    unknown = newest.report.unknown - oldest.report.unknown
+    gaps = newest.vehicle.lost - oldest.vehicle.lost
+    lost = max(0, gaps - unknown)
     carries = newest.vehicle.received > 0
     return LinkView(
         name=newest.report.name,
-        loss=lost / (lost + received) if received > 0 and lost >= 0 else None,
+        loss=lost / (lost + received) if received > 0 and gaps >= 0 else None,
         round_trip=round_trip if carries else None,
         rate=max(0.0, _delta(samples, "frames") / seconds) if seconds else 0.0,
         bytes_per_second=max(0.0, _delta(samples, "bytes_received") / seconds) if seconds else 0.0,

@@ -33,6 +33,20 @@ def test_old_loss_is_forgotten() -> None:
     assert book.views(None)[0].loss == 0.0
 
 
+def test_frames_of_unknown_ids_are_not_lost() -> None:
+    book = LinkBook()
+    for second in range(20):
+        book.observe([report(30 * second, 10 * second, unknown=9 * second)], 1, float(second))
+    assert book.views(None)[0].loss == pytest.approx(1 / 31)
+
+
+def test_noise_that_looks_like_unknown_frames_makes_no_negative_loss() -> None:
+    book = LinkBook()
+    for second in range(20):
+        book.observe([report(30 * second, second, unknown=9 * second)], 1, float(second))
+    assert book.views(None)[0].loss == 0.0
+
+
 def test_nothing_is_known_of_a_silent_link() -> None:
     book = LinkBook()
     book.observe([report(0)], None, 0.0)
