@@ -70,6 +70,20 @@ CONTENDERS = {
 }  # fmt: skip
 
 
+@dataclass(frozen=True, slots=True)
+class Network:
+    """What lies between ground station and vehicle; `loss` 0..1, times one way in s."""
+
+    loss: float = 0.0
+    delay: float = 0.0
+    jitter: float = 0.0
+
+    @property
+    def arguments(self) -> list[str]:
+        """For lossy_relay.py."""
+        return [str(self.loss), str(self.delay), str(self.jitter)]
+
+
 @dataclass(slots=True)
 class Outcome:
     """What one contender has shown so far."""
@@ -145,20 +159,25 @@ class Rig:
 
 
 @contextmanager
-def running(contender: Contender) -> Iterator[Rig]:
-    """Both programs, connected to each other."""
+def running(contender: Contender, network: Network | None = None) -> Iterator[Rig]:
+    """Both programs, connected to each other directly or through a bad `network`."""
     with ExitStack() as stack:
         folder: Path = stack.enter_context(scratch())
         watch = Watch()
         stack.callback(watch.close)
         feed = MotorFeed(watch, folder)
         stack.callback(feed.close)
-        names = {"port": free_port(), "motors": feed.path}
-        ground_argv, vehicle_argv = (
-            python(*(word.format(**names) for word in argv)) for argv in (contender.ground, contender.vehicle)
-        )
+        ground_port = vehicle_port = free_port()
+        if network is not None:
+            vehicle_port = free_port()
+            relay_argv = python("tests.benchmarks.lossy_relay", str(vehicle_port), str(ground_port), *network.arguments)
+            relay = on_pipe(watch, relay_argv)
+            stack.callback(relay.end)
+            relay.wait_for("relay ready", 20)
+        ground_argv = python(*(word.format(port=ground_port) for word in contender.ground))
         ground = on_terminal(watch, ground_argv, contender.columns, contender.lines)
         stack.callback(ground.end)
+        vehicle_argv = python(*(word.format(port=vehicle_port, motors=feed.path) for word in contender.vehicle))
         vehicle = on_pipe(watch, vehicle_argv)
         stack.callback(vehicle.end)
         ground.wait_for("DISARMED" if contender.arms else "ready", 20)

@@ -1,0 +1,55 @@
+"""Key to motor over a bad network: 10 ms one way with jitter, and random loss, for us and for the common hobby form.
+
+A lost change is healed by the sender's next frame, so the tail shows the sender's period and what it does on a change.
+"""
+
+from __future__ import annotations
+
+import random
+
+from tests.benchmarks.figures import ROUNDS, Goal, Options, Report, Row, Spread, Table, spread
+from tests.benchmarks.key_to_motor import CONTENDERS, HOBBY_50, OURS_NARROW, Network, Outcome, running
+
+NETWORKS = {
+    "10 +- 3 ms": Network(loss=0.0, delay=0.010, jitter=0.003),
+    "10 +- 3 ms, 5 % loss": Network(loss=0.05, delay=0.010, jitter=0.003),
+    "10 +- 3 ms, 10 % loss": Network(loss=0.10, delay=0.010, jitter=0.003),
+}
+"""One way; the same in both directions."""
+
+KEYS, QUICK_KEYS = 60, 10
+
+
+def run(options: Options) -> Report:
+    """Every network with both, round by round."""
+    chance = random.Random(11)
+    outcomes = {(network, path): Outcome([]) for network in NETWORKS for path in (OURS_NARROW, HOBBY_50)}
+    for number in range(ROUNDS):
+        for (network, path), outcome in outcomes.items():
+            options.say(f"link_loss: round {number + 1} of {ROUNDS}, {network}, {path}")
+            contender = CONTENDERS[path]
+            with running(contender, NETWORKS[network]) as rig:
+                if contender.arms:
+                    rig.arm()
+                rig.measure(outcome, QUICK_KEYS if options.quick else KEYS, chance)
+    table = Table("Key byte written to the terminal -> motor outputs changed over a bad network, ms")
+    goals = []
+    for (network, path), outcome in outcomes.items():
+        each = spread(outcome.latencies)
+        table.rows.append(_row(network, path, each, outcome.lost))
+        if path == OURS_NARROW and "loss" in network:
+            goals.append(Goal(f"key to motor, {network}, p99", each.p99, 20, "ms"))
+    return Report([table], goals)
+
+
+def _row(network: str, path: str, each: Spread, lost: int) -> Row:
+    return {
+        "network": network,
+        "path": path,
+        "keys": each.samples,
+        "lost": lost,
+        "p50": each.p50,
+        "p90": each.p90,
+        "p99": each.p99,
+        "max": each.max,
+    }
