@@ -34,7 +34,7 @@ class Cable:
         self._near = near
 
     def unplug(self) -> None:
-        self.path.unlink()
+        self.path.unlink(missing_ok=True)
         os.close(self._near)
         os.close(self.far)
 

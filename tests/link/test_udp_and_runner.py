@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import socket
 from collections.abc import Callable, Iterator, Sequence
 
@@ -52,11 +53,17 @@ class Recorder:
             self._runner[0].stop()
 
 
-async def run(endpoint: str, done: Callable[[Recorder], bool], *, first: Callable[[], None] = lambda: None) -> Recorder:
+async def run(
+    endpoint: str | list[str],
+    done: Callable[[Recorder], bool],
+    *,
+    first: Callable[[], None] = lambda: None,
+    route: bool | None = None,
+) -> Recorder:
     runner: list[Runner] = []
     core = Recorder(done, runner)
-    links = open_links([endpoint], system=1, component=1)
-    runner.append(Runner(core, links, period=0.01))
+    links = open_links([endpoint] if isinstance(endpoint, str) else endpoint, system=1, component=1)
+    runner.append(Runner(core, links, period=0.01, route=route))
     first()
     async with asyncio.timeout(20):
         await runner[0].run()
@@ -165,6 +172,27 @@ async def test_a_message_that_cannot_be_encoded_is_logged_and_the_rest_goes_out(
     await run(f"udpout:127.0.0.1:{ground.getsockname()[1]}", speak)
     assert ground.recv(300)[7] == Heartbeat.id
     assert "MANUAL_CONTROL" in caplog.text
+
+
+@pytest.mark.parametrize("route", [None, False], ids=["by default", "not where it is switched off"])
+async def test_ground_stations_on_two_links_hear_each_other(ground: socket.socket, route: bool | None) -> None:
+    port = free_port()
+
+    def speak() -> None:  # for everybody, for us alone, for everybody
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+            for data in (heartbeat(0, system=254), demand(1), heartbeat(2, system=254)):
+                other.sendto(data, ("127.0.0.1", port))
+
+    endpoints = [f"udpin:127.0.0.1:{port}", f"udpout:127.0.0.1:{ground.getsockname()[1]}"]
+    core = await run(endpoints, lambda core: len(core.received) >= 3, first=speak, route=route)
+    assert len(core.received) == 3  # what is forwarded is heard here all the same
+    ground.settimeout(0.5)
+    heard = []
+    with contextlib.suppress(TimeoutError):
+        while True:
+            heard.append(ground.recv(300))
+    forwarded = [data for data in heard if data[5] != 1]
+    assert forwarded == ([heartbeat(0, system=254), heartbeat(2, system=254)] if route is None else [])
 
 
 async def test_one_line_says_why_a_port_cannot_be_opened(ground: socket.socket) -> None:
