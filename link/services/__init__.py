@@ -1,1 +1,1 @@
-"""Microservices of MAVLink: client and server half of each in one file, all of them cores."""
+"""Microservices of MAVLink, the server and the client half of each; all of them are cores."""
