@@ -98,8 +98,8 @@ class _Run:
 class ParamServer:
     """Answers for one system and component.
 
-    `allowed` says who may set (None: the reason is not shown), `armed` whether safety settings are locked, `changed` is
-    told every value that was set, `say` gets a line for the driver when one was refused.
+    `allowed` says who may set, `armed` whether safety settings are locked, `changed` is told every value that was set,
+    `say` gets a line for the driver when one was refused.
     """
 
     def __init__(
@@ -191,15 +191,10 @@ class ParamServer:
             return Refusal(ParamFault.READ_ONLY, "it is read only")
         if message.param_type != REAL32:
             return Refusal(ParamFault.TYPE_MISMATCH, "its type is REAL32")
-        refusal = check(setting, message.param_value)
-        if (
-            not refusal
-            and setting.safety
-            and self._armed()
-            and not same(message.param_value, self._values[setting.name])
-        ):
+        unchanged = same(message.param_value, self._values[setting.name])
+        if setting.safety and self._armed() and not unchanged:
             return Refusal(ParamFault.PERMISSION_DENIED, "disarm first")
-        return refusal
+        return check(setting, message.param_value)
 
     def _value(self, index: int) -> m.ParamValue:
         name = self._table[index].name
