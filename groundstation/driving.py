@@ -100,9 +100,10 @@ class Driving:
     def _demand(self, contact: Contact, axes: Axes, now: float) -> None:
         state = contact.state
         message = manual_control(axes, state.system, axis_map(state.autopilot))
-        if axes != self._operator.sent:
-            self._changed, self._changed_at = message, now
-        self._operator.sent = axes
+        if contact is self._fleet.selected:
+            if axes != self._operator.sent:
+                self._changed, self._changed_at = message, now
+            self._operator.sent = axes
         messages: list[Message] = [message]
         if state.speaks_ours:
             proof = self._operator.presence((state.system, state.component), state.boot_time, now)

@@ -48,19 +48,30 @@ class Fleet:
 
     @property
     def systems(self) -> tuple[int, ...]:
-        """System ids of all of them."""
-        return tuple(self._contacts)
+        """System ids of all of them, in rising order."""
+        return tuple(sorted(self._contacts))
 
     def get(self, system: int) -> Contact | None:
         """The contact with this system id."""
         return self._contacts.get(system)
 
-    def select(self, system: int) -> bool:
-        """Look at this one from now on; False where it is unknown."""
+    def select(self, system: int, now: float) -> None:
+        """Look at this one from now on, where it is known."""
         contact = self._contacts.get(system)
-        if contact is not None:
+        if contact is None:
+            self._log.add(now, "station", f"there is no vehicle {system}", Severity.WARNING)
+        elif contact is not self.selected:
             self.selected = contact
-        return contact is not None
+            self._log.add(now, "station", f"{contact.state.name} selected", Severity.NOTICE)
+
+    def select_next(self, now: float) -> None:
+        """Look at the one with the next higher system id, or again at the first."""
+        systems = sorted(self._contacts)
+        if len(systems) < 2 or self.selected is None:
+            self._log.add(now, "station", "there is no other vehicle", Severity.NOTICE)
+            return
+        at = systems.index(self.selected.state.system)
+        self.select(systems[(at + 1) % len(systems)], now)
 
     def admit(self, received: Received, now: float) -> Contact | None:
         """The contact that a message belongs to; a vehicle's HEARTBEAT makes a new one."""

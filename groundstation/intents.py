@@ -94,6 +94,10 @@ class SelectVehicle(Intent, frozen=True):
     system: int
 
 
+class SelectNext(Intent, frozen=True):
+    """Drive the vehicle after this one from now on, by system id; after the last comes the first."""
+
+
 class StartSimulator(Intent, frozen=True):
     """Start a simulated rover as a child of the station and let it connect to us."""
 
@@ -104,5 +108,5 @@ class Quit(Intent, frozen=True):
 
 AnyIntent = (
     Push | Release | Stop | EmergencyStop | ClearEmergencyStop | ChangeSpeed | SetStyle | ExactKeys | Gate | Lease | Arm
-    | Disarm | SetMode | RequestControl | SelectVehicle | StartSimulator | Quit
+    | Disarm | SetMode | RequestControl | SelectVehicle | SelectNext | StartSimulator | Quit
 )  # fmt: skip

@@ -21,6 +21,7 @@ from groundstation.intents import (
     Push,
     Release,
     RequestControl,
+    SelectNext,
     SetMode,
     SetStyle,
     StartSimulator,
@@ -102,6 +103,7 @@ _ACTIONS = (
     Action("vehicle.manual", "MANUAL", "Mode MANUAL: the keys drive", "vehicle", SetMode(mode="MANUAL")),
     Action("vehicle.hold", "HOLD", "Mode HOLD: the vehicle stands", "vehicle", SetMode(mode="HOLD")),
     Action("vehicle.control", "Take control", "Ask to be the ground station in control", "vehicle", RequestControl()),
+    Action("vehicle.next", "Next vehicle", "Stop this vehicle and look at the next one", "vehicle", SelectNext()),
     Action("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator()),
     Action("app.help", "Help", "Keys and what they do", "app"),
     Action("app.quit", "Quit", "Stop the vehicle and leave", "app"),
@@ -116,7 +118,8 @@ _EVERYWHERE = {
     "j": "drive.left", "k": "drive.stop", "l": "drive.right",
     "m": "drive.backward_left", "comma": "drive.backward", "full_stop": "drive.backward_right",
     "space": "drive.stop", "exclamation_mark": "stop.emergency", "f9": "stop.emergency", "t": "stop.clear",
-    "r": "vehicle.arm", "1": "vehicle.manual", "2": "vehicle.hold", "g": "vehicle.control", "tab": "drive.style",
+    "r": "vehicle.arm", "1": "vehicle.manual", "2": "vehicle.hold", "g": "vehicle.control", "n": "vehicle.next",
+    "tab": "drive.style",
     "f5": "app.simulator", "question_mark": "app.help", "ctrl+q": "app.quit", "ctrl+c": "app.quit",
 }  # fmt: skip
 

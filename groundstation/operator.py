@@ -38,7 +38,7 @@ class Operator:
     def __init__(self, style: Style, speed: float, session: int) -> None:
         self.sticks = Sticks(style, speed)
         self.sent = NEUTRAL
-        """The demand that went out last."""
+        """The demand that went out last to the selected vehicle."""
         self.meter = RateMeter()
         """Demands sent."""
         self.inputs = 0
@@ -101,6 +101,11 @@ class Operator:
             self.sticks.push(push, now)
         else:
             self.sticks.swallow(push, now)
+
+    def let_go(self, now: float) -> None:
+        """Another vehicle is looked at: what the old one was told is not what this one is told."""
+        self.sticks.block(now)
+        self.sent = NEUTRAL
 
     def allow(self, allowed: bool, now: float) -> bool:
         """May keys drive from now on? True when they begin to; those that are held must be pressed anew."""

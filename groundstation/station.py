@@ -187,9 +187,12 @@ class Station:
     def _lease(self, intent: i.Lease, now: float) -> None:
         self.operator.renew(now)
 
-    def _select(self, intent: i.SelectVehicle, now: float) -> None:
-        self.operator.sticks.block(now)
-        self._fleet.select(intent.system)
+    def _select(self, intent: i.SelectVehicle | i.SelectNext, now: float) -> None:
+        self.operator.let_go(now)
+        if isinstance(intent, i.SelectVehicle):
+            self._fleet.select(intent.system, now)
+        else:
+            self._fleet.select_next(now)
 
     def _quit(self, intent: i.Quit, now: float) -> None:
         self.operator.sticks.block(now)
@@ -270,6 +273,7 @@ _INTENTS: dict[type[i.Intent], Callable[[Station, Any, float], None]] = {
     i.Gate: Station._gate,
     i.Lease: Station._lease,
     i.SelectVehicle: Station._select,
+    i.SelectNext: Station._select,
     i.Quit: Station._quit,
     **dict.fromkeys(_ORDERS, Station._order),
 }

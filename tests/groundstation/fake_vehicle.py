@@ -26,7 +26,15 @@ MessageT = TypeVar("MessageT", bound=m.Message)
 class FakeVehicle:
     """A core that answers commands by `answers`, and obeys those it accepts."""
 
-    def __init__(self, *, autopilot: int = Autopilot.GENERIC, driver: int | None = 0, mode: Mode = Mode.MANUAL) -> None:
+    def __init__(
+        self,
+        *,
+        autopilot: int = Autopilot.GENERIC,
+        driver: int | None = 0,
+        mode: Mode = Mode.MANUAL,
+        system: int = 1,
+    ) -> None:
+        self.system = system
         self.autopilot = autopilot
         self.driver = driver
         self.mode = mode
@@ -41,8 +49,10 @@ class FakeVehicle:
         self._beat_due = 0.0
 
     def receive(self, received: Received, now: float) -> None:
-        """Note it, and answer what is a command or a question."""
+        """Note it, and answer what is a command or a question; what is for another vehicle is not heard."""
         message = received.message
+        if getattr(message, "target_system", getattr(message, "target", 0)) not in (0, self.system):
+            return
         self.heard.append((now, message))
         match message:
             case m.CommandLong():
