@@ -14,7 +14,7 @@ from platformdirs import user_log_path
 from groundstation.client import StationClient, StationError
 from groundstation.keyfile import load_keymap
 from groundstation.keymap import KEYMAPS, KeymapError
-from groundstation.sticks import HIGHEST_LIMIT, LOWEST_LIMIT, Style
+from groundstation.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
 from link.endpoint import EndpointError, endpoint_help, parse
 
 DEFAULT_ENDPOINT = "udpin:127.0.0.1:14550"

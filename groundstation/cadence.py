@@ -31,7 +31,7 @@ class DemandStream:
 
     def __init__(self) -> None:
         self._sent = NEUTRAL
-        self._sent_at = -math.inf
+        self._changed_at = -math.inf
         self._due = -math.inf
         self._moved_at = -math.inf
         self._streaming = False
@@ -55,7 +55,7 @@ class DemandStream:
         if not streaming:
             return self._goodbye(now)
         self._farewell = 0
-        if demand != self._sent and (demand.neutral or now - self._sent_at >= CLOSEST):
+        if demand != self._sent and (demand.neutral or now - self._changed_at >= CLOSEST):
             return self._send(demand, now, now)
         return self._send(demand, now, self._due) if now >= self._due else None
 
@@ -75,6 +75,7 @@ class DemandStream:
         if not demand.neutral or not self._sent.neutral:
             self._moved_at = now
         period = DRIVING if now - self._moved_at < SETTLE else STANDING
-        self._sent, self._sent_at = demand, now
+        if demand != self._sent:
+            self._sent, self._changed_at = demand, now
         self._due = max(due + period, now)
         return demand

@@ -24,7 +24,7 @@ from groundstation.intents import Lease, Quit, StartSimulator, Stop
 from groundstation.sitl import Simulator, free_port
 from groundstation.snapshot import HelmView, Snapshot, TextLine
 from groundstation.station import COMPONENT, Station
-from groundstation.sticks import Style
+from groundstation.style import Style
 from groundstation.texts import MAX_LENGTH
 from groundstation.wire import MAX_PACKET, NEVER_LATE, TOO_LATE, Failure, Hello, decode_down, encode
 from link.endpoint import EndpointError, parse

@@ -7,6 +7,10 @@ from __future__ import annotations
 
 import msgspec
 
+LEASE = 0.3
+"""s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz and longer than its longest
+drawing (0.1 s); a frozen screen then means neutral well within 0.5 s."""
+
 
 class Intent(msgspec.Struct, frozen=True, tag=True):
     """Base of the union below."""

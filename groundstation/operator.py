@@ -11,15 +11,12 @@ import math
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import Operator as Flag
 from dialects.messages import RoverOperatorPresence, boot_ms
-from groundstation.intents import Gate, Push
+from groundstation.intents import LEASE, Gate, Push
 from groundstation.snapshot import HelmView
-from groundstation.sticks import Sticks, Style
+from groundstation.sticks import Sticks
+from groundstation.style import Style
 from link.heartbeat import HeartbeatMonitor
 from link.rate import RateMeter
-
-LEASE = 0.3
-"""s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz and longer than its longest
-drawing (0.1 s); a frozen screen then means neutral well within 0.5 s."""
 
 THAW = 0.5
 """s for which a screen that came back must renew before keys drive: what was typed while it froze comes in a heap."""

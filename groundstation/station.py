@@ -15,7 +15,7 @@ from groundstation.inquiry import Inquiry
 from groundstation.links import LinkBook, problem
 from groundstation.operator import Operator
 from groundstation.snapshot import Snapshot, VehicleView
-from groundstation.sticks import Style
+from groundstation.style import Style
 from groundstation.texts import TextLog
 from groundstation.traffic import Traffic
 from groundstation.vehicle_state import VehicleState

@@ -4,34 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import StrEnum
 
 from dialects.axes import NEUTRAL, Axes
 from groundstation.intents import ChangeSpeed, Push
 from groundstation.repeat import REPEAT_GAP, RepeatWindows, Trace
-
-LOWEST_LIMIT, HIGHEST_LIMIT = 0.1, 1.0
-"""The speed keys stay in here: below 10 % a rover does not overcome its friction and looks broken."""
+from groundstation.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
 
 STEP = 0.1
 """What one press adds in the style "step", of full deflection."""
-
-
-class Style(StrEnum):
-    """How keys drive."""
-
-    HOLD = "hold"
-    """While a key is held."""
-    LATCH = "latch"
-    """Until the next key, as the article's teleop does."""
-    STEP = "step"
-    """Each press adds 10 %; until the stop key."""
-
-    @property
-    def next(self) -> Style:
-        """The style after this one."""
-        styles = list(Style)
-        return styles[(styles.index(self) + 1) % len(styles)]
 
 
 @dataclass(slots=True)

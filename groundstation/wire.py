@@ -6,8 +6,7 @@ import time
 
 import msgspec
 
-from groundstation.intents import AnyIntent, Disarm, EmergencyStop, ExactKeys, Gate, Quit, Release, Stop
-from groundstation.operator import LEASE
+from groundstation.intents import LEASE, AnyIntent, Disarm, EmergencyStop, ExactKeys, Gate, Quit, Release, Stop
 from groundstation.snapshot import Snapshot
 
 SOCKET_BUFFER = 1 << 20

@@ -72,7 +72,10 @@ class Rover:
         if self._safety.state is State.OFF:
             return
         self._control.hear(received, now)
-        if self._demand(received, now) or self._order(received, now):
+        if isinstance(received.message, m.RoverOperatorPresence):
+            # It says what the demand behind it is worth and asks for nothing: the ramp's time is the demand's to use.
+            self._control.operator(received, received.message, now)
+        elif self._demand(received, now) or self._order(received, now):
             self._move(now)
         else:
             self._outgoing += self._replies.answer(received, now)
@@ -176,8 +179,6 @@ class Rover:
                 self._control.manual(received, message, now)
             case m.RcChannelsOverride(target_component=component) as message if component in (0, COMPONENT):
                 self._control.rc_override(received, message, now)
-            case m.RoverOperatorPresence() as message:
-                self._control.operator(received, message, now)
             case _:
                 return False
         return True

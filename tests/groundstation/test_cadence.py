@@ -37,6 +37,13 @@ def test_changes_closer_than_the_vehicle_takes_wait_and_the_newest_wins() -> Non
     assert stream.due(Axes(0.6, 0.2), True, 10.001 + CLOSEST) == Axes(0.6, 0.2)
 
 
+def test_a_key_just_after_a_repeated_neutral_does_not_wait() -> None:
+    stream = DemandStream()
+    for step in range(5):
+        stream.due(NEUTRAL, True, 10.0 + step * 0.2)
+    assert stream.due(AHEAD, True, 10.801) == AHEAD
+
+
 def test_steady_rates() -> None:
     stream = DemandStream()
     assert 19 <= len(play(stream, AHEAD, True, 0.0, 1.0)) <= 21

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from dialects.axes import NEUTRAL, Axes
 from groundstation.intents import ChangeSpeed, Push
-from groundstation.sticks import Sticks, Style
+from groundstation.sticks import Sticks
+from groundstation.style import Style
 
 I = Push(key="i", throttle=1, steering=0)  # noqa: E741
 COMMA = Push(key="comma", throttle=-1, steering=0)

@@ -117,3 +117,15 @@ def test_of_others_it_says_nothing() -> None:
     bench.say(m.RoverOperatorPresence(1, 1, 0, 1, 9, 1, 65535, 4), OTHER)
     drive(bench, 0.2, AHEAD)
     assert bench.turning
+
+
+def test_the_demand_behind_a_presence_moves_the_motors_on_arrival() -> None:
+    # Both come in one moment. Were the ramp advanced by the first, nothing would be left for the second until a tick.
+    bench = Bench()
+    bench.wait(2.0)
+    bench.arm()
+    drive(bench, 0.5, NEUTRAL)
+    bench.now += 0.01
+    say(bench, int((bench.now - 100.0 - 0.1) * 1000))
+    bench.stick(AHEAD)
+    assert bench.turning
