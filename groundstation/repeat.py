@@ -10,7 +10,11 @@ from collections import deque
 from dataclasses import dataclass, field
 
 FIRST = 0.75
-"""Window after a press, s: longer than X11's repeat delay of 0.66 s; also the longest that a tap drives."""
+"""Window after a press, s: longer than X11's repeat delay of 0.66 s; also the longest that a tap drives, unless this
+keyboard has proved that it begins to repeat later."""
+
+FIRST_LONGEST = 1.1
+"""The same for such a keyboard, s: Windows' longest repeat delay (1 s) and JITTER. FIRST would stop each hold once."""
 
 FIRST_SHORTEST = 0.35
 """A learned window after a press is not shorter, s: the shortest repeat delay (0.25 s) and 0.1 s of network jitter."""
@@ -32,6 +36,10 @@ SHORTEST_DELAY, LONGEST_DELAY = 0.2, 1.1
 """Repeat delays that exist, s (Linux console 0.25, Windows up to 1.0). Two taps may look like one: a third event within
 REPEAT_GAP decides."""
 
+PROOF = 5
+"""Repeats in a row that prove a delay above FIRST: a longer window is a longer drive after a tap, and three hasty taps
+must not bring it about."""
+
 GAPS_TO_LEARN = 20
 """Repeats seen before the short window is changed: one second of holding."""
 
@@ -44,7 +52,13 @@ class Trace:
     seen: float
     delay: float | None = None
     """From the press to the second event, s."""
-    repeating: bool = False
+    repeats: int = 0
+    """Events in a row that came as repeats do."""
+
+    @property
+    def repeating(self) -> bool:
+        """It is held, without doubt."""
+        return self.repeats > 0
 
 
 @dataclass(slots=True)
@@ -59,7 +73,9 @@ class RepeatWindows:
         """Window after a press, s."""
         if not self._delays:
             return FIRST
-        return min(max(1.15 * max(self._delays) + JITTER, FIRST_SHORTEST), FIRST)
+        longest = max(self._delays)
+        limit = FIRST if longest <= FIRST else FIRST_LONGEST
+        return min(max(1.15 * longest + JITTER, FIRST_SHORTEST), limit)
 
     @property
     def later(self) -> float:
@@ -78,12 +94,11 @@ class RepeatWindows:
     def again(self, trace: Trace, now: float) -> float:
         """Note a further event of a key that counts as held; the window to hold it from now on, s."""
         gap, trace.seen = now - trace.seen, now
-        if trace.delay is None:
-            trace.delay = gap
-        elif not trace.repeating and gap <= REPEAT_GAP:
-            trace.repeating = True
-            if SHORTEST_DELAY <= trace.delay <= LONGEST_DELAY:
-                self._delays.append(trace.delay)
-        if trace.repeating:
-            self._gaps.append(gap)
+        if trace.delay is None or not (trace.repeating or gap <= REPEAT_GAP):
+            trace.delay = gap  # and what was taken for a first repeat was a press of its own
+            return self.later
+        trace.repeats += 1
+        if trace.repeats == (1 if trace.delay <= FIRST else PROOF) and SHORTEST_DELAY <= trace.delay <= LONGEST_DELAY:
+            self._delays.append(trace.delay)
+        self._gaps.append(gap)
         return self.later

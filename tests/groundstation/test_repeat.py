@@ -3,8 +3,20 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from groundstation.repeat import FIRST, FIRST_SHORTEST, LATER, LATER_LONGEST, LATER_SHORTEST, RepeatWindows, Trace
+from groundstation.repeat import (
+    FIRST,
+    FIRST_LONGEST,
+    FIRST_SHORTEST,
+    LATER,
+    LATER_LONGEST,
+    LATER_SHORTEST,
+    REPEAT_GAP,
+    RepeatWindows,
+    Trace,
+)
 
 
 def hold(windows: RepeatWindows, start: float, *, delay: float, gap: float, repeats: int = 30) -> Trace:
@@ -27,7 +39,9 @@ def test_defaults_before_anything_is_known() -> None:
         (0.50, 0.040, 0.675, LATER_SHORTEST),
         (0.66, 0.040, FIRST, LATER_SHORTEST),
         (0.25, 0.092, 0.3875, 0.23),
-        (1.00, 0.110, FIRST, LATER_LONGEST),
+        (0.75, 0.040, FIRST, LATER_SHORTEST),
+        (0.80, 0.040, 1.02, LATER_SHORTEST),
+        (1.00, 0.110, FIRST_LONGEST, LATER_LONGEST),
     ],
 )
 def test_windows_follow_the_keyboard(delay: float, gap: float, first: float, later: float) -> None:
@@ -43,6 +57,39 @@ def test_taps_teach_nothing() -> None:
     for step in range(1, 40):
         windows.again(trace, step * 0.3)
     assert (windows.first, windows.later) == (FIRST, LATER)
+
+
+def test_a_long_delay_is_believed_only_after_five_repeats() -> None:
+    windows = RepeatWindows()
+    hold(windows, 0.0, delay=1.0, gap=0.04, repeats=5)  # the first event after the delay is none yet
+    assert windows.first == FIRST
+    hold(windows, 10.0, delay=1.0, gap=0.04, repeats=6)
+    assert windows.first == FIRST_LONGEST
+
+
+def test_a_tap_before_a_hold_is_no_long_delay() -> None:
+    windows = RepeatWindows()
+    tapped = windows.press(None, 0.0)
+    trace = windows.press(tapped, 0.9)  # the tap was given up at 0.75: this may be its first repeat, or a press
+    now = 0.9 + 0.25
+    for _ in range(30):
+        windows.again(trace, now)
+        now += 0.033
+    assert windows.first == pytest.approx(0.3875)
+
+
+@given(st.lists(st.floats(REPEAT_GAP + 0.01, 3.0), max_size=60))
+def test_taps_never_make_the_window_longer(pauses: list[float]) -> None:
+    windows = RepeatWindows()
+    now, until, trace = 0.0, 0.0, windows.press(None, 0.0)
+    for pause in pauses:
+        now += pause
+        if now < until:
+            until = now + windows.again(trace, now)
+        else:
+            trace = windows.press(trace, now)
+            until = now + windows.first
+        assert windows.first == FIRST
 
 
 def test_two_quick_taps_are_no_repeat_delay() -> None:

@@ -81,6 +81,31 @@ def test_no_false_stop_on_the_keyboards_that_exist(delay: float, gap: float) -> 
         start += 4.0
 
 
+def false_stops(sticks: Sticks, start: float, delay: float, gap: float) -> int:
+    """How often the drive breaks off while a key is held for 3 s."""
+    sticks.push(I, start)
+    due, drove, stops = start + delay, True, 0
+    for step in range(1, 300):
+        now = start + 0.01 * step
+        if now >= due:
+            sticks.push(I, now)
+            due += gap
+        drives = not sticks.axes(now).neutral
+        stops += drove and not drives
+        drove = drives
+    return stops
+
+
+def test_the_longest_repeat_delay_stops_the_first_hold_once_and_no_later_one() -> None:
+    sticks = Sticks(limit=1.0)
+    assert [false_stops(sticks, 5.0 * number, 1.0, 0.033) for number in range(4)] == [1, 0, 0, 0]
+    assert sticks.stop_bound == pytest.approx(1.1)
+    sticks.push(I, 100.0)
+    assert sticks.axes(101.09) == Axes(1.0, 0.0)
+    assert sticks.axes(101.1) == NEUTRAL, "a tap drives as long as the screen says, and no longer"
+    assert false_stops(sticks, 110.0, 0.25, 0.033) == 0
+
+
 def test_a_second_stick_is_a_chord_and_keeps_the_first_alive() -> None:
     sticks = Sticks(limit=1.0)
     hold(sticks, I, 0.0, 1.0)
