@@ -15,9 +15,6 @@ from dialects.messages import INVALID_AXIS, ManualControl
 FULL = 1000
 """Full deflection of an axis (common.xml, MANUAL_CONTROL)."""
 
-AXIS_NAMES = ("x", "y", "z", "r")
-"""In the order of ROVER_AXIS."""
-
 
 @dataclass(frozen=True, slots=True)
 class Axes:
@@ -63,10 +60,11 @@ def manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopi
 
     Axes that mean nothing to the vehicle are sent as INT16_MAX, "invalid".
     """
-    values = dict.fromkeys(AXIS_NAMES, INVALID_AXIS)
-    values[axis_map.throttle] = axis_map.throttle_neutral + round(_clamp(axes.throttle) * axis_map.throttle_span)
-    values[axis_map.steering] = round(_clamp(axes.steering) * FULL)
-    return ManualControl(target=target, buttons=0, **values)
+    message = ManualControl(target, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, 0)
+    throttle = axis_map.throttle_neutral + round(_clamp(axes.throttle) * axis_map.throttle_span)
+    setattr(message, axis_map.throttle, throttle)
+    setattr(message, axis_map.steering, round(_clamp(axes.steering) * FULL))
+    return message
 
 
 def _clamp(value: float) -> float:

@@ -97,14 +97,18 @@ def _class(message: Any) -> str:
 def _decoder(message: Any) -> Iterator[str]:
     cls, fields = _class(message), message.ordered_fields
     yield f"def _decode_{message.id}(payload, _unpack={cls}.unpacker.unpack):"
-    if any(field.array_length for field in fields) or len(fields) == 1:
+    if any(field.type == "char" for field in fields):  # the class keeps text twice; let it
         yield "    v = _unpack(payload)"
         yield f"    return {cls}(" + ", ".join(f"{name}={value}" for name, value in _slices(fields)) + ")"
         return
     yield f"    m = _new({cls})"
     yield f"    m._type = {message.name!r}"
     yield f"    m._fieldnames = {cls}.fieldnames"
-    yield "    " + ", ".join(f"m.{field.name}" for field in fields) + " = _unpack(payload)"
+    if any(field.array_length for field in fields) or len(fields) == 1:
+        yield "    v = _unpack(payload)"
+        yield from (f"    m.{name} = {value}" for name, value in _slices(fields))
+    else:
+        yield "    " + ", ".join(f"m.{field.name}" for field in fields) + " = _unpack(payload)"
     yield "    return m"
 
 
