@@ -10,10 +10,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from link.endpoint import EndpointError, endpoint_help, parse
+from vehicle import verbs
 from vehicle.motors import DRIVERS
 from vehicle.params import PARAMETERS, ParamError, Params
 
 if TYPE_CHECKING:
+    from vehicle.config import Config
     from vehicle.daemon import Settings
 
 # The daemon, its loop and the dialect are imported when there is something to run: --help and a mistake answer at once.
@@ -26,7 +28,8 @@ SIMULATION_PARAMS = {"FS_LOOP_TIMEOUT": 1.0}
 
 USAGE = """\
 usage: vehicle --sim [ENDPOINT ...]             a simulated rover, for a ground station on this machine
-       vehicle ENDPOINT ... --motors NAME       a rover with motors
+       vehicle --config rover.toml              a rover with motors, as the file says
+       vehicle ENDPOINT ... --motors NAME       the same without a file, for drivers that need no settings
        vehicle --help                           all options, with examples
 """
 
@@ -35,7 +38,13 @@ examples:
   vehicle --sim                                  simulated rover; open `groundstation` beside it
   vehicle --sim udpout:192.168.1.20:14550        ... for a ground station on another machine
   vehicle --sim --param SPEED_MAX=3 --param DRIVE_TYPE=2     ... a faster one that steers like a car
+  vehicle init                                   write rover.toml, with every setting and what it does
+  vehicle check                                  is it right, and does the hardware answer? Nothing moves
+  vehicle --config rover.toml                    run with it; options here win over the file
   vehicle udpin:0.0.0.0:14550 --motors my_car:Motors         your own class drives the motors
+
+more words, each with its own --help:
+{verbs}
 
 endpoints:
 {endpoints}
@@ -76,6 +85,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not words:
         sys.stderr.write(USAGE)
         return 2
+    if words[0] in verbs.VERBS:
+        return verbs.run(words)
     try:
         parser = _parser()
         return _run(parser.parse_intermixed_args(_joined(words)), parser)
@@ -87,48 +98,70 @@ def _run(asked: argparse.Namespace, parser: _Parser) -> int:
     from vehicle import daemon
     from vehicle.log import Log
 
-    settings = _settings(asked, parser)
+    config = _config(asked, parser)
+    settings = _settings(asked, config, parser)
+    path = asked.log_file or config.log.file
     try:
-        log = Log(asked.log_file, verbose=asked.verbose)
+        log = Log(path, verbose=asked.verbose or config.log.verbose)
     except OSError as error:
-        parser.error(f"log file {asked.log_file}: {error.strerror}")
+        parser.error(f"log file {path}: {error.strerror}")
     try:
         return daemon.run(settings)
     finally:
         log.close()
 
 
-def _settings(asked: argparse.Namespace, parser: _Parser) -> Settings:
+def _config(asked: argparse.Namespace, parser: _Parser) -> Config:
+    """What the file says, with the options of the command line in its place."""
+    from msgspec.structs import replace
+
+    from vehicle.config import Config, ConfigError, Identity, load
+
+    try:
+        config = Config() if asked.config is None else load(asked.config)
+    except ConfigError as error:
+        parser.exit(2, f"vehicle: {error}\n")
+    if asked.motors:
+        config = replace(config, motors={"driver": asked.motors})
+    if asked.system is not None:
+        params = {name: value for name, value in config.params.items() if name != "MAV_SYSID"}
+        config = replace(config, identity=Identity(asked.system), params=params)
+    default = (GROUND_STATION,) if asked.sim else ()
+    return replace(config, endpoints=tuple(asked.endpoints) or config.endpoints or default)
+
+
+def _settings(asked: argparse.Namespace, config: Config, parser: _Parser) -> Settings:
     from vehicle import daemon
     from vehicle.sim.body import Home
 
-    _refuse_contradictions(asked, parser)
-    params = dict(SIMULATION_PARAMS) if asked.sim else {}
-    params.update(asked.param)
-    if asked.system is not None:
-        params["MAV_SYSID"] = asked.system
+    _refuse_contradictions(asked, config, parser)
     simulation = daemon.Simulation(
         home=Home(*asked.home) if asked.home else Home(),
         battery=1.0 if asked.sim_battery is None else asked.sim_battery,
         seed=1 if asked.sim_seed is None else asked.sim_seed,
     )
+    pinned = dict(config.params)
+    if config.identity.system is not None:
+        pinned["MAV_SYSID"] = config.identity.system
     return daemon.Settings(
-        endpoints=tuple(asked.endpoints) or (GROUND_STATION,),
-        motors=asked.motors or "",
+        endpoints=config.endpoints,
+        motors=config.motors,
+        sensors=config.sensors,
         simulation=simulation if asked.sim else None,
-        params=params,
-        motor_log=asked.motor_log,
+        pinned=pinned,
+        params={**(SIMULATION_PARAMS if asked.sim else {}), **dict(asked.param)},
+        motor_log=asked.motor_log or config.log.motors,
     )
 
 
-def _refuse_contradictions(asked: argparse.Namespace, parser: _Parser) -> None:
+def _refuse_contradictions(asked: argparse.Namespace, config: Config, parser: _Parser) -> None:
     if asked.sim and asked.motors:
         parser.error("--sim brings its own motors: leave out --motors, or leave out --sim")
     if asked.sim:
         return
-    if not asked.motors:
-        parser.error("no motors: --motors NAME for real ones, or --sim for a simulated rover")
-    if not asked.endpoints:
+    if not config.motors:
+        parser.error("no motors: --config FILE or --motors NAME for real ones, or --sim for a simulated rover")
+    if not config.endpoints:
         parser.error(f"no endpoint: where is the ground station? For example {GROUND_STATION}")
     for name in SIMULATION_ONLY:
         if getattr(asked, name) is not None:
@@ -140,7 +173,7 @@ def _parser() -> _Parser:
         prog="vehicle",
         usage=USAGE.removeprefix("usage: ").rstrip(),
         description="The rover daemon: obeys one ground station over MAVLink and drives the motors, safely.",
-        epilog=EXAMPLES.format(endpoints=endpoint_help(), drivers=", ".join(DRIVERS)),
+        epilog=EXAMPLES.format(endpoints=endpoint_help(), drivers=", ".join(DRIVERS), verbs=verbs.help_lines()),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
@@ -210,6 +243,7 @@ def _charge(text: str) -> float:
 OPTIONS: dict[str, dict[str, Any]] = {
     "endpoints": {"nargs": "*", "metavar": "ENDPOINT", "type": _endpoint,
                   "help": f"link to ground stations; with --sim {GROUND_STATION} by default"},
+    "--config": {"metavar": "FILE", "help": "file of settings; `vehicle init` writes one"},
     "--sim": {"action": "store_true", "help": "simulate motors, chassis, battery and sensors"},
     "--motors": {"metavar": "NAME", "help": "motor driver"},
     "--system": {"metavar": "N", "type": _system, "help": "MAVLink system id, 1 to 255 (default 1)"},

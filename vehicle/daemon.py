@@ -7,12 +7,14 @@ power, last messages, exit code with one line. Exit codes: 0 asked to stop, 1 a 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import gc
 import logging
 import signal
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from link.endpoint import EndpointError
 from link.link import LinkError
@@ -24,6 +26,7 @@ from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import ParamError, Params
 from vehicle.rover import Rover
 from vehicle.sensors import NoSensors, Sensors
+from vehicle.sensors.suite import SensorSettings, open_sensors
 from vehicle.sim.battery import Battery
 from vehicle.sim.body import Home, SimulatedBody
 from vehicle.sim.chassis import AckermannChassis, Frame, SkidChassis
@@ -62,10 +65,15 @@ class Settings:
     """What the command line or a file asks for."""
 
     endpoints: tuple[str, ...]
-    motors: str = "simulated"
-    """Driver name; a simulation has its own."""
+    motors: Mapping[str, Any] = field(default_factory=lambda: {"driver": "simulated"})
+    """The driver's name as `driver`, and its settings; a simulation has its own."""
+    sensors: SensorSettings | None = None
+    """None: a rover that measures nothing. A simulation has its own."""
     simulation: Simulation | None = None
+    pinned: Mapping[str, float] = field(default_factory=dict)
+    """Parameters that the file of settings sets, and no ground station changes."""
     params: Mapping[str, float] = field(default_factory=dict)
+    """Parameters of this run."""
     motor_log: str | None = None
 
 
@@ -97,15 +105,16 @@ def _told(error: Exception) -> str:
 
 async def _serve(settings: Settings) -> int:
     now = asyncio.get_running_loop().time()
-    params = Params(settings.params)
-    machine = _build(settings, params, Rover(params, now=now, wall_clock=time.time()))
-    try:
-        return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]))
-    except BaseException as error:
-        machine.abandon(error, asyncio.get_running_loop().time())
-        raise
-    finally:
-        machine.close()
+    params = Params({**settings.pinned, **settings.params})
+    with contextlib.ExitStack() as opened:
+        machine = _build(settings, params, Rover(params, now=now, wall_clock=time.time()), opened)
+        try:
+            return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]))
+        except BaseException as error:
+            machine.abandon(error, asyncio.get_running_loop().time())
+            raise
+        finally:
+            machine.close()
 
 
 async def _drive(machine: Machine, endpoints: Sequence[str], system: int) -> int:
@@ -154,15 +163,28 @@ class Ending:
         self._runner.stop()
 
 
-def _build(settings: Settings, params: Params, rover: Rover) -> Machine:
-    """The rover in its body. Raises MotorError, SettingsError."""
-    sensors: Sensors = NoSensors()
+def _build(settings: Settings, params: Params, rover: Rover, opened: contextlib.ExitStack) -> Machine:
+    """The rover in its body; what must be closed after the motors is in `opened`. Raises MotorError, SettingsError."""
     if settings.simulation is None:
-        motors = open_motors(settings.motors)
+        motors, sensors = _body(settings, opened)
     else:
         motors, sensors = _simulated_body(settings.simulation, params)
     try:
         return Machine(rover, _logged(motors, settings.motor_log), sensors)
+    except BaseException:
+        motors.close()
+        raise
+
+
+def _body(settings: Settings, opened: contextlib.ExitStack) -> tuple[Motors, Sensors]:
+    own = {key: value for key, value in settings.motors.items() if key != "driver"}
+    motors = open_motors(settings.motors["driver"], own)
+    if settings.sensors is None:
+        return motors, NoSensors()
+    try:
+        sensors = open_sensors(settings.sensors)
+        opened.callback(sensors.close)
+        return motors, sensors
     except BaseException:
         motors.close()
         raise

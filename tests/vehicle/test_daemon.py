@@ -155,12 +155,12 @@ def said(caplog: pytest.LogCaptureFixture) -> str:
 
 
 def test_an_unknown_driver_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
-    assert daemon.run(Settings(("udpout:127.0.0.1:9",), motors="gipo")) == MISTAKE
+    assert daemon.run(Settings(("udpout:127.0.0.1:9",), motors={"driver": "gipo"})) == MISTAKE
     assert "unknown motor driver 'gipo'" in said(caplog)
 
 
 def test_missing_hardware_is_a_fault(caplog: pytest.LogCaptureFixture) -> None:
-    assert daemon.run(Settings(("udpout:127.0.0.1:9",), motors=f"{BREAKING}:NoHardware")) == FAULT
+    assert daemon.run(Settings(("udpout:127.0.0.1:9",), motors={"driver": f"{BREAKING}:NoHardware"})) == FAULT
     assert said(caplog) == "motor driver: no board at address 0x40"
 
 

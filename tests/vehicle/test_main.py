@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from vehicle import daemon
 from vehicle.__main__ import GROUND_STATION, main
 from vehicle.daemon import Settings
+from vehicle.sensors.gps import GpsSettings
+from vehicle.sensors.suite import SensorSettings
 
 
 def settings_of(monkeypatch: pytest.MonkeyPatch, *words: str) -> Settings:
@@ -45,14 +48,15 @@ def test_everything_a_simulation_takes(monkeypatch: pytest.MonkeyPatch) -> None:
     assert settings.simulation is not None
     assert settings.simulation.home[:2] == (-33.5, 151.25)
     assert (settings.simulation.battery, settings.simulation.seed) == (0.3, 5)
-    assert settings.params == {"FS_LOOP_TIMEOUT": 1.0, "MAV_SYSID": 7, "SPEED_MAX": 3.0}
+    assert settings.params == {"FS_LOOP_TIMEOUT": 1.0, "SPEED_MAX": 3.0}
+    assert settings.pinned == {"MAV_SYSID": 7}
     assert settings.motor_log == "m"
 
 
 def test_a_real_vehicle_keeps_the_tight_loop_timeout(monkeypatch: pytest.MonkeyPatch) -> None:
     settings = settings_of(monkeypatch, "udpin:0.0.0.0:14550", "--motors", "car:Motors", "udpout:10.0.0.1:1")
     assert settings.simulation is None
-    assert settings.motors == "car:Motors"
+    assert settings.motors == {"driver": "car:Motors"}
     assert settings.params == {}
     assert settings.endpoints == ("udpin:0.0.0.0:14550", "udpout:10.0.0.1:1")
 
@@ -61,10 +65,65 @@ def test_the_user_may_tighten_the_loop_timeout_of_a_simulation(monkeypatch: pyte
     assert settings_of(monkeypatch, "--sim", "--param", "FS_LOOP_TIMEOUT=0.2").params == {"FS_LOOP_TIMEOUT": 0.2}
 
 
+RIG = """
+endpoints = ["udpin:127.0.0.1:1"]
+[identity]
+system = 3
+[motors]
+driver = "roboclaw"
+port = "/dev/serial0"
+[sensors.gps]
+port = 3000
+[params]
+MAN_TIMEOUT = 0.3
+[log]
+motors = "moves"
+"""
+
+
+def test_a_file_says_everything(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "rig.toml").write_text(RIG)
+    settings = settings_of(monkeypatch, "--config", str(tmp_path / "rig.toml"))
+    assert settings.endpoints == ("udpin:127.0.0.1:1",)
+    assert settings.motors == {"driver": "roboclaw", "port": "/dev/serial0"}
+    assert settings.sensors == SensorSettings(gps=GpsSettings(port=3000))
+    assert settings.pinned == {"MAN_TIMEOUT": 0.3, "MAV_SYSID": 3}
+    assert (settings.params, settings.motor_log, settings.simulation) == ({}, "moves", None)
+
+
+def test_options_win_over_the_file(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "rig.toml").write_text(RIG)
+    words = "udpout:10.0.0.1:2 --system 9 --motors simulated --param MAN_TIMEOUT=0.4 --motor-log m"
+    settings = settings_of(monkeypatch, "--config", str(tmp_path / "rig.toml"), *words.split())
+    assert settings.endpoints == ("udpout:10.0.0.1:2",)
+    assert settings.motors == {"driver": "simulated"}
+    assert settings.pinned == {"MAN_TIMEOUT": 0.3, "MAV_SYSID": 9}
+    assert (settings.params, settings.motor_log) == ({"MAN_TIMEOUT": 0.4}, "m")
+
+
+def test_a_file_can_be_tried_in_the_simulator(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "rig.toml").write_text(RIG)
+    settings = settings_of(monkeypatch, "--sim", "--config", str(tmp_path / "rig.toml"))
+    assert settings.simulation is not None
+    assert settings.endpoints == ("udpin:127.0.0.1:1",)
+    assert settings.params == {"FS_LOOP_TIMEOUT": 1.0}
+
+
+def test_a_mistake_in_the_file_is_one_line_and_code_2(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    file = tmp_path / "rig.toml"
+    file.write_text(RIG.replace("port", "prot"))
+    with pytest.raises(SystemExit) as ended:
+        main(["--config", str(file)])
+    assert ended.value.code == 2
+    assert capsys.readouterr().err == (
+        f"vehicle: {file}: motors.prot: unknown key; did you mean port? (and 1 more, see `vehicle check`)\n"
+    )
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        ("udpout:127.0.0.1:14550", "no motors: --motors NAME for real ones, or --sim"),
+        ("udpout:127.0.0.1:14550", "no motors: --config FILE or --motors NAME for real ones, or --sim"),
         ("--motors simulated", "no endpoint"),
         ("--sim --motors simulated", "--sim brings its own motors"),
         ("--motors simulated udpout:127.0.0.1:1 --home 1,2", "--home is for --sim only"),

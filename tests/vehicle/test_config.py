@@ -1,0 +1,137 @@
+"""The file of settings: what it takes, and what one line says about each slip of the pen."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from vehicle.config import Config, ConfigError, Identity, LogSettings, load, parsed
+from vehicle.sensors.gps import GpsSettings
+from vehicle.sensors.suite import SensorSettings
+
+
+def problems(text: str) -> tuple[str, ...]:
+    with pytest.raises(ConfigError) as refusal:
+        parsed(text, "rover.toml")
+    assert not any("\n" in problem for problem in refusal.value.problems)
+    return refusal.value.problems
+
+
+def test_an_empty_file_is_all_defaults() -> None:
+    assert parsed("", "rover.toml") == Config()
+
+
+def test_every_section_is_read() -> None:
+    text = """
+endpoints = ["udpin:0.0.0.0:14550", "serial:/dev/ttyAMA0:57600"]
+state = "/srv/rover"
+[identity]
+system = 7
+[motors]
+driver = "roboclaw"
+port = "/dev/serial0"
+shape = [{ reversed = true }, {}]
+[sensors]
+computer = false
+[sensors.gps]
+host = "10.0.0.2"
+[params]
+MAN_TIMEOUT = 0.3
+SPEED_MAX = 2
+[log]
+file = "/var/log/rover"
+verbose = true
+motors = "/tmp/motors"
+"""
+    assert parsed(text, "rover.toml") == Config(
+        endpoints=("udpin:0.0.0.0:14550", "serial:/dev/ttyAMA0:57600"),
+        state="/srv/rover",
+        identity=Identity(system=7),
+        motors={"driver": "roboclaw", "port": "/dev/serial0", "shape": [{"reversed": True}, {}]},
+        sensors=SensorSettings(gps=GpsSettings(host="10.0.0.2"), computer=False),
+        params={"MAN_TIMEOUT": 0.3, "SPEED_MAX": 2.0},
+        log=LogSettings(file="/var/log/rover", verbose=True, motors="/tmp/motors"),
+    )
+
+
+ROBOCLAW = '[motors]\ndriver = "roboclaw"\nport = "/dev/x"\n'
+GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('endpont = ["a"]', "endpont: unknown key; did you mean endpoints?"),
+        ("zebra = 1", "zebra: unknown key; there are endpoints, state, identity, motors, sensors, params, log"),
+        ("a =", "Invalid value (at end of document)"),
+        ('endpoints = "x"', 'endpoints: must be a list in [brackets], not text in "quotes"'),
+        ('endpoints = ["udpin:1.2.3.4:5", "udpot:1:2"]', "endpoints[1]: endpoint 'udpot:1:2': did you mean udpout:?"),
+        ("state = true", 'state: must be text in "quotes", not true or false'),
+        ("log = 3", "log: must be a table, not a whole number"),
+        ("[log]\nverbos = true", "log.verbos: unknown key; did you mean verbose?"),
+        ("[identity]\nsystem = 0", "identity.system: must be at least 1"),
+        ("[identity]\nsystem = 256", "identity.system: must be at most 255"),
+        ("[identity]\nsystem = 2.5", "identity.system: must be a whole number, not a number"),
+        ("[identity]\nsystem = 2\n[params]\nMAV_SYSID = 2", "params.MAV_SYSID: identity.system says the same thing"),
+        ('[motors]\nport = "x"', "motors.driver: missing; add it, one of simulated, gpio, "),
+        ("[motors]\ndriver = 3", "motors.driver: missing"),
+        ('[motors]\ndriver = "robclaw"', "motors.driver: unknown motor driver 'robclaw'; did you mean 'roboclaw'?"),
+        ('[motors]\ndriver = "no_such:Car"', "motors.driver: motor driver 'no_such:Car' cannot be loaded"),
+        ('[motors]\ndriver = "roboclaw"', "motors.port: missing; add it"),
+        ('[motors]\ndriver = "simulated"\nx = 1', "motors.x: unknown key; there are shape, limits, safety"),
+        (ROBOCLAW + "buad = 38400", "motors.buad: unknown key; did you mean baud?"),
+        (ROBOCLAW + "baud = 3", "motors.baud: must be at least 2400"),
+        (ROBOCLAW + 'baud = "fast"', 'motors.baud: must be a whole number, not text in "quotes"'),
+        (ROBOCLAW + "shap = []", "motors.shap: unknown key; did you mean shape?"),
+        (ROBOCLAW + "shape = [{}, {reversd = true}]", "motors.shape[1].reversd: unknown key; did you mean reversed?"),
+        (ROBOCLAW + "safety = {estop_pin = 40}", "motors.safety.estop_pin: must be at most 27"),
+        (ROBOCLAW + "[motors.limits]\ndriving = 2.0", "motors.limits.driving: must be at most 1"),
+        (GPIO + 'wiring = "two-input"', "motors.bridges[0].wiring: 'two-input' is not known; did you mean two-inputs?"),
+        (GPIO + "forward = 1", "motors.bridges[0].wiring: missing; add it, one of two-inputs, phase-enable"),
+        (GPIO + 'wiring = "two-inputs"\nfoward = 1', "motors.bridges[0].foward: unknown key; did you mean forward?"),
+        (GPIO + 'wiring = "two-inputs"\nforward = 1\nbackward = 1', "motors: 1 is used twice"),
+        ('[motors]\ndriver = "gpio"\nbridges = []', "motors.bridges: must have at least 1 entry"),
+        ('[sensors]\nbatery = 1', "sensors.batery: unknown key; did you mean battery?"),
+        ('[sensors.battery]\nkind = "ina218"', "sensors.battery.kind: 'ina218' is not known; did you mean ina219 or"),
+        ("[sensors.gps]\nport = 0", "sensors.gps.port: must be at least 1"),
+        ("[params]\nMAN_TIMOUT = 1", "params.MAN_TIMOUT: unknown parameter; did you mean MAN_TIMEOUT"),
+        ("[params]\nman_timeout = 1", "params.man_timeout: unknown parameter; did you mean MAN_TIMEOUT"),
+        ("[params]\nMAN_TIMEOUT = 9", "params.MAN_TIMEOUT: must be 0.2 to 2, not 9"),
+        ("[params]\nMAN_TIMEOUT = nan", "params.MAN_TIMEOUT: must be 0.2 to 2, not nan"),
+        ('[params]\nMAN_TIMEOUT = "1"', "params.MAN_TIMEOUT: must be a number"),
+        ("[params]\nMAN_TIMEOUT = true", "params.MAN_TIMEOUT: must be a number"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_one_line_that_says_where_and_what_to_do(text: str, says: str) -> None:
+    found = problems(text)
+    assert len(found) == 1
+    assert found[0].startswith(f"rover.toml: {says}")
+
+
+def test_several_mistakes_are_all_found() -> None:
+    text = 'endpoints = ["a"]\nlgo = 1\n[motors]\ndriver = "gpoi"\n[params]\nMAN_TIMEOUT = 9\nX = 1\n'
+    found = problems(text)
+    assert [each.split(": ")[1] for each in found] == [
+        "endpoints[0]", "lgo", "motors.driver", "params.MAN_TIMEOUT", "params.X"
+    ]  # fmt: skip
+    assert str(ConfigError(*found)) == f"{found[0]} (and 4 more, see `vehicle check`)"
+
+
+def test_a_file_that_is_not_there_teaches(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"no such file; `vehicle init .*rover.toml` writes one"):
+        load(tmp_path / "rover.toml")
+    with pytest.raises(ConfigError, match="Is a directory"):
+        load(tmp_path)
+    (tmp_path / "noise").write_bytes(b"\xff\xfe")
+    with pytest.raises(ConfigError, match="can't decode byte"):
+        load(tmp_path / "noise")
+
+
+@given(st.text())
+def test_any_text_is_settings_or_a_refusal(text: str) -> None:
+    with contextlib.suppress(ConfigError):
+        assert isinstance(parsed(text, "f"), Config)

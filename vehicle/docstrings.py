@@ -1,0 +1,28 @@
+"""What the source says of each field of a class: help that cannot differ from the code, because it is in it."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import textwrap
+
+
+def field_docs(kind: type) -> dict[str, str]:
+    """The docstring behind each field of a class, as its source has it."""
+    body = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
+    assert isinstance(body, ast.ClassDef)
+    pairs = zip(body.body, body.body[1:], strict=False)
+    return {
+        field.target.id: words(text.value.value)
+        for field, text in pairs
+        if isinstance(field, ast.AnnAssign)
+        and isinstance(field.target, ast.Name)
+        and isinstance(text, ast.Expr)
+        and isinstance(text.value, ast.Constant)
+        and isinstance(text.value.value, str)
+    }
+
+
+def words(text: str | None) -> str:
+    """The first paragraph, as one line."""
+    return " ".join(inspect.cleandoc(text or "").partition("\n\n")[0].split())

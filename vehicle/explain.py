@@ -1,0 +1,132 @@
+"""msgspec's words on a bad table of settings, as the person who wrote it needs them: where, what, and what to do."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import msgspec
+from msgspec import inspect
+
+KINDS = {
+    "int": "a whole number",
+    "float": "a number",
+    "str": 'text in "quotes"',
+    "bool": "true or false",
+    "array": "a list in [brackets]",
+    "object": "a table",
+}
+"""msgspec's word for a type -> what to write in TOML."""
+BOUNDS = {">=": "at least", "<=": "at most", ">": "more than", "<": "less than"}
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """What may have been meant."""
+    known = list(known)
+    near = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
+    return f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(known)}"
+
+
+def explained(error: msgspec.ValidationError, kind: Any, at: str, also: Iterable[str] = ()) -> str:
+    """One line. `kind` is what the table should have been, `at` where it stands, `also` more keys it may have."""
+    what, _, path = str(error).partition(" - at `$")
+    path = path.removesuffix("`")
+    for pattern, say in _SAYINGS.items():
+        found = re.fullmatch(pattern, what)
+        if found:
+            path, what = say(found, _Place(kind, path, tuple(also)))
+            break
+    return f"{_joined(at, path)}: {what}"
+
+
+class _Place:
+    """Where in the table, and what the types know of it."""
+
+    def __init__(self, kind: Any, path: str, also: tuple[str, ...]) -> None:
+        self.path = path
+        self._root = inspect.type_info(kind)
+        self._also = also
+
+    def keys(self) -> list[str]:
+        """Keys of the table here."""
+        structs = [each for each in self._walk(self._steps()) if isinstance(each, inspect.StructType)]
+        names = [name for struct in structs for name in _keys(struct)]
+        return list(dict.fromkeys(names + ([] if self._steps() else list(self._also))))
+
+    def choices(self, key: str | None = None) -> list[str]:
+        """Values that may stand here, or at `key` here, where they can be listed."""
+        steps = self._steps() if key is None else [*self._steps(), key]
+        parents = [each for each in self._walk(steps[:-1]) if isinstance(each, inspect.StructType)]
+        tags = [str(each.tag) for each in parents if each.tag_field == steps[-1]]
+        here = [each for each in self._walk(steps) if isinstance(each, inspect.LiteralType)]
+        return tags or [str(value) for each in here for value in each.values]
+
+    def _steps(self) -> list[str]:
+        return re.findall(r"[^.\[\]]+", self.path)
+
+    def _walk(self, steps: list[str]) -> list[inspect.Type]:
+        types = _alternatives(self._root)
+        for step in steps:
+            types = [deeper for each in types for deeper in _deeper(each, step)]
+        return types
+
+
+def _alternatives(kind: inspect.Type) -> list[inspect.Type]:
+    if isinstance(kind, inspect.Metadata):
+        return _alternatives(kind.type)
+    if isinstance(kind, inspect.UnionType):
+        return [each for part in kind.types for each in _alternatives(part)]
+    return [kind]
+
+
+def _deeper(kind: inspect.Type, step: str) -> list[inspect.Type]:
+    if isinstance(kind, inspect.StructType):
+        return [each for field in kind.fields if field.encode_name == step for each in _alternatives(field.type)]
+    return _alternatives(kind.item_type) if isinstance(kind, inspect.CollectionType) else []
+
+
+def _keys(struct: inspect.StructType) -> list[str]:
+    return ([struct.tag_field] if struct.tag_field else []) + [field.encode_name for field in struct.fields]
+
+
+def _unknown(found: re.Match[str], place: _Place) -> tuple[str, str]:
+    return f"{place.path}.{found[1]}", f"unknown key; {suggestion(found[1], place.keys())}"
+
+
+def _missing(found: re.Match[str], place: _Place) -> tuple[str, str]:
+    choices = place.choices(found[1])
+    return f"{place.path}.{found[1]}", f"missing; add it{', one of ' + ', '.join(choices) if choices else ''}"
+
+
+def _mistaken(found: re.Match[str], place: _Place) -> tuple[str, str]:
+    wanted = next((KINDS[each] for each in found[1].split(" | ") if each in KINDS), found[1])
+    return place.path, f"must be {wanted}, not {KINDS.get(found[2], found[2])}"
+
+
+def _outside(found: re.Match[str], place: _Place) -> tuple[str, str]:
+    return place.path, f"must be {BOUNDS[found[1]]} {found[2]}"
+
+
+def _counted(found: re.Match[str], place: _Place) -> tuple[str, str]:
+    return place.path, f"must have {BOUNDS[found[1]]} {found[2]} {'entry' if found[2] == '1' else 'entries'}"
+
+
+def _unlisted(found: re.Match[str], place: _Place) -> tuple[str, str]:
+    return place.path, f"{found[1]} is not known; {suggestion(found[1].strip(chr(39)), place.choices())}"
+
+
+_SAYINGS: dict[str, Callable[[re.Match[str], _Place], tuple[str, str]]] = {
+    r"Object contains unknown field `(.+)`": _unknown,
+    r"Object missing required field `(.+)`": _missing,
+    r"Expected `(.+)`, got `(.+)`": _mistaken,
+    r"Expected `[^`]+` ([<>]=?) (\S+)": _outside,
+    r"Expected `[^`]+` of length ([<>]=?) (\d+)": _counted,
+    r"Invalid (?:enum )?value (.+)": _unlisted,
+}
+"""What msgspec says -> where it is and what we say. Anything else, a ValueError of a __post_init__ for one, stays."""
+
+
+def _joined(at: str, path: str) -> str:
+    return (at + path).lstrip(".") or "the file"
