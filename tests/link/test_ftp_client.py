@@ -205,6 +205,13 @@ def test_coverage_is_a_set_of_bytes(ranges: list[tuple[int, int]]) -> None:
     assert coverage.end == max(model, default=-1) + 1
 
 
+def test_a_piece_beyond_the_end_takes_no_memory() -> None:
+    file = Assembly(1000)
+    file.take(990, bytes(20))
+    file.take(2_000_000_000, b"x")
+    assert (file.here.end, file.data) == (0, b"")
+
+
 def test_pieces_under_way_are_not_asked_for_twice() -> None:
     file = Assembly(1000)
     file.take(200, bytes(300))

@@ -48,6 +48,13 @@ def test_no_path_leads_out(path: bytes, op: Op) -> None:
     assert error(Vehicle().ask(op, path)) in (FtpError.NOT_FOUND, FtpError.PROTECTED)
 
 
+@pytest.mark.parametrize(
+    "path", [b"..", b".", b"/..", b"/logs/..", b"/logs/.", b"../..", b"logs/../1.bin", b"/logs/a\\b"]
+)
+def test_no_folder_ever_sees_a_name_that_leads_out(path: bytes) -> None:
+    assert Vehicle().tree.find(path) is None
+
+
 @given(st.binary(max_size=239))
 def test_only_names_that_are_served_are_found(path: bytes) -> None:
     place = Vehicle().tree.find(path)
