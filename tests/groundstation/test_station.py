@@ -276,7 +276,7 @@ def test_quit_sends_neutral_five_times_and_finishes() -> None:
     assert {x for _, x, _ in demands} == {0}
     assert len({at for at, _, _ in demands}) == 5
     cockpit.run(2.0)
-    assert len(cockpit.demands(quitting + 0.001)) == 5
+    assert cockpit.demands(quitting + 0.001) == demands
     assert not [at for at, _ in cockpit.vehicle.all(m.Heartbeat) if at > quitting + 0.3]
 
 
