@@ -12,7 +12,7 @@ from groundstation.commanding import Commander
 from groundstation.driving import Driving
 from groundstation.fleet import Contact, Fleet
 from groundstation.inquiry import Inquiry
-from groundstation.links import LinkBook, problem
+from groundstation.links import LinkBook, Troubles
 from groundstation.operator import Operator
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.style import Style
@@ -64,7 +64,7 @@ class Station:
         self._heartbeat_due = 0.0
         self._greeted: set[Peer] = set()
         self._greet_until = now
-        self._told: set[str] = set()
+        self._troubles = Troubles()
         self._outbox: list[Outgoing] = []
         self._traffic = Traffic()
         self._number = 0
@@ -104,14 +104,13 @@ class Station:
         self._driving.advance(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take what the links say of themselves; a problem is told once."""
+        """Take what the links say of themselves; of a problem the beginning and the end are told."""
         selected = self._fleet.selected
         self._links.observe(reports, selected.state.system if selected else None, now)
         for report in reports:
-            trouble = problem(report)
-            if trouble and trouble not in self._told:
-                self._told.add(trouble)
-                self.log.add(now, "station", f"{report.name}: {trouble}", Severity.ERROR)
+            news = self._troubles.news(report)
+            if news:
+                self.log.add(now, "station", f"{report.name}: {news.text}", news.severity)
 
     def messages_to_send(self) -> list[Outgoing]:
         """What to send now; empties what it returns."""
