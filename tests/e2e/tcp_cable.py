@@ -1,0 +1,92 @@
+"""A TCP connection between two real programs that can be cut: a relay that copies bytes, closes, and refuses."""
+
+from __future__ import annotations
+
+import contextlib
+import selectors
+import socket
+import threading
+
+STEP = 0.005
+"""s at most between two looks."""
+
+
+class TcpCable:
+    """Programs connect to `port`; what they say goes to whoever listens on `target` of this machine, and back."""
+
+    def __init__(self, target: int) -> None:
+        self._target = target
+        self._running = True
+        self._listener = _listening(0)
+        self.port: int = self._listener.getsockname()[1]
+        self._pairs: dict[socket.socket, socket.socket] = {}
+        self._lock = threading.Lock()
+        self._turn = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="tcp cable", daemon=True)
+        self._thread.start()
+
+    def unplug(self) -> None:
+        """Close every connection and refuse new ones."""
+        with self._lock:
+            self._listener.close()
+            for one in list(self._pairs):
+                self._end(one)
+
+    def plug(self) -> None:
+        """Take connections again, on the same port."""
+        with self._lock:
+            self._listener = _listening(self.port)
+
+    def close(self) -> None:
+        """End the cable."""
+        self._running = False
+        self._thread.join(5)
+        self.unplug()
+
+    def _run(self) -> None:
+        while self._running:
+            with self._lock, selectors.DefaultSelector() as watch:
+                for each in (self._listener, *self._pairs):
+                    if each.fileno() >= 0:
+                        watch.register(each, selectors.EVENT_READ)
+                ready = watch.select(STEP) if watch.get_map() else []
+                for key, _ in ready:
+                    self._serve(key.fileobj)  # type: ignore[arg-type]
+            self._turn.wait(0.001)  # so that unplug() gets the lock
+
+    def _serve(self, ready: socket.socket) -> None:
+        if ready is self._listener:
+            one, _ = self._listener.accept()
+            other = socket.create_connection(("127.0.0.1", self._target), timeout=1.0)
+            self._pairs |= {one: other, other: one}
+            return
+        if ready not in self._pairs:
+            return
+        with contextlib.suppress(OSError):
+            data = ready.recv(65536)
+            if data:
+                self._pairs[ready].sendall(data)
+                return
+        self._end(ready)
+
+    def _end(self, one: socket.socket) -> None:
+        other = self._pairs.pop(one, None)
+        if other is not None:
+            self._pairs.pop(other, None)
+            with contextlib.suppress(OSError):
+                other.close()
+        one.close()
+
+
+def _listening(port: int) -> socket.socket:
+    sock = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    sock.bind(("127.0.0.1", port))
+    sock.listen(4)
+    return sock
+
+
+def free_tcp_port() -> int:
+    """A TCP port on loopback that nobody uses now."""
+    with _listening(0) as sock:
+        return int(sock.getsockname()[1])
