@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
+from typing import NoReturn
 
 from platformdirs import user_log_path
 
@@ -48,6 +49,13 @@ key map file (--keys my.toml): replaces the keys of the actions it names
 
 class UsageError(Exception):
     """The user's mistake, in one line."""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says a mistake in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"groundstation: {message} (groundstation --help shows how)\n")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -124,8 +132,8 @@ def _speed(text: str) -> float:
     return value
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+def _parser() -> _Parser:
+    parser = _Parser(
         prog="groundstation",
         description="Drive a MAVLink rover from the terminal.",
         epilog=EXAMPLES,

@@ -76,7 +76,10 @@ def test_wrong_options(capsys: pytest.CaptureFixture[str], arguments: list[str],
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     assert caught.value.code == 2
-    assert words in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert words in error
+    assert error.startswith("groundstation: ")
+    assert error.count("\n") == 1
 
 
 def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,0 +1,188 @@
+"""Mistakes on the command lines of the real programs: exit code 2, one line that names the thing, no traceback.
+
+The words of each message are tested beside its code; here it is that nothing else is said, in a process of its own.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import select
+import socket
+import struct
+import subprocess
+import sys
+import termios
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+pytestmark = [pytest.mark.e2e, pytest.mark.timeout(60)]
+
+ROOT = Path(__file__).resolve().parents[2]
+SIZE = (80, 24)
+WITHIN = 30.0
+"""s: Python's start on a busy machine."""
+
+
+def run(words: list[str], folder: Path) -> tuple[int, str, str]:
+    """Exit code, what was printed, what was complained of. Started in an empty folder, without a terminal."""
+    done = subprocess.run(
+        [sys.executable, "-m", *words],
+        capture_output=True,
+        text=True,
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdin=subprocess.DEVNULL,
+        timeout=WITHIN,
+        check=False,
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
+def run_in_terminal(words: list[str], folder: Path, size: tuple[int, int] = SIZE) -> tuple[int, str, str]:
+    """The same in a terminal of this size; only stderr is no terminal, so that the two can be told apart."""
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+    environment = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "LINES")}
+    with subprocess.Popen(
+        [sys.executable, "-m", *words],
+        stdin=theirs,
+        stdout=theirs,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=folder,
+        env=environment | {"PYTHONPATH": str(ROOT), "TERM": "xterm-256color"},
+    ) as process:
+        os.close(theirs)
+        _, complaint = process.communicate(timeout=WITHIN)
+    drawn = os.read(ours, 65536).decode() if select.select([ours], [], [], 0)[0] and _readable(ours) else ""
+    os.close(ours)
+    return process.returncode, drawn, complaint
+
+
+def _readable(terminal: int) -> bool:
+    """Is there anything to read? A terminal whose program has ended says so by an error."""
+    (waiting,) = struct.unpack("i", fcntl.ioctl(terminal, termios.FIONREAD, b"\0\0\0\0"))
+    return int(waiting) > 0
+
+
+def assert_one_line(result: tuple[int, str, str], program: str, *names: str) -> None:
+    code, printed, complaint = result
+    assert code == 2, result
+    assert printed == ""
+    assert complaint.startswith(f"{program}: "), complaint
+    assert complaint.endswith("\n")
+    assert complaint.count("\n") == 1, complaint
+    assert "Traceback" not in complaint
+    for name in names:
+        assert name in complaint
+
+
+@pytest.fixture
+def taken() -> Iterator[dict[str, str]]:
+    """Ports of loopback that somebody else has, by the kind of socket."""
+    with ExitStack() as stack:
+        ports = {}
+        for name, kind in (("udp", socket.SOCK_DGRAM), ("tcp", socket.SOCK_STREAM)):
+            sock = stack.enter_context(socket.socket(socket.AF_INET, kind))
+            sock.bind(("127.0.0.1", 0))
+            if kind == socket.SOCK_STREAM:
+                sock.listen(1)
+            ports[name] = str(sock.getsockname()[1])
+        yield ports
+
+
+ENDPOINTS = [
+    ("carrier:pigeon", ["'carrier:pigeon'", "udpin:HOST:PORT", "serial:PATH:BAUD"]),
+    ("udpn:127.0.0.1:14550", ["did you mean udpin:?"]),
+    ("14550", ["'14550'"]),
+    ("udpin:127.0.0.1", ["'udpin:127.0.0.1'", "udpin:HOST:PORT"]),
+    ("udpin:127.0.0.1:0", ["port '0'", "1 to 65535"]),
+    ("tcpout:127.0.0.1:99999", ["port '99999'", "1 to 65535"]),
+    ("udpout:127.0.0.1:http", ["port 'http'"]),
+    ("serial:/dev/ttyUSB0", ["serial:PATH:BAUD"]),
+    ("serial:ttyUSB0:57600", ["serial:/dev/ttyUSB0:57600"]),
+    ("serial:/dev/ttyUSB0:fast", ["baud rate 'fast'"]),
+    ("serial:/dev/null:57600", ["/dev/null is no serial port"]),
+    ("serial:/tmp:57600", ["/tmp is no serial port"]),
+    ("udpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
+    ("tcpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
+    ("udpin:192.0.2.1:14550", ["192.0.2.1"]),
+]
+"""Endpoint -> what the line must name. The last one is an address of nobody's machine (RFC 5737)."""
+
+
+@pytest.mark.parametrize(("endpoint", "names"), ENDPOINTS, ids=[endpoint for endpoint, _ in ENDPOINTS])
+def test_endpoints_of_the_ground_station(endpoint: str, names: list[str], tmp_path: Path) -> None:
+    assert_one_line(run_in_terminal(["groundstation", endpoint], tmp_path), "groundstation", *names)
+
+
+@pytest.mark.parametrize(("endpoint", "names"), ENDPOINTS, ids=[endpoint for endpoint, _ in ENDPOINTS])
+def test_endpoints_of_the_vehicle(endpoint: str, names: list[str], tmp_path: Path) -> None:
+    assert_one_line(run(["vehicle", "--sim", endpoint], tmp_path), "vehicle", *names)
+
+
+@pytest.mark.parametrize("kind", ["udp", "tcp"])
+def test_a_port_in_use(kind: str, taken: dict[str, str], tmp_path: Path) -> None:
+    endpoint = f"{kind}in:127.0.0.1:{taken[kind]}"
+    assert_one_line(run_in_terminal(["groundstation", endpoint], tmp_path), "groundstation", endpoint, "in use")
+    assert_one_line(run(["vehicle", "--sim", endpoint], tmp_path), "vehicle", endpoint, "in use")
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [
+        ("--fly", ["--fly"]),
+        ("--speed 9", ["'9'", "0.1 to 1.0"]),
+        ("--speed nan", ["'nan'"]),
+        ("--system 0", ["'0'", "1 to 255"]),
+        ("--system 300", ["'300'", "1 to 255"]),
+        ("--system", ["--system"]),
+        ("--keys emacs", ["'emacs'", "standard, teleop"]),
+        ("--keys /nowhere/keys.toml", ["/nowhere/keys.toml"]),
+        ("--style wild", ["'wild'", "hold"]),
+        ("--log-file /nowhere/station.log", ["/nowhere/station.log", "No such file"]),
+        ("--log-file /tmp", ["/tmp", "directory"]),
+    ],
+)
+def test_options_of_the_ground_station(words: str, names: list[str], tmp_path: Path) -> None:
+    assert_one_line(run_in_terminal(["groundstation", *words.split()], tmp_path), "groundstation", *names)
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [
+        ("--sim --fly", ["--fly"]),
+        ("--sim --system 0", ["'0'", "1 to 255"]),
+        ("--sim --system 300", ["'300'", "1 to 255"]),
+        ("--sim --param SPEED=9", ["'SPEED'"]),
+        ("--sim --param SPEED_MAX=fast", ["SPEED_MAX", "'fast'"]),
+        ("--sim --log-file /nowhere/vehicle.log", ["/nowhere/vehicle.log", "No such file"]),
+        ("--sim --motor-log /nowhere/motors.log", ["/nowhere/motors.log", "No such file"]),
+        ("--motors nonsense udpout:127.0.0.1:14550", ["'nonsense'", "simulated", "module:Class"]),
+        ("--motors no_such_module:Motors udpout:127.0.0.1:14550", ["no_such_module"]),
+        ("--motors os:Nothing udpout:127.0.0.1:14550", ["os:Nothing"]),
+        ("--motors simulated", ["endpoint"]),
+        ("udpout:127.0.0.1:14550", ["--motors", "--sim"]),
+    ],
+)
+def test_options_of_the_vehicle(words: str, names: list[str], tmp_path: Path) -> None:
+    assert_one_line(run(["vehicle", *words.split()], tmp_path), "vehicle", *names)
+
+
+def test_not_a_terminal(tmp_path: Path) -> None:
+    assert_one_line(run(["groundstation", "udpin:127.0.0.1:14999"], tmp_path), "groundstation", "is not a terminal")
+
+
+def test_a_terminal_that_is_too_small(tmp_path: Path) -> None:
+    result = run_in_terminal(["groundstation", "udpin:127.0.0.1:14999"], tmp_path, size=(30, 8))
+    assert_one_line(result, "groundstation", "30x8", "80x24")
+
+
+def test_a_key_map_that_is_no_toml(tmp_path: Path) -> None:
+    (tmp_path / "keys.toml").write_text("[keys\n")
+    assert_one_line(run_in_terminal(["groundstation", "--keys", "keys.toml"], tmp_path), "groundstation", "keys.toml")
