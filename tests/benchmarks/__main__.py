@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks import cost, framer, key_to_motor, link_loss, machine, receive_path
+from tests.benchmarks import bridge, cost, framer, key_to_motor, link_loss, machine, receive_path
 from tests.benchmarks.figures import BenchmarkError, Options, Report
 from tests.benchmarks.tables import markdown
 
@@ -23,6 +23,7 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "receive_path": (receive_path.run, "the vehicle's work on one demand, from bytes to outputs"),
     "cost": (cost.run, "start-up time, memory and CPU of both programs"),
     "key_to_motor": (key_to_motor.run, "key byte on the terminal to motor outputs, against the common hobby form"),
+    "bridge": (bridge.run, "the bridge as a router, beside MAVProxy, pymavlink and C"),
     "link_loss": (link_loss.run, "the same over a network that delays and loses"),
 }
 """Name -> what runs it, and what it measures. To add one: a module with `run(Options) -> Report` and a line here."""
