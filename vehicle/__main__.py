@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 import difflib
 import math
+import os
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from link.endpoint import EndpointError, endpoint_help, parse
@@ -151,7 +153,21 @@ def _settings(asked: argparse.Namespace, config: Config, parser: _Parser) -> Set
         pinned=pinned,
         params={**(SIMULATION_PARAMS if asked.sim else {}), **dict(asked.param)},
         motor_log=asked.motor_log or config.log.motors,
+        state=_state(asked, config),
     )
+
+
+def _state(asked: argparse.Namespace, config: Config) -> Path | None:
+    """Where parameters are kept. A simulation keeps nothing, unless it is told where."""
+    if asked.state or asked.sim:
+        return Path(asked.state) if asked.state else None
+    if config.state:
+        return Path(config.state)
+    if "STATE_DIRECTORY" in os.environ:  # from systemd's StateDirectory=
+        return Path(os.environ["STATE_DIRECTORY"].partition(":")[0])
+    from platformdirs import user_state_path
+
+    return user_state_path("mavhelm")
 
 
 def _refuse_contradictions(asked: argparse.Namespace, config: Config, parser: _Parser) -> None:
@@ -249,6 +265,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--system": {"metavar": "N", "type": _system, "help": "MAVLink system id, 1 to 255 (default 1)"},
     "--param": {"metavar": "NAME=VALUE", "type": _param, "action": "append", "default": [],
                 "help": "set a parameter; repeatable"},
+    "--state": {"metavar": "FOLDER", "help": "keep parameters that are set there; a simulation keeps none otherwise"},
     "--motor-log": {"metavar": "FILE", "help": "append each change of the motors: CLOCK_MONOTONIC ns, throttles"},
     "--log-file": {"metavar": "FILE", "help": "append the log with times and tracebacks; stderr has the brief one"},
     "--verbose": {"action": "store_true", "help": "log more"},

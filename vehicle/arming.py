@@ -56,6 +56,11 @@ def _settings(facts: Facts) -> str | None:
     return None
 
 
+def _saved_settings(facts: Facts) -> str | None:
+    damage = facts.params.damage
+    return f"{damage}, defaults in force; set one to go on" if damage else None
+
+
 def _battery(facts: Facts) -> str | None:
     if facts.battery_silent:
         return "battery sensor is silent"
@@ -73,6 +78,7 @@ CHECKS: tuple[Check, ...] = (
     Check(_motor_driver, hard=True),
     Check(_running, hard=True),
     Check(_settings, hard=True),
+    Check(_saved_settings, hard=True),
     Check(_battery, hard=False),
     Check(_sticks, hard=False),
 )

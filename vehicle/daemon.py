@@ -14,6 +14,7 @@ import signal
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from link.endpoint import EndpointError
@@ -23,6 +24,7 @@ from vehicle.machine import Machine
 from vehicle.motors import MotorError, Motors, UnknownDriverError, open_motors
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
+from vehicle.param_store import ParamStore
 from vehicle.params import ParamError, Params
 from vehicle.rover import Rover
 from vehicle.sensors import NoSensors, Sensors
@@ -75,6 +77,8 @@ class Settings:
     params: Mapping[str, float] = field(default_factory=dict)
     """Parameters of this run."""
     motor_log: str | None = None
+    state: Path | None = None
+    """Folder that keeps what ground stations set; None: nothing is kept."""
 
 
 class SettingsError(Exception):
@@ -105,9 +109,12 @@ def _told(error: Exception) -> str:
 
 async def _serve(settings: Settings) -> int:
     now = asyncio.get_running_loop().time()
-    params = Params({**settings.pinned, **settings.params})
     with contextlib.ExitStack() as opened:
-        machine = _build(settings, params, Rover(params, now=now, wall_clock=time.time()), opened)
+        keeper = None if settings.state is None else ParamStore(settings.state)
+        params = _params(settings, keeper)
+        if keeper is not None:
+            opened.callback(keeper.close)
+        machine = _build(settings, params, Rover(params, now=now, wall_clock=time.time(), keeper=keeper), opened)
         try:
             return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]))
         except BaseException as error:
@@ -115,6 +122,22 @@ async def _serve(settings: Settings) -> int:
             raise
         finally:
             machine.close()
+
+
+def _params(settings: Settings, keeper: ParamStore | None) -> Params:
+    """Defaults, what was kept, the file of settings, this run: the later wins. Raises ParamError."""
+    params = Params(pinned=settings.pinned.keys())
+    for name, value in (keeper.values if keeper else {}).items():
+        try:
+            params.set(name, value)
+        except ParamError as error:  # of another version of this program
+            log.warning("a kept parameter is not used: %s", error)
+    for name, value in {**settings.pinned, **settings.params}.items():
+        params.set(name, value)
+    params.damage = keeper.damage if keeper else None
+    if params.damage:
+        log.warning("%s: all parameters that were set have their defaults, and nobody can arm", params.damage)
+    return params
 
 
 async def _drive(machine: Machine, endpoints: Sequence[str], system: int) -> int:

@@ -7,7 +7,7 @@ REAL32 parameters read the same in every ground station.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 
@@ -82,10 +82,13 @@ class ParamError(ValueError):
 
 
 class Params:
-    """The settings in force. They live in memory."""
+    """The settings in force. They live in memory; vehicle/param_store.py keeps what is set."""
 
-    def __init__(self, values: Mapping[str, float] | None = None) -> None:
-        """Defaults, with `values` in their place. Raises ParamError."""
+    def __init__(self, values: Mapping[str, float] | None = None, *, pinned: Collection[str] = ()) -> None:
+        """Defaults, with `values` in their place; no ground station changes the `pinned`. Raises ParamError."""
+        self.pinned = frozenset(pinned)
+        self.damage: str | None = None
+        """Why saved values could not be had; nobody arms before somebody has set one anew."""
         self._values = {parameter.name: float(parameter.default) for parameter in TABLE}
         for name, value in (values or {}).items():
             self.set(name, value)

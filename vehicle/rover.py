@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from link.core import LinkReport, Outgoing, Received
 from link.services.command import CommandServer
 from vehicle import status
+from vehicle.bandwidth import Bandwidth
 from vehicle.commands import Commands
 from vehicle.control import Control
 from vehicle.drive import Drive
@@ -16,7 +17,7 @@ from vehicle.estimator import Estimate, Estimator
 from vehicle.failsafe import Action
 from vehicle.fields import UINT8, UINT32, whole
 from vehicle.outputs import Outputs
-from vehicle.param_service import ParamService
+from vehicle.param_service import Keeper, ParamService
 from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.replies import Replies
@@ -35,8 +36,13 @@ ROUND_TRIP_UNKNOWN = m.UINT16_MAX
 class Rover:
     """A `link.core.Core`. Drive it with `receive` as messages come, `sense` with readings, `tick` at 50 Hz."""
 
-    def __init__(self, params: Params, *, now: float, wall_clock: float | None = None) -> None:
-        """`now` is the monotonic time of boot; `wall_clock` the Unix time at `now`, None where it is not known."""
+    def __init__(
+        self, params: Params, *, now: float, wall_clock: float | None = None, keeper: Keeper | None = None
+    ) -> None:
+        """`now` is the monotonic time of boot; `wall_clock` the Unix time at `now`, None where it is not known.
+
+        `keeper` remembers parameters that are set; without one they end with the program.
+        """
         self._params = params
         self._boot = now
         self._wall_clock = wall_clock
@@ -51,7 +57,16 @@ class Rover:
         self._drive = Drive(params, now)
         self._telemetry = Telemetry(now)
         self._replies = Replies(self._system, COMPONENT)
-        self._param_service = ParamService(params, self._texts, self._system, COMPONENT)
+        self._bandwidth = Bandwidth()
+        self._param_service = ParamService(
+            params,
+            self._control,
+            self._texts,
+            ids=(self._system, COMPONENT),
+            pacer=self._bandwidth.pacer,
+            armed=lambda: self._safety.armed,
+            keeper=keeper,
+        )
         self._commands = Commands(self._safety, self._control, self._texts)
         self._requests = Requests(self._telemetry, self._look)
         handlers = self._commands.handlers() | self._requests.handlers()
@@ -88,12 +103,15 @@ class Rover:
         late = self._safety.is_late(now)
         self._safety.update(now, self._drive.refused)
         self._move(now, late=late)
-        self._outgoing += self._param_service.tick()
+        self._outgoing += self._param_service.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves, about once a second."""
         if self._safety.state is State.OFF:
             return
+        self._bandwidth.observe(reports)
+        self._telemetry.limit(self._bandwidth.telemetry)
+        self._param_service.observe(now)
         for report in reports:
             self._outgoing.append(Outgoing(self._link_status(report)))
             for name in report.dialect_mismatch:

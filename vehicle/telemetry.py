@@ -6,8 +6,10 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 
 from dialects import messages as m
+from dialects.codec import MAX_FRAME
 from dialects.enums import DataStream
 from link.rate import TokenBucket
+from link.services.pacing import OVERHEAD
 from vehicle import motion, status
 from vehicle.view import View
 
@@ -21,6 +23,10 @@ PHASE = 0.02
 """s between the first messages of neighbouring streams, so that they do not come in one burst."""
 SLOWEST = 8.0
 """Largest factor by which a full radio stretches the intervals."""
+BYTES_BURST = 0.05
+"""s of a limit in bytes that may go at once, though always the longest message: on a slow link bursts are delays."""
+LEAST_ROOM = 0.1
+"""Share of the limit by which ordinary streams are slowed down where steady ones fill nearly all of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +46,11 @@ class Stream:
     """Its rate is not for others to choose."""
     steady: bool = False
     """A full radio does not slow it down."""
+
+    @property
+    def size(self) -> int:
+        """Bytes on the wire, at most."""
+        return int(self.message.unpacker.size) + OVERHEAD
 
 
 STREAMS: tuple[Stream, ...] = (
@@ -74,6 +85,8 @@ STREAMS: tuple[Stream, ...] = (
 """Stream by stream, the most important first. What only one asks for is in vehicle/requests.py."""
 
 BY_ID: dict[int, Stream] = {stream.message.id: stream for stream in STREAMS}
+CHANGING = tuple(stream for stream in STREAMS if stream.change)
+"""To be looked at in every cycle; the others only when one is due."""
 
 
 @dataclass(slots=True)
@@ -95,11 +108,20 @@ class Telemetry:
             for index, stream in enumerate(STREAMS)
         }
         self._bucket = TokenBucket(BUDGET, BURST)
+        self._bytes: TokenBucket | None = None
+        self._limit: float | None = None
         self._stretch = 1.0
+        self._narrow = 1.0
+        """Factor on the intervals for a slow link."""
+        self._earliest = now
 
     def due(self, view: View) -> list[m.Message]:
         """The messages that are due at the time of `view`."""
-        found = (self._next(stream, self._clocks[stream.message.id], view) for stream in STREAMS)
+        everything = view.now >= self._earliest
+        streams = STREAMS if everything else CHANGING
+        found = [self._next(stream, self._clocks[stream.message.id], view) for stream in streams]
+        if everything:
+            self._earliest = min(clock.due for clock in self._clocks.values() if clock.interval is not None)
         return [message for message in found if message is not None]
 
     def interval(self, message_id: int) -> float | None:
@@ -112,7 +134,8 @@ class Telemetry:
             return
         clock = self._clocks[message_id]
         clock.interval = None if interval is None else max(FASTEST, interval)
-        clock.due = now
+        clock.due = self._earliest = now
+        self._narrow = self._narrowed()
 
     def set_default(self, message_id: int, now: float) -> None:
         """Back to the table's rate."""
@@ -123,6 +146,13 @@ class Telemetry:
         for stream in STREAMS:
             if stream.group is not None and group in (DataStream.ALL, stream.group):
                 self.set_interval(stream.message.id, _interval(rate), now)
+
+    def limit(self, rate: float | None) -> None:
+        """Bytes/s that all streams together may take; None for no limit. They slow down alike, steady ones last."""
+        if rate != self._limit:
+            self._limit = rate
+            self._bytes = None if rate is None else _bytes_bucket(rate)
+            self._narrow = self._narrowed()
 
     def radio(self, free: int) -> None:
         """RADIO_STATUS: `free` percent of the radio's buffer. Slower when it fills, faster again when it is empty."""
@@ -135,14 +165,35 @@ class Telemetry:
         on_time = clock.interval is not None and view.now >= clock.due
         key = stream.change(view) if stream.change else clock.told
         changed = key != clock.told and view.now - clock.sent >= CHANGE_GAP
-        if not (on_time or changed) or not (stream.fixed or self._bucket.take(view.now)):
+        if not (on_time or changed) or not (stream.fixed or self._room(stream, view.now)):
             return None
         clock.sent, clock.told = view.now, key
         if on_time and clock.interval is not None:
-            step = clock.interval if stream.steady else clock.interval * self._stretch
+            step = clock.interval if stream.steady else clock.interval * max(self._stretch, self._narrow)
             # After a pause the missed ones are left out.
             clock.due = max(clock.due + step, view.now + FASTEST)
         return stream.build(view)
+
+    def _room(self, stream: Stream, now: float) -> bool:
+        return self._bucket.take(now) and (self._bytes is None or self._bytes.take(now, stream.size))
+
+    def _narrowed(self) -> float:
+        if self._limit is None:
+            return 1.0
+        steady = sum(self._load(stream) for stream in STREAMS if stream.steady)
+        others = sum(self._load(stream) for stream in STREAMS if not stream.steady)
+        return max(1.0, others / max(self._limit - steady, self._limit * LEAST_ROOM))
+
+    def _load(self, stream: Stream) -> float:
+        """Bytes/s of a stream at its own interval."""
+        interval = self._clocks[stream.message.id].interval
+        return 0.0 if interval is None else stream.size / interval
+
+
+def _bytes_bucket(rate: float) -> TokenBucket:
+    """What fixed streams leave of `rate`: they do not ask."""
+    fixed = sum(stream.size * stream.rate for stream in STREAMS if stream.fixed)
+    return TokenBucket(max(0.0, rate - fixed), max(rate * BYTES_BURST, MAX_FRAME))
 
 
 def _interval(rate: float) -> float | None:

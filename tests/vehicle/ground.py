@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import select
 import socket
 import subprocess
@@ -107,7 +108,8 @@ class Vehicle:
     def __init__(self, folder: Path, *words: str) -> None:
         self._motor_log = folder / "motors.log"
         command = [sys.executable, "-m", "vehicle", *words, "--motor-log", str(self._motor_log)]
-        self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        environment = {**os.environ, "XDG_STATE_HOME": str(folder)}  # parameters that you have set are not the tests'
+        self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
 
     def ready(self) -> str:
         """The line that says so."""

@@ -1,0 +1,126 @@
+"""On a slow link telemetry leaves room for what matters: bytes counted in virtual time, all streams asked for."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from dialects import codec
+from dialects import messages as m
+from dialects.enums import Command, Result
+from link.core import LinkReport
+from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, Bench
+from vehicle.telemetry import STREAMS
+
+SIK = 5760.0
+"""bytes/s: 57600 baud."""
+STREAMED = tuple(stream.message for stream in STREAMS)
+
+
+def report(capacity: float | None, *, index: int = 0, peers: int = 1, headroom: float = 1.0) -> LinkReport:
+    return LinkReport("serial", index=index, peers=peers, capacity=capacity, headroom=headroom)
+
+
+def streamed(bench: Bench, seconds: float, *reports: LinkReport) -> float:
+    """Bytes/s of telemetry, with a driver who changes the demand all the time."""
+    before = len(bench.sent)
+    for step in range(int(seconds * 10)):
+        if step % 10 == 0:
+            bench.rover.observe(reports, bench.now)
+        bench.wait(0.1, AHEAD if step % 2 else NEUTRAL)
+    sizes = [len(codec.encode_payload(each)) + 12 for each in bench.sent[before:] if isinstance(each, STREAMED)]
+    return sum(sizes) / seconds
+
+
+def greedy(rate: int = 50) -> Bench:
+    """A ground station that wants all there is, and drives."""
+    bench = Bench()
+    bench.readings = EVERYTHING
+    bench.drive()
+    bench.say(m.RequestDataStream(1, 1, 0, rate, 1))
+    for stream in STREAMS:
+        bench.command(Command.SET_MESSAGE_INTERVAL, stream.message.id, 1e6 / rate)
+    return bench
+
+
+def test_without_a_limit_it_would_be_far_too_much() -> None:
+    assert streamed(greedy(), 10.0, report(None)) > 0.7 * SIK
+
+
+@pytest.mark.parametrize("capacity", [960.0, SIK, 11520.0])
+def test_all_streams_together_stay_below_their_share(capacity: float) -> None:
+    bench = greedy()
+    streamed(bench, 2.0, report(capacity))
+    share = streamed(bench, 20.0, report(capacity)) / capacity
+    assert 0.4 < share <= 0.6
+
+
+def test_nothing_starves() -> None:
+    bench = greedy()
+    streamed(bench, 2.0, report(SIK))
+    bench.sent.clear()
+    streamed(bench, 20.0, report(SIK))
+    counts = {kind: len(bench.all(kind)) for kind in STREAMED if bench.all(kind)}
+    assert len(counts) >= 17
+    assert counts[m.Heartbeat] in range(20, 23)
+    assert min(counts.values()) >= 20
+    assert counts[m.RoverDriveStatus] >= 5 * 20
+
+
+def test_the_usual_streams_fit_a_usual_radio_unchanged() -> None:
+    bench = Bench()
+    bench.readings = EVERYTHING
+    streamed(bench, 2.0, report(SIK))
+    before = len(bench.all(m.Attitude))
+    streamed(bench, 10.0, report(SIK))
+    assert len(bench.all(m.Attitude)) - before == pytest.approx(40, abs=1)
+
+
+def test_the_slowest_link_with_a_peer_counts() -> None:
+    bench = greedy()
+    links = (report(SIK, index=0), report(960.0, index=1, peers=0), report(None, index=2), report(2880.0, index=3))
+    streamed(bench, 2.0, *links)
+    assert 0.4 < streamed(bench, 20.0, *links) / 2880.0 <= 0.6
+
+
+def test_a_radio_that_asks_for_less_gets_less_and_later_all_again() -> None:
+    bench = greedy()
+    streamed(bench, 2.0, report(SIK, headroom=0.25))
+    assert 0.08 < streamed(bench, 10.0, report(SIK, headroom=0.25)) / SIK <= 0.6 * 0.25 + 0.01
+    streamed(bench, 2.0, report(SIK))
+    assert streamed(bench, 10.0, report(SIK)) / SIK > 0.4
+
+
+def test_a_headroom_that_changes_each_second_is_no_way_around() -> None:
+    bench = greedy()
+    total = 0.0
+    for step in range(20):
+        total += streamed(bench, 1.0, report(SIK, headroom=0.9 if step % 2 else 1.0))
+    assert total / 20 / SIK <= 0.6 * 1.05
+
+
+def test_when_the_slow_link_is_gone_it_is_fast_again() -> None:
+    bench = greedy()
+    streamed(bench, 5.0, report(SIK))
+    assert streamed(bench, 5.0, report(SIK, peers=0), report(None, index=1)) > 0.7 * SIK
+
+
+def test_the_demand_is_told_at_once_on_a_slow_link() -> None:
+    """The driver sees what the vehicle obeys, and echoes its time (OPR_ECHO_MAX 0.45 s)."""
+    bench = greedy()
+    streamed(bench, 2.0, report(SIK))
+    times = []
+    for _ in range(100):
+        before = len(bench.all(m.RoverDriveStatus))
+        bench.wait(0.1, AHEAD)
+        if len(bench.all(m.RoverDriveStatus)) > before:
+            times.append(bench.now)
+    gaps = [later - earlier for earlier, later in itertools.pairwise(times)]
+    assert max(gaps) < 0.3
+
+
+def test_commands_are_answered_whatever_telemetry_takes() -> None:
+    bench = greedy()
+    streamed(bench, 5.0, report(SIK))
+    assert bench.command(Command.REQUEST_MESSAGE, m.Attitude.id, system=DRIVER) is Result.ACCEPTED
