@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from groundstation import client as client_module
 from groundstation.client import StationClient
+from groundstation.intents import SetStyle
 from groundstation.keymap import KEYMAPS, Keymap
+from groundstation.processes import start_module
 from groundstation.ui.app import HelmApp
 from tests.e2e.relay import free_port
+from tests.groundstation.broken_helm import ORDER
 from tests.groundstation.udp_vehicle import UdpVehicle
+from tests.groundstation.ui.frames import text
 from tests.groundstation.ui.ptys import until
 
 pytestmark = pytest.mark.e2e
@@ -38,3 +44,21 @@ async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path:
                 assert {x for _, x in vehicle.demands(stopped)} == {0}
     finally:
         client.close()
+
+
+async def test_a_bug_in_the_station_is_told_on_the_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    def start(module: str, *arguments: Any, **options: Any) -> Any:
+        return start_module("tests.groundstation.broken_helm", *arguments, **options)
+
+    monkeypatch.setattr(client_module, "start_module", start)
+    station = StationClient.start([f"udpin:127.0.0.1:{free_port()}"])
+    app = HelmApp(station, Keymap("standard", KEYMAPS["standard"]))
+    try:
+        async with app.run_test(size=(80, 24)) as pilot:
+            await until(lambda: app.drive.snapshot.number > 0)
+            station.send(SetStyle(style=ORDER + "tick"))
+            await until(lambda: not station.alive)
+            await until(lambda: "the station broke (ZeroDivisionError" in text(app))
+            await pilot.pause()
+    finally:
+        assert station.close() == 1
