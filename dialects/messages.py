@@ -24,6 +24,9 @@ RadioStatus = rover.MAVLink_radio_status_message
 # Demands
 ManualControl = rover.MAVLink_manual_control_message
 RcChannelsOverride = rover.MAVLink_rc_channels_override_message
+SetPositionTargetLocalNed = rover.MAVLink_set_position_target_local_ned_message
+SetPositionTargetGlobalInt = rover.MAVLink_set_position_target_global_int_message
+SetAttitudeTarget = rover.MAVLink_set_attitude_target_message
 SetMode = rover.MAVLink_set_mode_message
 RoverOperatorPresence = rover.MAVLink_rover_operator_presence_message
 
@@ -68,11 +71,13 @@ GpsRawInt = rover.MAVLink_gps_raw_int_message
 ServoOutputRaw = rover.MAVLink_servo_output_raw_message
 RcChannels = rover.MAVLink_rc_channels_message
 EstimatorStatus = rover.MAVLink_estimator_status_message
+PositionTargetGlobalInt = rover.MAVLink_position_target_global_int_message
 HomePosition = rover.MAVLink_home_position_message
 ExtendedSysState = rover.MAVLink_extended_sys_state_message
 AutopilotVersion = rover.MAVLink_autopilot_version_message
 ProtocolVersion = rover.MAVLink_protocol_version_message
 AvailableModes = rover.MAVLink_available_modes_message
+AvailableModesMonitor = rover.MAVLink_available_modes_monitor_message
 CurrentMode = rover.MAVLink_current_mode_message
 ControlStatus = rover.MAVLink_control_status_message
 RoverDriveStatus = rover.MAVLink_rover_drive_status_message

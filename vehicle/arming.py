@@ -17,6 +17,8 @@ class Facts:
     state: State
     terminated: bool = False
     fault: str | None = None
+    mode: str | None = None
+    """Why the mode cannot work now."""
     battery_low: bool = False
     battery_critical: bool = False
     battery_silent: bool = False
@@ -61,6 +63,10 @@ def _saved_settings(facts: Facts) -> str | None:
     return f"{damage}, defaults in force; set one to go on" if damage else None
 
 
+def _mode(facts: Facts) -> str | None:
+    return f"the mode cannot work: {facts.mode}" if facts.mode else None
+
+
 def _battery(facts: Facts) -> str | None:
     if facts.battery_silent:
         return "battery sensor is silent"
@@ -79,6 +85,7 @@ CHECKS: tuple[Check, ...] = (
     Check(_running, hard=True),
     Check(_settings, hard=True),
     Check(_saved_settings, hard=True),
+    Check(_mode, hard=True),
     Check(_battery, hard=False),
     Check(_sticks, hard=False),
 )

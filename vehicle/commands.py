@@ -15,7 +15,7 @@ from dialects.modes import Mode
 from link.core import Outgoing, Received
 from link.services.command import CommandRequest, Handler
 from vehicle.control import Control
-from vehicle.modes import asked_mode
+from vehicle.modes import asked_mode, standard_mode
 from vehicle.safety import Safety
 from vehicle.texts import Texts
 
@@ -96,10 +96,13 @@ class Commands:
         return self._choose(asked_mode(base, main, sub), words, request.system, request.introduced, now)
 
     def _set_standard_mode(self, request: CommandRequest, now: float) -> Result:
-        """None of the standard modes is one of ours; the specification wants FAILED for that."""
+        """SAFE_RECOVERY is RTL; for one that we have not the specification wants FAILED."""
         standard = request.params[0]
         if not math.isfinite(standard):
             return Result.DENIED
+        mode = standard_mode(standard)
+        if mode is not None:
+            return self._choose(mode, mode.name, request.system, request.introduced, now)
         return self._refuse("standard mode", request, f"{standard:g} is not offered", now, Severity.NOTICE)
 
     def _choose(self, mode: Mode | None, words: str, system: int, introduced: bool, now: float) -> Result:

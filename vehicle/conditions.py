@@ -1,14 +1,20 @@
-"""What counts as a failure: one function a condition. What follows is vehicle/failsafe.py, RULES."""
+"""What counts as a failure: one function a condition. What follows is vehicle/failsafe.py, RULES.
+
+What sensors and self-driving find wrong is in vehicle/hazards.py.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from dialects.enums import Failsafe
 from vehicle.battery import BatteryWatch
 from vehicle.control import Control
 from vehicle.params import Params
+
+GO_ON = 2
+"""FS_GCS_ENABLE: a mission does not end with the ground station's voice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +29,10 @@ class Scene:
     latched: Failsafe
     """What has put the mode away: it still counts, though the mode obeys no demand any more."""
     armed_at: float
+    hazards: Mapping[Failsafe, float]
+    """What sensors and self-driving found (hazards.py)."""
+    alone: bool
+    """The mode may go on without a ground station, where FS_GCS_ENABLE says so."""
 
 
 def _manual_loss(scene: Scene, now: float) -> float | None:
@@ -36,7 +46,8 @@ def _manual_loss(scene: Scene, now: float) -> float | None:
 
 
 def _gcs_loss(scene: Scene, now: float) -> float | None:
-    if not scene.params["FS_GCS_ENABLE"] or not scene.control.lost(now):
+    enabled = scene.params["FS_GCS_ENABLE"]
+    if not enabled or (enabled == GO_ON and scene.alone) or not scene.control.lost(now):
         return None
     return now - scene.control.silence(now) + scene.params["FS_GCS_TIMEOUT"]
 
@@ -77,4 +88,4 @@ CONDITIONS: dict[Failsafe, Callable[[Scene, float], float | None]] = {
 def found(scene: Scene, now: float) -> dict[Failsafe, float]:
     """The conditions that hold, each with the time it began."""
     began = {cause: find(scene, now) for cause, find in CONDITIONS.items()}
-    return {cause: at for cause, at in began.items() if at is not None}
+    return {cause: at for cause, at in began.items() if at is not None} | dict(scene.hazards)

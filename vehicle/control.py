@@ -36,7 +36,7 @@ class Control:
         self.override = Override()
         self._params = params
         self._texts = texts
-        self._system = system
+        self.system = system
         self._boot = boot
         self._heard = boot
 
@@ -117,7 +117,7 @@ class Control:
 
     def operator(self, received: Received, message: RoverOperatorPresence, now: float) -> None:
         """Take the word on the operator that goes before a demand. It needs no text where it is ignored."""
-        if message.target_system != self._system or not received.introduced or received.system != self.owner:
+        if message.target_system != self.system or not received.introduced or received.system != self.owner:
             return
         if self.presence.take(message, now - self._boot, now):
             self.close()
@@ -167,7 +167,7 @@ class Control:
         return True
 
     def _listens(self, received: Received, target: int, now: float) -> bool:
-        if target != self._system or not received.introduced:
+        if target != self.system or not received.introduced:
             return False
         if received.system == self.owner:
             return True

@@ -29,6 +29,8 @@ class Demand:
     """Packet sequence number of the message."""
     sideways: float | None = None
     """To the right, of vehicles that can; the others and most drivers have no such stick."""
+    direct: bool = False
+    """Made by the vehicle's own controllers: no dead band and no softness."""
 
     def neutral(self, band: float) -> bool:
         """All sticks are at rest."""

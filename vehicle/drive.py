@@ -54,12 +54,9 @@ class Drive:
     def _targets(self, demand: Demand | None, limited: bool) -> tuple[float, ...]:
         if demand is None:
             return (0.0,) * len(self._slews)
-        band = self._params["MAN_DEADBAND"] / 100
-        throttle = expo(deadband(demand.throttle or 0.0, band), self._params["MANUAL_EXPO"])
-        steering = expo(deadband(demand.steering or 0.0, band), self._params["MANUAL_STR_EXPO"])
-        sideways = self._cap(deadband(demand.sideways or 0.0, band), limited)
-        mix = self._params["MOT_STR_THR_MIX"]
-        mixed: Mixed = self.mixer.mix(self._cap(throttle, limited), steering, mix, sideways)
+        throttle, steering, sideways = shape(demand, self._params)
+        throttle, sideways = self._cap(throttle, limited), self._cap(sideways, limited)
+        mixed: Mixed = self.mixer.mix(throttle, steering, self._params["MOT_STR_THR_MIX"], sideways)
         if mixed.saturated:
             self.limits |= Limit.SATURATED
         return mixed.throttles
@@ -82,3 +79,16 @@ class Drive:
             self.limits |= Limit.SLEW
         if any(slew.waiting for slew in self._slews):
             self.limits |= Limit.REVERSE_DELAY
+
+
+def shape(demand: Demand, params: Params) -> tuple[float, float, float]:
+    """Throttle, steering and sideways as the driver means them: dead band and softness."""
+    throttle, steering, sideways = demand.throttle or 0.0, demand.steering or 0.0, demand.sideways or 0.0
+    if demand.direct:
+        return throttle, steering, sideways
+    band = params["MAN_DEADBAND"] / 100
+    return (
+        expo(deadband(throttle, band), params["MANUAL_EXPO"]),
+        expo(deadband(steering, band), params["MANUAL_STR_EXPO"]),
+        deadband(sideways, band),
+    )

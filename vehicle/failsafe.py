@@ -27,6 +27,11 @@ class Action(IntEnum):
     """Neutral, and the mode becomes HOLD: the driver has to choose another."""
     DISARM = 4
 
+    @property
+    def words(self) -> str:
+        """As the driver reads it."""
+        return ("warning", "half speed", "stopping", "HOLD", "disarmed")[self]
+
 
 @dataclass(frozen=True, slots=True)
 class Step:
@@ -35,13 +40,18 @@ class Step:
     after: str | float
     action: Action
     only_if: str | None = None
-    """A parameter that turns the step off when it is 0."""
+    """A parameter that turns the step off when it is 0 ..."""
+    value: float | None = None
+    """... or when it is not this."""
 
     def delay(self, params: Params) -> float:
         """s from the condition to the action; infinite where it is turned off."""
-        if self.only_if is not None and not params[self.only_if]:
+        if self.only_if is not None and not self._chosen(params[self.only_if]):
             return math.inf
         return params[self.after] if isinstance(self.after, str) else self.after
+
+    def _chosen(self, setting: float) -> bool:
+        return bool(setting) if self.value is None else setting == self.value
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +75,14 @@ RULES: dict[Failsafe, Rule] = {
         Step(0, Action.LIMIT), Step(0, Action.HOLD, only_if="FS_LOW_ACT"))),
     Failsafe.BATTERY_CRITICAL: Rule("battery critical", (
         Step(0, Action.HOLD), Step(10, Action.DISARM)), blocks_modes=True),
+    Failsafe.GUIDED_LOSS: Rule("setpoints lost", (
+        Step(0, Action.NEUTRAL), Step(4, Action.HOLD))),
+    Failsafe.POSITION: Rule("position lost", (
+        Step(0, Action.NEUTRAL), Step(1, Action.HOLD))),
+    Failsafe.TILT: Rule("tilted", (
+        Step(0.5, Action.DISARM),)),
+    Failsafe.BLOCKED: Rule("blocked", (
+        Step(2, Action.HOLD, only_if="FS_CRASH_CHECK"), Step(2, Action.DISARM, only_if="FS_CRASH_CHECK", value=2))),
 }  # fmt: skip
 """Condition -> what happens. A late control loop, a failed motor driver and the emergency stop act at once and are in
 vehicle/safety.py. A HOLD happens once, so that the driver can choose MANUAL again where the condition allows it."""

@@ -31,6 +31,11 @@ class Mixer:
     sideways: bool = False
     """It can move to the side without turning."""
 
+    @property
+    def driven(self) -> int:
+        """Motors, the first ones, that turn wheels; a steering servo does not."""
+        return sum(motor != "steering" for motor in self.motors)
+
 
 def skid(throttle: float, steering: float, mix: float, sideways: float = 0.0) -> Mixed:
     """Left, right. Beyond the limit `mix` (MOT_STR_THR_MIX) shares what there is: 0.5 cuts both, 1 keeps steering.

@@ -4,8 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import Enum
 
 from dialects.modes import Mode
+
+
+class Need(Enum):
+    """What a mode cannot do without."""
+
+    NOTHING = "nothing"
+    GYRO = "turn rate"
+    POSITION = "position"
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,19 +22,46 @@ class Offer:
     """What a mode does to the motors."""
 
     mode: Mode
-    manual: bool
-    """The driver's demand counts; else the motors are neutral."""
+    manual: bool = False
+    """The driver's demand counts."""
+    own: bool = False
+    """The vehicle drives by itself. With neither the motors are neutral."""
+    need: Need = Need.NOTHING
+    selectable: bool = True
+    """A ground station may ask for it."""
+    standard: int = 0
+    """MAV_STANDARD_MODE that it fits."""
+
+    @property
+    def moves(self) -> bool:
+        """Motors may turn in it."""
+        return self.manual or self.own
 
 
 OFFERED: dict[Mode, Offer] = {
-    Mode.MANUAL: Offer(Mode.MANUAL, manual=True),
-    Mode.HOLD: Offer(Mode.HOLD, manual=False),
+    offer.mode: offer
+    for offer in (
+        Offer(Mode.MANUAL, manual=True),
+        Offer(Mode.ACRO, manual=True, need=Need.GYRO),
+        Offer(Mode.HOLD),
+        Offer(Mode.LOITER, own=True, need=Need.POSITION),
+        Offer(Mode.RTL, own=True, need=Need.POSITION, standard=5),
+        Offer(Mode.SMART_RTL, own=True, need=Need.POSITION),
+        Offer(Mode.GUIDED, own=True),
+        Offer(Mode.INITIALISING, selectable=False),
+    )
 }
+"""The standard modes of the specification that a rover may use are SAFE_RECOVERY (5) and MISSION (6)."""
 
-PX4_ALIASES: dict[tuple[int, int], Mode] = {(4, 3): Mode.HOLD}
-"""PX4's (main, sub) pairs that MAVSDK sends to an autopilot it does not know; AUTO/LOITER is its hold().
+PX4_ALIASES: dict[tuple[int, int], Mode] = {
+    (4, 3): Mode.HOLD,
+    (4, 5): Mode.RTL,
+    (6, 0): Mode.GUIDED,
+}
+"""PX4's (main, sub) pairs that MAVSDK sends to an autopilot it does not know: hold(), return_to_launch() and offboard.
 
-Only pairs with a sub mode can be told from ArduRover's numbers (MAVSDK px4_custom_mode.hpp).
+Only pairs that are none of ArduRover's numbers can be told from them (MAVSDK px4_custom_mode.hpp); OFFBOARD is
+ArduRover's FOLLOW, which is not offered.
 """
 
 CUSTOM_MODE_ENABLED = 1
@@ -38,6 +74,12 @@ def asked_mode(base: float, main: float, sub: float = 0.0) -> Mode | None:
         return None
     if not int(base) & CUSTOM_MODE_ENABLED:
         return None
-    if sub:
-        return PX4_ALIASES.get((int(main), int(sub)))
-    return next((mode for mode in OFFERED if mode == int(main)), None)
+    alias = PX4_ALIASES.get((int(main), int(sub)))
+    if sub or alias is not None:
+        return alias
+    return next((mode for mode, offer in OFFERED.items() if offer.selectable and mode == int(main)), None)
+
+
+def standard_mode(number: float) -> Mode | None:
+    """The offered mode that is this MAV_STANDARD_MODE; None for the others."""
+    return next((mode for mode, offer in OFFERED.items() if offer.standard and offer.standard == number), None)

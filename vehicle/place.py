@@ -28,6 +28,16 @@ class Point(NamedTuple):
         return Point(self.north + distance * math.cos(bearing), self.east + distance * math.sin(bearing))
 
 
+class Home(NamedTuple):
+    """Where RTL goes: the first place on the globe, or the one that somebody has set."""
+
+    latitude: float
+    longitude: float
+    altitude: float
+    north: float
+    east: float
+
+
 class Origin(NamedTuple):
     """The place on the globe that is 0/0 on the ground."""
 

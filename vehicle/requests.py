@@ -52,16 +52,16 @@ class Requests:
         if number is None:
             return Result.DENIED
         if number == m.AvailableModes.id:
-            return self._available_modes(request)
+            return self._available_modes(request, now)
         if number == m.MessageInterval.id:
             return self._tell_interval(request, request.params[1])
         if number not in BY_ID:
             return Result.UNSUPPORTED
         return self._tell(request, BY_ID[number].build(self._look(now)))
 
-    def _available_modes(self, request: CommandRequest) -> Result:
+    def _available_modes(self, request: CommandRequest, now: float) -> Result:
         """Parameter 2: 0 all, else the index from 1."""
-        modes, index = status.available_modes(), request.params[1]
+        modes, index = status.available_modes(self._look(now)), request.params[1]
         if not (math.isfinite(index) and index == int(index) and 0 <= index <= len(modes)):
             return Result.DENIED
         for mode in [modes[int(index) - 1]] if index else modes:

@@ -6,17 +6,21 @@ from collections.abc import Sequence
 
 from dialects import messages as m
 from dialects.enums import Severity
+from dialects.modes import Mode
 from link.core import LinkReport, Outgoing, Received
 from link.services.command import CommandServer
 from vehicle import status
 from vehicle.bandwidth import Bandwidth
 from vehicle.commands import Commands
 from vehicle.control import Control
+from vehicle.demand import Demand
 from vehicle.drive import Drive
-from vehicle.estimator import Estimate, Estimator
 from vehicle.failsafe import Action
 from vehicle.fields import UINT8, UINT32, whole
-from vehicle.outputs import Outputs
+from vehicle.modes import OFFERED
+from vehicle.navigator import Navigator
+from vehicle.orders import Orders
+from vehicle.outputs import Outputs, Permit
 from vehicle.param_service import Keeper, ParamService
 from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
@@ -26,7 +30,7 @@ from vehicle.safety import Safety
 from vehicle.states import State
 from vehicle.telemetry import Telemetry
 from vehicle.texts import Texts
-from vehicle.view import Home, View
+from vehicle.view import View
 
 COMPONENT = 1
 """MAV_COMP_ID_AUTOPILOT1: QGroundControl makes a vehicle only of this one."""
@@ -48,13 +52,12 @@ class Rover:
         self._wall_clock = wall_clock
         self._system = int(params["MAV_SYSID"])
         self._readings = NO_READINGS
-        self._estimator = Estimator()
-        self._home: Home | None = None
         self._outgoing: list[Outgoing] = []
         self._texts = Texts()
         self._control = Control(params, self._texts, system=self._system, boot=now)
-        self._safety = Safety(params, self._control, self._texts, now)
         self._drive = Drive(params, now)
+        self._navigator = Navigator(params, self._drive.kind)
+        self._safety = Safety(params, self._control, self._texts, now, self._navigator.unready)
         self._telemetry = Telemetry(now)
         self._replies = Replies(self._system, COMPONENT)
         self._bandwidth = Bandwidth()
@@ -68,8 +71,9 @@ class Rover:
             keeper=keeper,
         )
         self._commands = Commands(self._safety, self._control, self._texts)
+        self._orders = Orders(params, self._safety, self._control, self._navigator, self._texts)
         self._requests = Requests(self._telemetry, self._look)
-        handlers = self._commands.handlers() | self._requests.handlers()
+        handlers = self._commands.handlers() | self._requests.handlers() | self._orders.handlers()
         self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
 
     @property
@@ -101,7 +105,7 @@ class Rover:
         if self._safety.state is State.OFF:
             return
         late = self._safety.is_late(now)
-        self._safety.update(now, self._drive.refused)
+        self._cycle(now)
         self._move(now, late=late)
         self._outgoing += self._param_service.tick(now)
 
@@ -129,10 +133,8 @@ class Rover:
     def sense(self, readings: Readings, now: float) -> None:
         """Take the newest readings."""
         self._readings = readings
-        estimate = self._estimator.sense(readings, now)
+        self._navigator.sense(readings, now)
         self._safety.battery.sense(readings.battery_voltage, now)
-        if self._home is None:
-            self._home = _home(estimate, readings)
 
     def motor_failed(self, reason: str, now: float) -> None:
         """The motor driver reports an error: zero, disarm, and no arming until `motor_repaired`."""
@@ -148,16 +150,37 @@ class Rover:
         if self._safety.state is not State.OFF:
             self._safety.shutdown()
             self._outgoing.append(Outgoing(status.heartbeat(self._look(now))))
-        self._drive.step(None, self._safety.clearance(now, late=False), limited=False, now=now)
+        self._drive.step(None, self._safety.clearance(now, None, late=False), limited=False, now=now)
 
     def _move(self, now: float, *, late: bool | None = None) -> None:
         """Outputs of this moment, and what they and the state make worth telling."""
         late = self._safety.is_late(now) if late is None else late
-        clearance = self._safety.clearance(now, late=late)
+        clearance = self._safety.clearance(now, self._navigator.demand, late=late)
         limited = self._safety.failsafes.action(now) >= Action.LIMIT
-        self._drive.step(self._control.demand, clearance, limited=limited, now=now)
+        self._drive.step(self._wanted(now), clearance, limited=limited, now=now)
+        if clearance.permit is not Permit.DRIVE:
+            self._navigator.rest()
         told = [*self._telemetry.due(self._look(now)), *self._texts.due(now)]
         self._outgoing += [Outgoing(message) for message in told]
+
+    def _wanted(self, now: float) -> Demand | None:
+        """Whose demand the mode drives by; whether it may is the clearance's matter."""
+        if OFFERED[self._safety.mode].own:
+            return self._navigator.demand
+        if self._safety.mode is Mode.ACRO:
+            return self._navigator.acro(self._control.demand, now)
+        return self._control.demand
+
+    def _cycle(self, now: float) -> None:
+        """What fails, what follows, and what self-driving wants then."""
+        driving = self._drive.outputs.throttles[: self._drive.mixer.driven]
+        hazards = self._navigator.hazards(self._safety, driving, now)
+        moves = OFFERED[self._safety.mode].own and any(driving)
+        self._safety.update(now, self._drive.refused, hazards, driving=moves)
+        self._navigator.step(self._safety, now)
+        if self._navigator.ended is not None:
+            self._safety.end(self._navigator.ended, now)
+            self._navigator.step(self._safety, now)
 
     def _look(self, now: float) -> View:
         since_boot = now - self._boot
@@ -167,11 +190,10 @@ class Rover:
             unix_time=None if self._wall_clock is None else self._wall_clock + since_boot,
             params=self._params,
             readings=self._readings,
-            estimate=self._estimator.estimate,
             safety=self._safety,
             control=self._control,
             drive=self._drive,
-            home=self._home,
+            navigator=self._navigator,
         )
 
     def _link_status(self, report: LinkReport) -> m.Message:
@@ -206,6 +228,9 @@ class Rover:
         match received.message:
             case m.CommandLong() | m.CommandInt() as message:
                 self._command(message, received, now)
+            case m.SetPositionTargetLocalNed() | m.SetPositionTargetGlobalInt() | m.SetAttitudeTarget() as message:
+                if self._orders.setpoint(received, message, now):
+                    self._navigator.step(self._safety, now)
             case m.SetMode(target_system=self._system) as message:
                 self._commands.set_mode(received, message, now)
             case m.RequestDataStream(target_system=self._system) as message if received.introduced:
@@ -215,6 +240,7 @@ class Rover:
                 self._telemetry.radio(message.txbuf)
             case _:
                 return False
+        self._navigator.renew(self._safety, now)
         return True
 
     def _command(self, message: m.CommandLong | m.CommandInt, received: Received, now: float) -> None:
@@ -222,10 +248,3 @@ class Rover:
             return
         self._outgoing += self._server.receive(received, now)
         self._outgoing += self._commands.messages_to_send() + self._requests.messages_to_send()
-
-
-def _home(estimate: Estimate, readings: Readings) -> Home | None:
-    """Where the rover stands at its first 3D fix."""
-    if estimate.globe is None:
-        return None
-    return Home(*estimate.globe, readings.altitude or 0.0, *estimate.place)

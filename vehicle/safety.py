@@ -6,12 +6,15 @@ motor values.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
 from vehicle.arming import Facts, problems
 from vehicle.battery import BatteryWatch
 from vehicle.conditions import Scene, found
 from vehicle.control import Control
+from vehicle.demand import Demand
 from vehicle.failsafe import RULES, Action, Failsafes, Taken
 from vehicle.modes import OFFERED
 from vehicle.outputs import Clearance
@@ -23,19 +26,20 @@ LATE = 0.1
 """s between two cycles of 20 ms from which on the motors get zero for a cycle (vehicle.md, control loop late)."""
 BAD_VALUES = 3
 """Cycles in a row with values that are not numbers, and the mode becomes HOLD."""
-ACTION_WORDS = {
-    Action.WARN: "warning",
-    Action.LIMIT: "half speed",
-    Action.NEUTRAL: "stopping",
-    Action.HOLD: "HOLD",
-    Action.DISARM: "disarmed",
-}
 
 
 class Safety:
     """The one place that arms, disarms and changes the mode."""
 
-    def __init__(self, params: Params, control: Control, texts: Texts, now: float) -> None:
+    def __init__(
+        self,
+        params: Params,
+        control: Control,
+        texts: Texts,
+        now: float,
+        unready: Callable[[Mode], str | None] = lambda mode: None,
+    ) -> None:
+        """`unready` says why a mode cannot work now, or None."""
         self.state = State.BOOT
         self.mode = self.intended = Mode(int(params["INITIAL_MODE"]))
         self.terminated = False
@@ -43,11 +47,17 @@ class Safety:
         self.fault: str | None = None
         self.overrun = False
         """A late cycle has disarmed; until the next arming."""
+        self.epoch = 0
+        """Counts choices of a mode, arming, and everything that ends a drive: self-driving begins anew with each."""
+        self.cleared = False
+        """Self-driving was asked for since the vehicle was armed: as neutral first for a stick, nothing goes on by
+        itself what went on before."""
         self.failsafes = Failsafes(params)
         self.battery = BatteryWatch(params)
         self._params = params
         self._control = control
         self._texts = texts
+        self._unready = unready
         self._armed_at = self._asked_at = now
         self._cycle = now
 
@@ -78,6 +88,7 @@ class Safety:
             battery_low=self.battery.low_since(now) is not None,
             battery_critical=self.battery.critical_since(now) is not None,
             battery_silent=self.battery.silent(now),
+            mode=self._unready(self.mode),
             sticks_moving=self._control.moving() and not self._control.stale(now),
         )
         return problems(facts, force=force)
@@ -94,10 +105,13 @@ class Safety:
         self._control.take(system, now)
         self._control.reset()
         self._happen(Event.ARM)
+        self._renew(cleared=False)
         self._armed_at = now
         self.overrun = False
         self.failsafes.acknowledge()
         self._texts.say(Severity.NOTICE, f"Armed by GCS {system}, mode {self.mode.name}", now)
+        if OFFERED[self.mode].own and self.mode is not Mode.GUIDED:
+            self._texts.say(Severity.NOTICE, f"Stands until {self.mode.name} is chosen again", now)
         return []
 
     def disarm(self, why: str, now: float) -> None:
@@ -129,16 +143,29 @@ class Safety:
     def choose_mode(self, mode: Mode, now: float) -> str | None:
         """The driver's choice of a mode. Returns why not."""
         blocking = self.failsafes.blocks_modes()
-        if blocking and OFFERED[mode].manual:
+        if blocking and OFFERED[mode].moves:
             return " and ".join(RULES[cause].words for cause in Failsafe if cause & blocking)
+        unready = self._unready(mode)
+        if unready:
+            return unready
         self.intended = mode
-        if OFFERED[mode].manual:  # HOLD is everybody's to choose: it must not end a countdown to disarming
+        self._renew(cleared=self.armed)
+        if OFFERED[mode].moves:  # HOLD is everybody's to choose: it must not end a countdown to disarming
             self.failsafes.acknowledge()
         if mode is not self.mode:
             self.mode = mode
-            self._control.reset() if OFFERED[mode].manual else self._control.close()
+            self._control.reset() if OFFERED[mode].moves else self._control.close()
             self._texts.say(Severity.INFO, f"Mode {mode.name}", now)
         return None
+
+    def begin(self) -> None:
+        """Self-driving was asked for, in the mode that is: by a setpoint or a mission's start."""
+        self.cleared = self.armed
+
+    def end(self, why: str, now: float) -> None:
+        """Self-driving has nothing more to do."""
+        self._texts.say(Severity.NOTICE, f"{self.mode.name}: {why}: HOLD", now)
+        self._hold()
 
     def motor_failed(self, reason: str, now: float) -> None:
         """The motor driver does not do what it should."""
@@ -168,40 +195,55 @@ class Safety:
             self.disarm(f"control loop was {gap:.2f} s late", now)
         return gap > LATE
 
-    def update(self, now: float, refused: int) -> None:
-        """One cycle: find what fails, do what follows. `refused`: cycles in a row with values that are not numbers."""
+    def update(self, now: float, refused: int, hazards: Mapping[Failsafe, float], *, driving: bool) -> None:
+        """One cycle: find what fails, do what follows.
+
+        `refused`: cycles in a row with values that are not numbers; `driving`: it moves by itself.
+        """
         self._cycle = now
         if self.state is State.BOOT:
             self._happen(Event.READY)
         self._control.lapse(now)
-        self._update_failsafes(now)
+        self._update_failsafes(hazards, now)
         if refused >= BAD_VALUES and self.armed and self.mode is not Mode.HOLD:
             self._texts.say(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
             self._hold()
+        if driving:
+            self._asked_at = now
         self._disarm_idle(now)
         if not self.armed:
             self._free_lost_owner(now)
 
-    def clearance(self, now: float, *, late: bool) -> Clearance:
-        """The facts about motion at this moment."""
+    def clearance(self, now: float, own: Demand | None, *, late: bool) -> Clearance:
+        """The facts about motion at this moment. `own` is what self-driving wants."""
+        stopped = self.failsafes.action(now) >= Action.NEUTRAL
+        if OFFERED[self.mode].own:
+            return Clearance(
+                armed=self.armed,
+                late=late,
+                held=stopped,
+                neutral_seen=self.cleared,
+                demand_age=None if own is None else now - own.time,
+                timeout=LATE,
+            )
         return Clearance(
             armed=self.armed,
             late=late,
-            held=not OFFERED[self.mode].manual or self.failsafes.action(now) >= Action.NEUTRAL,
+            held=stopped or not OFFERED[self.mode].manual,
             neutral_seen=self._control.neutral_seen,
             demand_age=self._control.age(now),
             timeout=self._params["MAN_TIMEOUT"],
         )
 
-    def _update_failsafes(self, now: float) -> None:
+    def _update_failsafes(self, hazards: Mapping[Failsafe, float], now: float) -> None:
         before = self.failsafes.active
-        taken = self.failsafes.update(found(self._scene(), now) if self.armed else {}, now)
+        taken = self.failsafes.update(found(self._scene(hazards), now) if self.armed else {}, now)
         for cause in (cause for cause in Failsafe if cause & before & ~self.failsafes.active and self.armed):
             self._texts.say(Severity.NOTICE, f"Failsafe over: {RULES[cause].words}", now)
         for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
             self._follow(step, now)
 
-    def _scene(self) -> Scene:
+    def _scene(self, hazards: Mapping[Failsafe, float]) -> Scene:
         return Scene(
             params=self._params,
             control=self._control,
@@ -209,12 +251,14 @@ class Safety:
             driven=OFFERED[self.mode].manual,
             latched=self.failsafes.latched,
             armed_at=self._armed_at,
+            hazards=hazards,
+            alone=self.mode is Mode.AUTO,
         )
 
     def _follow(self, step: Taken, now: float) -> None:
         severity = Severity.CRITICAL if step.action >= Action.HOLD else Severity.WARNING
         words = RULES[step.cause].words
-        self._texts.say(severity, f"Failsafe: {words}: {ACTION_WORDS[step.action]}", now)
+        self._texts.say(severity, f"Failsafe: {words}: {step.action.words}", now)
         if step.action is Action.NEUTRAL:
             self._control.close()
         elif step.action is Action.HOLD:
@@ -228,8 +272,13 @@ class Safety:
         refusal = self._control.refusal(system, now)
         return [refusal] if refusal else self.problems(now, force=force)
 
+    def _renew(self, *, cleared: bool) -> None:
+        self.epoch += 1
+        self.cleared = cleared
+
     def _hold(self) -> None:
         self.mode = Mode.HOLD
+        self._renew(cleared=False)
         self._control.close()
 
     def _disarm_idle(self, now: float) -> None:
@@ -248,3 +297,4 @@ class Safety:
         self.state = TRANSITIONS[self.state, event]
         if not self.armed:
             self._control.close()
+            self._renew(cleared=False)

@@ -8,7 +8,7 @@ from dialects.modes import Mode, base_mode
 from vehicle import states
 from vehicle.failsafe import Action
 from vehicle.fields import INT8, INT16, INT32, UINT16, real, whole
-from vehicle.modes import OFFERED
+from vehicle.modes import OFFERED, Need, Offer
 from vehicle.view import View
 
 VERSION = (0, 1, 0)
@@ -17,6 +17,8 @@ TAKEOVER_ALLOWED, SYSTEM_MANAGER = 2, 1
 """GCS_CONTROL_STATUS_FLAGS."""
 X_AXIS, R_AXIS = 0, 3
 """ROVER_AXIS of throttle and steering: those of the specification (dialects/axes.py, Autopilot.GENERIC)."""
+NOT_USER_SELECTABLE, AUTO_MODE = 2, 4
+"""MAV_MODE_PROPERTY."""
 UNKNOWN_VOLTAGES = [m.UINT16_MAX] * 9
 CHARGE_OK, CHARGE_LOW, CHARGE_CRITICAL = 1, 2, 3
 """MAV_BATTERY_CHARGE_STATE."""
@@ -27,8 +29,8 @@ def heartbeat(view: View) -> m.Message:
     return m.Heartbeat(
         type=Type.GROUND_ROVER,
         autopilot=Autopilot.GENERIC,
-        base_mode=base_mode(view.safety.mode, armed=view.safety.armed),
-        custom_mode=view.safety.mode,
+        base_mode=base_mode(_mode(view), armed=view.safety.armed),
+        custom_mode=_mode(view),
         system_status=_system_status(view),
         mavlink_version=3,
     )
@@ -106,7 +108,12 @@ def battery_status(view: View) -> m.Message | None:
 
 def current_mode(view: View) -> m.Message:
     """CURRENT_MODE: what it is, and what the driver last chose."""
-    return m.CurrentMode(standard_mode=0, custom_mode=view.safety.mode, intended_custom_mode=view.safety.intended)
+    mode = _mode(view)
+    return m.CurrentMode(OFFERED[mode].standard, custom_mode=mode, intended_custom_mode=view.safety.intended)
+
+
+def _mode(view: View) -> Mode:
+    return Mode.INITIALISING if view.safety.state is states.State.BOOT else view.safety.mode
 
 
 def control_status(view: View) -> m.Message:
@@ -219,12 +226,23 @@ def protocol_version(view: View) -> m.Message:
     return m.ProtocolVersion(200, 100, 200, spec_version_hash=[0] * 8, library_version_hash=[0] * 8)
 
 
-def available_modes() -> list[m.Message]:
-    """AVAILABLE_MODES, one message a mode."""
+def available_modes(view: View) -> list[m.Message]:
+    """AVAILABLE_MODES, one message a mode. What a sensor is missing for cannot be selected now."""
     return [
         m.AvailableModes(
-            number_modes=len(OFFERED), mode_index=index, standard_mode=0, custom_mode=mode, properties=0,
-            mode_name=mode.name.encode(),
+            number_modes=len(OFFERED), mode_index=index, standard_mode=offer.standard, custom_mode=mode,
+            properties=_properties(offer, view), mode_name=mode.name.encode(),
         )
-        for index, mode in enumerate(OFFERED, start=1)
+        for index, (mode, offer) in enumerate(OFFERED.items(), start=1)
     ]  # fmt: skip
+
+
+def _properties(offer: Offer, view: View) -> int:
+    selectable = offer.selectable and view.navigator.offers(offer.need)
+    automatic = AUTO_MODE if offer.own and offer.need is Need.POSITION else 0
+    return automatic | (0 if selectable else NOT_USER_SELECTABLE)
+
+
+def available_modes_monitor(view: View) -> m.Message:
+    """AVAILABLE_MODES_MONITOR: its number changes when the modes that can be selected do."""
+    return m.AvailableModesMonitor(sum(1 << index for index, need in enumerate(Need) if view.navigator.offers(need)))

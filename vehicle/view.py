@@ -8,20 +8,11 @@ from dialects.messages import boot_ms
 from vehicle.control import Control
 from vehicle.drive import Drive
 from vehicle.estimator import Estimate
+from vehicle.navigator import Navigator
 from vehicle.params import Params
+from vehicle.place import Home
 from vehicle.readings import Readings
 from vehicle.safety import Safety
-
-
-@dataclass(frozen=True, slots=True)
-class Home:
-    """Where the first 3D fix was."""
-
-    latitude: float
-    longitude: float
-    altitude: float
-    north: float
-    east: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +25,20 @@ class View:
     """s since 1970, where the computer knows it."""
     params: Params
     readings: Readings
-    estimate: Estimate
     safety: Safety
     control: Control
     drive: Drive
-    home: Home | None
+    navigator: Navigator
+
+    @property
+    def estimate(self) -> Estimate:
+        """Where it is and how it moves."""
+        return self.navigator.estimate
+
+    @property
+    def home(self) -> Home | None:
+        """Where RTL goes."""
+        return self.navigator.home
 
     @property
     def boot_ms(self) -> int:

@@ -148,7 +148,19 @@ class TestModes:
             assert bench.newest(m.Heartbeat).custom_mode == mode
 
     @pytest.mark.parametrize(
-        "params", [(1, Mode.GUIDED), (1, 99), (1, NAN), (NAN, 0), (1, 0.5), (0, 0), (1, 0, NAN), (1, 4, 4), (1, 1e30)]
+        "params",
+        [
+            (1, Mode.STEERING),
+            (1, Mode.INITIALISING),
+            (1, 99),
+            (1, NAN),
+            (NAN, 0),
+            (1, 0.5),
+            (0, 0),
+            (1, 0, NAN),
+            (1, 4, 4),
+            (1, 1e30),
+        ],
     )
     def test_what_is_not_offered_is_denied(self, params: tuple[float, ...]) -> None:
         bench = Bench()
@@ -206,7 +218,7 @@ class TestModes:
         assert not bench.turning
 
 
-@pytest.mark.parametrize("command", [65535, 0, Command.NAV_RETURN_TO_LAUNCH, Command.PREFLIGHT_REBOOT_SHUTDOWN])
+@pytest.mark.parametrize("command", [65535, 0, Command.PREFLIGHT_REBOOT_SHUTDOWN])
 def test_58_an_unknown_command_is_unsupported(command: int) -> None:
     bench = Bench()
     bench.drive()

@@ -11,6 +11,7 @@ from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.core import Peer
 from tests.vehicle.bench import EVERYTHING, OTHER, Bench
+from vehicle.modes import OFFERED
 from vehicle.telemetry import STREAMS, Stream
 
 REQUEST, SET, GET = Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL
@@ -26,6 +27,9 @@ def equipped() -> Bench:
 @pytest.mark.parametrize("stream", STREAMS, ids=lambda stream: stream.message.msgname)
 def test_every_stream_can_be_asked_for(stream: Stream) -> None:
     bench = equipped()
+    bench.arm()
+    bench.set_mode(Mode.LOITER)
+    bench.wait(0.1)
     count = len(bench.all(stream.message))
     assert bench.command(REQUEST, stream.message.id, system=OTHER) is Result.ACCEPTED
     assert len(bench.all(stream.message)) == count + 1
@@ -41,11 +45,11 @@ def test_modes_one_by_one_and_all_at_once() -> None:
     bench = equipped()
     assert bench.command(REQUEST, m.AvailableModes.id, 0) is Result.ACCEPTED
     modes = bench.all(m.AvailableModes)
-    assert [(mode.mode_index, mode.custom_mode) for mode in modes] == [(1, Mode.MANUAL), (2, Mode.HOLD)]
-    assert all(mode.number_modes == 2 for mode in modes)
-    assert bench.command(REQUEST, m.AvailableModes.id, 2) is Result.ACCEPTED
+    assert [(mode.mode_index, mode.custom_mode) for mode in modes] == list(enumerate(OFFERED, start=1))
+    assert all(mode.number_modes == len(OFFERED) for mode in modes)
+    assert bench.command(REQUEST, m.AvailableModes.id, 3) is Result.ACCEPTED
     assert bench.newest(m.AvailableModes).custom_mode == Mode.HOLD
-    for index in (3, -1, 0.5, math.nan):
+    for index in (len(OFFERED) + 1, -1, 0.5, math.nan):
         assert bench.command(REQUEST, m.AvailableModes.id, index) is Result.DENIED
 
 

@@ -207,7 +207,7 @@ NO_NUMBERS = ("wheel_speeds", "computer")
 @given(st.fixed_dictionaries({field.name: WILD for field in fields(Readings) if field.name not in NO_NUMBERS}))
 def test_no_reading_breaks_a_message(values: dict[str, float]) -> None:
     """The bench encodes every message that leaves."""
-    bench = Bench()
+    bench = Bench(CRASH_ANGLE=0, FS_CRASH_CHECK=0)  # some of them are tilted or blocked
     bench.readings = Readings(**values)  # type: ignore[arg-type]
     bench.drive()
     bench.wait(2.0, AHEAD)

@@ -1,0 +1,190 @@
+"""Drives by itself: the estimate, the modes that need no driver, and what of them goes to the motors as a demand.
+
+What it may do is not decided here: vehicle/safety.py says which mode it is and whether it was begun after arming, and
+the last gate (vehicle/outputs.py) lets a demand of its own through only while it is as fresh as the control cycle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Protocol
+
+from dialects.enums import DriveType, Failsafe
+from dialects.modes import Mode
+from vehicle.demand import Demand
+from vehicle.drive import shape
+from vehicle.estimator import Estimate, Estimator
+from vehicle.guidance import Guide
+from vehicle.guided import Guided
+from vehicle.hazards import Hazards, Look
+from vehicle.homing import Done, Loiter, Retrace, Return, Trail
+from vehicle.modes import OFFERED, Need
+from vehicle.params import Params
+from vehicle.pilot import STAND, Motion, Pilot
+from vehicle.place import Home, Point
+from vehicle.readings import NO_READINGS, Readings
+from vehicle.safety import Safety
+from vehicle.setpoints import Target
+
+
+class Behaviour(Protocol):
+    """One mode that drives by itself."""
+
+    @property
+    def goal(self) -> Point | None:
+        """Where it goes."""
+
+    def unready(self, estimate: Estimate) -> str | None:
+        """Why it cannot begin, besides what its line in OFFERED needs."""
+
+    def begin(self, estimate: Estimate, now: float) -> None:
+        """It was chosen, or everything was armed or stopped."""
+
+    def step(self, estimate: Estimate, speed: float, now: float) -> Motion | Done | None:
+        """What it wants now; None where nothing that counts is asked of it."""
+
+
+class Navigator:
+    """`sense` and then `step` each cycle; `step` also when a setpoint came."""
+
+    def __init__(self, params: Params, kind: DriveType) -> None:
+        self.home: Home | None = None
+        self.demand: Demand | None = None
+        """What the mode wants now; None where it wants nothing, or drives not by itself."""
+        self.ended: str | None = None
+        """Why the mode has nothing more to do."""
+        self.paused = False
+        self.speed: float | None = None
+        """m/s that somebody asked for instead of WP_SPEED."""
+        self.guide = Guide(params, kind)
+        self.guided = Guided(params, self.guide)
+        self._params = params
+        self._estimator = Estimator()
+        self._readings = NO_READINGS
+        self._pilot = Pilot(params, kind)
+        self._hazards = Hazards(params)
+        self._trail = Trail()
+        self._behaviours: dict[Mode, Behaviour] = {
+            Mode.GUIDED: self.guided,
+            Mode.LOITER: Loiter(params, self.guide),
+            Mode.RTL: Return(params, self.guide, self._home_point),
+            Mode.SMART_RTL: Retrace(params, self.guide, self._trail),
+        }
+        self._epoch = -1
+
+    @property
+    def estimate(self) -> Estimate:
+        """Where it is."""
+        return self._estimator.estimate
+
+    def cruise(self) -> float:
+        """m/s to drive at."""
+        return min(self._params["WP_SPEED"] if self.speed is None else self.speed, self._params["SPEED_MAX"])
+
+    def goal(self, mode: Mode) -> Point | None:
+        """Where a mode drives to."""
+        behaviour = self._behaviours.get(mode)
+        return behaviour.goal if behaviour else None
+
+    def sense(self, readings: Readings, now: float) -> None:
+        """Take the readings of this cycle; the first place on the globe is home."""
+        self._readings = readings
+        estimate = self._estimator.sense(readings, now)
+        if self.home is None and estimate.globe is not None:
+            self.home = Home(*estimate.globe, readings.altitude or 0.0, *estimate.place)
+
+    def offers(self, need: Need) -> bool:
+        """There is a sensor for it, whether or not it is well at this moment: menus should not flicker."""
+        has = {Need.GYRO: self._readings.yaw_rate is not None, Need.POSITION: self.estimate.origin is not None}
+        return has.get(need, True)
+
+    def unready(self, mode: Mode) -> str | None:
+        """Why a mode cannot be chosen now, or None."""
+        need, estimate = OFFERED[mode].need, self.estimate
+        if need is Need.GYRO and estimate.yaw_rate is None:
+            return "there is no gyro"
+        if need is Need.POSITION and not estimate.good:
+            return "position is not known"
+        behaviour = self._behaviours.get(mode)
+        return behaviour.unready(estimate) if behaviour else None
+
+    def take(self, target: Target, now: float) -> None:
+        """A setpoint for GUIDED."""
+        self.paused = False
+        self.guided.take(target, self.estimate, now)
+
+    def hazards(self, safety: Safety, throttles: Sequence[float], now: float) -> dict[Failsafe, float]:
+        """What is wrong, since when. What has put a mode away still counts, though the mode is gone."""
+        guided = safety.mode is Mode.GUIDED and safety.cleared
+        placed = OFFERED[safety.mode].need is Need.POSITION or (guided and self.guided.goal is not None)
+        latched = safety.failsafes.latched
+        look = Look(
+            readings=self._readings,
+            estimate=self.estimate,
+            throttles=throttles,
+            needs_position=placed or bool(latched & Failsafe.POSITION),
+            guided_lost=self.guided.lost_since() if guided or latched & Failsafe.GUIDED_LOSS else None,
+            outside=False,
+        )
+        return self._hazards.found(look, now)
+
+    def step(self, safety: Safety, now: float) -> None:
+        """What the mode wants at this moment."""
+        self.renew(safety, now)
+        behaviour = self._behaviours.get(safety.mode)
+        self._remember(safety)
+        motion = self._motion(behaviour, now) if behaviour and safety.cleared else None
+        if motion is None:
+            self.demand = None
+            return
+        throttle, steering = self._pilot.step(motion, self.estimate, now)
+        self.demand = Demand(throttle, steering, now, 0, 0, direct=True)
+
+    def acro(self, demand: Demand | None, now: float) -> Demand | None:
+        """ACRO: the driver's steering is a turn rate, which the gyro holds; throttle stays as it is in MANUAL."""
+        if demand is None:
+            return None
+        throttle, steering, sideways = shape(demand, self._params)
+        if not (throttle or steering or sideways):
+            self.rest()
+        else:
+            rate = steering * math.radians(self._params["ACRO_TURN_RATE"])
+            steering = self._pilot.turn(rate, self.estimate, now)
+        return replace(demand, throttle=throttle, steering=steering, sideways=sideways, direct=True)
+
+    def rest(self) -> None:
+        """The motors may not follow: ramps and integrals begin anew."""
+        self._pilot.reset()
+
+    def renew(self, safety: Safety, now: float) -> None:
+        """After a choice, an arming or an end nothing of before goes on; what was asked later does."""
+        if safety.epoch == self._epoch:
+            return
+        self._epoch = safety.epoch
+        self.paused = self.guide.reverse = False
+        self.ended = None
+        self._pilot.reset()
+        if not safety.armed:
+            self.speed = None
+            self._trail.forget()
+        behaviour = self._behaviours.get(safety.mode)
+        if behaviour:
+            behaviour.begin(self.estimate, now)
+
+    def _motion(self, behaviour: Behaviour, now: float) -> Motion | None:
+        if self.paused:
+            return STAND
+        wanted = behaviour.step(self.estimate, self.cruise(), now)
+        if isinstance(wanted, Done):
+            self.ended = wanted.why
+            return None
+        return wanted
+
+    def _remember(self, safety: Safety) -> None:
+        if safety.armed and self.estimate.good and safety.mode is not Mode.SMART_RTL:
+            self._trail.add(self.estimate.place)
+
+    def _home_point(self) -> Point | None:
+        return None if self.home is None else Point(self.home.north, self.home.east)
