@@ -120,7 +120,21 @@ def test_it_is_asked_again_when_it_was_lost_and_is_back() -> None:
     assert vehicle.rates[m.Attitude.id] == 10.0
 
 
-def test_nobody_is_asked_while_lost_or_while_the_screen_is_frozen() -> None:
+def test_nobody_is_asked_while_lost() -> None:
+    vehicle = FakeArduPilot()
+    vehicle.silent_on.add(INTERVAL)
+    cockpit = Cockpit(vehicle)
+    cockpit.run(1.0)
+    cockpit.world.cut()
+    cockpit.run(3.0)
+    assert not cockpit.view.alive
+    lost = cockpit.now
+    cockpit.run(10.0)
+    asked = (m.RequestDataStream, m.ParamRequestRead, m.CommandLong)
+    assert [message for at, message in cockpit.world.near.sent if at > lost and isinstance(message, asked)] == []
+
+
+def test_nobody_is_asked_while_the_screen_is_frozen() -> None:
     vehicle = FakeArduPilot()
     vehicle.silent_on.add(INTERVAL)
     cockpit = Cockpit(vehicle)
