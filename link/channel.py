@@ -8,7 +8,6 @@ messages (all but dialects.messages.ACKNOWLEDGED) one that was overtaken is drop
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
-from dataclasses import dataclass, field
 
 from dialects import codec
 from dialects.messages import (
@@ -29,12 +28,10 @@ from link.core import LinkReport, Outgoing, Peer, Received, SourceCount
 from link.flow import FlowControl
 from link.frame import Counts, Frame, noise_hint
 from link.framer import Framer
-from link.rate import TokenBucket
-from link.source import Order, Source
+from link.peer import PeerState
+from link.source import Order
 
 MAX_PEERS = 8
-MAX_SOURCES = 64
-"""Systems and components counted behind one peer."""
 PEER_SILENCE = 10.0
 """s after which a silent peer gives up its place; twice the longest usual heartbeat timeout."""
 MISMATCH_AFTER = 3
@@ -42,33 +39,6 @@ MISMATCH_AFTER = 3
 
 _DEMANDS = frozenset(each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence))
 _COMMANDS = frozenset(each.id for each in (CommandLong, CommandInt, SetMode))
-
-
-def _buckets() -> dict[str, TokenBucket]:
-    # Demands come at 50 Hz at most and commands by hand; the rest has room for ArduPilot's 1240 messages/s.
-    return {"demand": TokenBucket(200, 50), "command": TokenBucket(50, 50), "rest": TokenBucket(2500, 1000)}
-
-
-@dataclass(slots=True)
-class _PeerState:
-    """What we know of one address."""
-
-    peer: Peer
-    framer: Framer
-    heard: float
-    fixed: bool = False
-    """The user named this address: it is sent to before it has spoken."""
-    sequence: int = 0
-    systems: set[int] = field(default_factory=set)
-    """Systems whose HEARTBEAT came from here."""
-    sources: dict[tuple[int, int], Source] = field(default_factory=dict)
-    buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
-
-    def hears(self, target: int) -> bool:
-        """Should a message for system `target` (0: for all) go here?"""
-        if not self.systems:
-            return self.fixed
-        return target == 0 or target in self.systems
 
 
 class Channel:
@@ -99,7 +69,7 @@ class Channel:
         self._stream = stream
         self._wanted = wanted
         self._strangers = Framer(stream=False)
-        self._peers: dict[Hashable, _PeerState] = {}
+        self._peers: dict[Hashable, PeerState] = {}
         self._gone = Counts()
         self._bytes_received = self._bytes_sent = 0
         self._duplicates = self._late = self._rate_limited = self._refused_peers = 0
@@ -133,7 +103,7 @@ class Channel:
             found += self._accept(state, state.framer.expire(now), now)
         return found
 
-    def _admit(self, address: Hashable, now: float) -> _PeerState | None:
+    def _admit(self, address: Hashable, now: float) -> PeerState | None:
         """A place for a new address: a free one, or that of a peer who is silent or never introduced itself."""
         if len(self._peers) >= MAX_PEERS:
             leaving = min(
@@ -147,11 +117,11 @@ class Channel:
         state = self._peers[address] = self._new_peer(address, now)
         return state
 
-    def _dispensable(self, state: _PeerState, now: float) -> bool:
+    def _dispensable(self, state: PeerState, now: float) -> bool:
         return not state.systems or now - state.heard > PEER_SILENCE
 
-    def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> _PeerState:
-        return _PeerState(Peer(self.index, address), Framer(stream=self._stream), now, fixed)
+    def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
+        return PeerState(Peer(self.index, address), Framer(stream=self._stream), now, fixed)
 
     def gone(self, address: Hashable) -> None:
         """The connection to `address` has ended: half a frame is lost, and who comes next must introduce itself."""
@@ -163,11 +133,11 @@ class Channel:
             successor = self._peers[address] = self._new_peer(address, state.heard, fixed=True)
             successor.sequence = state.sequence
 
-    def _forget(self, state: _PeerState) -> None:
+    def _forget(self, state: PeerState) -> None:
         del self._peers[state.peer.address]
         self._gone.add(state.framer.counts)
 
-    def _accept(self, state: _PeerState, frames: list[Frame], now: float) -> list[Received]:
+    def _accept(self, state: PeerState, frames: list[Frame], now: float) -> list[Received]:
         accepted: list[Received] = []
         for frame in frames:
             if not frame.system or not frame.component:
@@ -189,14 +159,8 @@ class Channel:
         if isinstance(status, RadioStatus):
             self._flow.radio_status(status.txbuf, now)
 
-    def _in_order(self, state: _PeerState, frame: Frame) -> bool:
-        key = (frame.system, frame.component)
-        source = state.sources.get(key)
-        if source is None:
-            if len(state.sources) < MAX_SOURCES:
-                state.sources[key] = Source(frame.sequence, frame.message_id)
-            return True
-        order = source.accept(frame.sequence, frame.message_id)
+    def _in_order(self, state: PeerState, frame: Frame) -> bool:
+        order = state.order_of(frame)
         if order is Order.NEW:
             return True
         if order is Order.DUPLICATE:
@@ -205,7 +169,7 @@ class Channel:
         self._late += 1
         return frame.message_id in ACKNOWLEDGED
 
-    def _decode(self, state: _PeerState, frame: Frame, now: float) -> Received | None:
+    def _decode(self, state: PeerState, frame: Frame, now: float) -> Received | None:
         number = frame.message_id
         if self._wanted is not None and number not in self._wanted:
             return None
@@ -237,7 +201,7 @@ class Channel:
             self._bytes_sent += len(data)
             yield data, state.peer.address, sequence
 
-    def _recipients(self, message: Message, peer: Peer | None) -> list[_PeerState]:
+    def _recipients(self, message: Message, peer: Peer | None) -> list[PeerState]:
         if peer is not None:
             state = self._peers.get(peer.address) if peer.link == self.index else None
             return [state] if state else []

@@ -23,7 +23,12 @@ import pytest
 
 from dialects.messages import Attitude
 from link.bridge.bridge import DATAGRAM, joined
+from link.endpoint import FASTEST_BAUD, SCHEMES, SLOWEST_BAUD
+from link.router import REDUNDANT_WITHIN
+from link.routes import PEER_SILENCE, ROUTE_SILENCE
+from link.tcp import MAX_CONNECTIONS
 from link.tlog import read
+from link.transmit import AHEAD, STALE
 from tests.link.frames import demand, frame, heartbeat
 from tests.link.ports import Cable
 from tests.link.test_router import command, unknown
@@ -274,3 +279,30 @@ def test_frames_are_joined_whole_and_in_order() -> None:
     assert len(datagrams) == -(-sum(map(len, BULK)) // DATAGRAM)
     assert all(each.startswith(b"\xfd") for each in datagrams)
     assert joined([BULK[0]]) == [BULK[0]]
+
+
+# ---- the document ----
+
+
+def test_the_document_names_every_endpoint_and_option_and_the_right_numbers() -> None:
+    text = (Path(__file__).parents[2] / "docs/bridge.md").read_text()
+    for scheme in SCHEMES.values():
+        assert f"`{scheme.form}`" in text
+    help_text = subprocess.run(
+        [sys.executable, "-m", "link.bridge", "--help"], capture_output=True, text=True, timeout=30, check=True
+    ).stdout
+    for option in ("--json", "--quiet", "--tlog", "--one-frame"):
+        assert option in help_text
+        assert option in text
+    numbers = (
+        f"until {PEER_SILENCE:g} s of silence",
+        f"remembered for {ROUTE_SILENCE / 60:g} minutes",
+        f"connections, {MAX_CONNECTIONS} at most",
+        f"{SLOWEST_BAUD} to {FASTEST_BAUD} baud",
+        f"fed {AHEAD * 1000:g} ms of wire time",
+        f"has waited {STALE:g} s",
+        f"at most {DATAGRAM} bytes",
+        f"within {REDUNDANT_WITHIN:g} s goes on once",
+    )
+    for number in numbers:
+        assert number in text.replace("\n", " "), number

@@ -170,3 +170,37 @@ def test_empty_short_and_huge_datagrams(data: bytes) -> None:
     framer = Framer(stream=False)
     assert framer.feed(data, 0.0) == []
     assert framer.counts.resync_bytes == len(data)
+
+
+# ---- for routers: ids that nobody here knows ----
+
+
+def unknown(sequence: int) -> bytes:
+    """A frame of an id outside the dialect; its checksum says nothing to us."""
+    data = bytearray(demand(sequence))
+    data[7:10] = (45999).to_bytes(3, "little")
+    return bytes(data)
+
+
+@BOTH
+def test_a_router_gets_unknown_frames_between_sound_ones(stream: bool) -> None:
+    framer = Framer(stream=stream, unknown=True)
+    train = demand(1) + unknown(2) + unknown(3) + demand(4) + unknown(5)
+    assert sequences(framer, train) == [1, 2, 3, 4, 5]
+    assert (framer.counts.frames, framer.counts.unknown, framer.counts.resync_bytes) == (2, 3, 0)
+
+
+def test_in_noise_an_unknown_id_hides_and_delays_nothing() -> None:
+    # 0xFD in noise claims an id that nobody knows nearly always: it must not be waited for.
+    framer = Framer(stream=True, unknown=True)
+    claim = bytes([0xFD, 200, 0, 0, 9, 9, 9, 9, 9, 9])
+    assert sequences(framer, b"noise" + claim + demand(7)) == [7]
+    assert sequences(framer, unknown(8)) == [8]
+    assert framer.counts.unknown == 1
+
+
+def test_an_unknown_frame_that_does_not_end_where_another_begins_is_none() -> None:
+    framer = Framer(stream=False, unknown=True)
+    assert sequences(framer, unknown(1) + b"rest") == []
+    assert sequences(framer, unknown(1)[:-1]) == []
+    assert framer.counts.unknown == 0

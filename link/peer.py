@@ -1,0 +1,51 @@
+"""What a channel knows of one address: who is behind it, how its frames are numbered, how much it may send."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from link.core import Peer
+from link.frame import Frame
+from link.framer import Framer
+from link.rate import TokenBucket
+from link.source import Order, Source
+
+MAX_SOURCES = 64
+"""Systems and components counted behind one peer."""
+
+
+def _buckets() -> dict[str, TokenBucket]:
+    # Demands come at 50 Hz at most and commands by hand; the rest has room for ArduPilot's 1240 messages/s.
+    return {"demand": TokenBucket(200, 50), "command": TokenBucket(50, 50), "rest": TokenBucket(2500, 1000)}
+
+
+@dataclass(slots=True)
+class PeerState:
+    """What we know of one address."""
+
+    peer: Peer
+    framer: Framer
+    heard: float
+    fixed: bool = False
+    """The user named this address: it is sent to before it has spoken."""
+    sequence: int = 0
+    systems: set[int] = field(default_factory=set)
+    """Systems whose HEARTBEAT came from here."""
+    sources: dict[tuple[int, int], Source] = field(default_factory=dict)
+    buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
+
+    def hears(self, target: int) -> bool:
+        """Should a message for system `target` (0: for all) go here?"""
+        if not self.systems:
+            return self.fixed
+        return target == 0 or target in self.systems
+
+    def order_of(self, frame: Frame) -> Order:
+        """Count a frame of this peer; what its number says."""
+        key = (frame.system, frame.component)
+        source = self.sources.get(key)
+        if source is not None:
+            return source.accept(frame.sequence, frame.message_id)
+        if len(self.sources) < MAX_SOURCES:
+            self.sources[key] = Source(frame.sequence, frame.message_id)
+        return Order.NEW
