@@ -56,9 +56,7 @@ class TcpCable:
 
     def _serve(self, ready: socket.socket) -> None:
         if ready is self._listener:
-            one, _ = self._listener.accept()
-            other = socket.create_connection(("127.0.0.1", self._target), timeout=1.0)
-            self._pairs |= {one: other, other: one}
+            self._join()
             return
         if ready not in self._pairs:
             return
@@ -68,6 +66,15 @@ class TcpCable:
                 self._pairs[ready].sendall(data)
                 return
         self._end(ready)
+
+    def _join(self) -> None:
+        one, _ = self._listener.accept()
+        try:
+            other = socket.create_connection(("127.0.0.1", self._target), timeout=1.0)
+        except OSError:
+            one.close()  # nobody listens there yet
+            return
+        self._pairs |= {one: other, other: one}
 
     def _end(self, one: socket.socket) -> None:
         other = self._pairs.pop(one, None)
