@@ -185,7 +185,7 @@ class Channel:
         if number == Heartbeat.id:
             state.systems.add(frame.system)
         introduced = frame.system in state.systems
-        return Received(message, frame.system, frame.component, frame.sequence, state.peer, introduced)
+        return Received(message, frame.system, frame.component, frame.sequence, state.peer, introduced, state.fixed)
 
     # ---- sending ----
 

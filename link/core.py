@@ -29,6 +29,13 @@ class Received(NamedTuple):
     peer: Peer
     introduced: bool
     """The peer has shown a HEARTBEAT of this system: only then may it control (a moved address must say who it is)."""
+    named: bool = False
+    """The user named this peer's address, as in `udpout`: what goes there goes nowhere unasked."""
+
+    @property
+    def may_ask(self) -> bool:
+        """May it have answers longer than its questions? MAVSDK asks before its first HEARTBEAT."""
+        return self.introduced or self.named
 
 
 class Outgoing(NamedTuple):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Protocol
 
 from dialects.enums import Severity
@@ -11,7 +10,7 @@ from link.core import Outgoing, Received
 from link.services.pacing import Pacer
 from link.services.param import ParamServer
 from vehicle.control import Control
-from vehicle.params import TABLE, Params
+from vehicle.params import Params
 from vehicle.texts import Texts
 
 
@@ -54,7 +53,7 @@ class ParamService:
         self._texts = texts
         self._keeper = keeper or NoKeeper()
         self._server = ParamServer(
-            [replace(each, read_only=each.read_only or each.name in params.pinned) for each in TABLE],
+            params.table,
             params,
             system=ids[0],
             component=ids[1],

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +117,11 @@ class Params:
         self._values = {parameter.name: float(parameter.default) for parameter in TABLE}
         for name, value in (values or {}).items():
             self.set(name, value)
+
+    @property
+    def table(self) -> tuple[Parameter, ...]:
+        """TABLE as ground stations see it: what is pinned is read only."""
+        return tuple(replace(each, read_only=each.read_only or each.name in self.pinned) for each in TABLE)
 
     def __getitem__(self, name: str) -> float:
         return self._values[name]

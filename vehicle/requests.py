@@ -1,13 +1,13 @@
 """Commands that ask for messages and rates. They change nothing that moves; anybody with a HEARTBEAT may ask.
 
-An answer goes to the asker alone. Who has shown no HEARTBEAT gets a refusal, which is not longer than the question: a
-forged address must not turn the vehicle into an amplifier.
+So may who is at an address that the user named. An answer goes to the asker alone. Everybody else gets a refusal, which
+is not longer than the question: a forged address must not turn the vehicle into an amplifier.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from dialects import messages as m
 from dialects.enums import Command, Result
@@ -25,9 +25,16 @@ SLOWEST = 3600.0
 class Requests:
     """Answers to the askers."""
 
-    def __init__(self, telemetry: Telemetry, look: Callable[[float], View]) -> None:
+    def __init__(
+        self,
+        telemetry: Telemetry,
+        look: Callable[[float], View],
+        more: Mapping[int, Callable[[View], m.Message]],
+    ) -> None:
+        """`more`: messages that are no stream, by id."""
         self._telemetry = telemetry
         self._look = look
+        self._builders = {**{number: stream.build for number, stream in BY_ID.items()}, **more}
         self._outbox: list[Outgoing] = []
 
     def handlers(self) -> dict[int, Handler]:
@@ -55,9 +62,9 @@ class Requests:
             return self._available_modes(request, now)
         if number == m.MessageInterval.id:
             return self._tell_interval(request, request.params[1])
-        if number not in BY_ID:
+        if number not in self._builders:
             return Result.UNSUPPORTED
-        return self._tell(request, BY_ID[number].build(self._look(now)))
+        return self._tell(request, self._builders[number](self._look(now)))
 
     def _available_modes(self, request: CommandRequest, now: float) -> Result:
         """Parameter 2: 0 all, else the index from 1."""
@@ -113,8 +120,8 @@ class Requests:
 
 
 def _to_known(run: Callable[[CommandRequest, float], Result]) -> Callable[[CommandRequest, float], Result]:
-    """Refuse those who have not shown a HEARTBEAT; they may ask again when they have."""
-    return lambda request, now: run(request, now) if request.introduced else Result.TEMPORARILY_REJECTED
+    """Refuse those who have shown no HEARTBEAT, at an address that nobody named; they may ask again when they have."""
+    return lambda request, now: run(request, now) if request.may_ask else Result.TEMPORARILY_REJECTED
 
 
 def _message_id(value: float) -> int | None:

@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from dialects.modes import Mode
 from link.core import LinkReport, Outgoing, Received
 from link.services.command import CommandServer
+from link.services.ftp_files import MemoryFolder
 from vehicle import status
 from vehicle.bandwidth import Bandwidth
 from vehicle.commands import Commands
@@ -27,6 +28,7 @@ from vehicle.readings import NO_READINGS, Readings
 from vehicle.replies import Replies
 from vehicle.requests import Requests
 from vehicle.safety import Safety
+from vehicle.services import Services
 from vehicle.states import State
 from vehicle.telemetry import Telemetry
 from vehicle.texts import Texts
@@ -72,7 +74,15 @@ class Rover:
         )
         self._commands = Commands(self._safety, self._control, self._texts)
         self._orders = Orders(params, self._safety, self._control, self._navigator, self._texts)
-        self._requests = Requests(self._telemetry, self._look)
+        self._services = Services(
+            params,
+            self._control,
+            self._texts,
+            MemoryFolder(),
+            ids=(self._system, COMPONENT),
+            pacer=self._bandwidth.pacer,
+        )
+        self._requests = Requests(self._telemetry, self._look, self._services.messages())
         handlers = self._commands.handlers() | self._requests.handlers() | self._orders.handlers()
         self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
 
@@ -99,6 +109,7 @@ class Rover:
         else:
             self._outgoing += self._replies.answer(received, now)
             self._outgoing += self._param_service.receive(received, now)
+            self._outgoing += self._services.receive(received, now)
 
     def tick(self, now: float) -> None:
         """Let time pass: act on silence, send what is due."""
@@ -108,6 +119,7 @@ class Rover:
         self._cycle(now)
         self._move(now, late=late)
         self._outgoing += self._param_service.tick(now)
+        self._outgoing += self._services.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves, about once a second."""

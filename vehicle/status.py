@@ -212,7 +212,8 @@ def autopilot_version(view: View) -> m.Message:
     """AUTOPILOT_VERSION: what we can do."""
     major, minor, patch = VERSION
     nothing = [0] * 8
-    can = Capability.COMMAND_INT | Capability.FLIGHT_TERMINATION | Capability.MAVLINK2 | Capability.PARAM_C_CAST
+    can = Capability.COMMAND_INT | Capability.FTP | Capability.FLIGHT_TERMINATION
+    can |= Capability.MAVLINK2 | Capability.PARAM_C_CAST
     return m.AutopilotVersion(
         capabilities=can,
         flight_sw_version=major << 24 | minor << 16 | patch << 8,

@@ -40,6 +40,7 @@ class CommandRequest:
     component: int
     peer: Peer
     introduced: bool
+    may_ask: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +118,7 @@ def _request(message: CommandLong | CommandInt, received: Received) -> CommandRe
         component=received.component,
         peer=received.peer,
         introduced=received.introduced,
+        may_ask=received.may_ask,
     )
 
 

@@ -50,9 +50,9 @@ class FtpServer:
         self._answered: dict[Client, tuple[FtpPacket, Outgoing]] = {}
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Answer one message; nothing where it is not for us or its sender has shown no HEARTBEAT."""
+        """Answer one message; nothing where it is not for us or its sender may not ask."""
         message = received.message
-        if not isinstance(message, m.FileTransferProtocol) or not received.introduced:
+        if not isinstance(message, m.FileTransferProtocol) or not received.may_ask:
             return []
         if message.target_system != self._ids[0] or message.target_component not in (0, self._ids[1]):
             return []
@@ -60,7 +60,7 @@ class FtpServer:
         if request.op in (Op.ACK, Op.NAK):
             return []
         again = self._said_again(client, request, now)
-        return again or self._attempt(Question(client, request, self._allowed(received)), now)
+        return again or self._attempt(Question(client, request, received.introduced and self._allowed(received)), now)
 
     def tick(self, now: float) -> list[Outgoing]:
         """Go on with bursts and with what had to wait; forget what is too old."""

@@ -72,10 +72,10 @@ class LogServer:
         self._clients: dict[Peer, _Client] = {}
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Take one message; nothing where it is not for us or its sender has shown no HEARTBEAT. Answers come by
+        """Take one message; nothing where it is not for us or its sender may not ask. Answers come by
         tick()."""
         message = received.message
-        if not received.introduced or getattr(message, "target_system", 0) != self._ids[0]:
+        if not received.may_ask or getattr(message, "target_system", 0) != self._ids[0]:
             return []
         if getattr(message, "target_component", 0) not in (0, self._ids[1]):
             return []

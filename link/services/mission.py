@@ -83,13 +83,15 @@ class MissionServer:
         return verdict
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Answer one message; nothing where it is not for us or its sender has shown no HEARTBEAT."""
+        """Answer one message; nothing where it is not for us or its sender may not ask."""
         message = received.message
         target = (getattr(message, "target_system", None), getattr(message, "target_component", None))
-        if not received.introduced or target[0] != self._ids[0] or target[1] not in (0, self._ids[1]):
+        if not received.may_ask or target[0] != self._ids[0] or target[1] not in (0, self._ids[1]):
             return []
         answer = self._reading(received)
-        return self._writing(received, now) if answer is None else answer
+        if answer is not None:
+            return answer
+        return self._writing(received, now) if received.introduced else []
 
     def tick(self, now: float) -> list[Outgoing]:
         """Ask again for what did not come, give up what does not come at all."""

@@ -124,9 +124,9 @@ class ParamServer:
         self._runs: dict[Peer, _Run] = {}
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Answer one message; nothing where it is not for us or its sender has shown no HEARTBEAT."""
+        """Answer one message; nothing where it is not for us or its sender may not ask."""
         message = received.message
-        if not isinstance(message, m.ParamRequestList | m.ParamRequestRead | m.ParamSet) or not received.introduced:
+        if not isinstance(message, m.ParamRequestList | m.ParamRequestRead | m.ParamSet) or not received.may_ask:
             return []
         if message.target_system != self._ids[0] or message.target_component not in (0, self._ids[1]):
             return []
@@ -137,7 +137,7 @@ class ParamServer:
             case m.ParamRequestRead():
                 return self._read(message, received)
             case _:
-                return self._set(message, received, now)
+                return self._set(message, received, now) if received.introduced else []
 
     def tick(self, now: float) -> list[Outgoing]:
         """The next values of every list under way, as far as the links have room."""

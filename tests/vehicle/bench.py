@@ -68,11 +68,11 @@ class Bench:
         return [message for message in self.sent if isinstance(message, kind)]
 
     def say(self, message: m.Message, system: int = DRIVER, *, introduced: bool = True, sequence: int | None = None,
-            address: str = "") -> None:  # fmt: skip
+            address: str = "", named: bool = False) -> None:  # fmt: skip
         """One message of a ground station, and what the rover answers."""
         self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
         peer = Peer(0, address or f"gcs {system}")
-        self.rover.receive(Received(message, system, 190, self._sequence, peer, introduced), self.now)
+        self.rover.receive(Received(message, system, 190, self._sequence, peer, introduced, named), self.now)
         self._collect()
 
     def heartbeat(self, system: int = DRIVER, *, introduced: bool = True) -> None:
