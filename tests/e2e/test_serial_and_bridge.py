@@ -88,10 +88,11 @@ def test_a_ground_station_on_the_port_drives_and_an_unplugged_cable_stops_the_wh
     vehicle = Vehicle(tmp_path, cable.one)
     stack.callback(vehicle.end)
 
-    station.wait_for(lambda: b"MANUAL" in station.screen, 20, "the drive screen shows the vehicle")
+    station.wait_for(lambda: b"arms" in station.screen, 30, "the drive screen says how to arm")
     station.type("r")
-    station.look(0.3)
+    station.wait_for(lambda: b"yes, any other key" in station.screen, 10, "it asks whether to arm")
     station.type("y")
+    station.wait_for(lambda: b"hold i to drive" in station.screen, 20, "the drive screen says that keys drive")
     station.hold("i", vehicle.at_full)
 
     cable.unplug()
