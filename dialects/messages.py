@@ -100,6 +100,9 @@ def boot_ms(seconds: float) -> int:
     return int(seconds * 1000) & UINT32_MASK
 
 
+MISSION_PAUSED = rover.MISSION_STATE_PAUSED
+"""`mission_state` of MISSION_CURRENT"""
+
 ACKNOWLEDGED: frozenset[int] = frozenset(
     message.id
     for message in (

@@ -96,7 +96,7 @@ class Commands:
         return self._choose(asked_mode(base, main, sub), words, request.system, request.introduced, now)
 
     def _set_standard_mode(self, request: CommandRequest, now: float) -> Result:
-        """SAFE_RECOVERY is RTL; for one that we have not the specification wants FAILED."""
+        """SAFE_RECOVERY is RTL and MISSION is AUTO; for one that we have not the specification wants FAILED."""
         standard = request.params[0]
         if not math.isfinite(standard):
             return Result.DENIED

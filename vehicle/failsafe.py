@@ -1,6 +1,7 @@
 """Failsafes: condition -> actions, one table; the worst action wins. Conditions are found in conditions.py.
 
-To add a failsafe: a line in RULES here, and its condition in vehicle/conditions.py. No action starts a motion.
+To add a failsafe: a line in RULES here, and its condition in vehicle/conditions.py. Only RTL starts a motion, and
+only where a setting asks for it.
 """
 
 from __future__ import annotations
@@ -23,14 +24,16 @@ class Action(IntEnum):
     """Half speed."""
     NEUTRAL = 2
     """Ramp down and stay there as long as the condition lasts."""
-    HOLD = 3
+    RTL = 3
+    """The way home begins, or HOLD where it cannot."""
+    HOLD = 4
     """Neutral, and the mode becomes HOLD: the driver has to choose another."""
-    DISARM = 4
+    DISARM = 5
 
     @property
     def words(self) -> str:
         """As the driver reads it."""
-        return ("warning", "half speed", "stopping", "HOLD", "disarmed")[self]
+        return ("warning", "half speed", "stopping", "RTL", "HOLD", "disarmed")[self]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +82,10 @@ RULES: dict[Failsafe, Rule] = {
         Step(0, Action.NEUTRAL), Step(4, Action.HOLD))),
     Failsafe.POSITION: Rule("position lost", (
         Step(0, Action.NEUTRAL), Step(1, Action.HOLD))),
+    Failsafe.FENCE: Rule("beyond the fence", (
+        Step(0, Action.WARN),
+        Step(0, Action.RTL, only_if="FENCE_ACTION", value=1),
+        Step(0, Action.HOLD, only_if="FENCE_ACTION", value=2))),
     Failsafe.TILT: Rule("tilted", (
         Step(0.5, Action.DISARM),)),
     Failsafe.BLOCKED: Rule("blocked", (
@@ -155,7 +162,7 @@ class Failsafes:
         reached = self._reached(cause, now)
         new = [step for step in reached if step not in self._done.get(cause, ())]
         self._done[cause] = reached
-        if any(step.action >= Action.HOLD for step in new):
+        if any(step.action >= Action.RTL for step in new):
             self.latched |= cause
         return [Taken(cause, step.action) for step in new]
 

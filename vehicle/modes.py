@@ -45,6 +45,7 @@ OFFERED: dict[Mode, Offer] = {
         Offer(Mode.ACRO, manual=True, need=Need.GYRO),
         Offer(Mode.HOLD),
         Offer(Mode.LOITER, own=True, need=Need.POSITION),
+        Offer(Mode.AUTO, own=True, need=Need.POSITION, standard=6),
         Offer(Mode.RTL, own=True, need=Need.POSITION, standard=5),
         Offer(Mode.SMART_RTL, own=True, need=Need.POSITION),
         Offer(Mode.GUIDED, own=True),
@@ -55,10 +56,12 @@ OFFERED: dict[Mode, Offer] = {
 
 PX4_ALIASES: dict[tuple[int, int], Mode] = {
     (4, 3): Mode.HOLD,
+    (4, 4): Mode.AUTO,
     (4, 5): Mode.RTL,
     (6, 0): Mode.GUIDED,
 }
-"""PX4's (main, sub) pairs that MAVSDK sends to an autopilot it does not know: hold(), return_to_launch() and offboard.
+"""PX4's (main, sub) pairs that MAVSDK sends to an autopilot it does not know: hold(), a mission, the way home,
+and offboard.
 
 Only pairs that are none of ArduRover's numbers can be told from them (MAVSDK px4_custom_mode.hpp); OFFBOARD is
 ArduRover's FOLLOW, which is not offered.

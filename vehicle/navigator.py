@@ -11,11 +11,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Protocol
 
-from dialects.enums import DriveType, Failsafe
+from dialects import messages as m
+from dialects.enums import Command, DriveType, Failsafe
 from dialects.modes import Mode
+from link.services.mission_items import MissionItem
 from vehicle.demand import Demand
 from vehicle.drive import shape
 from vehicle.estimator import Estimate, Estimator
+from vehicle.fence import FAR, Fence
 from vehicle.guidance import Guide
 from vehicle.guided import Guided
 from vehicle.hazards import Hazards, Look
@@ -24,9 +27,15 @@ from vehicle.modes import OFFERED, Need
 from vehicle.params import Params
 from vehicle.pilot import STAND, Motion, Pilot
 from vehicle.place import Home, Point
+from vehicle.plan_runner import Mission, Progress
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety import Safety
 from vehicle.setpoints import Target
+
+FENCE_PERIOD = 0.1
+"""s; at 1.5 m/s a rover is 15 cm beyond by then."""
+USUAL_SPEED = -2.0
+"""Speed of DO_CHANGE_SPEED that means the usual one."""
 
 
 class Behaviour(Protocol):
@@ -60,6 +69,10 @@ class Navigator:
         """m/s that somebody asked for instead of WP_SPEED."""
         self.guide = Guide(params, kind)
         self.guided = Guided(params, self.guide)
+        self.mission = Mission(params, self.guide, self._home_point, self._effect)
+        self.fence = Fence(params)
+        self.beyond = 0.0
+        """m beyond the fence."""
         self._params = params
         self._estimator = Estimator()
         self._readings = NO_READINGS
@@ -67,12 +80,14 @@ class Navigator:
         self._hazards = Hazards(params)
         self._trail = Trail()
         self._behaviours: dict[Mode, Behaviour] = {
+            Mode.AUTO: self.mission,
             Mode.GUIDED: self.guided,
             Mode.LOITER: Loiter(params, self.guide),
             Mode.RTL: Return(params, self.guide, self._home_point),
             Mode.SMART_RTL: Retrace(params, self.guide, self._trail),
         }
         self._epoch = -1
+        self._fence_due = -math.inf
 
     @property
     def estimate(self) -> Estimate:
@@ -94,6 +109,13 @@ class Navigator:
         estimate = self._estimator.sense(readings, now)
         if self.home is None and estimate.globe is not None:
             self.home = Home(*estimate.globe, readings.altitude or 0.0, *estimate.place)
+        if now >= self._fence_due:
+            self._fence_due = now + FENCE_PERIOD
+            self.beyond = self.trespass(estimate.place) if estimate.good else 0.0
+
+    def trespass(self, place: Point) -> float:
+        """m that a place lies beyond the fence; 0 within."""
+        return self.fence.breach(place, self.estimate.origin, self._home_point())
 
     def offers(self, need: Need) -> bool:
         """There is a sensor for it, whether or not it is well at this moment: menus should not flicker."""
@@ -108,7 +130,23 @@ class Navigator:
         if need is Need.POSITION and not estimate.good:
             return "position is not known"
         behaviour = self._behaviours.get(mode)
-        return behaviour.unready(estimate) if behaviour else None
+        if behaviour is None:
+            return None
+        return self._fenced_off(mode) or behaviour.unready(estimate)
+
+    def _fenced_off(self, mode: Mode) -> str | None:
+        """Beyond the fence the vehicle by itself goes home at most, and not from far."""
+        homeward = mode in (Mode.RTL, Mode.SMART_RTL)
+        if self.beyond > FAR or (self.beyond > 0.0 and not homeward and self._params["FENCE_ACTION"]):
+            return f"{self.beyond:.0f} m beyond the fence"
+        return None
+
+    def mission_current(self, mode: Mode) -> m.MissionCurrent:
+        """MISSION_CURRENT."""
+        mission = self.mission
+        paused = mission.progress is Progress.ACTIVE and (self.paused or mode is not Mode.AUTO)
+        state = m.MISSION_PAUSED if paused else mission.progress
+        return m.MissionCurrent(mission.current, len(mission.items), state, 1 if mode is Mode.AUTO else 2)
 
     def take(self, target: Target, now: float) -> None:
         """A setpoint for GUIDED."""
@@ -126,7 +164,7 @@ class Navigator:
             throttles=throttles,
             needs_position=placed or bool(latched & Failsafe.POSITION),
             guided_lost=self.guided.lost_since() if guided or latched & Failsafe.GUIDED_LOSS else None,
-            outside=False,
+            outside=self.beyond > 0.0,
         )
         return self._hazards.found(look, now)
 
@@ -185,6 +223,19 @@ class Navigator:
     def _remember(self, safety: Safety) -> None:
         if safety.armed and self.estimate.good and safety.mode is not Mode.SMART_RTL:
             self._trail.add(self.estimate.place)
+
+    def _effect(self, item: MissionItem) -> None:
+        """What a DO item of a mission says; its values have passed the rules of plan.py."""
+        first, second = item.params[:2]
+        if item.command == Command.DO_CHANGE_SPEED:
+            if second >= 0.0:
+                self.speed = second
+            elif second == USUAL_SPEED:
+                self.speed = None
+        elif item.command == Command.DO_SET_REVERSE:
+            self.guide.reverse = bool(first)
+        elif item.command == Command.DO_FENCE_ENABLE and first:
+            self._params.set("FENCE_ENABLE", 1.0)
 
     def _home_point(self) -> Point | None:
         return None if self.home is None else Point(self.home.north, self.home.east)

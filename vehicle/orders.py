@@ -6,16 +6,16 @@ Only the ground station in control may give them; pausing is a stop and open to 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 from dialects import messages as m
 from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from link.core import Received
 from link.services.command import CommandRequest, Handler
+from vehicle.asking import Asking, Run
 from vehicle.control import Control
 from vehicle.modes import OFFERED
-from vehicle.navigator import Navigator
+from vehicle.navigator import USUAL_SPEED, Navigator
 from vehicle.params import Params
 from vehicle.place import Home
 from vehicle.safety import Safety
@@ -28,8 +28,8 @@ CHANGE_MODE = 1
 """MAV_DO_REPOSITION_FLAGS_CHANGE_MODE"""
 AIRSPEED, GROUNDSPEED = 0, 1
 """SPEED_TYPE; a rover's are the same."""
-KEEP_SPEED, USUAL_SPEED = -1, -2
-"""Speeds of DO_CHANGE_SPEED and DO_REPOSITION that are none."""
+KEEP_SPEED = -1
+"""A speed of DO_CHANGE_SPEED and DO_REPOSITION that is none."""
 REORDERED = 1.0
 """s; a setpoint whose sender's clock went back is an old one, unless nothing came for so long: then the sender has
 started anew."""
@@ -42,20 +42,21 @@ class Orders:
         self._params = params
         self._safety = safety
         self._control = control
+        self._asking = Asking(control, texts)
         self._navigator = navigator
         self._texts = texts
         self._newest: tuple[int, float] = (0, -math.inf)
 
     def handlers(self) -> dict[int, Handler]:
         """The table for link.services.command.CommandServer."""
-        mine: dict[int, Callable[[CommandRequest, float], Result]] = {
+        mine: dict[int, Run] = {
             Command.DO_REPOSITION: self._reposition,
             Command.DO_CHANGE_SPEED: self._change_speed,
             Command.DO_SET_REVERSE: self._reverse,
             Command.DO_SET_HOME: self._set_home,
             Command.NAV_RETURN_TO_LAUNCH: self._return,
         }
-        table = {command: Handler(self._of_owner(run)) for command, run in mine.items()}
+        table = {command: self._asking.of_owner(run) for command, run in mine.items()}
         return {**table, Command.DO_PAUSE_CONTINUE: Handler(self._pause)}
 
     # Setpoints
@@ -87,7 +88,9 @@ class Orders:
             return Refusal("not armed")
         if isinstance(message, m.SetAttitudeTarget):
             return attitude_target(message, self._navigator.cruise())
-        return position_target(message, self._navigator.estimate)
+        target = position_target(message, self._navigator.estimate)
+        beyond = self._navigator.trespass(target.point) if isinstance(target, Place) else 0.0
+        return Refusal("it lies beyond the fence") if beyond else target
 
     def _is_old(self, boot_ms: int, now: float) -> bool:
         newest, at = self._newest
@@ -118,11 +121,13 @@ class Orders:
         estimate = self._navigator.estimate
         point = globe_point(request.x, request.y, estimate)
         if point is None or not estimate.good:
-            return self._refuse(request, "position is not known", now)
+            return self._asking.refuse(request, "position is not known", now)
         if not self._safety.armed:
-            return self._refuse(request, "not armed", now)
+            return self._asking.refuse(request, "not armed", now)
+        if self._navigator.trespass(point):
+            return self._asking.refuse(request, "it lies beyond the fence", now)
         if self._safety.mode is not Mode.GUIDED and (refusal := self._safety.choose_mode(Mode.GUIDED, now)):
-            return self._refuse(request, refusal, now)
+            return self._asking.refuse(request, refusal, now)
         self._navigator.renew(self._safety, now)  # GUIDED begins, and forgets older targets
         self._navigator.take(Place(point, speed), now)
         self._safety.begin()
@@ -160,7 +165,7 @@ class Orders:
             return Result.DENIED
         navigator, estimate = self._navigator, self._navigator.estimate
         if not estimate.good or estimate.globe is None:
-            return self._refuse(request, "position is not known", now)
+            return self._asking.refuse(request, "position is not known", now)
         if here:
             altitude = navigator.home.altitude if navigator.home else 0.0
             navigator.home = Home(*estimate.globe, altitude, *estimate.place)
@@ -181,7 +186,7 @@ class Orders:
 
     def _return(self, request: CommandRequest, now: float) -> Result:
         refusal = self._safety.choose_mode(Mode.RTL, now)
-        return self._refuse(request, refusal, now) if refusal else Result.ACCEPTED
+        return self._asking.refuse(request, refusal, now) if refusal else Result.ACCEPTED
 
     def _pause(self, request: CommandRequest, now: float) -> Result:
         """0: stand, 1: go on. Where nothing drives by itself a wish to stop is HOLD."""
@@ -193,28 +198,11 @@ class Orders:
             self._safety.choose_mode(Mode.HOLD, now)
             return Result.ACCEPTED
         if wish == 1:
-            refusal = self._stranger(request) or (None if own else f"mode is {self._safety.mode.name}")
+            refusal = self._asking.stranger(request) or (None if own else f"mode is {self._safety.mode.name}")
             if refusal:
-                return self._refuse(request, refusal, now)
+                return self._asking.refuse(request, refusal, now)
         self._navigator.paused = wish == 0
         return Result.ACCEPTED
-
-    # Who may
-
-    def _of_owner(self, run: Callable[[CommandRequest, float], Result]) -> Callable[[CommandRequest, float], Result]:
-        def checked(request: CommandRequest, now: float) -> Result:
-            refusal = self._stranger(request)
-            return self._refuse(request, refusal, now) if refusal else run(request, now)
-
-        return checked
-
-    def _stranger(self, request: CommandRequest) -> str | None:
-        return self._control.stranger(request.system) if request.introduced else "no HEARTBEAT heard"
-
-    def _refuse(self, request: CommandRequest, why: str, now: float) -> Result:
-        name = Command(request.command).name
-        self._texts.say(Severity.WARNING, f"GCS {request.system}: {name} refused: {why}", now)
-        return Result.FAILED
 
 
 def _nowhere(latitude: float, longitude: float) -> bool:

@@ -62,6 +62,10 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("CRASH_ANGLE", 45, 0, 80, "deg", "Tilted more than this for 0.5 s: disarm; 0: off", safety=True),
     Parameter("FS_CRASH_CHECK", 1, 0, 2, "", "Pushing for 2 s without moving: 0 nothing, 1 HOLD, 2 disarm",
               safety=True, whole=True),
+    Parameter("FENCE_ENABLE", 0, 0, 1, "", "The fence counts", safety=True, whole=True),
+    Parameter("FENCE_TYPE", 6, 0, 6, "", "Sum of 2: circle around home, 4: uploaded areas", safety=True, whole=True),
+    Parameter("FENCE_ACTION", 2, 0, 2, "", "Beyond the fence: 0 say so, 1 RTL, 2 HOLD", safety=True, whole=True),
+    Parameter("FENCE_RADIUS", 100, 1, 10000, "m", "Of the circle around home", safety=True),
     # Driving by itself
     Parameter("WP_SPEED", 0.8, 0.1, 30, "m/s", "Usual speed along a path; SPEED_MAX is never exceeded"),
     Parameter("WP_RADIUS", 0.5, 0.1, 20, "m", "A waypoint to drive through is reached at this distance"),

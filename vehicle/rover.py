@@ -8,6 +8,7 @@ from dialects import messages as m
 from dialects.enums import Severity
 from dialects.modes import Mode
 from link.core import LinkReport, Outgoing, Received
+from link.services import timesync
 from link.services.command import CommandServer
 from link.services.ftp_files import MemoryFolder
 from vehicle import status
@@ -24,8 +25,8 @@ from vehicle.orders import Orders
 from vehicle.outputs import Outputs, Permit
 from vehicle.param_service import Keeper, ParamService
 from vehicle.params import Params
+from vehicle.plans import Plans
 from vehicle.readings import NO_READINGS, Readings
-from vehicle.replies import Replies
 from vehicle.requests import Requests
 from vehicle.safety import Safety
 from vehicle.services import Services
@@ -61,7 +62,6 @@ class Rover:
         self._navigator = Navigator(params, self._drive.kind)
         self._safety = Safety(params, self._control, self._texts, now, self._navigator.unready)
         self._telemetry = Telemetry(now)
-        self._replies = Replies(self._system, COMPONENT)
         self._bandwidth = Bandwidth()
         self._param_service = ParamService(
             params,
@@ -83,7 +83,9 @@ class Rover:
             pacer=self._bandwidth.pacer,
         )
         self._requests = Requests(self._telemetry, self._look, self._services.messages())
-        handlers = self._commands.handlers() | self._requests.handlers() | self._orders.handlers()
+        self._plans = Plans(params, self._safety, self._control, self._navigator, self._texts, self._drive.mixer.servos)
+        handlers = self._commands.handlers() | self._requests.handlers()
+        handlers |= self._orders.handlers() | self._plans.handlers()
         self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
 
     @property
@@ -107,7 +109,8 @@ class Rover:
         elif self._demand(received, now) or self._order(received, now):
             self._move(now)
         else:
-            self._outgoing += self._replies.answer(received, now)
+            self._outgoing += timesync.answer(received, now, self._system)
+            self._outgoing += self._plans.receive(received, now)
             self._outgoing += self._param_service.receive(received, now)
             self._outgoing += self._services.receive(received, now)
 
@@ -120,6 +123,7 @@ class Rover:
         self._move(now, late=late)
         self._outgoing += self._param_service.tick(now)
         self._outgoing += self._services.tick(now)
+        self._outgoing += self._plans.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves, about once a second."""

@@ -261,7 +261,7 @@ class Safety:
         self._texts.say(severity, f"Failsafe: {words}: {step.action.words}", now)
         if step.action is Action.NEUTRAL:
             self._control.close()
-        elif step.action is Action.HOLD:
+        elif step.action is Action.HOLD or (step.action is Action.RTL and self.choose_mode(Mode.RTL, now)):
             self._hold()
         elif step.action is Action.DISARM:
             self.disarm(words, now)

@@ -58,6 +58,7 @@ def sys_status(view: View) -> m.Message:
     has = {
         Sensor.MOTOR_OUTPUTS: True,
         Sensor.PREARM: True,
+        Sensor.GEOFENCE: view.navigator.fence.enabled,
         Sensor.BATTERY: readings.battery_voltage is not None,
         Sensor.GPS: readings.gps_fix is not None,
         Sensor.GYRO: readings.yaw_rate is not None,
@@ -66,6 +67,7 @@ def sys_status(view: View) -> m.Message:
     }
     ill = {
         Sensor.MOTOR_OUTPUTS: view.safety.fault is not None,
+        Sensor.GEOFENCE: view.navigator.beyond > 0.0,
         Sensor.PREARM: bool(view.safety.problems(view.now)),
         Sensor.BATTERY: battery.silent(view.now) or battery.low_since(view.now) is not None,
         Sensor.GPS: (readings.gps_fix or 0) < 3,
@@ -73,7 +75,8 @@ def sys_status(view: View) -> m.Message:
     }
     present = sum(sensor for sensor, there in has.items() if there)
     # MAVProxy takes an absent fence whose health bit is 0 for a breached one.
-    health = Sensor.GEOFENCE | sum(sensor for sensor, there in has.items() if there and not ill.get(sensor))
+    absent = 0 if view.navigator.fence.enabled else Sensor.GEOFENCE
+    health = absent | sum(sensor for sensor, there in has.items() if there and not ill.get(sensor))
     return m.SysStatus(
         onboard_control_sensors_present=present,
         onboard_control_sensors_enabled=present,
@@ -135,6 +138,7 @@ def limits(view: View) -> Limit:
         Limit.DISARMED: not safety.armed,
         Limit.ESTOP: safety.state is states.State.ESTOP,
         Limit.FAILSAFE: safety.failsafes.action(view.now) >= Action.NEUTRAL or bool(safety.failsafes.latched),
+        Limit.FENCE: bool(safety.failsafes.active & Failsafe.FENCE),
         Limit.STALE: control.stale(view.now),
         Limit.NEUTRAL_FIRST: safety.armed and not control.neutral_seen,
     }
@@ -212,7 +216,9 @@ def autopilot_version(view: View) -> m.Message:
     """AUTOPILOT_VERSION: what we can do."""
     major, minor, patch = VERSION
     nothing = [0] * 8
-    can = Capability.COMMAND_INT | Capability.FTP | Capability.FLIGHT_TERMINATION
+    can = Capability.MISSION_INT | Capability.MISSION_FENCE | Capability.MISSION_RALLY | Capability.FTP
+    can |= Capability.SET_POSITION_TARGET_LOCAL | Capability.SET_POSITION_TARGET_GLOBAL
+    can |= Capability.SET_ATTITUDE_TARGET | Capability.COMMAND_INT | Capability.FLIGHT_TERMINATION
     can |= Capability.MAVLINK2 | Capability.PARAM_C_CAST
     return m.AutopilotVersion(
         capabilities=can,
@@ -225,6 +231,11 @@ def autopilot_version(view: View) -> m.Message:
 def protocol_version(view: View) -> m.Message:
     """PROTOCOL_VERSION: MAVLink 2; version 1 is understood."""
     return m.ProtocolVersion(200, 100, 200, spec_version_hash=[0] * 8, library_version_hash=[0] * 8)
+
+
+def mission_current(view: View) -> m.Message:
+    """MISSION_CURRENT: which item, of how many, and whether it is under way."""
+    return view.navigator.mission_current(view.safety.mode)
 
 
 def available_modes(view: View) -> list[m.Message]:

@@ -65,6 +65,8 @@ STREAMS: tuple[Stream, ...] = (
            change=lambda view: (view.control.owner, view.control.takeover_allowed)),
     Stream(m.CurrentMode, 0.5, status.current_mode,
            change=lambda view: (view.safety.mode, view.safety.intended)),
+    Stream(m.MissionCurrent, 1, status.mission_current, DataStream.EXTENDED_STATUS,
+           change=lambda view: (view.navigator.mission.current, view.navigator.mission.progress, view.safety.mode)),
     Stream(m.AvailableModesMonitor, 0.3, status.available_modes_monitor),
     Stream(m.SystemTime, 1, status.system_time),
     Stream(m.SysStatus, 1, status.sys_status, DataStream.EXTENDED_STATUS),

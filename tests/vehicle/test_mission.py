@@ -1,0 +1,354 @@
+"""AUTO in a simulated field with noisy sensors: the way along the lines, what items do, who may start and change it."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result
+from dialects.modes import Mode
+from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, said
+from tests.vehicle.field import GROUND, Field
+from vehicle.guidance import Leg
+from vehicle.place import Point
+
+Item = tuple[int, Point | None, tuple[float, ...]]
+NAN = math.nan
+
+
+def way(north: float, east: float, hold: float = 0.0) -> Item:
+    return Command.NAV_WAYPOINT, Point(north, east), (hold,)
+
+
+def do(command: int, *params: float) -> Item:
+    return command, None, params
+
+
+def upload(field: Field, *items: Item, kind: MissionType = MissionType.MISSION, system: int = DRIVER) -> int:
+    """As a ground station does it; the verdict."""
+    before = len(field.all(m.MissionAck))
+    field.say(m.MissionCount(1, 1, len(items), kind), system)
+    if len(field.all(m.MissionAck)) > before:  # refused, or an empty one
+        return int(field.newest(m.MissionAck).type)
+    for number, (command, place, params) in enumerate(items):
+        latitude, longitude = GROUND.globe(place) if place else (0.0, 0.0)
+        one, two, three, four = (*params, *(0.0,) * (4 - len(params)))
+        x, y = round(latitude * 1e7), round(longitude * 1e7)
+        frame = 6 if place else 2
+        field.say(m.MissionItemInt(1, 1, number, frame, command, 0, 1, one, two, three, four, x, y, 0, kind), system)
+    return int(field.newest(m.MissionAck).type)
+
+
+def ready(*items: Item, **params: float) -> Field:
+    field = Field(**params)  # type: ignore[arg-type]
+    assert upload(field, *items) == MissionResult.ACCEPTED
+    assert field.arm() is Result.ACCEPTED
+    return field
+
+
+def start(field: Field) -> None:
+    assert field.command(Command.MISSION_START) is Result.ACCEPTED, field.texts
+
+
+def finish(field: Field, within: float) -> None:
+    end = field.now + within
+    while field.mode is not Mode.HOLD:
+        assert field.now < end, f"at {field.truth}; {field.texts}"
+        field.heartbeat()
+        field.wait(0.5)
+
+
+def beside(field: Field, corners: list[Point], margin: float = 1.5) -> float:
+    """m that the truth was beside the nearest line, at worst, away from the corners."""
+    legs = [Leg(one, two) for one, two in pairwise(corners)]
+    worst = 0.0
+    for place in field.track:
+        if min(corner.distance(place) for corner in corners) < margin:
+            continue
+        worst = max(worst, min(abs(leg.beside(place)[1]) for leg in legs if _along(leg, place)))
+    return worst
+
+
+def _along(leg: Leg, place: Point) -> bool:
+    remaining, beside = leg.beside(place)
+    return 0.0 <= remaining <= leg.start.distance(leg.end) and abs(beside) < 5.0
+
+
+CORNERS = [Point(0, 0), Point(40, 0), Point(40, 25), Point(10, 30), Point(0, 0)]
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_ten_minutes_stay_within_half_a_metre_of_the_lines(seed: int) -> None:
+    rounds = [way(place.north, place.east) for place in CORNERS[1:]]
+    field = Field(seed)
+    field.wait(30.0)  # as long as a driver takes to upload and arm: the receiver's first error is averaged
+    assert upload(field, *rounds, do(Command.DO_JUMP, 0, 3)) == MissionResult.ACCEPTED
+    field.arm()
+    field.track.clear()
+    began = field.now
+    start(field)
+    finish(field, 1200.0)
+    assert field.now - began > 580.0
+    assert said(field, "AUTO: mission complete: HOLD")
+    assert beside(field, CORNERS) < 0.5
+    assert [each.seq for each in field.all(m.MissionItemReached)] == [0, 1, 2, 3] * 4
+
+
+class TestItems:
+    def test_a_waypoint_with_a_hold_time_is_stood_at(self) -> None:
+        field = ready(way(5, 0, 4.0), way(5, 5))
+        start(field)
+        field.until(Point(5, 0), 20.0, 0.5)
+        field.beat(2.0)
+        assert field.stands_for(2.0)
+        finish(field, 40.0)
+        assert field.truth.distance(Point(5, 5)) < 0.7
+
+    def test_delay_then_condition_then_speed(self) -> None:
+        field = ready(
+            do(Command.NAV_DELAY, 3.0), do(Command.CONDITION_DISTANCE, 8.0), do(Command.DO_CHANGE_SPEED, 1, 0.3, -1),
+            way(20, 0),
+        )  # fmt: skip
+        start(field)
+        assert field.stands_for(2.0)
+        field.beat(4.0)
+        assert field.speed == pytest.approx(0.8, abs=0.1)
+        field.until(Point(17, 0), 40.0, 1.0)
+        assert field.speed == pytest.approx(0.3, abs=0.1)
+
+    def test_a_condition_of_time_holds_up_what_stands_behind_it(self) -> None:
+        field = ready(do(Command.CONDITION_DELAY, 6.0), do(Command.DO_CHANGE_SPEED, 1, 0.3, -1), way(20, 0))
+        start(field)
+        field.beat(5.0)
+        assert field.speed > 0.6
+        field.beat(3.0)
+        assert field.speed == pytest.approx(0.3, abs=0.1)
+
+    def test_turns_around_a_point(self) -> None:
+        field = ready((Command.NAV_LOITER_TURNS, Point(6, 0), (1.5, 0, 2.0)))
+        field.track.clear()
+        start(field)
+        finish(field, 120.0)
+        near = [place.distance(Point(6, 0)) for place in field.track[len(field.track) // 2 :]]
+        assert min(near) > 1.2
+        assert max(near) < 2.8
+
+    def test_yaw_and_reverse(self) -> None:
+        field = ready(do(Command.CONDITION_YAW, 180.0), do(Command.DO_SET_REVERSE, 1), way(6, 0))
+        start(field)
+        finish(field, 60.0)
+        assert abs(abs(math.remainder(field.yaw, math.tau)) - math.pi) < 0.3
+        assert field.truth.distance(Point(6, 0)) < 0.7
+
+    def test_home_is_an_item_and_the_last_one(self) -> None:
+        field = ready(way(6, 3), do(Command.NAV_RETURN_TO_LAUNCH), way(50, 50))
+        start(field)
+        field.until(Point(6, 3), 40.0)
+        finish(field, 60.0)
+        assert field.truth.distance(Point(0, 0)) < 0.8
+
+    def test_70_jumps_in_a_circle_end_the_mission(self) -> None:
+        field = ready(do(Command.DO_JUMP, 1, -1), do(Command.DO_JUMP, 0, -1))
+        start(field)
+        field.wait(0.5)
+        assert field.mode is Mode.HOLD
+        assert said(field, "jumps go in a circle")
+
+    def test_unlimited_means_until_somebody_ends_it(self) -> None:
+        field = ready((Command.NAV_LOITER_UNLIM, Point(3, 0), ()), way(30, 0))
+        start(field)
+        field.beat(60.0)
+        assert field.mode is Mode.AUTO
+        assert field.truth.distance(Point(3, 0)) < 0.7
+
+
+class TestProgress:
+    def test_hold_and_auto_goes_on_where_it_was_and_a_complete_one_begins_anew(self) -> None:
+        field = ready(way(6, 0), way(6, 6), way(12, 6))
+        start(field)
+        field.until(Point(6, 3), 60.0)
+        field.set_mode(Mode.HOLD)
+        field.beat(2.0)
+        told = field.newest(m.MissionCurrent)
+        assert (told.seq, told.total, told.mission_state) == (1, 3, m.MISSION_PAUSED)
+        field.set_mode(Mode.AUTO)
+        finish(field, 90.0)
+        assert field.truth.distance(Point(12, 6)) < 0.7
+        field.set_mode(Mode.AUTO)
+        field.beat(2.0)
+        assert field.newest(m.MissionCurrent).seq == 0
+        assert field.turning
+
+    def test_an_item_can_be_chosen(self) -> None:
+        field = ready(way(6, 0), way(0, 6))
+        assert field.command(Command.DO_SET_MISSION_CURRENT, 1) is Result.ACCEPTED
+        for wrong in (2, -1, 0.5, NAN):
+            assert field.command(Command.DO_SET_MISSION_CURRENT, wrong) is Result.DENIED
+        start(field)
+        field.until(Point(0, 6), 40.0)
+        field.say(m.MissionSetCurrent(1, 1, 0))
+        field.until(Point(6, 0), 60.0)
+        field.say(m.MissionSetCurrent(1, 1, 9))
+        field.wait(0.5)
+        assert said(field, "there is no item 9")
+
+    def test_the_list_is_what_was_uploaded_and_can_be_cleared(self) -> None:
+        field = ready(way(6, 0), way(0, 6))
+        field.say(m.MissionRequestList(1, 1, MissionType.MISSION))
+        assert field.newest(m.MissionCount).count == 2
+        field.say(m.MissionClearAll(1, 1, MissionType.ALL))
+        assert field.newest(m.MissionAck).type == MissionResult.ACCEPTED
+        assert field.set_mode(Mode.AUTO) is Result.FAILED
+        assert field.command(Command.MISSION_START) is Result.FAILED
+
+
+class TestWhoMay:
+    def test_start_needs_a_mission_arming_and_the_driver(self) -> None:
+        field = Field()
+        assert field.command(Command.MISSION_START) is Result.FAILED
+        upload(field, way(6, 0))
+        assert field.command(Command.MISSION_START) is Result.FAILED
+        field.wait(0.5)
+        assert said(field, "not armed")
+        field.arm()
+        assert field.command(Command.MISSION_START, system=OTHER) is Result.FAILED
+        for wrong in (1, -1, NAN, 0.5):
+            assert field.command(Command.MISSION_START, wrong) is Result.DENIED
+        assert field.stands_for(1.0)
+
+    def test_69_nobody_changes_the_mission_that_is_driven_nor_anothers(self) -> None:
+        field = ready(way(30, 0))
+        assert upload(field, way(1, 1), system=OTHER) == MissionResult.DENIED
+        start(field)
+        field.beat(2.0)
+        assert upload(field, way(1, 1)) == MissionResult.DENIED
+        field.say(m.MissionClearAll(1, 1, MissionType.MISSION))
+        assert field.newest(m.MissionAck).type == MissionResult.DENIED
+        field.beat(1.0)
+        assert field.turning
+
+    @pytest.mark.parametrize(
+        ("item", "verdict"),
+        [
+            (do(Command.DO_SET_SERVO, 5, 1500), MissionResult.UNSUPPORTED),
+            (do(Command.DO_JUMP, 7, 1), MissionResult.INVALID_PARAM1),
+            (do(Command.NAV_DELAY, -1), MissionResult.INVALID_PARAM1),
+            (do(Command.DO_CHANGE_SPEED, 1, NAN), MissionResult.INVALID_PARAM2),
+            ((Command.NAV_WAYPOINT, None, ()), MissionResult.UNSUPPORTED_FRAME),
+        ],
+    )
+    def test_what_it_cannot_do_is_refused_when_it_is_uploaded(self, item: Item, verdict: MissionResult) -> None:
+        field = ready(way(5, 0))
+        assert upload(field, way(1, 1), item) == verdict
+        field.say(m.MissionRequestList(1, 1, MissionType.MISSION))
+        assert field.newest(m.MissionCount).count == 1  # the old one stays
+
+    @pytest.mark.parametrize(
+        ("params", "result"), [((1, 1500), Result.DENIED), ((5, 1500), Result.FAILED), ((NAN, 1500), Result.DENIED)]
+    )
+    def test_a_motor_is_nobodys_servo(self, params: tuple[float, ...], result: Result) -> None:
+        assert Field().command(Command.DO_SET_SERVO, *params) is result
+
+    def test_arming_in_auto_moves_nothing_until_it_is_started(self) -> None:
+        field = ready(way(30, 0))
+        start(field)
+        field.beat(2.0)
+        assert field.turning
+        field.command(Command.COMPONENT_ARM_DISARM, 0)
+        field.arm()
+        field.wait(0.1)
+        assert field.mode is Mode.AUTO
+        assert field.stands_for(3.0)
+        start(field)
+        field.beat(2.0)
+        assert field.turning
+
+    def test_the_drivers_stick_moves_nothing_in_auto(self) -> None:
+        field = ready(way(30, 0))
+        start(field)
+        field.beat(3.0)
+        field.command(Command.DO_PAUSE_CONTINUE, 0)
+        field.wait(1.0, NEUTRAL)
+        field.wait(1.0, AHEAD)
+        assert not field.turning
+
+    @pytest.mark.parametrize(("setting", "mode"), [(1, Mode.HOLD), (2, Mode.AUTO)])
+    def test_without_its_ground_station_it_holds_or_goes_on_as_it_is_set(self, setting: int, mode: Mode) -> None:
+        field = ready(way(60, 0), FS_GCS_ENABLE=setting)
+        start(field)
+        field.wait(8.0)
+        assert field.mode is mode
+        assert field.turning is (mode is Mode.AUTO)
+
+
+def square(kind: int, north: float, east: float, size: float) -> list[Item]:
+    corners = [(north, east), (north + size, east), (north + size, east + size), (north, east + size)]
+    return [(kind, Point(*corner), (4,)) for corner in corners]
+
+
+class TestFence:
+    def fenced(self, items: list[Item], **params: float) -> Field:
+        field = Field(FENCE_ENABLE=1, **params)  # type: ignore[arg-type]
+        assert upload(field, *items, kind=MissionType.FENCE) == MissionResult.ACCEPTED
+        field.arm()
+        return field
+
+    @pytest.mark.parametrize(
+        "items",
+        [
+            square(FenceItem.POLYGON_INCLUSION, -5, -5, 10),
+            square(FenceItem.POLYGON_EXCLUSION, 5, -3, 6),
+            [(FenceItem.CIRCLE_INCLUSION, Point(0, 0), (5,))],
+            [(FenceItem.CIRCLE_EXCLUSION, Point(8, 0), (3,))],
+        ],
+    )
+    def test_beyond_it_holds_once_and_the_driver_may_drive_back(self, items: list[Item]) -> None:
+        field = self.fenced(items)
+        field.wait(0.2, NEUTRAL)
+        while field.truth.north < 4.0:
+            field.wait(0.5, AHEAD)
+            assert field.turning
+        field.wait(3.0, AHEAD)
+        assert field.mode is Mode.HOLD
+        assert 4.4 < field.truth.north < 7.5
+        assert said(field, "beyond the fence: HOLD")
+        assert field.set_mode(Mode.LOITER) is Result.FAILED
+        assert field.set_mode(Mode.MANUAL) is Result.ACCEPTED
+        field.wait(0.2, NEUTRAL)
+        field.wait(0.5, AHEAD)
+        assert field.turning
+
+    def test_the_way_home_where_it_is_set(self) -> None:
+        field = self.fenced([], FENCE_TYPE=2, FENCE_RADIUS=6, FENCE_ACTION=1)
+        field.wait(0.2, NEUTRAL)
+        field.wait(7.0, AHEAD)
+        assert field.mode is Mode.RTL
+        finish(field, 60.0)
+        assert field.truth.distance(Point(0, 0)) < 0.8
+
+    def test_nothing_beyond_it_is_driven_to(self) -> None:
+        field = self.fenced([], FENCE_TYPE=2, FENCE_RADIUS=6)
+        assert field.reposition(Point(10, 0)) is Result.FAILED
+        field.set_mode(Mode.GUIDED)
+        field.goto(10.0, 0.0)
+        field.wait(0.5)
+        assert said(field, "beyond the fence")
+        assert field.stands_for(1.0)
+
+    def test_it_stays_on_and_as_it_is_while_armed(self) -> None:
+        field = self.fenced([])
+        assert field.command(Command.DO_FENCE_ENABLE, 0) is Result.FAILED
+        assert field.command(Command.DO_FENCE_ENABLE, 2) is Result.UNSUPPORTED
+        assert field.command(Command.DO_FENCE_ENABLE, NAN) is Result.DENIED
+        assert upload(field, kind=MissionType.FENCE) == MissionResult.DENIED
+        field.command(Command.COMPONENT_ARM_DISARM, 0)
+        assert field.command(Command.DO_FENCE_ENABLE, 0) is Result.ACCEPTED
+        assert upload(field, kind=MissionType.FENCE) == MissionResult.ACCEPTED
+
+    def test_half_a_polygon_is_refused(self) -> None:
+        field = Field()
+        half = square(FenceItem.POLYGON_INCLUSION, 0, 0, 5)[:3]
+        assert upload(field, *half, kind=MissionType.FENCE) == MissionResult.INVALID_PARAM1

@@ -1,0 +1,74 @@
+"""Which items the three plans of this vehicle may hold. What a mission does is plan_runner.py's, a fence fence.py's.
+
+To offer another mission command, add a line here and its task or effect there. Servos and relays are refused: this
+vehicle has no accessory, and its motors are nobody's servos.
+"""
+
+from __future__ import annotations
+
+from dialects.enums import Command, FenceItem, MissionResult, MissionType
+from link.services.mission_items import ItemRule, Items, Place, PlanRules
+
+DAY = 86400.0
+TURNS_MAX = 1000.0
+SPEED_LOW, SPEED_HIGH = -2.0, 100.0
+"""m/s; -1 and -2 are "no change" and "the usual one"."""
+CORNERS_MIN = 3
+RADIUS_MAX = 1e5
+
+_GO = ItemRule(Place.NEEDED, {1: (0.0, DAY)})
+_HERE = ItemRule(Place.OPTIONAL)
+
+MISSION: dict[int, ItemRule] = {
+    Command.NAV_WAYPOINT: _GO,
+    Command.NAV_LOITER_UNLIM: _HERE,
+    Command.NAV_LOITER_TURNS: ItemRule(Place.OPTIONAL, {1: (0.0, TURNS_MAX)}),
+    Command.NAV_LOITER_TIME: ItemRule(Place.OPTIONAL, {1: (0.0, DAY)}),
+    Command.NAV_RETURN_TO_LAUNCH: ItemRule(),
+    Command.NAV_DELAY: ItemRule(ranges={1: (0.0, DAY)}),
+    Command.CONDITION_DELAY: ItemRule(ranges={1: (0.0, DAY)}),
+    Command.CONDITION_DISTANCE: ItemRule(ranges={1: (0.0, RADIUS_MAX)}),
+    Command.CONDITION_YAW: ItemRule(ranges={1: (-360.0, 360.0), 4: (0.0, 1.0)}),
+    Command.DO_JUMP: ItemRule(ranges={1: (0.0, 65535.0), 2: (-1.0, 65535.0)}),
+    Command.DO_CHANGE_SPEED: ItemRule(ranges={1: (0.0, 1.0), 2: (SPEED_LOW, SPEED_HIGH)}),
+    Command.DO_SET_REVERSE: ItemRule(ranges={1: (0.0, 1.0)}),
+    Command.DO_FENCE_ENABLE: ItemRule(ranges={1: (0.0, 1.0)}),
+}
+
+FENCE: dict[int, ItemRule] = {
+    FenceItem.POLYGON_INCLUSION: ItemRule(Place.NEEDED, {1: (CORNERS_MIN, 500.0)}),
+    FenceItem.POLYGON_EXCLUSION: ItemRule(Place.NEEDED, {1: (CORNERS_MIN, 500.0)}),
+    FenceItem.CIRCLE_INCLUSION: ItemRule(Place.NEEDED, {1: (0.1, RADIUS_MAX)}),
+    FenceItem.CIRCLE_EXCLUSION: ItemRule(Place.NEEDED, {1: (0.1, RADIUS_MAX)}),
+}
+
+RALLY: dict[int, ItemRule] = {FenceItem.RALLY_POINT: ItemRule(Place.NEEDED)}
+
+
+def _jumps_lead_somewhere(items: Items) -> MissionResult:
+    targets = [item.params[0] for item in items if item.command == Command.DO_JUMP]
+    sane = all(target == int(target) and target < len(items) for target in targets)
+    return MissionResult.ACCEPTED if sane else MissionResult.INVALID_PARAM1
+
+
+def _polygons_are_whole(items: Items) -> MissionResult:
+    """The corners of one polygon stand together, and each says how many there are."""
+    index = 0
+    while index < len(items):
+        item = items[index]
+        size = int(item.params[0]) if item.command in POLYGONS else 1
+        corners = items[index : index + size]
+        if len(corners) < size or any((each.command, each.params[0]) != (item.command, item.params[0])
+                                      for each in corners):  # fmt: skip
+            return MissionResult.INVALID_PARAM1
+        index += size
+    return MissionResult.ACCEPTED
+
+
+POLYGONS = (FenceItem.POLYGON_INCLUSION, FenceItem.POLYGON_EXCLUSION)
+
+RULES: dict[MissionType, PlanRules] = {
+    MissionType.MISSION: PlanRules(MISSION, check=_jumps_lead_somewhere),
+    MissionType.FENCE: PlanRules(FENCE, capacity=200, check=_polygons_are_whole),
+    MissionType.RALLY: PlanRules(RALLY, capacity=20),
+}

@@ -1,0 +1,217 @@
+"""AUTO: runs a mission item by item. Uploading it is link/services/mission.py's work.
+
+As in ArduPilot, NAV items come one after another, and the DO and CONDITION items between two of them run while the
+rover drives to the second: a condition holds up the DO items behind it, and what is left over when the second is
+reached is left out. CONDITION_YAW is the exception: turning on the spot takes the whole rover, so it is a NAV
+item here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from enum import IntEnum
+
+from dialects.enums import Command
+from link.services.mission_items import Items, MissionItem
+from vehicle.estimator import Estimate
+from vehicle.guidance import STOPPED_SHORT, Guide, Leg
+from vehicle.homing import Done
+from vehicle.params import Params
+from vehicle.pilot import Motion
+from vehicle.place import Point
+from vehicle.plan_tasks import Circle, Face, Go, Task, Wait
+
+SEARCH_MAX = 100
+"""Items looked through for the next NAV item; more is a circle of jumps."""
+CONDITIONS = (Command.CONDITION_DELAY, Command.CONDITION_DISTANCE)
+EFFECTS = (Command.DO_CHANGE_SPEED, Command.DO_SET_REVERSE, Command.DO_FENCE_ENABLE)
+
+
+class Progress(IntEnum):
+    """MISSION_STATE of MISSION_CURRENT, as far as the mission itself knows it."""
+
+    NONE = 1
+    NOT_STARTED = 2
+    ACTIVE = 3
+    COMPLETE = 5
+
+
+class Mission:
+    """The mission in force, and how far it is."""
+
+    def __init__(
+        self,
+        params: Params,
+        guide: Guide,
+        home: Callable[[], Point | None],
+        effect: Callable[[MissionItem], None],
+    ) -> None:
+        """`effect` does what a DO item says."""
+        self.items: Items = ()
+        self.current = 0
+        """Index of the item under way, or of the one to begin with."""
+        self.progress = Progress.NONE
+        self.reached: list[int] = []
+        """Items reached and not told yet."""
+        self._params = params
+        self._guide = guide
+        self._home = home
+        self._effect = effect
+        self._task: Task | None = None
+        self._waiting: list[MissionItem] = []
+        self._held_since: float | None = None
+        self._jumped: dict[int, int] = {}
+        self._ending: str | None = None
+
+    @property
+    def goal(self) -> Point | None:
+        """Where it goes now."""
+        return self._task.goal if self._task else None
+
+    def load(self, items: Items) -> None:
+        """Another mission, from its first item."""
+        self.items = items
+        self.select(0)
+
+    def select(self, index: int) -> None:
+        """Begin or go on with this item."""
+        self.current = index
+        self.progress = Progress.NOT_STARTED if self.items else Progress.NONE
+        self._task = self._ending = None
+        self._jumped.clear()
+        self._waiting.clear()
+
+    def unready(self, estimate: Estimate) -> str | None:
+        """Why it cannot begin."""
+        return None if self.items else "there is no mission"
+
+    def begin(self, estimate: Estimate, now: float) -> None:
+        """Chosen: go on with the item that was under way, on a new line from here. A complete one begins anew."""
+        if self.progress is Progress.COMPLETE:
+            self.select(0)
+        self._task = None
+
+    def step(self, estimate: Estimate, speed: float, now: float) -> Motion | Done:
+        """The task under way, or the next one."""
+        start = estimate.place
+        for _ in range(SEARCH_MAX):
+            if self._task is None:
+                self._next(self.current, estimate, start)
+            if self._task is None:
+                return self._end()
+            motion = self._task.step(self._guide, estimate, speed, now)
+            if motion is not None:
+                self._run_waiting(estimate, now)
+                return motion
+            start = self._finish(estimate)
+        return self._end()
+
+    def _finish(self, estimate: Estimate) -> Point:
+        """The task is done; where the next leg begins."""
+        self.reached.append(self.current)
+        task, self._task = self._task, None
+        self.current += 1
+        return task.leg.end if isinstance(task, Go) else estimate.place
+
+    def _end(self) -> Done:
+        self.progress, self.current = Progress.COMPLETE, 0
+        return Done(self._ending or "mission complete")
+
+    def _next(self, index: int, estimate: Estimate, start: Point) -> None:
+        """The next NAV item from `index` on; the DO items before it run beside it."""
+        self._waiting, self._held_since = [], None
+        for _ in range(SEARCH_MAX):
+            if not index < len(self.items) or self._ending:
+                return
+            item = self.items[index]
+            if item.command == Command.DO_JUMP:
+                index = self._jump(index, item, count=True)
+            elif item.command in CONDITIONS or item.command in EFFECTS:
+                self._waiting.append(item)
+                index += 1
+            else:
+                self.current, self.progress = index, Progress.ACTIVE
+                self._guide.begin()
+                self._task = self._begun(item, index, estimate, start)
+                return
+        self._ending = "its jumps go in a circle"
+
+    def _jump(self, index: int, item: MissionItem, *, count: bool) -> int:
+        done, often = self._jumped.get(index, 0), item.params[1]
+        if 0 <= often <= done:
+            return index + 1
+        if count:
+            self._jumped[index] = done + 1
+        return int(item.params[0])
+
+    def _begun(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> Task:
+        first = _number(item.params[0])
+        match item.command:
+            case Command.NAV_DELAY:
+                return Wait(first)
+            case Command.CONDITION_YAW:
+                turn = math.radians(first) * (-1.0 if item.params[2] < 0.0 else 1.0)
+                return Face((estimate.yaw or 0.0) + turn if item.params[3] else math.radians(first))
+            case Command.NAV_LOITER_TURNS:
+                radius = _number(item.params[2]) or self._params["LOIT_RADIUS"]
+                return Circle(self._place(item, estimate), radius, first)
+            case Command.NAV_RETURN_TO_LAUNCH:
+                self._ending = "home is reached"
+                return Go(Leg(start, self._home() or start), STOPPED_SHORT)
+        return self._leg(item, index, estimate, start)
+
+    def _leg(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> Task:
+        leg = Leg(start, self._place(item, estimate))
+        stay = math.inf if item.command == Command.NAV_LOITER_UNLIM else _number(item.params[0])
+        end_speed = 0.0 if stay else self._corner(leg, index, estimate)
+        radius = self._params["WP_RADIUS"] if end_speed else STOPPED_SHORT
+        return Go(leg, radius, end_speed, stay)
+
+    def _corner(self, leg: Leg, index: int, estimate: Estimate) -> float:
+        """How fast the end of a leg may be passed."""
+        onward = self._onward(index + 1)
+        if onward is None or onward.command != Command.NAV_WAYPOINT:
+            return 0.0
+        turn = Leg(leg.end, self._place(onward, estimate)).bearing - leg.bearing
+        return self._guide.corner_speed(math.remainder(turn, math.tau), self._params["WP_SPEED"])
+
+    def _onward(self, index: int) -> MissionItem | None:
+        """The NAV item that will follow."""
+        for _ in range(SEARCH_MAX):
+            if index >= len(self.items):
+                return None
+            item = self.items[index]
+            if item.command == Command.DO_JUMP:
+                index = self._jump(index, item, count=False)
+            elif item.command in CONDITIONS or item.command in EFFECTS:
+                index += 1
+            else:
+                return item
+        return None
+
+    def _place(self, item: MissionItem, estimate: Estimate) -> Point:
+        if estimate.origin is None or (item.x, item.y) == (0, 0) or abs(item.latitude) > 90.0:
+            return estimate.place
+        return estimate.origin.point(item.latitude, item.longitude)
+
+    def _run_waiting(self, estimate: Estimate, now: float) -> None:
+        """DO items up to the next condition that does not hold."""
+        while self._waiting and self._may_run(self._waiting[0], estimate, now):
+            item = self._waiting.pop(0)
+            self._held_since = None
+            if item.command in EFFECTS:
+                self._effect(item)
+
+    def _may_run(self, item: MissionItem, estimate: Estimate, now: float) -> bool:
+        if item.command == Command.CONDITION_DELAY:
+            self._held_since = now if self._held_since is None else self._held_since
+            return now - self._held_since >= item.params[0]
+        if item.command == Command.CONDITION_DISTANCE:
+            return self.goal is None or self.goal.distance(estimate.place) <= item.params[0]
+        return True
+
+
+def _number(value: float) -> float:
+    """NaN in a mission is "as you like"."""
+    return 0.0 if math.isnan(value) else value
