@@ -12,7 +12,7 @@ import gc
 import logging
 import signal
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,10 +20,12 @@ from typing import Any
 from link.endpoint import EndpointError
 from link.link import LinkError
 from link.runner import Runner, open_links
+from vehicle.lock import MotorLock
 from vehicle.machine import Machine
 from vehicle.motors import MotorError, Motors, UnknownDriverError, open_motors
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
+from vehicle.notify import Notifier
 from vehicle.param_store import ParamStore
 from vehicle.params import ParamError, Params
 from vehicle.rover import Rover
@@ -114,9 +116,12 @@ async def _serve(settings: Settings) -> int:
         params = _params(settings, keeper)
         if keeper is not None:
             opened.callback(keeper.close)
-        machine = _build(settings, params, Rover(params, now=now, wall_clock=time.time(), keeper=keeper), opened)
+        notifier = Notifier()
+        opened.callback(notifier.close)
+        rover = Rover(params, now=now, wall_clock=time.time(), keeper=keeper)
+        machine = _build(settings, params, rover, opened, notifier.alive)
         try:
-            return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]))
+            return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]), notifier)
         except BaseException as error:
             machine.abandon(error, asyncio.get_running_loop().time())
             raise
@@ -140,20 +145,24 @@ def _params(settings: Settings, keeper: ParamStore | None) -> Params:
     return params
 
 
-async def _drive(machine: Machine, endpoints: Sequence[str], system: int) -> int:
+async def _drive(machine: Machine, endpoints: Sequence[str], system: int, notifier: Notifier) -> int:
     runner = Runner(machine, open_links(endpoints, system=system, component=COMPONENT), period=PERIOD)
-    ending = Ending(machine, runner)
+    ending = Ending(machine, runner, notifier.stopping)
     ending.listen(asyncio.get_running_loop())
     gc.collect()
     gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
-    log.info("ready, system %d, %s", system, ", ".join(endpoints))
+    status = f"system {system}, {', '.join(endpoints)}"
+    log.info("ready, %s", status)
+    notifier.ready(status)
     return await ending.wait()
 
 
 class Ending:
     """How the run ends from outside the cores: asked by a signal, or by a fault in a callback of the loop."""
 
-    def __init__(self, machine: Machine, runner: Runner) -> None:
+    def __init__(self, machine: Machine, runner: Runner, stopping: Callable[[], None] = lambda: None) -> None:
+        """`stopping` is called once the motors stand."""
+        self._stopping = stopping
         self._machine = machine
         self._runner = runner
         self._reason: str | None = None
@@ -183,23 +192,31 @@ class Ending:
             self._machine.shutdown(asyncio.get_running_loop().time())
         except Exception as error:
             self._fault = MotorError(f"the motors did not stop when told, cut their power: {error}")
+        self._stopping()
         self._runner.stop()
 
 
-def _build(settings: Settings, params: Params, rover: Rover, opened: contextlib.ExitStack) -> Machine:
+def _build(
+    settings: Settings,
+    params: Params,
+    rover: Rover,
+    opened: contextlib.ExitStack,
+    completed: Callable[[float], None],
+) -> Machine:
     """The rover in its body; what must be closed after the motors is in `opened`. Raises MotorError, SettingsError."""
     if settings.simulation is None:
         motors, sensors = _body(settings, opened)
     else:
         motors, sensors = _simulated_body(settings.simulation, params)
     try:
-        return Machine(rover, _logged(motors, settings.motor_log), sensors)
+        return Machine(rover, _logged(motors, settings.motor_log), sensors, completed=completed)
     except BaseException:
         motors.close()
         raise
 
 
 def _body(settings: Settings, opened: contextlib.ExitStack) -> tuple[Motors, Sensors]:
+    opened.callback(MotorLock(settings.motors).close)
     own = {key: value for key, value in settings.motors.items() if key != "driver"}
     motors = open_motors(settings.motors["driver"], own)
     if settings.sensors is None:

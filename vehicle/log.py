@@ -10,6 +10,7 @@ import logging
 import os
 import queue
 import threading
+from typing import ClassVar
 
 STDERR = 2
 QUEUE_LINES = 1000
@@ -23,6 +24,21 @@ class _Brief(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         return "vehicle: " + " ".join(record.getMessage().split())
+
+
+class _ForJournal(_Brief):
+    """For systemd's journal, which takes the severity from `<N>` in front of a line (sd-daemon(3))."""
+
+    SEVERITIES: ClassVar = {
+        logging.DEBUG: 7,
+        logging.INFO: 6,
+        logging.WARNING: 4,
+        logging.ERROR: 3,
+        logging.CRITICAL: 2,
+    }
+
+    def format(self, record: logging.LogRecord) -> str:
+        return f"<{self.SEVERITIES.get(record.levelno, 6)}>{super().format(record)}"
 
 
 class _Queued(logging.Handler):
@@ -46,7 +62,8 @@ class Log:
     def __init__(self, path: str | None = None, *, verbose: bool = False) -> None:
         """`path` takes every line with its time and traceback. Raises OSError where it cannot be opened."""
         self._lines: queue.Queue[tuple[int, bytes] | None] = queue.Queue(QUEUE_LINES)
-        self._handlers = [self._handler(STDERR, _Brief())]
+        brief = _ForJournal() if "JOURNAL_STREAM" in os.environ else _Brief()
+        self._handlers = [self._handler(STDERR, brief)]
         if path is not None:
             flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
             full = logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s")

@@ -106,14 +106,20 @@ class Drivetrain:
 class Machine:
     """A `link.core.Core` that owns its motors."""
 
-    def __init__(self, mind: Mind, motors: Motors, sensors: Sensors) -> None:
-        """Raises MotorError where the driver has another number of motors than the rover's kind of drive."""
+    def __init__(
+        self, mind: Mind, motors: Motors, sensors: Sensors, *, completed: Callable[[float], None] = lambda now: None
+    ) -> None:
+        """`completed` is told the time of each control cycle that came to its end, down to the motors.
+
+        Raises MotorError where the driver has another number of motors than the rover's kind of drive.
+        """
         wanted = len(mind.outputs.throttles)
         if motors.count != wanted:
             raise MotorError(f"the motor driver has {motors.count} motors, this drive needs {wanted}")
         self._mind = mind
         self._drivetrain = Drivetrain(motors)
         self._sensors = sensors
+        self._completed = completed
         self._retry_due: float | None = None
         self._closed = False
 
@@ -128,6 +134,8 @@ class Machine:
         itself when the cycles end.
         """
         self._guard(lambda: self._cycle(now), now, refresh=True)
+        if not self._closed:
+            self._completed(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Act on what the links say of themselves."""

@@ -86,3 +86,8 @@ def asked_mode(base: float, main: float, sub: float = 0.0) -> Mode | None:
 def standard_mode(number: float) -> Mode | None:
     """The offered mode that is this MAV_STANDARD_MODE; None for the others."""
     return next((mode for mode, offer in OFFERED.items() if offer.standard and offer.standard == number), None)
+
+
+def first_mode(number: float) -> Mode:
+    """HOLD where the number is no mode of ours: a parameter that was set must not keep the vehicle from starting."""
+    return next((mode for mode in OFFERED if mode == number), Mode.HOLD)

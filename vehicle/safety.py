@@ -16,7 +16,7 @@ from vehicle.conditions import Scene, found
 from vehicle.control import Control
 from vehicle.demand import Demand
 from vehicle.failsafe import RULES, Action, Failsafes, Taken
-from vehicle.modes import OFFERED
+from vehicle.modes import OFFERED, first_mode
 from vehicle.outputs import Clearance
 from vehicle.params import Params
 from vehicle.states import TRANSITIONS, Event, State
@@ -41,7 +41,7 @@ class Safety:
     ) -> None:
         """`unready` says why a mode cannot work now, or None."""
         self.state = State.BOOT
-        self.mode = self.intended = Mode(int(params["INITIAL_MODE"]))
+        self.mode = self.intended = first_mode(params["INITIAL_MODE"])
         self.terminated = False
         """Emergency stop that only a restart ends (DO_FLIGHTTERMINATION)."""
         self.fault: str | None = None

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import sys
+import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 DONE, FAULT, MISTAKE = 0, 1, 2
 """Exit codes: it did what was asked; the hardware did not; the user's mistake."""
@@ -80,8 +81,115 @@ def _schema(asked: argparse.Namespace) -> int:
     return DONE
 
 
+def _check(asked: argparse.Namespace) -> int:
+    from vehicle.check import findings
+
+    code = DONE
+    for finding in findings(asked.file):
+        sys.stdout.write(f"{finding}\n")
+        sys.stdout.flush()
+        if not finding.well:
+            code = max(code, MISTAKE if finding.mistake else FAULT)
+    return code
+
+
+def _config_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--config", default=DEFAULT_FILE, metavar="FILE", help=f"file of settings, {DEFAULT_FILE}")
+
+
+def _safe_stop(asked: argparse.Namespace) -> int:
+    """Reads no more of the file than it needs: a slip of the pen elsewhere in it must not keep motors turning."""
+    from vehicle.motors import safe_stop
+
+    table = _motor_table(asked.config)
+    driver = str(table.pop("driver", ""))
+    problems = safe_stop(driver, table)
+    for problem in problems:
+        sys.stderr.write(f"vehicle safe-stop: {problem}\n")
+    word = "motors may still turn, cut their power" if problems else "motors neutral and without power"
+    sys.stderr.write(f"vehicle safe-stop: {driver}: {word}\n")
+    return DONE
+
+
+def _motor_table(path: str) -> dict[str, Any]:
+    """[motors] of a file, as it stands there. Raises VerbError."""
+    try:
+        table = tomllib.loads(Path(path).read_text(encoding="utf-8")).get("motors")
+    except OSError as error:
+        raise VerbError(f"{path}: {error.strerror}") from error
+    except ValueError as error:  # of TOML, or of UTF-8
+        raise VerbError(f"{path}: {error}") from error
+    if not isinstance(table, dict) or "driver" not in table:
+        raise VerbError(f"{path}: no [motors] driver, so there is nothing to stop")
+    return table
+
+
+def _unit_options(parser: argparse.ArgumentParser) -> None:
+    _config_option(parser)
+    parser.add_argument(
+        "--user", help="who it runs as; default the owner of the home it lives in, else nobody in particular"
+    )
+
+
+def _systemd_unit(asked: argparse.Namespace) -> int:
+    from vehicle.unit import Place, existing_groups, owner, unit
+
+    config, python = Path(asked.config).absolute(), Path(sys.executable)
+    table = _motor_table(asked.config)
+    user = asked.user or owner(config, python)
+    place = Place(config, python, existing_groups(), user, str(table["driver"]))
+    sys.stdout.write(unit(place))
+    return DONE
+
+
+def _motor_test_options(parser: argparse.ArgumentParser) -> None:
+    _config_option(parser)
+    parser.add_argument("motor", metavar="MOTOR", help="its number from 1, or its name: left, right, throttle, ...")
+    parser.add_argument("--throttle", type=float, default=0.15, metavar="N", help="-0.3 to 0.3 (default 0.15)")
+    parser.add_argument("--time", type=float, default=1.0, metavar="S", help="seconds, at most 3 (default 1)")
+    parser.add_argument("--yes", action="store_true", help="do not ask: the wheels are in the air")
+
+
+def _motor_test(asked: argparse.Namespace) -> int:
+    from vehicle.config import ConfigError, load
+    from vehicle.motor_test import RefusedError, turn, wish
+    from vehicle.motors import MotorError
+    from vehicle.params import Params
+
+    try:
+        config = load(asked.config)
+        wanted = wish(asked.motor, asked.throttle, asked.time, Params(config.params)["DRIVE_TYPE"])
+        _motor_table(asked.config)
+        if not asked.yes:
+            _ask(
+                f"Motor {asked.motor} at {asked.throttle:+.0%} for {asked.time:g} s. Are the wheels in the air? [y/N] "
+            )
+        ended = turn(config.motors, wanted)
+    except (ConfigError, RefusedError) as error:
+        raise VerbError(str(error)) from error
+    except MotorError as error:
+        sys.stderr.write(f"vehicle motor-test: {error}\n")
+        return FAULT
+    sys.stderr.write(f"vehicle motor-test: {f'stopped by {ended.name}' if ended else 'done'}, motors neutral\n")
+    return DONE
+
+
+def _ask(question: str) -> None:
+    """Raises VerbError unless somebody at a terminal says yes."""
+    if not sys.stdin.isatty():
+        raise VerbError("a wheel is going to turn; with the wheels in the air say --yes")
+    sys.stderr.write(question)
+    sys.stderr.flush()
+    if sys.stdin.readline().strip().lower() not in ("y", "yes"):
+        raise VerbError("nothing was turned")
+
+
 VERBS: dict[str, Verb] = {
     "init": Verb("write a file of settings with every key and its default", _file, _init),
+    "check": Verb("check that file and try the hardware, without moving anything", _file, _check),
     "schema": Verb("print the JSON schema of that file, for editors", _nothing, _schema),
+    "motor-test": Verb("turn one motor, slowly and shortly", _motor_test_options, _motor_test),
+    "safe-stop": Verb("stop the motors that a killed vehicle left turning", _config_option, _safe_stop),
+    "systemd-unit": Verb("print the systemd unit that runs the vehicle as a service", _unit_options, _systemd_unit),
 }
 """Every word, in the order of --help."""

@@ -31,6 +31,15 @@ def fail() -> None:
     raise ZeroDivisionError("bug")
 
 
+def test_the_journal_gets_the_severity_in_front(stderr: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("JOURNAL_STREAM", "8:1")
+    lines = Log()
+    log.info("ready")
+    log.error("no board")
+    lines.close()
+    assert os.read(stderr, 4096) == b"<6>vehicle: ready\n<3>vehicle: no board\n"
+
+
 def test_a_person_gets_one_line_and_the_file_the_traceback(stderr: int, tmp_path: Path) -> None:
     path = tmp_path / "log"
     path.write_text("earlier\n")

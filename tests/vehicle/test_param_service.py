@@ -204,3 +204,13 @@ def test_values_that_cannot_be_kept_are_told_once() -> None:
         bench.rover.observe([], bench.now)
         bench.wait(1.0)
     assert bench.texts.count("Parameters are not saved: No space left on device") == 1
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_value_that_can_be_set_keeps_the_vehicle_from_starting(name: str) -> None:
+    """A ground station could not mend it."""
+    parameter = TABLE[NAMES.index(name)]
+    between = (value for value in range(20) if parameter.low <= value <= parameter.high)
+    for value in (parameter.low, parameter.high, *between):
+        bench, _ = bench_with(Params({name: value}))
+        bench.wait(0.1)

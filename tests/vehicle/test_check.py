@@ -1,0 +1,145 @@
+"""`vehicle check`: one line for each item, nothing moves, and the code says where the fault is."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.vehicle.motors.across_processes import NAME, FiledPca9685
+from tests.vehicle.motors.controllers import RoboClaw
+from tests.vehicle.motors.pty_controller import OnPty
+from tests.vehicle.words import said_by
+from vehicle.sample import sample
+
+FREE = 'endpoints = ["udpout:127.0.0.1:9"]\n'
+QUIET = "[sensors]\ncomputer = false\n"
+
+
+def checked(folder: Path, text: str) -> tuple[int, list[str]]:
+    file = folder / "rover.toml"
+    file.write_text(text)
+    code, out, error = said_by("check", str(file))
+    assert error == ""
+    return code, [line.replace(str(file), "FILE") for line in out.splitlines()]
+
+
+@pytest.fixture
+def line() -> Iterator[OnPty]:
+    with OnPty(RoboClaw()) as opened:
+        yield opened
+
+
+def test_the_sample_is_well_as_it_is(tmp_path: Path) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    code, lines = checked(tmp_path, sample().replace("0.0.0.0:14550", f"127.0.0.1:{port}"))
+    assert code == 0
+    assert lines[:3] == [
+        "ok    settings: FILE",
+        f"ok    endpoint udpin:127.0.0.1:{port}: opens",
+        "ok    motors: simulated with 2 motors, neutral and without power",
+    ]
+    assert lines[3].startswith("ok    sensors.computer: ")
+
+
+def test_every_mistake_in_the_file_has_its_line(tmp_path: Path) -> None:
+    code, lines = checked(tmp_path, "endpont = 1\n[params]\nMAN_TIMEOUT = 9\n")
+    assert code == 2
+    assert lines == [
+        "FAIL  settings: FILE: endpont: unknown key; did you mean endpoints?",
+        "FAIL  settings: FILE: params.MAN_TIMEOUT: must be 0.2 to 2, not 9",
+    ]
+
+
+def test_a_file_that_lacks_the_main_things(tmp_path: Path) -> None:
+    code, lines = checked(tmp_path, QUIET)
+    assert code == 2
+    assert [each.split(": ")[0] for each in lines] == ["ok    settings", "FAIL  endpoints", "FAIL  motors"]
+
+
+def test_a_controller_answers_and_no_wheel_turns(line: OnPty, tmp_path: Path) -> None:
+    text = f'{FREE}[motors]\ndriver = "roboclaw"\nport = "{line.path}"\nreply_time = 0.05\n{QUIET}'
+    code, lines = checked(tmp_path, text)
+    assert code == 0
+    assert lines[-1] == (
+        "ok    motors: roboclaw with 2 motors, neutral and without power, it calls itself USB Roboclaw 2x7a v4.2.8"
+    )
+    assert line.controller.outputs == [0.0, 0.0]
+
+
+def test_motors_that_turned_stand_after_it(tmp_path: Path) -> None:
+    chip = FiledPca9685(tmp_path / "registers")
+    chip.write_byte_data(0x40, 0, 0x20)
+    chip.write_i2c_block_data(0x40, 6, [0, 0, 0x99, 0x01])
+    words = f'driver = "{NAME}:Pca9685"\nregisters = "{tmp_path / "registers"}"'
+    channels = "channels = [{channel = 0}, {channel = 1}]"
+    code, _ = checked(tmp_path, f"{FREE}[motors]\n{words}\n{channels}\n{QUIET}")
+    assert code == 0
+    assert chip.pulse(0) == pytest.approx(1.5e-3, abs=5e-6)
+    assert chip.pulse(1) is None  # that gave no pulses, and was not woken
+
+
+def test_hardware_that_is_not_there_is_a_fault_and_the_rest_is_tried(tmp_path: Path) -> None:
+    text = (
+        'endpoints = ["serial:/dev/no-such-port:57600", "udpout:127.0.0.1:9"]\n'
+        '[motors]\ndriver = "roboclaw"\nport = "/dev/nowhere"\n'
+        '[sensors]\ncomputer = false\n[sensors.battery]\nkind = "ina219"\nbus = 99\n'
+    )
+    code, lines = checked(tmp_path, text)
+    assert code == 1
+    assert [each[:4] for each in lines] == ["ok  ", "FAIL", "ok  ", "FAIL", "FAIL"]
+    assert "/dev/no-such-port" in lines[1]
+    assert "/dev/nowhere" in lines[3]
+    assert "sensors.battery: ina219 at 0x40 on I2C bus 99" in lines[4]
+
+
+def test_a_port_in_use_and_the_wrong_number_of_motors(tmp_path: Path) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        port = taken.getsockname()[1]
+        text = (
+            f'endpoints = ["udpin:127.0.0.1:{port}"]\n[motors]\ndriver = "simulated"\n{QUIET}[params]\nDRIVE_TYPE = 4\n'
+        )
+        code, lines = checked(tmp_path, text)
+    assert code == 1
+    assert f"port {port} is in use" in lines[1]
+    assert lines[2] == "FAIL  motors: the driver has 2 motors, DRIVE_TYPE 4 needs 4"
+
+
+@pytest.mark.parametrize(
+    ("report", "says"),
+    [
+        (b'{"class":"TPV","mode":3,"lat":48.1,"lon":11.5}\n', "ok    sensors.gps: fix type 3, 0 satellites"),
+        (b"", "FAIL  sensors.gps: gpsd at 127.0.0.1:"),
+    ],
+)
+def test_gpsd_is_asked(tmp_path: Path, report: bytes, says: str) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def serve() -> None:
+            client, _ = server.accept()
+            with client:
+                client.recv(1000)
+                client.sendall(report)
+                if report:
+                    client.recv(1000)
+
+        thread = threading.Thread(target=serve)
+        thread.start()
+        port = server.getsockname()[1]
+        text = f'{FREE}[motors]\ndriver = "simulated"\n[sensors]\ncomputer = false\n[sensors.gps]\nport = {port}\n'
+        code, lines = checked(tmp_path, text)
+        thread.join(10)
+    assert lines[-1].startswith(says)
+    assert code == (0 if report else 1)
+
+
+def test_without_a_file_it_says_how_to_get_one(tmp_path: Path) -> None:
+    code, out, _ = said_by("check", str(tmp_path / "rover.toml"))
+    assert code == 2
+    assert "`vehicle init" in out

@@ -1,0 +1,49 @@
+"""One program at a time for one set of motors."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from vehicle.lock import InUseError, MotorLock
+
+# A serial port of each test's own, so that tests that run at the same time do not meet.
+MINE = {"driver": "roboclaw", "port": f"/dev/test-{os.getpid()}"}
+
+
+def test_the_second_is_refused_until_the_first_lets_go() -> None:
+    first = MotorLock(MINE)
+    with pytest.raises(InUseError, match="in use by another vehicle"):
+        MotorLock({**MINE, "baud": 9600})
+    first.close()
+    first.close()
+    MotorLock(MINE).close()
+
+
+def test_another_port_is_another_controller() -> None:
+    first, second = MotorLock(MINE), MotorLock({**MINE, "port": MINE["port"] + "b"})
+    first.close()
+    second.close()
+
+
+@pytest.mark.parametrize("driver", ["simulated", "my_car:Motors"])
+def test_simulated_motors_and_those_of_others_are_not_locked(driver: str) -> None:
+    first, second = MotorLock({"driver": driver}), MotorLock({"driver": driver})
+    first.close()
+    second.close()
+
+
+def test_a_killed_process_holds_nothing() -> None:
+    script = f"from vehicle.lock import MotorLock; lock = MotorLock({MINE!r}); print(flush=True); input()"
+    process = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert process.stdout is not None
+    process.stdout.readline()
+    with pytest.raises(InUseError):
+        MotorLock(MINE)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    MotorLock(MINE).close()

@@ -1,0 +1,149 @@
+"""kill -9 while the wheels turn, then safe-stop as systemd runs it: every kind of hardware ends neutral."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from tests.vehicle.ground import Ground, drive, running
+from tests.vehicle.motors.across_processes import NAME, FiledPca9685
+from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
+from tests.vehicle.motors.fake_sysfs import FakeSysfs
+from tests.vehicle.motors.pty_controller import OnPty
+from tests.vehicle.words import said_by
+
+
+class DeafToTime:
+    """A controller whose own serial timeout does not work: only a command stops it."""
+
+    def tick(self, now: float) -> None:
+        """Time changes nothing."""
+
+
+class StubbornRoboClaw(DeafToTime, RoboClaw):
+    pass
+
+
+class StubbornSabertooth(DeafToTime, Sabertooth):
+    pass
+
+
+@dataclass
+class Rig:
+    """Hardware, and the [motors] that fit it."""
+
+    motors: str
+    turning: Callable[[], bool]
+
+
+def roboclaw(opened: ExitStack, folder: Path) -> Rig:
+    line = opened.enter_context(OnPty(StubbornRoboClaw()))
+    return Rig(f'driver = "roboclaw"\nport = "{line.path}"\nreply_time = 0.05', lambda: any(line.controller.outputs))
+
+
+def sabertooth(opened: ExitStack, folder: Path) -> Rig:
+    line = opened.enter_context(OnPty(StubbornSabertooth()))
+    words = f'driver = "sabertooth"\nport = "{line.path}"\ntimeout_proven = true'
+    return Rig(words, lambda: any(line.controller.outputs))
+
+
+def pca9685(opened: ExitStack, folder: Path) -> Rig:
+    chip = FiledPca9685(folder / "registers")
+    channels = "[{channel = 0}, {channel = 1}]"
+    words = f'driver = "{NAME}:Pca9685"\nregisters = "{folder / "registers"}"\nchannels = {channels}'
+    return Rig(words, lambda: _away_from_neutral(chip.pulse(0)) or _away_from_neutral(chip.pulse(1)))
+
+
+def sysfs(opened: ExitStack, folder: Path) -> Rig:
+    tree = FakeSysfs(folder)
+    outputs = ", ".join(f'{{drives = "servo", device = "fe20c000.pwm", channel = {number}}}' for number in (0, 1))
+    words = f'driver = "{NAME}:SysfsPwm"\nroot = "{tree.root}"\noutputs = [{outputs}]'
+    there = tree.channel(1)
+    return Rig(words, lambda: there.exists() and any(_away_from_neutral(tree.pulse(number)) for number in (0, 1)))
+
+
+def _away_from_neutral(pulse: float | None) -> bool:
+    """Farther than a step of the chip."""
+    return pulse is not None and abs(pulse - 1.5e-3) > 5e-6
+
+
+RIGS = {"roboclaw": roboclaw, "sabertooth": sabertooth, "pca9685": pca9685, "sysfs-pwm": sysfs}
+
+
+@pytest.fixture(params=RIGS)
+def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
+    with ExitStack() as opened:
+        yield RIGS[request.param](opened, tmp_path)
+
+
+@pytest.mark.e2e
+def test_after_a_kill_safe_stop_ends_what_turns(rig: Rig, tmp_path: Path) -> None:
+    file = tmp_path / "rover.toml"
+    with Ground() as ground:
+        file.write_text(f'endpoints = ["{ground.endpoint}"]\n[motors]\n{rig.motors}\n')
+        with running(tmp_path, "--config", str(file)) as vehicle:
+            assert "ready" in vehicle.ready()
+            drive(ground, vehicle)
+            ground.wait(rig.turning, "the hardware turns the wheels")
+            vehicle.process.kill()
+            vehicle.process.wait(10)
+    assert rig.turning()  # nobody is there to stop it
+    words = [sys.executable, "-m", "vehicle", "safe-stop", "--config", str(file)]
+    ended = subprocess.run(words, capture_output=True, text=True, check=False, timeout=30)
+    assert ended.returncode == 0
+    assert ended.stderr.endswith("motors neutral and without power\n")
+    assert not rig.turning()
+
+
+def test_a_mistake_elsewhere_in_the_file_does_not_keep_motors_turning(tmp_path: Path) -> None:
+    with ExitStack() as opened:
+        rig = pca9685(opened, tmp_path)
+        chip = FiledPca9685(tmp_path / "registers")
+        file = tmp_path / "rover.toml"
+        file.write_text(f"endpoint = 3\n[motors]\n{rig.motors}\n[params]\nNO_SUCH = 1\n")
+        chip.write_byte_data(0x40, 0, 0x20)
+        chip.write_i2c_block_data(0x40, 6, [0, 0, 0x99, 0x01])
+        assert rig.turning()
+        assert said_by("safe-stop", "--config", str(file))[0] == 0
+        assert not rig.turning()
+
+
+def test_what_cannot_be_stopped_is_said_and_the_code_is_0_all_the_same(tmp_path: Path) -> None:
+    file = tmp_path / "rover.toml"
+    file.write_text('[motors]\ndriver = "roboclaw"\nport = "/dev/nowhere"\n')
+    code, _, error = said_by("safe-stop", "--config", str(file))
+    assert code == 0
+    first, last = error.splitlines()
+    assert "/dev/nowhere" in first
+    assert last == "vehicle safe-stop: roboclaw: motors may still turn, cut their power"
+
+
+@pytest.mark.parametrize("text", ["", "[motors]\n", "motors = 1\n", "[motors\n", "\udcff"])
+def test_a_file_without_motors_is_a_mistake(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "rover.toml"
+    file.write_bytes(text.encode("utf-8", "surrogateescape"))
+    code, out, error = said_by("safe-stop", "--config", str(file))
+    assert (code, out, error.count("\n")) == (2, "", 1)
+    assert str(file) in error
+
+
+def test_no_file_is_a_mistake(tmp_path: Path) -> None:
+    code, _, error = said_by("safe-stop", "--config", str(tmp_path / "none"))
+    assert (code, error) == (2, f"vehicle safe-stop: {tmp_path / 'none'}: No such file or directory\n")
+
+
+def test_it_needs_neither_the_loop_nor_the_dialect(tmp_path: Path) -> None:
+    """It must be there soon: wheels turn until then."""
+    file = tmp_path / "rover.toml"
+    file.write_text('[motors]\ndriver = "simulated"\n')
+    script = (
+        f"import sys; from vehicle.__main__ import main; code = main(['safe-stop', '--config', {str(file)!r}]); "
+        "sys.exit(code or 'asyncio' in sys.modules or 'dialects.rover' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0

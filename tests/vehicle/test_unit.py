@@ -1,0 +1,114 @@
+"""The systemd unit: what it promises, and what systemd's own tools think of it."""
+
+from __future__ import annotations
+
+import configparser
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.vehicle.words import said_by
+from vehicle.unit import Place, owner, unit
+
+PYTHON = Path(sys.executable)
+PLACES = {
+    "of nobody": Place(Path("/etc/rover.toml"), PYTHON, ("dialout",)),
+    "in a home": Place(Path("/home/pi/rover.toml"), PYTHON, ("dialout", "video"), user="daemon", driver="sysfs-pwm"),
+}
+
+analysed = pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="needs systemd-analyze (Debian: systemd)")
+
+
+def service(place: Place) -> dict[str, str]:
+    parser = configparser.RawConfigParser(strict=False)
+    parser.optionxform = str  # type: ignore[assignment, method-assign]
+    parser.read_string(unit(place))
+    return dict(parser["Service"])
+
+
+@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
+def test_it_is_watched_restarted_and_its_motors_are_stopped_after_any_end(place: Place) -> None:
+    said = service(place)
+    assert said["Type"] == "notify"
+    assert said["ExecStart"] == f"{PYTHON} -m vehicle --config {place.config}"
+    assert said["ExecStopPost"] == f"{PYTHON} -m vehicle safe-stop --config {place.config}"
+    assert (said["WatchdogSec"], said["WatchdogSignal"]) == ("1", "SIGKILL")
+    assert (said["Restart"], said["RestartSec"]) == ("always", "0.5")
+    assert said["StateDirectory"] == "mavhelm"
+    assert "StartLimitIntervalSec=0" in unit(place)
+
+
+def test_who_it_runs_as_and_what_it_may_touch() -> None:
+    nobody, home = (service(place) for place in PLACES.values())
+    assert (nobody["DynamicUser"], nobody["ProtectHome"], nobody["ProtectKernelTunables"]) == ("yes", "yes", "yes")
+    assert (home["User"], home["ProtectHome"], home["ProtectKernelTunables"]) == ("daemon", "read-only", "no")
+    assert nobody["SupplementaryGroups"] == "dialout"
+    assert "SupplementaryGroups" not in service(Place(Path("/etc/rover.toml")))
+
+
+def test_a_path_with_odd_characters_is_one_word() -> None:
+    place = Place(Path("/etc/my rover $1 50%.toml"))
+    assert service(place)["ExecStart"].endswith("--config '/etc/my rover $$1 50%%.toml'")
+
+
+def test_the_owner_of_a_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "rover.toml"
+    file.touch()
+    assert owner(file, PYTHON) == owner(Path("/etc/rover.toml"), PYTHON)
+    monkeypatch.setattr("vehicle.unit.HOMES", (tmp_path,))
+    assert owner(file, PYTHON) == file.owner()
+    assert owner(Path("/etc/rover.toml"), Path("/usr/bin/python3")) is None
+    assert owner(tmp_path / "none", Path("/usr/bin/python3")) is None
+
+
+@analysed
+@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
+def test_its_exposure_is_low(place: Place, tmp_path: Path) -> None:
+    file = tmp_path / "rover.service"
+    file.write_text(unit(place))
+    words = ["systemd-analyze", "security", "--offline=true", "--no-pager", str(file)]
+    told = subprocess.run(words, capture_output=True, text=True, check=False, timeout=60)
+    found = re.search(r"Overall exposure level for \S+: ([\d.]+)", told.stdout)
+    assert found, told.stderr
+    assert float(found[1]) <= 2.0
+
+
+@analysed
+@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
+def test_systemd_understands_every_line(place: Place, tmp_path: Path) -> None:
+    file = tmp_path / "rover.service"
+    file.write_text(unit(place))
+    told = subprocess.run(
+        ["systemd-analyze", "verify", str(file)], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert "rover.service" not in told.stderr
+    assert told.returncode == 0
+
+
+@analysed
+def test_the_check_would_see_a_wrong_line(tmp_path: Path) -> None:
+    file = tmp_path / "rover.service"
+    file.write_text(unit(PLACES["of nobody"]).replace("WatchdogSec=1", "WatchdogSek=1"))
+    told = subprocess.run(
+        ["systemd-analyze", "verify", str(file)], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert "WatchdogSek" in told.stderr
+
+
+def test_the_command_prints_it_with_whole_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "rover.toml").write_text('[motors]\ndriver = "simulated"\n')
+    monkeypatch.chdir(tmp_path)
+    code, out, error = said_by("systemd-unit", "--user", "pi")
+    assert (code, error) == (0, "")
+    assert f"--config {tmp_path}/rover.toml\n" in out
+    assert "\nUser=pi\n" in out
+
+
+def test_without_a_file_it_says_so(tmp_path: Path) -> None:
+    code, out, error = said_by("systemd-unit", "--config", str(tmp_path / "none"))
+    assert (code, out) == (2, "")
+    assert error.endswith("none: No such file or directory\n")

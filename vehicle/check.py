@@ -1,0 +1,149 @@
+"""`vehicle check`: is the file of settings right, and does the hardware answer? Nothing moves: no motor gets power."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from dialects.enums import DriveType
+from link.link import LinkError
+from link.openers import open_wires
+from vehicle.config import Config, ConfigError, load
+from vehicle.lock import MotorLock
+from vehicle.mixer import MIXERS
+from vehicle.motors import MotorError, open_motors
+from vehicle.params import Params
+from vehicle.sensors.encoders import Encoders
+from vehicle.sensors.gps import Gpsd
+from vehicle.sensors.pi_health import PiHealth
+from vehicle.sensors.power import PowerMonitor
+
+GPS_WAIT = 3.0
+"""s for a first report: gpsd answers at once, receivers give one each second."""
+GPS_POLL = 0.1
+"""s"""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One item: what, whether it is well, and what was seen."""
+
+    item: str
+    well: bool
+    seen: str
+    mistake: bool = False
+    """It is not well because of the file, whatever the hardware does."""
+
+    def __str__(self) -> str:
+        return f"{'ok  ' if self.well else 'FAIL'}  {self.item}: {self.seen}"
+
+
+def findings(path: str) -> Iterator[Finding]:
+    """Item by item as they are tried; the file alone where it has mistakes."""
+    try:
+        config = load(path)
+    except ConfigError as error:
+        yield from (Finding("settings", False, problem, mistake=True) for problem in error.problems)
+        return
+    yield Finding("settings", True, path)
+    yield from _links(config)
+    if config.motors:
+        yield _tried("motors", lambda: _motors(config))
+    else:
+        yield Finding("motors", False, 'none; add [motors] and driver = "NAME"', mistake=True)
+    sensors = config.sensors
+    if sensors.battery is not None:
+        battery = PowerMonitor(sensors.battery)
+        yield _tried("sensors.battery", lambda: _battery(battery))
+    if sensors.gps is not None:
+        yield _tried("sensors.gps", lambda: asyncio.run(_gps(config)))
+    if sensors.encoders is not None:
+        yield _tried("sensors.encoders", lambda: _encoders(config))
+    if sensors.computer:
+        yield _tried("sensors.computer", _computer)
+
+
+class _AbsentError(Exception):
+    """It does not answer."""
+
+
+def _tried(item: str, attempt: Callable[[], str]) -> Finding:
+    try:
+        return Finding(item, True, attempt())
+    except (MotorError, OSError, ImportError, LinkError, _AbsentError) as error:
+        return Finding(item, False, " ".join(str(error).split()))
+
+
+def _links(config: Config) -> Iterator[Finding]:
+    if not config.endpoints:
+        yield Finding(
+            "endpoints", False, 'none; where is the ground station? endpoints = ["udpin:0.0.0.0:14550"]', mistake=True
+        )
+    for endpoint in config.endpoints:
+        yield _tried(f"endpoint {endpoint}", lambda endpoint=endpoint: _link(endpoint))  # type: ignore[misc]
+
+
+def _link(endpoint: str) -> str:
+    [wire] = open_wires([endpoint])
+    problem = wire.problem
+    wire.close()
+    if problem:
+        raise _AbsentError(problem)
+    return "opens"
+
+
+def _motors(config: Config) -> str:
+    kind = DriveType(int(Params(config.params)["DRIVE_TYPE"]))
+    wanted = len(MIXERS[kind].motors)
+    with contextlib.ExitStack() as opened:
+        opened.callback(MotorLock(config.motors).close)
+        motors = open_motors(config.motors["driver"], {k: v for k, v in config.motors.items() if k != "driver"})
+        opened.callback(motors.close)
+        motors.set((0.0,) * motors.count)
+        motors.disable()
+        if motors.count != wanted:
+            raise _AbsentError(f"the driver has {motors.count} motors, DRIVE_TYPE {kind:d} needs {wanted}")
+        version = getattr(motors, "version", None)
+        told = f", it calls itself {version()}" if version is not None else ""
+        return f"{config.motors['driver']} with {motors.count} motors, neutral and without power{told}"
+
+
+def _battery(monitor: PowerMonitor) -> str:
+    try:
+        power = monitor.sample()
+    finally:
+        monitor.close()
+    return f"{power.voltage:.2f} V, {power.current:.2f} A"
+
+
+async def _gps(config: Config) -> str:
+    assert config.sensors.gps is not None
+    gps, loop = Gpsd(config.sensors.gps), asyncio.get_running_loop()
+    try:
+        end = loop.time() + GPS_WAIT
+        while loop.time() < end:
+            await asyncio.sleep(GPS_POLL)
+            if gps.fault:
+                raise _AbsentError(gps.fault)
+            if reading := gps.latest(loop.time()):
+                return f"fix type {reading.fix.fix}, {reading.sky.satellites or 0} satellites"
+        raise _AbsentError("gpsd is there, and says nothing of a position: is a receiver connected to it?")
+    finally:
+        gps.close()
+
+
+def _encoders(config: Config) -> str:
+    assert config.sensors.encoders is not None
+    encoders = Encoders(config.sensors.encoders)
+    encoders.close()
+    return f"{len(config.sensors.encoders.wheels)} wheels; turn one by hand while the vehicle runs to see it count"
+
+
+def _computer() -> str:
+    health = PiHealth().sample()
+    if health.under_voltage:
+        raise _AbsentError("under-voltage: the supply or its cable is too weak")
+    warmth = "temperature unknown" if health.temperature is None else f"{health.temperature:.0f} degrees"
+    return f"{warmth}, {'supply not watched' if health.under_voltage is None else 'supply well'}"

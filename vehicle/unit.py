@@ -1,0 +1,143 @@
+"""The systemd unit of the daemon: restarted when it ends, killed when it hangs, and its motors stopped after both."""
+
+from __future__ import annotations
+
+import grp
+import shlex
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+HARDWARE_GROUPS = ("dialout", "gpio", "i2c", "video")
+"""Groups that may use serial ports, pins, I2C and the supply's monitor on Raspberry Pi OS."""
+HOMES = (Path("/home"), Path("/root"))
+PWM = "sysfs-pwm"
+
+TEMPLATE = """\
+# Printed by `vehicle systemd-unit`. To install it:
+#   vehicle systemd-unit --config {config} | sudo tee /etc/systemd/system/rover.service
+#   sudo systemctl daemon-reload && sudo systemctl enable --now rover
+# Its log: journalctl -u rover -f
+
+[Unit]
+Description=MAVLink rover (mavhelm)
+After=network.target
+# Never give up: a rover on the road has nobody who starts it again.
+StartLimitIntervalSec=0
+
+[Service]
+Type=notify
+ExecStart={vehicle} --config {config}
+# Also after a crash or kill -9, from a process of its own: motor controllers keep their last value.
+ExecStopPost={vehicle} safe-stop --config {config}
+# Fed by completed control cycles only. SIGKILL, because a process that hangs hears nothing else.
+WatchdogSec=1
+WatchdogSignal=SIGKILL
+Restart=always
+RestartSec=0.5
+TimeoutStartSec=30
+# The daemon stops its motors at once; this also limits safe-stop, which a slow Pi needs 2 s to load.
+TimeoutStopSec=5
+StateDirectory=mavhelm
+UMask=0077
+
+# The control loop before everything else, but not for ever: the kernel leaves others 5 % of the time.
+CPUSchedulingPolicy=fifo
+CPUSchedulingPriority=20
+OOMScoreAdjust=-900
+MemoryMax=256M
+TasksMax=64
+LimitCORE=0
+
+# Who it is, and which devices it sees.
+{user}
+{groups}DevicePolicy=closed
+DeviceAllow=char-ttyAMA rw
+DeviceAllow=char-ttyS rw
+DeviceAllow=char-ttyUSB rw
+DeviceAllow=char-ttyACM rw
+DeviceAllow=char-gpiochip rw
+DeviceAllow=char-i2c rw
+
+# Private networks only. More is one line, IPAddressAllow=..., in `systemctl edit rover`.
+IPAddressDeny=any
+IPAddressAllow=localhost link-local 10.0.0.0/8 172.16.0.0/12 192.168.0.0/16 fc00::/7
+RestrictAddressFamilies=AF_UNIX AF_INET AF_INET6
+
+NoNewPrivileges=yes
+CapabilityBoundingSet=
+AmbientCapabilities=
+ProtectSystem=strict
+{home}
+PrivateTmp=yes
+PrivateMounts=yes
+{tunables}
+ProtectKernelModules=yes
+ProtectKernelLogs=yes
+ProtectControlGroups=yes
+ProtectClock=yes
+ProtectHostname=yes
+ProtectProc=invisible
+RestrictNamespaces=yes
+RestrictRealtime=yes
+RestrictSUIDSGID=yes
+RemoveIPC=yes
+LockPersonality=yes
+MemoryDenyWriteExecute=yes
+KeyringMode=private
+SystemCallArchitectures=native
+SystemCallFilter=@system-service
+SystemCallFilter=~@privileged @resources
+SystemCallErrorNumber=EPERM
+
+[Install]
+WantedBy=multi-user.target
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """What the unit depends on beside the program."""
+
+    config: Path
+    """Absolute."""
+    python: Path = Path(sys.executable)
+    groups: tuple[str, ...] = ()
+    """Those of HARDWARE_GROUPS that exist here: systemd starts nothing with one that does not."""
+    user: str | None = None
+    """Who it runs as; None for a user that exists only while it runs."""
+    driver: str = ""
+
+
+def unit(place: Place) -> str:
+    """The unit."""
+    in_home = any(path.is_relative_to(home) for path in (place.config, place.python) for home in HOMES)
+    groups = f"SupplementaryGroups={' '.join(place.groups)}\n" if place.groups else ""
+    pwm = place.driver == PWM
+    return TEMPLATE.format(
+        vehicle=f"{_word(place.python)} -m vehicle",
+        config=_word(place.config),
+        user=f"User={place.user}" if place.user else "DynamicUser=yes",
+        groups=groups,
+        home=f"ProtectHome={'read-only' if in_home else 'yes'}",
+        tunables=f"# {PWM} writes to /sys.\nProtectKernelTunables=no" if pwm else "ProtectKernelTunables=yes",
+    )
+
+
+def existing_groups() -> tuple[str, ...]:
+    """Those of HARDWARE_GROUPS that this machine has."""
+    known = {group.gr_name for group in grp.getgrall()}
+    return tuple(name for name in HARDWARE_GROUPS if name in known)
+
+
+def owner(config: Path, python: Path) -> str | None:
+    """Whose home it lives in: homes are closed to others, so it has to run as that user. None outside of homes."""
+    for path in (config, python):
+        if any(path.is_relative_to(home) for home in HOMES) and path.exists():
+            return path.owner()
+    return None
+
+
+def _word(path: Path) -> str:
+    """A word of a command line in a unit, where % and $ mean something."""
+    return shlex.quote(str(path)).replace("%", "%%").replace("$", "$$")
