@@ -29,7 +29,7 @@ from link.flow import FlowControl
 from link.frame import Counts, Frame, noise_hint
 from link.framer import Framer
 from link.peer import PeerState
-from link.source import Order
+from link.source import NEW, Order
 
 MAX_PEERS = 8
 PEER_SILENCE = 10.0
@@ -37,6 +37,7 @@ PEER_SILENCE = 10.0
 MISMATCH_AFTER = 3
 """So many whole frames with a foreign checksum are another dialect; one may be an accident."""
 
+_RADIO_STATUS: int = RadioStatus.id
 _DEMANDS = frozenset(each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence))
 _COMMANDS = frozenset(each.id for each in (CommandLong, CommandInt, SetMode))
 
@@ -140,18 +141,19 @@ class Channel:
     def _accept(self, state: PeerState, frames: list[Frame], now: float) -> list[Received]:
         accepted: list[Received] = []
         for frame in frames:
-            if not frame.system or not frame.component:
-                continue
-            if (frame.system, frame.component) == self.ids:
-                self._own_id = True
+            number, system, component, sequence, _ = frame
+            sender = (system, component)
+            if not system or not component or sender == self.ids:
+                self._own_id |= sender == self.ids
                 continue
             state.heard = now
-            if frame.message_id == RadioStatus.id:
-                self._hear_radio(frame, now)
-            if self._in_order(state, frame):
-                received = self._decode(state, frame, now)
-                if received is not None:
-                    accepted.append(received)
+            source = state.sources.get(sender)
+            order = source.accept(sequence, number) if source else state.first_of(frame)
+            if order is not NEW and self._is_old(order, number):
+                continue
+            received = self._decode(state, frame, now)
+            if received is not None:
+                accepted.append(received)
         return accepted
 
     def _hear_radio(self, frame: Frame, now: float) -> None:
@@ -159,18 +161,18 @@ class Channel:
         if isinstance(status, RadioStatus):
             self._flow.radio_status(status.txbuf, now)
 
-    def _in_order(self, state: PeerState, frame: Frame) -> bool:
-        order = state.order_of(frame)
-        if order is Order.NEW:
-            return True
+    def _is_old(self, order: Order, number: int) -> bool:
+        """A repeated frame, or state that a newer one has overtaken; what must be acknowledged is never too old."""
         if order is Order.DUPLICATE:
             self._duplicates += 1
-            return False
+            return True
         self._late += 1
-        return frame.message_id in ACKNOWLEDGED
+        return number not in ACKNOWLEDGED
 
     def _decode(self, state: PeerState, frame: Frame, now: float) -> Received | None:
         number = frame.message_id
+        if number == _RADIO_STATUS:
+            self._hear_radio(frame, now)
         if self._wanted is not None and number not in self._wanted:
             return None
         kind = "demand" if number in _DEMANDS else "command" if number in _COMMANDS else "rest"

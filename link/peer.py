@@ -40,12 +40,8 @@ class PeerState:
             return self.fixed
         return target == 0 or target in self.systems
 
-    def order_of(self, frame: Frame) -> Order:
-        """Count a frame of this peer; what its number says."""
-        key = (frame.system, frame.component)
-        source = self.sources.get(key)
-        if source is not None:
-            return source.accept(frame.sequence, frame.message_id)
+    def first_of(self, frame: Frame) -> Order:
+        """The first frame of a source that is new here; of too many sources no numbers are kept."""
         if len(self.sources) < MAX_SOURCES:
-            self.sources[key] = Source(frame.sequence, frame.message_id)
+            self.sources[frame.system, frame.component] = Source(frame.sequence, frame.message_id)
         return Order.NEW
