@@ -27,7 +27,8 @@ BIAS_MAX = 0.1
 """rad/s: a larger one is no bias but a broken gyro."""
 OFFSET_TIME = 15.0
 """s of straight driving until the compass's offset is learned."""
-POSITION_TIME = 20.0
+POSITION_TIME = 40.0
+"""s; longer hides more of the wander, and shows more of what 1 degree of heading and 1 % of wheel make."""
 COURSE_SPEED = 0.4
 """m/s from which on the GPS knows a course: its velocity is good to 0.05 m/s."""
 COURSE_RATE = 0.3
