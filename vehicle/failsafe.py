@@ -117,22 +117,22 @@ class Failsafes:
     def __init__(self, params: Params) -> None:
         self.latched = Failsafe(0)
         """Conditions that took the mode or the arming away, until the driver chooses anew."""
+        self.active = Failsafe(0)
+        """Conditions that hold now."""
         self._params = params
         self._since: dict[Failsafe, float] = {}
         self._done: dict[Failsafe, tuple[Step, ...]] = {}
-
-    @property
-    def active(self) -> Failsafe:
-        """Conditions that hold now."""
-        return Failsafe(sum(self._since))
 
     def update(self, conditions: Mapping[Failsafe, float], now: float) -> list[Taken]:
         """Take the conditions that hold, each with the time it began (of a lasting one the earliest told counts).
 
         Returns the steps reached since the last call.
         """
+        if not conditions and not self._since:  # nearly always
+            return []
         self._since = {cause: min(began, self._since.get(cause, began)) for cause, began in conditions.items()}
         self._done = {cause: done for cause, done in self._done.items() if cause in conditions}
+        self.active = Failsafe(sum(self._since))
         return [taken for cause in conditions for taken in self._advance(cause, now)]
 
     def action(self, now: float) -> Action:

@@ -238,7 +238,8 @@ class Safety:
     def _update_failsafes(self, hazards: Mapping[Failsafe, float], now: float) -> None:
         before = self.failsafes.active
         taken = self.failsafes.update(found(self._scene(hazards), now) if self.armed else {}, now)
-        for cause in (cause for cause in Failsafe if cause & before & ~self.failsafes.active and self.armed):
+        over = before & ~self.failsafes.active if before and self.armed else Failsafe(0)
+        for cause in over:
             self._texts.say(Severity.NOTICE, f"Failsafe over: {RULES[cause].words}", now)
         for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
             self._follow(step, now)

@@ -90,8 +90,6 @@ STREAMS: tuple[Stream, ...] = (
 """Stream by stream, the most important first. What only one asks for is in vehicle/requests.py."""
 
 BY_ID: dict[int, Stream] = {stream.message.id: stream for stream in STREAMS}
-CHANGING = tuple(stream for stream in STREAMS if stream.change)
-"""To be looked at in every cycle; the others only when one is due."""
 
 
 @dataclass(slots=True)
@@ -112,21 +110,22 @@ class Telemetry:
             stream.message.id: _Clock(_interval(stream.rate), now + index * PHASE)
             for index, stream in enumerate(STREAMS)
         }
+        self._streams = tuple((stream, self._clocks[stream.message.id]) for stream in STREAMS)
         self._bucket = TokenBucket(BUDGET, BURST)
         self._bytes: TokenBucket | None = None
         self._limit: float | None = None
         self._stretch = 1.0
         self._narrow = 1.0
         """Factor on the intervals for a slow link."""
-        self._earliest = now
 
     def due(self, view: View) -> list[m.Message]:
         """The messages that are due at the time of `view`."""
-        everything = view.now >= self._earliest
-        streams = STREAMS if everything else CHANGING
-        found = [self._next(stream, self._clocks[stream.message.id], view) for stream in streams]
-        if everything:
-            self._earliest = min(clock.due for clock in self._clocks.values() if clock.interval is not None)
+        now = view.now
+        found = [
+            self._next(stream, clock, view)
+            for stream, clock in self._streams
+            if stream.change is not None or now >= clock.due  # most are neither, in most cycles
+        ]
         return [message for message in found if message is not None]
 
     def interval(self, message_id: int) -> float | None:
@@ -139,7 +138,7 @@ class Telemetry:
             return
         clock = self._clocks[message_id]
         clock.interval = None if interval is None else max(FASTEST, interval)
-        clock.due = self._earliest = now
+        clock.due = now
         self._narrow = self._narrowed()
 
     def set_default(self, message_id: int, now: float) -> None:
