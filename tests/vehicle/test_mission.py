@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result
+from dialects.enums import Command, MissionResult, MissionType, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, said
 from tests.vehicle.field import GROUND, Field
@@ -282,73 +282,3 @@ class TestWhoMay:
         field.wait(8.0)
         assert field.mode is mode
         assert field.turning is (mode is Mode.AUTO)
-
-
-def square(kind: int, north: float, east: float, size: float) -> list[Item]:
-    corners = [(north, east), (north + size, east), (north + size, east + size), (north, east + size)]
-    return [(kind, Point(*corner), (4,)) for corner in corners]
-
-
-class TestFence:
-    def fenced(self, items: list[Item], **params: float) -> Field:
-        field = Field(FENCE_ENABLE=1, **params)  # type: ignore[arg-type]
-        assert upload(field, *items, kind=MissionType.FENCE) == MissionResult.ACCEPTED
-        field.arm()
-        return field
-
-    @pytest.mark.parametrize(
-        "items",
-        [
-            square(FenceItem.POLYGON_INCLUSION, -5, -5, 10),
-            square(FenceItem.POLYGON_EXCLUSION, 5, -3, 6),
-            [(FenceItem.CIRCLE_INCLUSION, Point(0, 0), (5,))],
-            [(FenceItem.CIRCLE_EXCLUSION, Point(8, 0), (3,))],
-        ],
-    )
-    def test_beyond_it_holds_once_and_the_driver_may_drive_back(self, items: list[Item]) -> None:
-        field = self.fenced(items)
-        field.wait(0.2, NEUTRAL)
-        while field.truth.north < 4.0:
-            field.wait(0.5, AHEAD)
-            assert field.turning
-        field.wait(3.0, AHEAD)
-        assert field.mode is Mode.HOLD
-        assert 4.4 < field.truth.north < 7.5
-        assert said(field, "beyond the fence: HOLD")
-        assert field.set_mode(Mode.LOITER) is Result.FAILED
-        assert field.set_mode(Mode.MANUAL) is Result.ACCEPTED
-        field.wait(0.2, NEUTRAL)
-        field.wait(0.5, AHEAD)
-        assert field.turning
-
-    def test_the_way_home_where_it_is_set(self) -> None:
-        field = self.fenced([], FENCE_TYPE=2, FENCE_RADIUS=6, FENCE_ACTION=1)
-        field.wait(0.2, NEUTRAL)
-        field.wait(7.0, AHEAD)
-        assert field.mode is Mode.RTL
-        finish(field, 60.0)
-        assert field.truth.distance(Point(0, 0)) < 0.8
-
-    def test_nothing_beyond_it_is_driven_to(self) -> None:
-        field = self.fenced([], FENCE_TYPE=2, FENCE_RADIUS=6)
-        assert field.reposition(Point(10, 0)) is Result.FAILED
-        field.set_mode(Mode.GUIDED)
-        field.goto(10.0, 0.0)
-        field.wait(0.5)
-        assert said(field, "beyond the fence")
-        assert field.stands_for(1.0)
-
-    def test_it_stays_on_and_as_it_is_while_armed(self) -> None:
-        field = self.fenced([])
-        assert field.command(Command.DO_FENCE_ENABLE, 0) is Result.FAILED
-        assert field.command(Command.DO_FENCE_ENABLE, 2) is Result.UNSUPPORTED
-        assert field.command(Command.DO_FENCE_ENABLE, NAN) is Result.DENIED
-        assert upload(field, kind=MissionType.FENCE) == MissionResult.DENIED
-        field.command(Command.COMPONENT_ARM_DISARM, 0)
-        assert field.command(Command.DO_FENCE_ENABLE, 0) is Result.ACCEPTED
-        assert upload(field, kind=MissionType.FENCE) == MissionResult.ACCEPTED
-
-    def test_half_a_polygon_is_refused(self) -> None:
-        field = Field()
-        half = square(FenceItem.POLYGON_INCLUSION, 0, 0, 5)[:3]
-        assert upload(field, *half, kind=MissionType.FENCE) == MissionResult.INVALID_PARAM1
