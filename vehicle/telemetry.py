@@ -82,7 +82,7 @@ STREAMS: tuple[Stream, ...] = (
            change=lambda view: view.navigator.goal(view.safety.mode)),
     Stream(m.ServoOutputRaw, 2, motion.servo_output_raw, DataStream.RC_CHANNELS),
     Stream(m.RcChannels, 2, motion.rc_channels, DataStream.RC_CHANNELS),
-    Stream(m.HomePosition, 0, status.home_position, change=lambda view: view.home),
+    Stream(m.HomePosition, 0.5, status.home_position, change=lambda view: view.home),
     Stream(m.RoverDriveInfo, 0, status.drive_info),
     Stream(m.AutopilotVersion, 0, status.autopilot_version),
     Stream(m.ProtocolVersion, 0, status.protocol_version),

@@ -1,0 +1,84 @@
+"""A foreign program that is spoken to by lines: what it said, and waiting for what it must say."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import threading
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+
+class Conversation:
+    """A running program. Its output is read by a thread, so that it never waits for us."""
+
+    def __init__(self, command: Sequence[str], folder: Path) -> None:
+        self._process = subprocess.Popen(
+            command,
+            cwd=folder,
+            env={**os.environ, "HOME": str(folder), "PYTHONUNBUFFERED": "1"},
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
+        self._news = threading.Condition()
+        self._heard = b""
+        self._read = 0
+        self._thread = threading.Thread(target=self._listen, name="conversation", daemon=True)
+        self._thread.start()
+
+    @property
+    def transcript(self) -> str:
+        """All it has said."""
+        return self._heard.decode(errors="replace")
+
+    def say(self, line: str) -> None:
+        """Type a line; `hear` looks behind it."""
+        assert self._process.stdin is not None
+        with self._news:
+            self._read = len(self._heard)
+        self._process.stdin.write(line.encode() + b"\n")
+        self._process.stdin.flush()
+
+    def hear(self, pattern: str, within: float = 5.0) -> re.Match[str]:
+        """Wait until it has said something that matches, since the last `say` or `hear`."""
+        deadline = time.monotonic() + within
+        with self._news:
+            while not (found := re.search(pattern.encode(), self._heard[self._read :])):
+                left = deadline - time.monotonic()
+                assert left > 0, f"not within {within} s: {pattern!r}\n{self.transcript}"
+                self._news.wait(left)
+            self._read += found.end()
+        match = re.search(pattern, found[0].decode())
+        assert match is not None
+        return match
+
+    def ask(self, line: str, pattern: str, within: float = 5.0, period: float = 0.5) -> None:
+        """Type a line again and again, until the answer matches: what it asks about takes its time."""
+        deadline = time.monotonic() + within
+        while True:
+            self.say(line)
+            try:
+                self.hear(pattern, period)
+                return
+            except AssertionError:
+                if time.monotonic() > deadline:
+                    raise
+
+    def end(self) -> None:
+        """End it, whatever state it is in."""
+        self._process.kill()
+        self._process.wait(10)
+        self._thread.join(5)
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                pipe.close()
+
+    def _listen(self) -> None:
+        assert self._process.stdout is not None
+        while data := os.read(self._process.stdout.fileno(), 65536):
+            with self._news:
+                self._heard += data
+                self._news.notify_all()

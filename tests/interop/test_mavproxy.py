@@ -1,0 +1,109 @@
+"""MAVProxy, as its user types: it connects, reads and sets parameters, arms, changes modes and drives."""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from link.framer import Framer
+from tests.interop.conftest import Rover
+from tests.interop.conversation import Conversation
+from vehicle.params import TABLE
+
+MAVPROXY = Path(__file__).parents[2] / ".venv-mavproxy/bin"
+"""Its own environment: it wants libraries that we do not. `.ci/run` makes it."""
+MODULES = "log,wp,rally,fence,ftp,param,arm,mode,rc,misc,cmdlong,battery"
+"""Of its usual modules those that need no map, no plot and no screen."""
+
+pytestmark = [
+    pytest.mark.interop,
+    pytest.mark.skipif(
+        not (MAVPROXY / "mavproxy.py").exists() and "MAVHELM_CI" not in os.environ,
+        reason="MAVProxy is not installed: .ci/run shows how to put it into .venv-mavproxy",
+    ),
+]
+
+
+@pytest.fixture
+def mavproxy(rover: Rover, tmp_path: Path) -> Iterator[Conversation]:
+    """MAVProxy, connected."""
+    command = [str(MAVPROXY / "python"), str(MAVPROXY / "mavproxy.py"), f"--default-modules={MODULES}"]
+    program = Conversation([*command, f"--master=udpin:127.0.0.1:{rover.port}"], tmp_path)
+    try:
+        yield program
+    finally:
+        program.end()
+
+
+def test_it_connects_reads_all_parameters_and_sets_one(mavproxy: Conversation) -> None:
+    mavproxy.hear("Detected vehicle 1:1", 15)
+    connected = time.monotonic()
+    mavproxy.hear(rf"Received {len(TABLE)} parameters \(ftp\)", 5)
+    assert time.monotonic() - connected < 3
+    mavproxy.say("param set SPEED_MAX 1.4")
+    mavproxy.ask("param fetch SPEED_MAX", r"SPEED_MAX = 1\.4")
+    mavproxy.say("param set SPEED_MAX 5000")
+    mavproxy.hear("SPEED_MAX not changed")
+    assert not re.search("fail|error|traceback|unknown", mavproxy.transcript, re.IGNORECASE), mavproxy.transcript
+
+
+def test_it_arms_changes_modes_and_drives(mavproxy: Conversation, rover: Rover) -> None:
+    mavproxy.hear("Received .* parameters", 15)
+    mavproxy.say("mode HOLD")
+    mavproxy.hear("DO_SET_MODE: ACCEPTED")
+    mavproxy.hear("Mode HOLD")
+    mavproxy.say("mode MANUAL")
+    mavproxy.hear("DO_SET_MODE: ACCEPTED")
+    mavproxy.say("arm throttle")
+    mavproxy.hear("COMPONENT_ARM_DISARM: ACCEPTED")
+    mavproxy.hear("ARMED")
+    mavproxy.say("rc 3 1500")  # neutral first
+    mavproxy.say("rc 3 1600")
+    rover.drives()
+    left, right = rover.vehicle.outputs()[-1].throttles
+    assert left == right > 0
+    mavproxy.say("rc 3 1500")
+    rover.stands()
+    mavproxy.say("disarm")
+    mavproxy.hear("DISARMED")
+
+
+def test_it_lists_files_logs_and_plans(mavproxy: Conversation) -> None:
+    mavproxy.hear("Received .* parameters", 15)
+    mavproxy.say("ftp list")
+    mavproxy.hear("D logs")
+    mavproxy.hear("parameter.json.xz")
+    mavproxy.say("log list")
+    mavproxy.hear("No logs|Log ")
+    mavproxy.say("wp list")
+    mavproxy.hear("Requesting 0 waypoints")
+    mavproxy.say("ping")
+    mavproxy.hear("ping response")
+
+
+def test_nothing_is_lost(mavproxy: Conversation, tmp_path: Path) -> None:
+    """By its own log of what came. Its `link` counts messages that its dialect lacks as lost."""
+    mavproxy.hear("Received .* parameters", 15)
+    mavproxy.say("ftp list")
+    mavproxy.hear("Total size")
+    mavproxy.say("link")
+    mavproxy.hear(r"link 1 OK")
+    deadline = time.monotonic() + 10
+    while len(numbers := sequences(tmp_path / "mav.tlog.raw")) < 100:  # it writes its log now and then
+        assert time.monotonic() < deadline
+        mavproxy.say("link")
+        mavproxy.hear(r"link 1 OK")
+    gaps = [(one, other) for one, other in pairwise(numbers) if other != (one + 1) % 256]
+    assert not gaps
+
+
+def sequences(path: Path) -> list[int]:
+    """The packet sequence numbers of the vehicle, in order."""
+    frames = Framer(stream=True, unknown=True).feed(path.read_bytes(), 0.0)
+    return [frame.sequence for frame in frames if frame.system == 1]

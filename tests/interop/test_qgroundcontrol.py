@@ -1,0 +1,58 @@
+"""QGroundControl's connect sequence to its end, and its joystick. See qgroundcontrol.py for what stands in for it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Capability, Command, Result
+from tests.interop.conftest import Rover
+from tests.interop.qgroundcontrol import QGroundControl
+from vehicle.params import TABLE
+
+pytestmark = pytest.mark.interop
+
+
+@pytest.fixture
+def ground(rover: Rover) -> Iterator[QGroundControl]:
+    """It, connected."""
+    ground = QGroundControl(rover.port)
+    ground.meet()
+    yield ground
+    ground.close()
+
+
+def test_the_connect_sequence_comes_to_its_end(ground: QGroundControl) -> None:
+    begun = time.monotonic()
+    version = ground.request(m.AutopilotVersion)
+    assert version.capabilities & Capability.MAVLINK2
+    assert {"MANUAL", "HOLD"} <= set(ground.modes())
+    meaning = ground.metadata()
+    values = ground.parameters()
+    assert list(values) == [parameter.name for parameter in TABLE]
+    assert set(values) == set(meaning)
+    assert (meaning["SPEED_MAX"]["units"], meaning["SPEED_MAX"]["max"]) == ("m/s", 30)
+    assert [ground.plan(kind) for kind in (0, 1, 2)] == [0, 0, 0]
+    assert ground.repeats == 0
+    assert time.monotonic() - begun < 5
+
+
+def test_its_joystick_drives(ground: QGroundControl, rover: Rover) -> None:
+    assert ground.command(Command.COMPONENT_ARM_DISARM, 1) is Result.ACCEPTED
+    ground.joystick(0, 0, until=lambda: False, within=0.3)
+    ground.joystick(600, 0, until=lambda: rover.vehicle.at_full(0.4), within=5)
+    assert rover.vehicle.at_full(0.4)
+    ground.joystick(0, 0, until=lambda: not rover.vehicle.turning(), within=3)
+    assert not rover.vehicle.turning()
+    assert ground.command(Command.COMPONENT_ARM_DISARM, 0) is Result.ACCEPTED
+
+
+def test_what_it_asks_of_other_vehicles_is_answered_too(ground: QGroundControl) -> None:
+    """Its older versions' questions: each has an answer, none a time limit."""
+    for message in (m.ProtocolVersion.id, 395, 259):
+        assert ground.command(Command.REQUEST_MESSAGE, message) in (Result.ACCEPTED, Result.UNSUPPORTED)
+    assert ground.command(9999) is Result.UNSUPPORTED
+    assert ground.repeats == 0
