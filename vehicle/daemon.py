@@ -34,6 +34,7 @@ from vehicle.sensors.suite import SensorSettings, open_sensors
 from vehicle.sim.battery import Battery
 from vehicle.sim.body import Home, SimulatedBody
 from vehicle.sim.chassis import AckermannChassis, Frame, SkidChassis
+from vehicle.telemetry import HEARD
 
 log = logging.getLogger(__name__)
 
@@ -146,7 +147,7 @@ def _params(settings: Settings, keeper: ParamStore | None) -> Params:
 
 
 async def _drive(machine: Machine, endpoints: Sequence[str], system: int, notifier: Notifier) -> int:
-    runner = Runner(machine, open_links(endpoints, system=system, component=COMPONENT), period=PERIOD)
+    runner = Runner(machine, open_links(endpoints, system=system, component=COMPONENT, wanted=HEARD), period=PERIOD)
     ending = Ending(machine, runner, notifier.stopping)
     ending.listen(asyncio.get_running_loop())
     gc.collect()

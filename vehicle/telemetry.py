@@ -89,6 +89,8 @@ STREAMS: tuple[Stream, ...] = (
 )  # fmt: skip
 """Stream by stream, the most important first. What only one asks for is in vehicle/requests.py."""
 
+HEARD = frozenset(m.MESSAGES) - {stream.message.id for stream in STREAMS if stream.message is not m.Heartbeat}
+"""What is worth decoding when it arrives: what we tell unasked ourselves, we do not listen to."""
 BY_ID: dict[int, Stream] = {stream.message.id: stream for stream in STREAMS}
 
 

@@ -15,6 +15,7 @@ from dialects.enums import Autopilot, Command, DriveType, Limit, Sensor, State, 
 from link.core import LinkReport
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench, said
 from vehicle.readings import Readings
+from vehicle.telemetry import HEARD
 
 RATES = {
     m.Heartbeat: 1, m.SysStatus: 1, m.BatteryStatus: 0.5, m.CurrentMode: 0.5, m.ControlStatus: 1, m.SystemTime: 1,
@@ -212,3 +213,10 @@ def test_no_reading_breaks_a_message(values: dict[str, float]) -> None:
     bench.drive()
     bench.wait(2.0, AHEAD)
     assert bench.turning
+
+
+def test_what_the_rover_obeys_is_heard_and_telemetry_of_others_is_not() -> None:
+    obeyed = (m.Heartbeat, m.ManualControl, m.RcChannelsOverride, m.RoverOperatorPresence, m.CommandLong, m.CommandInt,
+              m.SetMode, m.ParamSet, m.RadioStatus, m.Timesync, m.FileTransferProtocol)  # fmt: skip
+    assert {kind.id for kind in obeyed} <= HEARD
+    assert not {m.Attitude.id, m.GlobalPositionInt.id, m.ServoOutputRaw.id} & HEARD
