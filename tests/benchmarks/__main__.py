@@ -14,7 +14,17 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks import bridge, cost, framer, key_to_motor, link_loss, machine, receive_path
+from tests.benchmarks import (
+    bridge,
+    cost,
+    framer,
+    key_to_motor,
+    link_loss,
+    loop_lateness,
+    machine,
+    receive_path,
+    serial_key,
+)
 from tests.benchmarks.figures import BenchmarkError, Options, Report
 from tests.benchmarks.tables import markdown
 
@@ -23,8 +33,10 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "receive_path": (receive_path.run, "the vehicle's work on one demand, from bytes to outputs"),
     "cost": (cost.run, "start-up time, memory and CPU of both programs"),
     "key_to_motor": (key_to_motor.run, "key byte on the terminal to motor outputs, against the common hobby form"),
+    "serial_key": (serial_key.run, "the same over a serial cable at 57600 and 921600 baud"),
+    "loop_lateness": (loop_lateness.run, "how late the vehicle's control cycles are, idle and on a busy machine"),
     "bridge": (bridge.run, "the bridge as a router, beside MAVProxy, pymavlink and C"),
-    "link_loss": (link_loss.run, "the same over a network that delays and loses"),
+    "link_loss": (link_loss.run, "key to motor over a network that delays and loses"),
 }
 """Name -> what runs it, and what it measures. To add one: a module with `run(Options) -> Report` and a line here."""
 
@@ -76,7 +88,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m tests.benchmarks",
         description="Measure both programs beside a reference in the same run.",
-        epilog=f"benchmarks:\n{names}\n\nA full run takes about 20 minutes and wants the machine for itself.",
+        epilog=f"benchmarks:\n{names}\n\nA full run takes about 25 minutes and wants the machine for itself.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )

@@ -1,0 +1,162 @@
+"""A serial cable between two programs as a process: two ptys, joined at the pace of a baud rate in both directions.
+
+A byte that is written is there after the wire time of what went before it and its own. What the wire has not taken yet
+stays in the pty, as in the driver of a real port. SIGUSR1 turns a second ground station on that line on and off: it
+asks for bulk again and again (line_load.py), between the frames of the first. Each time the cable prints its totals.
+
+Usage: python -m tests.benchmarks.baud_cable PATH_OF_VEHICLE PATH_OF_GROUND BAUD
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pty
+import select
+import signal
+import sys
+import time
+import tty
+from pathlib import Path
+
+from tests.benchmarks.line_load import Asker
+
+BITS_PER_BYTE = 10
+"""8 data bits, one start and one stop bit."""
+CHUNK = 0.001
+"""s of wire time that passes in one piece: a wake-up for each byte costs too much, more would blur where frames end."""
+HEAD, FRAME, SIGNATURE = 3, 12, 13
+"""Bytes of a MAVLink 2 frame: up to its flags, around its payload, of a signature."""
+
+
+class Boundary:
+    """Follows frames to know where one ends."""
+
+    def __init__(self) -> None:
+        self._head = b""
+        self._left = 0
+
+    @property
+    def between(self) -> bool:
+        """True when the next byte begins a frame."""
+        return not self._head and not self._left
+
+    def follow(self, data: bytes) -> None:
+        """These bytes pass."""
+        while data:
+            size = min(self._left or HEAD - len(self._head), len(data))
+            piece, data = data[:size], data[size:]
+            if self._left:
+                self._left -= size
+                continue
+            self._head += piece
+            if len(self._head) == HEAD:
+                self._left = self._head[1] + FRAME + SIGNATURE * (self._head[2] & 1) - HEAD
+                self._head = b""
+
+
+class Direction:
+    """One wire of the cable: from one descriptor to another, one piece on its way at a time."""
+
+    def __init__(self, source: int, target: int, rate: float) -> None:
+        """`rate`: bytes/s."""
+        self.source = source
+        self.passed = 0
+        """Bytes since the last reading of the totals."""
+        self.extra = b""
+        """Frames of the second station that wait for a gap between two frames of the first."""
+        self._target = target
+        self._rate = rate
+        self._chunk = max(1, int(rate * CHUNK))
+        self._boundary = Boundary()
+        self._from_extra = False
+        self._flying = b""
+        self._due = 0.0
+
+    @property
+    def busy(self) -> bool:
+        """Is something on its way?"""
+        return bool(self._flying)
+
+    def wait(self, now: float) -> float:
+        """s until what is on its way arrives."""
+        return max(0.0, self._due - now)
+
+    def move(self, now: float) -> None:
+        """Hand over what has arrived, and take the next piece."""
+        start = now
+        if self._flying:
+            if now < self._due:
+                return
+            start = self._due  # the next piece follows at once, however late we look
+            self._hand_over()
+        self._flying = self._next()
+        self._boundary.follow(self._flying)
+        self._due = start + len(self._flying) / self._rate
+
+    def _hand_over(self) -> None:
+        self.passed += len(self._flying)
+        with contextlib.suppress(BlockingIOError):  # nobody reads there: a UART would have lost it, too
+            os.write(self._target, self._flying)
+        self._flying = b""
+
+    def _next(self) -> bytes:
+        if self._boundary.between:
+            self._from_extra = bool(self.extra)
+        if self._from_extra:
+            piece, self.extra = self.extra[: self._chunk], self.extra[self._chunk :]
+            return piece
+        try:
+            return os.read(self.source, self._chunk)
+        except BlockingIOError:
+            return b""
+
+
+class BaudCable:
+    """Both wires and the second station, in one loop."""
+
+    def __init__(self, vehicle: int, ground: int, rate: float) -> None:
+        self._down = Direction(vehicle, ground, rate)
+        self._up = Direction(ground, vehicle, rate)
+        self._asker: Asker | None = None
+
+    def toggle(self) -> None:
+        """Second station on or off; prints the time in ns and the bytes down and up since the last time."""
+        self._asker = None if self._asker else Asker()
+        print("passed", time.monotonic_ns(), self._down.passed, self._up.passed, flush=True)
+        self._down.passed = self._up.passed = 0
+
+    def run(self) -> None:
+        """Until killed."""
+        both = (self._down, self._up)
+        while True:
+            now = time.monotonic()
+            if self._asker and not self._up.extra:
+                self._up.extra = self._asker.due(now)
+            for each in both:
+                each.move(now)
+            flying = [each for each in both if each.busy]
+            idle = [each.source for each in both if not each.busy]
+            now = time.monotonic()
+            select.select(idle, [], [], min((each.wait(now) for each in flying), default=None))
+
+
+def _end(path: Path) -> int:
+    """A pty whose program end is named `path`; our end."""
+    ours, theirs = pty.openpty()
+    tty.setraw(theirs)
+    os.set_blocking(ours, False)
+    path.symlink_to(os.ttyname(theirs))
+    return ours  # theirs stays open, too: programs come and go on a cable
+
+
+def main(vehicle: str, ground: str, baud: str) -> None:
+    """Run until killed."""
+    cable = BaudCable(_end(Path(vehicle)), _end(Path(ground)), int(baud) / BITS_PER_BYTE)
+    signal.signal(signal.SIGUSR1, lambda *_: cable.toggle())
+    print("cable ready", flush=True)
+    cable.run()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:4])

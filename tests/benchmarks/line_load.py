@@ -1,0 +1,42 @@
+"""A second ground station on a serial line that asks for all parameters and a file, again and again: bytes only."""
+
+from __future__ import annotations
+
+from dialects.enums import Autopilot, State, Type
+from dialects.messages import Heartbeat, Message, ParamRequestList
+from link.services.ftp import FtpPacket, Op
+from tests.benchmarks.traffic import framed
+
+SYSTEM, COMPONENT = 254, 190
+"""Not those of the real ground station: its sequence numbers stay whole."""
+VEHICLE = (1, 1)
+PERIOD = 0.5
+"""s between two rounds of questions: an answer takes longer at 57600 baud, so that one is always on its way."""
+FILE = b"@PARAM/param.pck"
+
+
+class Asker:
+    """What it writes, as it gets due."""
+
+    def __init__(self) -> None:
+        self._due = 0.0
+        self._frames = 0
+        self._questions = 0
+
+    def due(self, now: float) -> bytes:
+        """The questions of a round, when it is time for one."""
+        if now < self._due:
+            return b""
+        self._due = now + PERIOD
+        heartbeat = Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3)
+        ask_file = [self._ftp(Op.RESET), self._ftp(Op.OPEN, FILE), self._ftp(Op.BURST)]
+        return b"".join(map(self._frame, [heartbeat, ParamRequestList(*VEHICLE), *ask_file]))
+
+    def _ftp(self, op: Op, data: bytes = b"") -> Message:
+        self._questions = (self._questions + 2) & 0xFFFF
+        size = 239 if op is Op.BURST else None  # of a burst: how much each message shall bring
+        return FtpPacket(self._questions, op, 0, data, size=size).message(*VEHICLE)
+
+    def _frame(self, message: Message) -> bytes:
+        self._frames = (self._frames + 1) & 0xFF
+        return framed(message, self._frames, SYSTEM, COMPONENT)

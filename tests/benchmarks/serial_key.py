@@ -1,0 +1,175 @@
+"""Key byte written to a real terminal -> motor outputs changed, both real programs joined by a serial cable.
+
+The cable (baud_cable.py) passes bytes at the pace of 57600 or 921600 baud. Telemetry flows all the time; in every
+second run of keys another ground station on the same line asks for all parameters and a file again and again.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from statistics import median
+
+from dialects.axes import Axes, manual_control
+from dialects.messages import RoverOperatorPresence
+from tests.benchmarks.baud_cable import BITS_PER_BYTE
+from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table, spread
+from tests.benchmarks.key_to_motor import Outcome, Rig
+from tests.benchmarks.motor_feed import MotorFeed
+from tests.benchmarks.programs import Program, on_pipe, on_terminal, python, scratch
+from tests.benchmarks.traffic import framed
+from tests.benchmarks.watch import Watch
+
+SLOW, FAST = 57600, 921600
+KEYS = {SLOW: 22, FAST: 11}
+"""Keys of one load in one round: most where the goal is, 66 and 33 in all."""
+QUICK_KEYS = {SLOW: 4, FAST: 3}
+
+SOFTWARE = 30.0
+"""ms that the goal leaves for all that is not wire: two programs, their timers, a terminal and a frame before ours."""
+
+TELEMETRY, BULK = "telemetry", "telemetry, parameter list and file"
+LOADS = (TELEMETRY, BULK)
+SETTLE = 1.0
+"""s after a change of the load; a list that is under way ends."""
+
+
+@dataclass(slots=True)
+class Seen:
+    """Of one load at one rate."""
+
+    keys: Outcome = field(default_factory=lambda: Outcome([]))
+    down: list[float] = field(default_factory=list)
+    """Share of the wire to the ground station that was in use, %, one a round."""
+    up: list[float] = field(default_factory=list)
+
+
+class Wired:
+    """A connected rig and the cable between its programs."""
+
+    def __init__(self, rig: Rig, cable: Program, baud: int) -> None:
+        self.rig = rig
+        self._cable = cable
+        self._rate = baud / BITS_PER_BYTE
+        self._stamp = self._totals()[0]  # and bulk is on, so that both loads have happened before anything is measured
+        self._change()
+
+    def measure(self, seen: Seen, keys: int, chance: random.Random) -> None:
+        """Press `keys` keys under the load that is on now; the other load is on afterwards."""
+        self.rig.watch.pause(SETTLE)
+        self.rig.measure(seen.keys, keys, chance)
+        down, up = self._change()
+        seen.down.append(down)
+        seen.up.append(up)
+
+    def _change(self) -> tuple[float, float]:
+        """Turn the load; how full the wires were since the last time, %."""
+        before = self._stamp
+        self._stamp, *passed = self._totals()
+        seconds = (self._stamp - before) / 1e9
+        down, up = (100 * each / self._rate / seconds for each in passed)
+        return down, up
+
+    def _totals(self) -> list[int]:
+        lines = self._lines()
+        os.kill(self._cable.pid, signal.SIGUSR1)
+        if not self.rig.watch.until(lambda: self._lines() > lines, 10):
+            raise BenchmarkError("the cable does not answer")
+        return [int(word) for word in self._cable.text.splitlines()[-1].split()[1:]]
+
+    def _lines(self) -> int:
+        return self._cable.text.count("\n")
+
+
+def run(options: Options) -> Report:
+    """Rate by rate; the loads take turns."""
+    chance = random.Random(13)
+    seen = {(baud, load): Seen() for baud in (SLOW, FAST) for load in LOADS}
+    for baud in (SLOW, FAST):
+        options.say(f"serial_key: {baud} baud, connecting and arming")
+        with wired(baud) as pair:
+            for number in range(ROUNDS):
+                options.say(f"serial_key: round {number + 1} of {ROUNDS}, {baud} baud")
+                for load in LOADS:
+                    pair.measure(seen[baud, load], (QUICK_KEYS if options.quick else KEYS)[baud], chance)
+    return _report(seen)
+
+
+@contextmanager
+def wired(baud: int) -> Iterator[Wired]:
+    """Both programs at the ends of a cable, armed."""
+    with ExitStack() as stack:
+        folder = stack.enter_context(scratch())
+        watch = Watch()
+        stack.callback(watch.close)
+        feed = MotorFeed(watch, folder)
+        stack.callback(feed.close)
+        ends = folder / "vehicle", folder / "ground"
+        cable = on_pipe(watch, python("tests.benchmarks.baud_cable", *map(str, ends), str(baud)))
+        stack.callback(cable.end)
+        cable.wait_for("cable ready", 20)
+        ground = on_terminal(watch, python("groundstation", f"serial:{ends[1]}:{baud}"), 80, 24)
+        stack.callback(ground.end)
+        log = ["--motor-log", str(feed.path)]
+        vehicle = on_pipe(watch, python("vehicle", "--sim", f"serial:{ends[0]}:{baud}", *log))
+        stack.callback(vehicle.end)
+        ground.wait_for("DISARMED", 30)
+        rig = Rig(ground, vehicle, feed, watch)
+        rig.arm()
+        yield Wired(rig, cable, baud)
+
+
+# ---- what it says ----
+
+
+def frame_sizes() -> tuple[int, int]:
+    """Bytes of the presence and of the MANUAL_CONTROL that a key sends; no value is 0, so nothing is cut off."""
+    presence = RoverOperatorPresence(1, 1, 2**31, 2**31, 2**31, 2**31, 2**15, 3)
+    return len(framed(presence, 0)), len(framed(manual_control(Axes(0.5, 0.5), 1), 0))
+
+
+def wire_time(baud: int) -> float:
+    """ms of a key's frames on the wire."""
+    return sum(frame_sizes()) * BITS_PER_BYTE / baud * 1000
+
+
+def _report(seen: dict[tuple[int, str], Seen]) -> Report:
+    presence, demand = frame_sizes()
+    note = (
+        f"wire: of ROVER_OPERATOR_PRESENCE ({presence} bytes) and MANUAL_CONTROL ({demand} bytes) together, ms. "
+        "p50 is the median of the rounds' medians; p90, p99 and max are of all keys. down, up: how full the wires were."
+    )
+    rows = [_row(baud, load, each) for (baud, load), each in seen.items()]
+    title = "Key byte written to the terminal -> motor outputs changed over a serial cable, ms"
+    lost = sum(each.keys.lost for each in seen.values())
+    goals = [
+        Goal(
+            f"key to motor, {SLOW} baud, {load}, p99",
+            spread(seen[SLOW, load].keys.latencies).p99,
+            round(wire_time(SLOW) + SOFTWARE, 1),
+            "ms",
+        )
+        for load in LOADS
+    ]
+    return Report([Table(title, rows, note)], [*goals, Goal("keys lost", lost, 0, "keys")])
+
+
+def _row(baud: int, load: str, seen: Seen) -> Row:
+    each, wire = spread(seen.keys.latencies), wire_time(baud)
+    return {
+        "line": f"{baud} baud, {load}",
+        "keys": each.samples,
+        "lost": seen.keys.lost,
+        "wire": wire,
+        "p50": each.p50,
+        "p90": each.p90,
+        "p99": each.p99,
+        "max": each.max,
+        "p99 - wire": each.p99 - wire,
+        "down %": median(seen.down),
+        "up %": median(seen.up),
+    }
