@@ -4,13 +4,24 @@ from __future__ import annotations
 
 from dialects.axes import NEUTRAL, Axes, axis_map, manual_control
 from dialects.messages import ManualControl, Message
+from dialects.modes import Mode
 from groundstation.commanding import Commander
 from groundstation.fleet import Contact, Fleet
 from groundstation.operator import Operator
+from groundstation.vehicle_state import VehicleState
 from link.core import Outgoing
 
 DRIVABLE = frozenset({"MANUAL", "ACRO", "STEERING", "SIMPLE", "STABILIZED", "ALTCTL", "POSCTL"})
 """Modes in which the driver's demand moves a rover (ArduRover's and PX4's names)."""
+
+
+STANDING_MODES = frozenset({Mode.HOLD.name, Mode.INITIALISING.name})
+"""Modes in which nothing moves a rover."""
+
+
+def drives_itself(state: VehicleState) -> bool:
+    """Does the vehicle, or something on board, decide where it goes?"""
+    return state.armed and state.mode not in DRIVABLE | STANDING_MODES
 
 
 class Driving:

@@ -178,7 +178,7 @@ class Helm:
             return
         self._ending = True
         loop = asyncio.get_running_loop()
-        self._station.intend(Stop(), loop.time())
+        self._station.intend(Stop("ending"), loop.time())
         self._station.intend(Quit(), loop.time())
         self._runner.wake()
         self._end_when_finished(loop.time() + END_WITHIN)

@@ -12,6 +12,10 @@ LEASE = 0.3
 drawing (0.1 s); a frozen screen then means neutral well within 0.5 s."""
 
 
+STOP_KEY = "stop key"
+"""The reason of a Stop that an operator pressed; any other is a screen that cannot drive just now."""
+
+
 class Intent(msgspec.Struct, frozen=True, tag=True):
     """Base of the union below."""
 
@@ -33,9 +37,9 @@ class Release(Intent, frozen=True):
 
 
 class Stop(Intent, frozen=True):
-    """Neutral at once; also ends a latched drive."""
+    """Neutral at once; also ends a latched drive. A stop key puts a vehicle that drives itself into HOLD, too."""
 
-    reason: str = "stop key"
+    reason: str = STOP_KEY
 
 
 class EmergencyStop(Intent, frozen=True):

@@ -7,9 +7,10 @@ from typing import Any
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Severity, State, Type
+from dialects.modes import Mode
 from groundstation import intents as i
 from groundstation.commanding import Commander
-from groundstation.driving import Driving
+from groundstation.driving import Driving, drives_itself
 from groundstation.fleet import Contact, Fleet
 from groundstation.inquiry import Inquiry
 from groundstation.links import LinkBook, Troubles
@@ -169,6 +170,9 @@ class Station:
 
     def _stop(self, intent: i.Stop, now: float) -> None:
         self.operator.sticks.stop()
+        selected = self._fleet.selected
+        if intent.reason == i.STOP_KEY and selected is not None and drives_itself(selected.state):
+            self._commander.mode(selected.state, Mode.HOLD.name, now)  # neutral sticks stop no mission
 
     def _change_speed(self, intent: i.ChangeSpeed, now: float) -> None:
         self.operator.sticks.scale(intent)

@@ -11,9 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from dialects.messages import SetPositionTargetLocalNed
 from dialects.modes import Mode
 from groundstation import intents as i
 from groundstation.station import Station
+from link.core import Outgoing
 from link.memory import LossyPipe
 from tests.world import World
 from vehicle.machine import Machine
@@ -27,6 +29,8 @@ from vehicle.states import State
 
 FALLS_WITHIN = 0.5
 NEUTRAL_WITHIN = 1.0
+AHEAD_IN_GUIDED = SetPositionTargetLocalNed(0, 1, 1, 8, 1479, 0, 0, 0, 1.0, 0, 0, 0, 0, 0, 0, 0)
+"""1 m/s along the nose, the Twist of MAVLink (body frame; position, acceleration and yaw ignored)."""
 REPEAT = 0.04
 """s between the auto-repeats of a held key."""
 
@@ -244,6 +248,30 @@ def test_emergency_stop_is_at_once_and_stays() -> None:
     drive.tell(i.ClearEmergencyStop())
     drive.run(2.0)
     drive.get_going()
+
+
+def test_the_stop_key_stops_a_rover_that_drives_itself() -> None:
+    """Neutral sticks stop no mission: the key has to mean HOLD there. A closed gate does not: the mission goes on."""
+    drive = Drive()
+    drive.get_going()
+    drive.held = None
+    drive.run(2.0)
+    drive.tell(i.SetMode(Mode.GUIDED.name))
+    drive.run(1.0)
+    for _ in range(100):
+        drive.station._outbox.append(Outgoing(AHEAD_IN_GUIDED))
+        drive.run(0.05)
+    assert drive.power > 0.2
+    drive.tell(i.Gate(False, "help is open"), i.Stop("help is open"))
+    drive.station._outbox.append(Outgoing(AHEAD_IN_GUIDED))
+    drive.run(0.2)
+    assert drive.power > 0.1
+    drive.tell(i.Gate(True), i.Stop())
+    drive.until(lambda: drive.power == 0.0, within=NEUTRAL_WITHIN)
+    drive.run(0.5)
+    vehicle = drive.station.snapshot(drive.world.now, 0).vehicle
+    assert vehicle is not None
+    assert vehicle.mode == Mode.HOLD.name
 
 
 def test_disarm_is_at_once() -> None:
