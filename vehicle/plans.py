@@ -9,7 +9,9 @@ from dialects.enums import Command, MissionResult, MissionType, Result, Severity
 from dialects.modes import Mode
 from link.core import Outgoing, Received
 from link.services.command import CommandRequest, Handler
+from link.services.ftp_files import Folder
 from link.services.mission import MissionServer
+from link.services.mission_files import PlanFolder
 from link.services.mission_items import Items
 from vehicle.asking import Asking, Run
 from vehicle.control import Control
@@ -54,6 +56,10 @@ class Plans:
             Command.DO_SET_RELAY: self._accessory,
         }
         return {command: self._asking.of_owner(run) for command, run in mine.items()}
+
+    def folder(self) -> Folder:
+        """The plans as files; who may write files at all is for the file server to say."""
+        return PlanFolder(self._server, lambda kind: self._in_use(kind) is None)
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
         """Answer a message of the mission protocol."""

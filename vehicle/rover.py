@@ -74,16 +74,17 @@ class Rover:
         )
         self._commands = Commands(self._safety, self._control, self._texts)
         self._orders = Orders(params, self._safety, self._control, self._navigator, self._texts)
+        self._plans = Plans(params, self._safety, self._control, self._navigator, self._texts, self._drive.mixer.servos)
         self._services = Services(
             params,
             self._control,
             self._texts,
-            MemoryFolder(),
+            logs=MemoryFolder(),
+            missions=self._plans.folder(),
             ids=(self._system, COMPONENT),
             pacer=self._bandwidth.pacer,
         )
         self._requests = Requests(self._telemetry, self._look, self._services.messages())
-        self._plans = Plans(params, self._safety, self._control, self._navigator, self._texts, self._drive.mixer.servos)
         handlers = self._commands.handlers() | self._requests.handlers()
         handlers |= self._orders.handlers() | self._plans.handlers()
         self._server = CommandServer(handlers, system=self._system, component=COMPONENT)

@@ -29,7 +29,15 @@ class Services:
     """Answers for one system and component. Reading is for everybody, writing for the driver in control."""
 
     def __init__(
-        self, params: Params, control: Control, texts: Texts, logs: Folder, *, ids: tuple[int, int], pacer: Pacer
+        self,
+        params: Params,
+        control: Control,
+        texts: Texts,
+        *,
+        logs: Folder,
+        missions: Folder,
+        ids: tuple[int, int],
+        pacer: Pacer,
     ) -> None:
         system, component = ids
         table = params.table
@@ -37,7 +45,7 @@ class Services:
         described = MadeFiles({name: _constant(data) for name, data in self._metadata.files.items()})
         packed = MadeFiles({"param.pck": lambda query: pack(table, params, query)})
         self._ftp = FtpServer(
-            Tree(described, {"@PARAM": packed, "logs": logs}),
+            Tree(described, {"@PARAM": packed, "logs": logs, "missions": missions}),
             system=system,
             component=component,
             pacer=pacer,

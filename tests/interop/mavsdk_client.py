@@ -149,6 +149,45 @@ def guided(system: Any, folder: str) -> None:
     step("disarm", action.disarm)
 
 
+def mission(system: Any, folder: str) -> None:
+    """Upload, download, be refused, drive it to its end, clear."""
+    action, raw, telemetry = (plugin(name, system) for name in ("action", "mission_raw", "telemetry"))
+    make = import_module("mavsdk.plugins.mission_raw.mission_raw").MissionItem
+    first(telemetry.subscribe_health, lambda value: value.is_global_position_ok)
+    here = first(telemetry.subscribe_position, lambda value: abs(value.latitude_deg) > 1)
+    north, east = round(here.latitude_deg * 1e7), round(here.longitude_deg * 1e7)
+    plan = [make(n, 3, 16, n == 0, 1, 0, 0, 0, float("nan"), north + 300 * n, east, 0, 0) for n in range(2)]
+    step("upload", lambda: raw.upload_mission(plan))
+    step("download", lambda: [[each.seq, each.command, each.x, each.y] for each in raw.download_mission()] == [
+        [each.seq, each.command, each.x, each.y] for each in plan])  # fmt: skip
+    step("refused", lambda: raw.upload_mission([make(0, 3, 22, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0)]))
+    step(
+        "fence",
+        lambda: raw.upload_geofence(
+            [
+                make(n, 3, 5001, 0, 1, 3, 0, 0, 0, north + (n == 1) * 90000, east + (n == 2) * 90000, 0, 1)
+                for n in range(3)
+            ]
+        ),
+    )
+    step("fence back", lambda: len(raw.download_geofence()))
+    step("arm", action.arm)
+    step("start", raw.start_mission)
+    step("progress", lambda: first(raw.subscribe_mission_progress, lambda value: value.current >= 1))
+    step("finished", lambda: wait_until(lambda: raw.is_mission_finished()))
+    step("disarm", action.disarm)
+    step("clear", raw.clear_mission)
+    step("empty", lambda: len(raw.download_mission()))
+
+
+def wait_until(condition: Callable[[], bool]) -> bool:
+    """Look until it is so."""
+    deadline, pause = time.monotonic() + 2 * PATIENCE, threading.Event()
+    while not condition() and time.monotonic() < deadline:
+        pause.wait(0.1)
+    return condition()
+
+
 def files(system: Any, folder: str) -> None:
     """Files, logs, and what the parameters mean."""
     ftp, logs, metadata = (plugin(name, system) for name in ("ftp", "log_files", "component_metadata"))
@@ -168,7 +207,7 @@ def files(system: Any, folder: str) -> None:
     step("meaning", lambda: metadata.get_metadata(1, kinds.PARAMETER).json_metadata)
 
 
-SCENARIOS = {each.__name__: each for each in (identity, parameters, driving, guided, files)}
+SCENARIOS = {each.__name__: each for each in (identity, parameters, driving, guided, mission, files)}
 
 
 def main(port: str, scenario: str, folder: str) -> None:

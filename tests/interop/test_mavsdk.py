@@ -136,6 +136,23 @@ def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> N
     sdk.good("disarm")
 
 
+def test_a_mission_from_upload_to_its_end(client: Callable[[str], Client], rover: Rover) -> None:
+    sdk = client("mission")
+    sdk.good("upload")
+    assert sdk.good("download").value is True
+    assert "UNSUPPORTED" in str(sdk.step("refused").error)
+    sdk.good("fence")
+    assert sdk.good("fence back").value == 3
+    sdk.good("arm")
+    sdk.good("start")
+    rover.drives()
+    sdk.good("progress")
+    assert sdk.good("finished").value is True
+    sdk.good("disarm")
+    sdk.good("clear")
+    assert sdk.good("empty").value == 0
+
+
 def test_files_logs_and_what_the_parameters_mean(client: Callable[[str], Client]) -> None:
     sdk = client("files")
     assert "parameter.json.xz" in str(sdk.good("root").value)

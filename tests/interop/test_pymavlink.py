@@ -79,7 +79,7 @@ def test_parameters(connection: Any) -> None:
 def test_files(connection: Any) -> None:
     ftp = mavftp.MAVFTP(connection, 1, 1)
     names = [entry.name for entry in ftp.cmd_list(["/"]).directory_listing]
-    assert names == ["@PARAM", "logs", "general.json.xz", "parameter.json.xz"]
+    assert names == ["@PARAM", "logs", "missions", "general.json.xz", "parameter.json.xz"]
     came: list[bytes] = []
     ftp.cmd_get(["@PARAM/param.pck?withdefaults=1"], callback=lambda file: came.append(file.read() if file else b""))
     ftp.process_ftp_reply("OpenFileRO", timeout=10)

@@ -12,7 +12,7 @@ from dialects import messages as m
 from dialects.enums import Capability, Command, Result
 from link.services.ftp import FtpError, FtpPacket, Op, crc32, parse
 from link.services.param_pack import MAGIC
-from tests.vehicle.bench import DRIVER, Bench
+from tests.vehicle.bench import DRIVER, OTHER, Bench
 from vehicle.params import TABLE
 
 
@@ -65,7 +65,7 @@ def test_there_are_no_logs() -> None:
 def test_the_root_lists_what_there_is() -> None:
     listing = ask(Bench(), Op.LIST, b"/").data.split(b"\0")
     assert [line.partition(b"\t")[0] for line in listing if line] == [
-        b"D@PARAM", b"Dlogs", b"Fgeneral.json.xz", b"Fparameter.json.xz",
+        b"D@PARAM", b"Dlogs", b"Dmissions", b"Fgeneral.json.xz", b"Fparameter.json.xz",
     ]  # fmt: skip
 
 
@@ -95,6 +95,24 @@ def test_files_are_offered_in_the_capabilities() -> None:
 def test_nothing_else_is_there(path: bytes) -> None:
     answer = ask(Bench(), Op.OPEN, path)
     assert (answer.op, answer.data[0]) == (Op.NAK, FtpError.NOT_FOUND)
+
+
+def test_plans_are_files() -> None:
+    bench = Bench()
+    plan = b"QGC WPL 110\n0\t0\t3\t16\t0\t0\t0\t0\t47.1\t8.5\t0\t1\n"
+    path = b"/missions/mission.waypoints"
+    assert ask(bench, Op.CREATE, path).op == Op.ACK
+    bench.say(FtpPacket(500, Op.WRITE, 0, plan).message(1, 1))
+    assert ask(bench, Op.TERMINATE).op == Op.ACK
+    bench.say(m.MissionRequestList(1, 1, 0))
+    assert bench.newest(m.MissionCount).count == 1
+    assert b"47.1000000\t8.5000000" in fetch(bench, path)
+
+
+def test_only_the_driver_in_control_writes_plans() -> None:
+    bench = Bench()
+    assert bench.arm(system=OTHER) is Result.ACCEPTED
+    assert ask(bench, Op.CREATE, b"/missions/mission.waypoints").op == Op.NAK
 
 
 @pytest.mark.parametrize("op", [Op.CREATE, Op.REMOVE, Op.OPEN_TO_WRITE])
