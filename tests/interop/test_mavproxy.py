@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -18,6 +18,8 @@ from vehicle.params import TABLE
 
 MAVPROXY = Path(__file__).parents[2] / ".venv-mavproxy/bin"
 """Its own environment: it wants libraries that we do not. `.ci/run` makes it."""
+HOME = (-35.3632581, 149.1652363)
+"""Where the simulated rover starts."""
 MODULES = "log,wp,rally,fence,ftp,param,arm,mode,rc,misc,cmdlong,battery"
 """Of its usual modules those that need no map, no plot and no screen."""
 
@@ -107,3 +109,36 @@ def sequences(path: Path) -> list[int]:
     """The packet sequence numbers of the vehicle, in order."""
     frames = Framer(stream=True, unknown=True).feed(path.read_bytes(), 0.0)
     return [frame.sequence for frame in frames if frame.system == 1]
+
+
+def test_a_mission_inside_a_fence(mavproxy: Conversation, rover: Rover, tmp_path: Path) -> None:
+    points = [(HOME[0], HOME[1]), (HOME[0] + 0.00003, HOME[1])]
+    corners = [(HOME[0] + north, HOME[1] + east) for north, east in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    (tmp_path / "mission.txt").write_text(plan_file(16, 0, points))
+    (tmp_path / "fence.txt").write_text(plan_file(5001, 4, corners))
+    mavproxy.hear("Received .* parameters", 15)
+    mavproxy.say("wp load mission.txt")
+    mavproxy.hear("TYPE_MISSION: ACCEPTED")
+    mavproxy.say("wp list")
+    mavproxy.hear("Saved 2 waypoints")
+    mavproxy.say("fence load fence.txt")
+    mavproxy.hear("TYPE_FENCE: ACCEPTED")
+    mavproxy.say("fence list")
+    mavproxy.hear("Saved 4 fence items")
+    mavproxy.say("fence enable")
+    mavproxy.hear("DO_FENCE_ENABLE: ACCEPTED")
+    mavproxy.say("arm throttle")
+    mavproxy.hear("COMPONENT_ARM_DISARM: ACCEPTED")
+    mavproxy.say("mode AUTO")
+    mavproxy.hear("DO_SET_MODE: ACCEPTED")
+    rover.drives()
+    mavproxy.hear("mission complete", 20)
+    rover.stands()
+    mavproxy.say("disarm")
+    mavproxy.hear("DISARMED")
+
+
+def plan_file(command: int, first: int, places: Sequence[tuple[float, float]]) -> str:
+    """A plan as MAVProxy reads it; `first` is parameter 1 of each item."""
+    lines = (f"{n}\t0\t3\t{command}\t{first}\t0\t0\t0\t{x:.7f}\t{y:.7f}\t0\t1" for n, (x, y) in enumerate(places))
+    return "\n".join(["QGC WPL 110", *lines, ""])

@@ -16,9 +16,11 @@ pytestmark = pytest.mark.interop
 
 mavftp: Any = import_module("pymavlink.mavftp")  # half typed: none of it is checked
 mavparm: Any = import_module("pymavlink.mavparm")
+mavwp: Any = import_module("pymavlink.mavwp")
 mavutil: Any = import_module("pymavlink.mavutil")
 
 ROVER_MODES = {"MANUAL": 0, "HOLD": 4}
+ACK = "MISSION_ACK"
 GCS, NO_AUTOPILOT, ACTIVE = 6, 8, 4
 
 
@@ -74,6 +76,32 @@ def test_parameters(connection: Any) -> None:
     assert table.mavset(connection, "SPEED_MAX", 1.25, retries=3)
     connection.param_fetch_one("SPEED_MAX")
     until(connection, lambda: connection.params["SPEED_MAX"] == 1.25)
+
+
+def test_a_mission_of_100_items_goes_up_and_comes_back(connection: Any) -> None:
+    loader = mavwp.MAVWPLoader(target_system=1, target_component=1)
+    for number in range(100):
+        loader.add_latlonalt(47.0 + number / 1e5, 8.0, 0)
+    connection.waypoint_count_send(loader.count())
+    while (asked := answer(connection, "MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK")).get_type() != ACK:
+        connection.mav.send(loader.wp(asked.seq))
+    assert asked.type == 0
+    connection.waypoint_request_list_send()
+    assert answer(connection, "MISSION_COUNT").count == 100
+    for number in range(100):
+        connection.mav.mission_request_int_send(1, 1, number)
+        item = answer(connection, "MISSION_ITEM_INT")
+        assert item.seq == number
+        assert item.x / 1e7 == pytest.approx(47.0 + number / 1e5, abs=4e-6)  # mavwp sends float32 degrees
+    connection.waypoint_clear_all_send()
+    assert answer(connection, ACK).type == 0
+
+
+def answer(connection: Any, *types: str) -> Any:
+    """The next message of these types."""
+    message = connection.recv_match(type=list(types), blocking=True, timeout=5)
+    assert message is not None, types
+    return message
 
 
 def test_files(connection: Any) -> None:
