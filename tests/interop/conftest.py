@@ -1,4 +1,4 @@
-"""Our vehicle as a process, waiting for a foreign ground station on a UDP port of this machine."""
+"""Our vehicle as a process, looking for foreign ground stations on two UDP ports of this machine."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ STEP = 0.02
 
 
 class Rover:
-    """The vehicle, and the port where it looks for its ground station."""
+    """The vehicle, and the ports where it looks for its ground stations."""
 
     def __init__(self, folder: Path) -> None:
         self.port = free_port()
-        self.vehicle = Vehicle(folder, self.port)
+        self.second_port = free_port()
+        self.vehicle = Vehicle(folder, self.port, f"udpout:127.0.0.1:{self.second_port}")
 
     def wait(self, condition: Callable[[], bool], within: float, what: str) -> None:
         """Look at the motors until `condition`."""

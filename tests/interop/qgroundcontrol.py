@@ -37,7 +37,8 @@ JOYSTICK = 1 / 25
 class QGroundControl:
     """One connection."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, system: int = SYSTEM) -> None:
+        self._system = system
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind(("127.0.0.1", port))
         self._framer = Framer(stream=False)
@@ -58,7 +59,9 @@ class QGroundControl:
         """To the vehicle."""
         assert self._vehicle is not None
         payload = codec.encode_payload(message)
-        self._socket.sendto(codec.frame(type(message).id, payload, self._sequence, SYSTEM, COMPONENT), self._vehicle)
+        self._socket.sendto(
+            codec.frame(type(message).id, payload, self._sequence, self._system, COMPONENT), self._vehicle
+        )
         self._sequence = (self._sequence + 1) & 0xFF
 
     def wait(

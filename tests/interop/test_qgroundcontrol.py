@@ -56,3 +56,25 @@ def test_what_it_asks_of_other_vehicles_is_answered_too(ground: QGroundControl) 
         assert ground.command(Command.REQUEST_MESSAGE, message) in (Result.ACCEPTED, Result.UNSUPPORTED)
     assert ground.command(9999) is Result.UNSUPPORTED
     assert ground.repeats == 0
+
+
+def test_a_second_one_drives_only_after_it_was_given_control(ground: QGroundControl, rover: Rover) -> None:
+    second = QGroundControl(rover.second_port, system=254)
+    try:
+        second.meet()
+        assert second.request(m.AutopilotVersion)
+        assert ground.command(Command.COMPONENT_ARM_DISARM, 1) is Result.ACCEPTED
+        told = second.wait(m.ControlStatus, 3, lambda status: status.gcs_main == 255)
+        assert told is not None
+        for throttle in (0, 600):
+            second.joystick(throttle, 0, until=rover.vehicle.turning, within=0.5)
+        assert not rover.vehicle.turning()
+        assert second.command(Command.REQUEST_OPERATOR_CONTROL, 1, 0) is Result.FAILED
+        assert ground.command(Command.REQUEST_OPERATOR_CONTROL, 0, 0) is Result.ACCEPTED
+        assert second.command(Command.REQUEST_OPERATOR_CONTROL, 1, 0) is Result.ACCEPTED
+        assert second.command(Command.DO_SET_MODE, 1, 0) is Result.ACCEPTED
+        second.joystick(0, 0, until=lambda: False, within=0.3)
+        second.joystick(600, 0, until=rover.vehicle.turning, within=5)
+        assert rover.vehicle.turning()
+    finally:
+        second.close()
