@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import math
 from pathlib import Path
@@ -10,13 +11,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dialects import codec, rover
+from dialects import codec, messages, rover
 from dialects.messages import (
     MESSAGES,
     CommandInt,
     CommandLong,
     Heartbeat,
     ManualControl,
+    Message,
     RoverDriveStatus,
     StatusText,
     boot_ms,
@@ -48,6 +50,28 @@ def test_golden_bytes_are_what_we_send_and_what_pymavlink_reads(name: str) -> No
         assert getattr(message, field) == pytest.approx(value), field
     ours = codec.decode(message.get_msgId(), data[10 : 10 + data[1]])
     assert codec.frame(type(ours).id, codec.encode_payload(ours), data[4], data[5], data[6]) == data
+
+
+def made_in(source: Path) -> set[str]:
+    """Names of the messages that a file of ours makes."""
+    classes = {
+        name: each.msgname
+        for name, each in vars(messages).items()
+        if isinstance(each, type) and issubclass(each, Message)
+    }
+    calls = (node.func for node in ast.walk(ast.parse(source.read_text())) if isinstance(node, ast.Call))
+    called = {each.attr if isinstance(each, ast.Attribute) else getattr(each, "id", "") for each in calls}
+    return {classes[name] for name in called & classes.keys()}
+
+
+def test_every_message_that_we_make_has_golden_bytes() -> None:
+    root = Path(__file__).parents[2]
+    sources = [
+        path for folder in ("dialects", "link", "vehicle", "groundstation") for path in root.glob(f"{folder}/**/*.py")
+    ]
+    made = set().union(*(made_in(path) for path in sources if path.name != "rover.py" or path.parent.name == "vehicle"))
+    assert len(made) > 40
+    assert made <= json.loads(GOLDEN.read_text()).keys()
 
 
 @pytest.mark.parametrize("number", sorted(MESSAGES))
