@@ -73,6 +73,7 @@ RcChannels = rover.MAVLink_rc_channels_message
 EstimatorStatus = rover.MAVLink_estimator_status_message
 PositionTargetGlobalInt = rover.MAVLink_position_target_global_int_message
 HomePosition = rover.MAVLink_home_position_message
+OnboardComputerStatus = rover.MAVLink_onboard_computer_status_message
 ExtendedSysState = rover.MAVLink_extended_sys_state_message
 AutopilotVersion = rover.MAVLink_autopilot_version_message
 ProtocolVersion = rover.MAVLink_protocol_version_message

@@ -10,7 +10,7 @@ from dialects.codec import MAX_FRAME
 from dialects.enums import DataStream
 from link.rate import TokenBucket
 from link.services.pacing import OVERHEAD
-from vehicle import motion, status
+from vehicle import computer, motion, status
 from vehicle.view import View
 
 FASTEST = 0.02
@@ -83,6 +83,7 @@ STREAMS: tuple[Stream, ...] = (
     Stream(m.ServoOutputRaw, 2, motion.servo_output_raw, DataStream.RC_CHANNELS),
     Stream(m.RcChannels, 2, motion.rc_channels, DataStream.RC_CHANNELS),
     Stream(m.HomePosition, 0.5, status.home_position, change=lambda view: view.home),
+    Stream(m.OnboardComputerStatus, 0.5, computer.onboard_computer_status, DataStream.EXTENDED_STATUS),
     Stream(m.RoverDriveInfo, 0, status.drive_info),
     Stream(m.AutopilotVersion, 0, status.autopilot_version),
     Stream(m.ProtocolVersion, 0, status.protocol_version),

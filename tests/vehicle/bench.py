@@ -12,7 +12,7 @@ from dialects.enums import Autopilot, Command, Result, Type
 from dialects.modes import Mode
 from link.core import Peer, Received
 from vehicle.params import Params
-from vehicle.readings import Readings
+from vehicle.readings import Computer, Readings
 from vehicle.rover import Rover
 from vehicle.states import State
 
@@ -27,6 +27,7 @@ EVERYTHING = Readings(
     roll=0.1, pitch=0.1, yaw=math.pi / 4, yaw_rate=0.0, velocity_north=0.5, velocity_east=0.5, speed=0.7,
     latitude=48.1, longitude=11.5, altitude=500.0, gps_fix=3, gps_satellites=12, gps_hdop=0.8,
     battery_voltage=12.0, battery_current=1.0, battery_remaining=0.9, wheel_speeds=(0.7, 0.7),
+    computer=Computer(temperature=50.0, load=0.2),
 )  # fmt: skip
 """A rover with every sensor."""
 
