@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 import pytest
 
+import vehicle
 from tests.vehicle.words import said_by
 from vehicle.config import Config, LogSettings, parsed
 from vehicle.motors import DRIVERS, PROFILES, check_settings, settings_type
@@ -107,6 +108,11 @@ def test_the_schema_knows_every_key_with_its_help() -> None:
     assert roboclaw["properties"]["timeout"]["description"].startswith("s of silence until the controller stops")
     assert set(whole["properties"]["params"]["properties"]) == {parameter.name for parameter in TABLE}
     assert said_by("schema") == (0, schema(), "")
+
+
+def test_the_shipped_schema_is_the_codes() -> None:
+    shipped = Path(vehicle.__file__).with_name("rover.schema.json")
+    assert shipped.read_text() == schema(), "run: .venv/bin/vehicle schema > vehicle/rover.schema.json"
 
 
 def test_every_reference_in_the_schema_leads_somewhere() -> None:
