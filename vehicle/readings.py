@@ -28,6 +28,16 @@ class Computer:
 
 
 @dataclass(frozen=True, slots=True)
+class SensorFault:
+    """Why a sensor gives nothing."""
+
+    sensor: str
+    """As the driver calls it: battery, gps."""
+    reason: str
+    """One line."""
+
+
+@dataclass(frozen=True, slots=True)
 class Readings:
     """The newest of every sensor; None where there is none. Units are SI; angles in rad, yaw clockwise from north."""
 
@@ -58,6 +68,8 @@ class Readings:
     wheel_speeds: tuple[float, ...] = ()
     """m/s of each wheel, in motor order."""
     computer: Computer | None = None
+    faults: tuple[SensorFault, ...] = ()
+    """Of the sensors that give nothing now; for the driver to read."""
 
 
 NO_READINGS = Readings()

@@ -14,6 +14,7 @@ from link.services.ftp_files import MemoryFolder
 from vehicle import status
 from vehicle.bandwidth import Bandwidth
 from vehicle.commands import Commands
+from vehicle.complaints import Complaints
 from vehicle.control import Control
 from vehicle.demand import Demand
 from vehicle.drive import Drive
@@ -57,6 +58,7 @@ class Rover:
         self._readings = NO_READINGS
         self._outgoing: list[Outgoing] = []
         self._texts = Texts()
+        self._complaints = Complaints(self._texts)
         self._control = Control(params, self._texts, system=self._system, boot=now)
         self._drive = Drive(params, now)
         self._navigator = Navigator(params, self._drive.kind)
@@ -152,6 +154,7 @@ class Rover:
         self._readings = readings
         self._navigator.sense(readings, now)
         self._safety.battery.sense(readings.battery_voltage, now)
+        self._complaints.sense(readings, now)
 
     def motor_failed(self, reason: str, now: float) -> None:
         """The motor driver reports an error: zero, disarm, and no arming until `motor_repaired`."""

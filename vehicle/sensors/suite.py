@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from vehicle.motors.settings import told
-from vehicle.readings import Computer, Readings
+from vehicle.readings import Computer, Readings, SensorFault
 from vehicle.sensors.encoders import Encoders, EncoderSettings
 from vehicle.sensors.gps import Gpsd, GpsReading, GpsSettings
 from vehicle.sensors.latest import Source
@@ -46,10 +46,12 @@ class Sources:
     encoders: Source[tuple[float, ...]] | None = None
     computer: Source[Computer] | None = None
 
-    def present(self) -> list[Source[Any]]:
-        """Those that there are."""
-        everything: list[Source[Any] | None] = [self.battery, self.gps, self.encoders, self.computer]
-        return [source for source in everything if source is not None]
+    def present(self) -> dict[str, Source[Any]]:
+        """Those that there are, by the name that the driver reads."""
+        everything: dict[str, Source[Any] | None] = {
+            "battery": self.battery, "gps": self.gps, "encoders": self.encoders, "computer": self.computer
+        }  # fmt: skip
+        return {name: source for name, source in everything.items() if source is not None}
 
 
 class Suite:
@@ -57,6 +59,7 @@ class Suite:
 
     def __init__(self, sources: Sources) -> None:
         self._sources = sources
+        self._present = sources.present()
 
     def read(self, now: float) -> Readings:
         """The newest of everything."""
@@ -68,16 +71,17 @@ class Suite:
             values.update(_position(position))
         if wheels := _newest(sources.encoders, now):
             values.update(wheel_speeds=wheels, speed=sum(wheels) / len(wheels))
-        return Readings(computer=_newest(sources.computer, now), **values)
+        return Readings(computer=_newest(sources.computer, now), faults=self.faults(), **values)
 
-    def faults(self) -> list[str]:
+    def faults(self) -> tuple[SensorFault, ...]:
         """Why a sensor gives nothing, a line each."""
-        return [source.fault for source in self._sources.present() if source.fault is not None]
+        found = [(name, source.fault) for name, source in self._present.items()]
+        return tuple(SensorFault(name, fault) for name, fault in found if fault is not None)
 
     def close(self) -> None:
         """Let go of every sensor."""
         with contextlib.ExitStack() as steps:
-            for source in self._sources.present():
+            for source in self._present.values():
                 steps.callback(source.close)
 
 

@@ -4,7 +4,7 @@ from typing import Any, Generic, TypeVar
 
 import pytest
 
-from vehicle.readings import NO_READINGS, Computer, Readings
+from vehicle.readings import NO_READINGS, Computer, Readings, SensorFault
 from vehicle.sensors import Sensors
 from vehicle.sensors.gps import GpsReading
 from vehicle.sensors.gpsd import Fix, Sky
@@ -67,7 +67,8 @@ def test_nothing_there_and_nothing_known_is_nothing() -> None:
 def test_faults_are_listed_and_every_sensor_is_closed() -> None:
     battery, gps = Given[Power](None, "no chip"), Given[GpsReading](None)
     suite = Suite(Sources(battery=battery, gps=gps))
-    assert suite.faults() == ["no chip"]
+    assert suite.faults() == (SensorFault("battery", "no chip"),)
+    assert suite.read(0.0).faults == suite.faults()
     with pytest.raises(OSError, match="no chip"):
         suite.close()
     assert battery.closed

@@ -1,0 +1,86 @@
+"""What sensors and the Pi complain of reaches the driver once as it begins, and once as it ends."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Severity
+from tests.vehicle.bench import AHEAD, EVERYTHING, Bench
+from vehicle.readings import Computer, Readings, SensorFault
+
+NO_CHIP = replace(EVERYTHING, faults=(SensorFault("battery", "no chip at 0x40"),))
+
+
+def after(bench: Bench, readings: Readings, seconds: float) -> list[str]:
+    """Texts of a while with these readings."""
+    count = len(bench.texts)
+    bench.readings = readings
+    bench.wait(seconds)
+    return bench.texts[count:]
+
+
+def pi(temperature: float | None = None, under_voltage: bool | None = None) -> Readings:
+    return replace(EVERYTHING, computer=Computer(temperature=temperature, under_voltage=under_voltage))
+
+
+def test_a_sensors_fault_is_told_once_and_so_is_its_end() -> None:
+    bench = Bench()
+    assert after(bench, EVERYTHING, 10.0) == []
+    assert after(bench, NO_CHIP, 60.0) == ["battery sensor: no chip at 0x40"]
+    assert bench.newest(m.StatusText).severity == Severity.WARNING
+    assert after(bench, EVERYTHING, 4.9) == []
+    assert after(bench, EVERYTHING, 60.0) == ["battery sensor is well again"]
+    assert bench.newest(m.StatusText).severity == Severity.INFO
+    assert after(bench, NO_CHIP, 1.0) == ["battery sensor: no chip at 0x40"]
+
+
+def test_a_fault_that_comes_and_goes_is_one() -> None:
+    bench = Bench()
+    texts = []
+    for number in range(20):
+        texts += after(bench, NO_CHIP if number % 2 else EVERYTHING, 1.0)
+    assert texts == ["battery sensor: no chip at 0x40"]
+
+
+def test_a_fault_in_other_words_is_the_same() -> None:
+    bench = Bench()
+    after(bench, NO_CHIP, 10.0)
+    assert after(bench, replace(NO_CHIP, faults=(SensorFault("battery", "no reply"),)), 10.0) == []
+
+
+def test_each_sensor_has_its_own() -> None:
+    bench = Bench()
+    both = (SensorFault("battery", "no chip"), SensorFault("gps", "no gpsd"))
+    assert after(bench, replace(EVERYTHING, faults=both), 10.0) == ["battery sensor: no chip", "gps sensor: no gpsd"]
+    assert after(bench, replace(EVERYTHING, faults=both[:1]), 10.0) == ["gps sensor is well again"]
+
+
+def test_under_voltage() -> None:
+    bench = Bench()
+    assert after(bench, pi(under_voltage=False), 10.0) == []
+    assert after(bench, pi(under_voltage=True), 10.0) == ["Pi under-voltage"]
+    unwatched = replace(EVERYTHING, computer=None)
+    assert after(bench, unwatched, 10.0) + after(bench, pi(), 10.0) == []  # nobody knows: not over
+    assert after(bench, pi(under_voltage=False), 10.0) == ["Pi supply is well again"]
+
+
+def test_heat_ends_below_where_it_begins() -> None:
+    bench = Bench()
+    assert after(bench, pi(85.0), 10.0) == []
+    assert after(bench, pi(86.0), 10.0) == ["Pi at 86 C"]
+    assert after(bench, pi(82.0), 10.0) == []
+    assert after(bench, pi(79.0), 10.0) == ["Pi temperature is well again"]
+    assert after(bench, pi(82.0), 10.0) == []
+
+
+@pytest.mark.parametrize("temperature", [None, math.nan, math.inf, -math.inf, 1e300])
+def test_no_temperature_stops_the_rover(temperature: float | None) -> None:
+    bench = Bench()
+    bench.readings = pi(temperature, under_voltage=True)
+    bench.drive()
+    bench.wait(2.0, AHEAD)
+    assert bench.turning
