@@ -35,7 +35,8 @@ class FakeSysfs:
         return self.root / "pwmchip2" / f"pwm{number}"
 
     def value(self, number: int, name: str) -> int:
-        return int((self.channel(number) / name).read_text())
+        text = (self.channel(number) / name).read_text()
+        return int(text or 0)  # a plain file is empty for a moment while another process writes it; sysfs never is
 
     def pulse(self, number: int) -> float | None:
         """s that the output is high in each period; None while it is off."""
