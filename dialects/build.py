@@ -1,5 +1,7 @@
 """Build hook: turns rover.xml into dialects/rover.py. It runs when the project is built, never at run time.
 
+rover.xml includes the definitions of the installed pymavlink; extension fields that those lack are in additions.xml.
+
 dialects/rover.py is the module that pymavlink's mavgen writes, and below it, written here, a flat pair of functions a
 message (payload bytes <-> fields) and MAVLink 1's payload lengths. mavgen's own decode() reads the same definitions at
 run time, five times slower.
@@ -13,9 +15,10 @@ import py_compile
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pymavlink
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
@@ -23,6 +26,7 @@ from pymavlink.generator import mavgen, mavparse
 
 HERE = Path(__file__).resolve().parent
 XML = HERE / "rover.xml"
+ADDITIONS = HERE / "additions.xml"
 MODULE = HERE / "rover.py"
 INCLUDES = ("minimal.xml", "standard.xml", "common.xml")
 
@@ -37,6 +41,7 @@ def generate(target: Path = MODULE) -> Path:
     with tempfile.TemporaryDirectory() as scratch:
         for name in INCLUDES:
             shutil.copy(installed / name, scratch)
+        add_fields(ADDITIONS, [Path(scratch) / name for name in INCLUDES])
         xml = Path(shutil.copy(XML, scratch))
         module = Path(scratch) / target.name
         with _quiet():
@@ -48,6 +53,33 @@ def generate(target: Path = MODULE) -> Path:
     whole.replace(target)  # a program that starts meanwhile finds the old module or the new one, never half of it
     checked = py_compile.PycInvalidationMode.CHECKED_HASH
     return Path(str(py_compile.compile(str(target), doraise=True, invalidation_mode=checked)))
+
+
+def add_fields(additions: Path, definitions: Sequence[Path]) -> None:
+    """Put the extension fields of `additions` into the messages of `definitions`, which are rewritten.
+
+    Raises ValueError for a message that none of them has, and for a field that is there already: then the installed
+    definitions are newer than our list.
+    """
+    trees = {path: ElementTree.parse(path) for path in definitions}
+    messages = {each.get("name"): each for tree in trees.values() for each in tree.iter("message")}
+    for wanted in ElementTree.parse(additions).iter("message"):
+        name = wanted.get("name")
+        if name not in messages:
+            raise ValueError(f"{additions.name}: there is no message {name}")
+        _extend(messages[name], list(wanted.iter("field")), additions.name)
+    for path, tree in trees.items():
+        tree.write(path, "utf-8", xml_declaration=True)
+
+
+def _extend(message: ElementTree.Element, fields: list[ElementTree.Element], source: str) -> None:
+    there = {each.get("name") for each in message.iter("field")}
+    twice = sorted(there & {each.get("name") for each in fields}, key=str)
+    if twice:
+        raise ValueError(f"{source}: {message.get('name')} has {twice[0]} already, delete it from the list")
+    if message.find("extensions") is None:
+        ElementTree.SubElement(message, "extensions")
+    message.extend(fields)
 
 
 @contextlib.contextmanager

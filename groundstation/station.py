@@ -61,7 +61,7 @@ class Station:
         self._driving = Driving(self.operator, self._fleet, self._commander, system)
         self._links = LinkBook()
         self._inquiry = Inquiry(self._fleet, self._commander, self._links, self.log)
-        self._timesync = TimesyncClient()
+        self._timesync = TimesyncClient(system)
         self._heartbeat_due = 0.0
         self._greeted: set[Peer] = set()
         self._greet_until = now
@@ -88,7 +88,7 @@ class Station:
                 contact.state.latency.obeyed(message.source_seq, now, message.demand_age_ms / 1000)
         if contact is self._fleet.selected:
             self._timesync.receive(received, now)
-        self._outbox += answer(received, now, self._system)
+        self._outbox += answer(received, now, (self._system, COMPONENT))
         self._commander.receive(received, now)
 
     def tick(self, now: float) -> None:

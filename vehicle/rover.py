@@ -112,7 +112,7 @@ class Rover:
         elif self._demand(received, now) or self._order(received, now):
             self._move(now)
         else:
-            self._outgoing += timesync.answer(received, now, self._system)
+            self._outgoing += timesync.answer(received, now, (self._system, COMPONENT))
             self._outgoing += self._plans.receive(received, now)
             self._outgoing += self._param_service.receive(received, now)
             self._outgoing += self._services.receive(received, now)

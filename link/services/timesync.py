@@ -1,4 +1,7 @@
-"""TIMESYNC and PING: round trip time for the client, the echo for the server (mavlink.io/en/services/timesync.html)."""
+"""TIMESYNC and PING: round trip time for the client, the echo for the server (mavlink.io/en/services/timesync.html).
+
+An answer names whom it is for; older programs know no such field and leave it 0, which is taken for everybody.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,14 @@ MEMORY = 4
 
 
 class TimesyncClient:
-    """Asks once a `period` s and keeps the smoothed round trip to one vehicle."""
+    """Asks once a `period` s for `system` and keeps the smoothed round trip to one vehicle."""
 
-    def __init__(self, period: float = 1.0) -> None:
+    def __init__(self, system: int, period: float = 1.0) -> None:
         self.round_trip: float | None = None
         """Newest round trip, s."""
         self.jitter: float | None = None
         """Smoothed difference between one round trip and the next, s (RFC 3550's weights)."""
+        self._system = system
         self._period = period
         self._due = 0.0
         self._asked: dict[int, float] = {}
@@ -36,7 +40,7 @@ class TimesyncClient:
     def receive(self, received: Received, now: float) -> None:
         """Take an answer; requests and answers to others are ignored."""
         message = received.message
-        if not isinstance(message, Timesync) or message.tc1 == 0:
+        if not isinstance(message, Timesync) or message.tc1 == 0 or message.target_system not in (0, self._system):
             return
         asked = self._asked.pop(message.ts1, None)
         if asked is None:
@@ -51,18 +55,23 @@ class TimesyncClient:
         return outbox
 
 
-def answer(received: Received, now: float, system: int) -> list[Outgoing]:
-    """The echo to a TIMESYNC request, or to a PING for everybody or for `system`; nothing for anything else."""
+def answer(received: Received, now: float, ids: tuple[int, int]) -> list[Outgoing]:
+    """The echo to a PING for everybody, or to a TIMESYNC request for everybody or `ids` (system, component).
+
+    Nothing for anything else: a TIMESYNC with tc1 and a PING with a target are answers.
+    """
     match received.message:
-        case Timesync(tc1=0, ts1=asked):
-            return [Outgoing(Timesync(tc1=int(now * 1e9), ts1=asked), received.peer)]
+        case Timesync(tc1=0) as question if _for_us(question, ids):
+            return [Outgoing(Timesync(int(now * 1e9), question.ts1, *_sender(received)), received.peer)]
         case Ping(target_system=0) as ping:
-            echo = Ping(
-                time_usec=ping.time_usec,
-                seq=ping.seq,
-                target_system=received.system,
-                target_component=received.component,
-            )
-            return [Outgoing(echo, received.peer)]
+            return [Outgoing(Ping(ping.time_usec, ping.seq, *_sender(received)), received.peer)]
         case _:
             return []
+
+
+def _for_us(question: Timesync, ids: tuple[int, int]) -> bool:
+    return question.target_system in (0, ids[0]) and question.target_component in (0, ids[1])
+
+
+def _sender(received: Received) -> tuple[int, int]:
+    return received.system, received.component

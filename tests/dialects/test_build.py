@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("hatchling", reason="hatchling is not installed: pip install -e '.[dev]' has it")
 
-from dialects.build import MODULE, generate
+from dialects.build import MODULE, add_fields, generate
 
 ROOT = Path(__file__).parents[2]
 
@@ -31,6 +31,40 @@ def test_a_wheel_has_the_dialect_with_its_byte_code(tmp_path: Path) -> None:
     assert {"dialects", "link", "vehicle", "groundstation"} == {
         name.split("/")[0] for name in names if "dist-info" not in name
     }
-    for data in ("dialects/rover.xml", "groundstation/ui/screens/drive.tcss"):
+    for data in ("dialects/rover.xml", "dialects/additions.xml", "groundstation/ui/screens/drive.tcss"):
         assert data in names
     assert not any(name.startswith("tests/") for name in names)
+
+
+DEFINITIONS = """<mavlink><messages>
+<message id="1" name="ONE"><field type="uint8_t" name="a">a</field></message>
+<message id="2" name="TWO"><field type="uint8_t" name="a">a</field><extensions/><field type="uint8_t" name="b">b</field>
+</message></messages></mavlink>"""
+
+
+def added(folder: Path, message: str, field: str) -> str:
+    """DEFINITIONS after one addition."""
+    additions, definitions = folder / "additions.xml", folder / "common.xml"
+    field_xml = f'<field type="uint8_t" name="{field}">new</field>'
+    additions.write_text(f'<additions><message name="{message}">{field_xml}</message></additions>')
+    definitions.write_text(DEFINITIONS)
+    add_fields(additions, [definitions])
+    return definitions.read_text()
+
+
+@pytest.mark.parametrize(("message", "before"), [("ONE", 'name="a"'), ("TWO", 'name="b"')])
+def test_a_field_is_added_as_the_last_extension(tmp_path: Path, message: str, before: str) -> None:
+    definition = added(tmp_path, message, "new").partition(f'name="{message}"')[2].partition("</message>")[0]
+    assert definition.count("<extensions") == 1
+    assert definition.index(before) < definition.index('name="new"')
+    assert definition.index("<extensions") < definition.index('name="new"')
+
+
+def test_a_field_that_a_newer_definition_has_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"additions.xml: TWO has b already"):
+        added(tmp_path, "TWO", "b")
+
+
+def test_a_field_of_an_unknown_message_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="there is no message THREE"):
+        added(tmp_path, "THREE", "new")
