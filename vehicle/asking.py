@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from dialects.enums import Command, Result, Severity
-from link.services.command import CommandRequest, Handler
+from link.services.command import CommandRequest, Handler, Run
+from link.services.command_jobs import Job
 from vehicle.control import Control
 from vehicle.texts import Texts
-
-Run = Callable[[CommandRequest, float], Result]
 
 
 class Asking:
@@ -22,7 +19,7 @@ class Asking:
     def of_owner(self, run: Run) -> Handler:
         """A handler for the ground station in control, or any introduced one where nobody is."""
 
-        def checked(request: CommandRequest, now: float) -> Result:
+        def checked(request: CommandRequest, now: float) -> Result | Job:
             refusal = self.stranger(request)
             return self.refuse(request, refusal, now) if refusal else run(request, now)
 

@@ -11,8 +11,8 @@ from dialects import messages as m
 from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from link.core import Received
-from link.services.command import CommandRequest, Handler
-from vehicle.asking import Asking, Run
+from link.services.command import CommandRequest, Handler, Run
+from vehicle.asking import Asking
 from vehicle.control import Control
 from vehicle.modes import OFFERED
 from vehicle.navigator import USUAL_SPEED, Navigator

@@ -8,12 +8,12 @@ from dialects import messages as m
 from dialects.enums import Command, MissionResult, MissionType, Result, Severity
 from dialects.modes import Mode
 from link.core import Outgoing, Received
-from link.services.command import CommandRequest, Handler
+from link.services.command import CommandRequest, Handler, Run
 from link.services.ftp_files import Folder
 from link.services.mission import MissionServer
 from link.services.mission_files import PlanFolder
 from link.services.mission_items import Items
-from vehicle.asking import Asking, Run
+from vehicle.asking import Asking
 from vehicle.control import Control
 from vehicle.navigator import Navigator
 from vehicle.params import Params

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dialects import messages as m
 from dialects.enums import Command, Result
 from link.core import Outgoing
-from link.services.command import CommandRequest, Handler
+from link.services.command import CommandRequest, Handler, Run
 from vehicle import status
 from vehicle.telemetry import BY_ID, Telemetry
 from vehicle.view import View
@@ -119,7 +119,7 @@ class Requests:
         return Result.ACCEPTED
 
 
-def _to_known(run: Callable[[CommandRequest, float], Result]) -> Callable[[CommandRequest, float], Result]:
+def _to_known(run: Run) -> Run:
     """Refuse those who have shown no HEARTBEAT, at an address that nobody named; they may ask again when they have."""
     return lambda request, now: run(request, now) if request.may_ask else Result.TEMPORARILY_REJECTED
 

@@ -124,6 +124,7 @@ class Rover:
         late = self._safety.is_late(now)
         self._cycle(now)
         self._move(now, late=late)
+        self._outgoing += self._server.tick(now)
         self._outgoing += self._param_service.tick(now)
         self._outgoing += self._services.tick(now)
         self._outgoing += self._plans.tick(now)
@@ -248,6 +249,8 @@ class Rover:
         match received.message:
             case m.CommandLong() | m.CommandInt() as message:
                 self._command(message, received, now)
+            case m.CommandCancel():
+                self._outgoing += self._server.receive(received, now)
             case m.SetPositionTargetLocalNed() | m.SetPositionTargetGlobalInt() | m.SetAttitudeTarget() as message:
                 if self._orders.setpoint(received, message, now):
                     self._navigator.step(self._safety, now)

@@ -2,17 +2,18 @@
 
 Rules (mavlink.io/en/services/command.html): the client repeats with a rising `confirmation` until acknowledged; the
 server acknowledges every command meant for it, UNSUPPORTED when it does not know it, and runs a repeated command that
-must not run twice only once. A command for somebody else is never acknowledged.
+must not run twice only once. A command for somebody else is never acknowledged. What takes time: command_jobs.py.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from dialects.enums import Result
-from dialects.messages import CommandAck, CommandInt, CommandLong
+from dialects.messages import CommandAck, CommandCancel, CommandInt, CommandLong
 from link.core import Outgoing, Peer, Received
+from link.services.command_jobs import Job, Jobs, ack
 
 REPEAT_AFTER = 0.35
 """s without an answer before a command is sent again: longer than a loaded 57600 baud radio takes (0.18 s)."""
@@ -41,13 +42,19 @@ class CommandRequest:
     peer: Peer
     introduced: bool
     may_ask: bool
+    repeated: bool = field(default=False, compare=False)
+    """It may be said again: `confirmation` says so, or it is a COMMAND_INT, which has none."""
+
+
+Run = Callable[[CommandRequest, float], Result | Job]
+"""Runs a command at a time: its result, or where it takes a while a job of command_jobs.py."""
 
 
 @dataclass(frozen=True, slots=True)
 class Handler:
     """What a server does with one command."""
 
-    run: Callable[[CommandRequest, float], Result]
+    run: Run
     idempotent: bool = True
     """Running it twice does no more than once. Others are run once and repeats get the stored answer."""
     broadcast: bool = False
@@ -62,33 +69,40 @@ class CommandServer:
         self._system = system
         self._component = component
         self._done: dict[tuple[int, int], tuple[CommandRequest, float, Result]] = {}
+        self._jobs = Jobs()
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Run a command; returns its acknowledgement, or nothing where it was not for us."""
+        """Run or cancel a command; returns the acknowledgement, or nothing where it was not for us."""
         message = received.message
-        if not isinstance(message, CommandLong | CommandInt) or not self._for_us(message):
+        if not isinstance(message, CommandLong | CommandInt | CommandCancel) or not self._for_us(message):
             return []
-        request = _request(message, received)
-        ack = CommandAck(
-            command=message.command,
-            result=self._run(request, now),
-            target_system=received.system,
-            target_component=received.component,
-        )
-        return [Outgoing(ack, received.peer)]
+        if isinstance(message, CommandCancel):
+            return self._jobs.cancel(message.command, received, now)
+        return [self._run(_request(message, received), now)]
 
-    def _for_us(self, message: CommandLong | CommandInt) -> bool:
+    def tick(self, now: float) -> list[Outgoing]:
+        """News of the commands under way."""
+        return self._jobs.tick(now)
+
+    def _for_us(self, message: CommandLong | CommandInt | CommandCancel) -> bool:
         if message.target_component not in (0, self._component):
             return False
-        if message.target_system == 0:
+        if message.target_system == 0 and not isinstance(message, CommandCancel):
             handler = self._handlers.get(message.command)
             return handler is not None and handler.broadcast
         return bool(message.target_system == self._system)
 
-    def _run(self, request: CommandRequest, now: float) -> Result:
+    def _run(self, request: CommandRequest, now: float) -> Outgoing:
         handler = self._handlers.get(request.command)
         if handler is None:
-            return Result.UNSUPPORTED
+            return ack(request, Result.UNSUPPORTED)
+        under_way = self._jobs.answer(request, now)
+        if under_way is not None:
+            return under_way
+        result = self._result(handler, request, now)
+        return ack(request, result) if isinstance(result, Result) else self._jobs.begin(request, result, now)
+
+    def _result(self, handler: Handler, request: CommandRequest, now: float) -> Result | Job:
         if handler.idempotent:
             return handler.run(request, now)
         source = (request.system, request.component)
@@ -96,7 +110,8 @@ class CommandServer:
         if before and before[0] == request and now - before[1] < SAME_WITHIN:
             return before[2]
         result = handler.run(request, now)
-        self._done[source] = (request, now, result)
+        if isinstance(result, Result):
+            self._done[source] = (request, now, result)
         return result
 
 
@@ -119,6 +134,7 @@ def _request(message: CommandLong | CommandInt, received: Received) -> CommandRe
         peer=received.peer,
         introduced=received.introduced,
         may_ask=received.may_ask,
+        repeated=isinstance(message, CommandInt) or message.confirmation > 0,
     )
 
 

@@ -252,3 +252,11 @@ def test_two_of_our_own_failures_at_once_are_both_told() -> None:
     bench.wait(0.5)
     assert said(bench, "PreArm: motor driver: broken")
     assert said(bench, "PreArm: battery critical")
+
+
+def test_a_cancel_with_nothing_under_way_is_ignored() -> None:
+    bench = Bench()
+    before = len(bench.all(m.CommandAck))
+    bench.say(m.CommandCancel(1, 1, Command.DO_REPOSITION))
+    bench.wait(0.1)
+    assert len(bench.all(m.CommandAck)) == before
