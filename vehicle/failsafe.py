@@ -91,8 +91,9 @@ RULES: dict[Failsafe, Rule] = {
     Failsafe.BLOCKED: Rule("blocked", (
         Step(2, Action.HOLD, only_if="FS_CRASH_CHECK"), Step(2, Action.DISARM, only_if="FS_CRASH_CHECK", value=2))),
 }  # fmt: skip
-"""Condition -> what happens. A late control loop, a failed motor driver and the emergency stop act at once and are in
-vehicle/safety.py. A HOLD happens once, so that the driver can choose MANUAL again where the condition allows it."""
+"""Condition -> what happens. A failed motor driver and the emergency stop act at once and are in vehicle/safety.py, a
+late control loop in vehicle/watch.py. A HOLD happens once, so that the driver can choose MANUAL again where the
+condition allows it."""
 
 
 @dataclass(frozen=True, slots=True)

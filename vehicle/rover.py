@@ -35,6 +35,7 @@ from vehicle.states import State
 from vehicle.telemetry import Telemetry
 from vehicle.texts import Texts
 from vehicle.view import View
+from vehicle.watch import Watch
 
 COMPONENT = 1
 """MAV_COMP_ID_AUTOPILOT1: QGroundControl makes a vehicle only of this one."""
@@ -63,6 +64,7 @@ class Rover:
         self._drive = Drive(params, now)
         self._navigator = Navigator(params, self._drive.kind)
         self._safety = Safety(params, self._control, self._texts, now, self._navigator.unready)
+        self._watch = Watch(params, self._safety, self._control, self._texts, now)
         self._telemetry = Telemetry(now)
         self._bandwidth = Bandwidth()
         self._param_service = ParamService(
@@ -121,7 +123,7 @@ class Rover:
         """Let time pass: act on silence, send what is due."""
         if self._safety.state is State.OFF:
             return
-        late = self._safety.is_late(now)
+        late = self._watch.is_late(now)
         self._cycle(now)
         self._move(now, late=late)
         self._outgoing += self._server.tick(now)
@@ -171,12 +173,12 @@ class Rover:
         if self._safety.state is not State.OFF:
             self._safety.shutdown()
             self._outgoing.append(Outgoing(status.heartbeat(self._look(now))))
-        self._drive.step(None, self._safety.clearance(now, None, late=False), limited=False, now=now)
+        self._drive.step(None, self._watch.clearance(now, None, late=False), limited=False, now=now)
 
     def _move(self, now: float, *, late: bool | None = None) -> None:
         """Outputs of this moment, and what they and the state make worth telling."""
-        late = self._safety.is_late(now) if late is None else late
-        clearance = self._safety.clearance(now, self._navigator.demand, late=late)
+        late = self._watch.is_late(now) if late is None else late
+        clearance = self._watch.clearance(now, self._navigator.demand, late=late)
         limited = self._safety.failsafes.action(now) >= Action.LIMIT
         self._drive.step(self._wanted(now), clearance, limited=limited, now=now)
         if clearance.permit is not Permit.DRIVE:
@@ -197,7 +199,7 @@ class Rover:
         driving = self._drive.outputs.throttles[: self._drive.mixer.driven]
         hazards = self._navigator.hazards(self._safety, driving, now)
         moves = OFFERED[self._safety.mode].own and any(driving)
-        self._safety.update(now, self._drive.refused, hazards, driving=moves)
+        self._watch.update(now, self._drive.refused, hazards, driving=moves)
         self._navigator.step(self._safety, now)
         if self._navigator.ended is not None:
             self._safety.end(self._navigator.ended, now)

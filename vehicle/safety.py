@@ -1,31 +1,22 @@
-"""May it move? State, mode, arming, emergency stop and failsafes: the verbs behind the commands, and what time does.
+"""May it move? State, mode, arming and emergency stop: the verbs behind the commands. What time does is watch.py's.
 
-It knows no messages: vehicle/commands.py translates them into these verbs, vehicle/drive.py turns a Clearance into
-motor values.
+It knows no messages: vehicle/commands.py translates them into these verbs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
 from vehicle.arming import Facts, problems
 from vehicle.battery import BatteryWatch
-from vehicle.conditions import Scene, found
 from vehicle.control import Control
-from vehicle.demand import Demand
-from vehicle.failsafe import RULES, Action, Failsafes, Taken
+from vehicle.failsafe import RULES, Failsafes
 from vehicle.modes import OFFERED, first_mode
-from vehicle.outputs import Clearance
 from vehicle.params import Params
 from vehicle.states import TRANSITIONS, Event, State
 from vehicle.texts import Texts
-
-LATE = 0.1
-"""s between two cycles of 20 ms from which on the motors get zero for a cycle (vehicle.md, control loop late)."""
-BAD_VALUES = 3
-"""Cycles in a row with values that are not numbers, and the mode becomes HOLD."""
 
 
 class Safety:
@@ -58,8 +49,8 @@ class Safety:
         self._control = control
         self._texts = texts
         self._unready = unready
-        self._armed_at = self._asked_at = now
-        self._cycle = now
+        self.armed_at = now
+        """When it was armed last."""
 
     @property
     def armed(self) -> bool:
@@ -75,8 +66,6 @@ class Safety:
             Failsafe.LOOP_OVERRUN: self.overrun,
         }
         return self.failsafes.latched | Failsafe(sum(cause for cause, holds in own.items() if holds))
-
-    # What somebody wants
 
     def problems(self, now: float, *, force: bool = False) -> list[str]:
         """What forbids to arm; empty where nothing does."""
@@ -106,7 +95,7 @@ class Safety:
         self._control.reset()
         self._happen(Event.ARM)
         self._renew(cleared=False)
-        self._armed_at = now
+        self.armed_at = now
         self.overrun = False
         self.failsafes.acknowledge()
         self._texts.say(Severity.NOTICE, f"Armed by GCS {system}, mode {self.mode.name}", now)
@@ -120,7 +109,7 @@ class Safety:
             return
         self._happen(Event.DISARM)
         self._texts.say(Severity.NOTICE, f"Disarmed: {why}", now)
-        self._free_lost_owner(now)
+        self.free_lost_owner(now)
 
     def emergency_stop(self, who: str, now: float, *, terminate: bool = False) -> None:
         """Motors to zero at once, until somebody releases it. `terminate`: until a restart."""
@@ -165,7 +154,13 @@ class Safety:
     def end(self, why: str, now: float) -> None:
         """Self-driving has nothing more to do."""
         self._texts.say(Severity.NOTICE, f"{self.mode.name}: {why}: HOLD", now)
-        self._hold()
+        self.hold()
+
+    def hold(self) -> None:
+        """Neutral, and the mode becomes HOLD: the driver has to choose another."""
+        self.mode = Mode.HOLD
+        self._renew(cleared=False)
+        self._control.close()
 
     def motor_failed(self, reason: str, now: float) -> None:
         """The motor driver does not do what it should."""
@@ -181,91 +176,24 @@ class Safety:
         self.fault = None
         self._happen(Event.REPAIR)
 
+    def overran(self, gap: float, now: float) -> None:
+        """The control loop stood still for `gap` s while armed."""
+        self.overrun = True
+        self.disarm(f"control loop was {gap:.2f} s late", now)
+
+    def free_lost_owner(self, now: float) -> None:
+        """A ground station that is silent keeps no disarmed vehicle."""
+        if self._control.owner and self._control.lost(now):
+            self._control.release("is silent", now)
+
+    def wake(self) -> None:
+        """The first cycle ends BOOT."""
+        if self.state is State.BOOT:
+            self._happen(Event.READY)
+
     def shutdown(self) -> None:
         """The end."""
         self._happen(Event.SHUTDOWN)
-
-    # What time does
-
-    def is_late(self, now: float) -> bool:
-        """The control loop has not run for too long. A much too late one disarms."""
-        gap = now - self._cycle
-        if self.armed and gap > self._params["FS_LOOP_TIMEOUT"]:
-            self.overrun = True
-            self.disarm(f"control loop was {gap:.2f} s late", now)
-        return gap > LATE
-
-    def update(self, now: float, refused: int, hazards: Mapping[Failsafe, float], *, driving: bool) -> None:
-        """One cycle: find what fails, do what follows.
-
-        `refused`: cycles in a row with values that are not numbers; `driving`: it moves by itself.
-        """
-        self._cycle = now
-        if self.state is State.BOOT:
-            self._happen(Event.READY)
-        self._control.lapse(now)
-        self._update_failsafes(hazards, now)
-        if refused >= BAD_VALUES and self.armed and self.mode is not Mode.HOLD:
-            self._texts.say(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
-            self._hold()
-        if driving:
-            self._asked_at = now
-        self._disarm_idle(now)
-        if not self.armed:
-            self._free_lost_owner(now)
-
-    def clearance(self, now: float, own: Demand | None, *, late: bool) -> Clearance:
-        """The facts about motion at this moment. `own` is what self-driving wants."""
-        stopped = self.failsafes.action(now) >= Action.NEUTRAL
-        if OFFERED[self.mode].own:
-            return Clearance(
-                armed=self.armed,
-                late=late,
-                held=stopped,
-                neutral_seen=self.cleared,
-                demand_age=None if own is None else now - own.time,
-                timeout=LATE,
-            )
-        return Clearance(
-            armed=self.armed,
-            late=late,
-            held=stopped or not OFFERED[self.mode].manual,
-            neutral_seen=self._control.neutral_seen,
-            demand_age=self._control.age(now),
-            timeout=self._params["MAN_TIMEOUT"],
-        )
-
-    def _update_failsafes(self, hazards: Mapping[Failsafe, float], now: float) -> None:
-        before = self.failsafes.active
-        taken = self.failsafes.update(found(self._scene(hazards), now) if self.armed else {}, now)
-        over = before & ~self.failsafes.active if before and self.armed else Failsafe(0)
-        for cause in over:
-            self._texts.say(Severity.NOTICE, f"Failsafe over: {RULES[cause].words}", now)
-        for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
-            self._follow(step, now)
-
-    def _scene(self, hazards: Mapping[Failsafe, float]) -> Scene:
-        return Scene(
-            params=self._params,
-            control=self._control,
-            battery=self.battery,
-            driven=OFFERED[self.mode].manual,
-            latched=self.failsafes.latched,
-            armed_at=self._armed_at,
-            hazards=hazards,
-            alone=self.mode is Mode.AUTO,
-        )
-
-    def _follow(self, step: Taken, now: float) -> None:
-        severity = Severity.CRITICAL if step.action >= Action.HOLD else Severity.WARNING
-        words = RULES[step.cause].words
-        self._texts.say(severity, f"Failsafe: {words}: {step.action.words}", now)
-        if step.action is Action.NEUTRAL:
-            self._control.close()
-        elif step.action is Action.HOLD or (step.action is Action.RTL and self.choose_mode(Mode.RTL, now)):
-            self._hold()
-        elif step.action is Action.DISARM:
-            self.disarm(words, now)
 
     def _arm_refusals(self, system: int, now: float, *, force: bool) -> list[str]:
         if self.armed:  # who wants to drive an armed vehicle asks for control, and does not slip in by arming
@@ -276,23 +204,6 @@ class Safety:
     def _renew(self, *, cleared: bool) -> None:
         self.epoch += 1
         self.cleared = cleared
-
-    def _hold(self) -> None:
-        self.mode = Mode.HOLD
-        self._renew(cleared=False)
-        self._control.close()
-
-    def _disarm_idle(self, now: float) -> None:
-        delay = self._params["DISARM_DELAY"]
-        demand = self._control.demand
-        if demand and self._control.moving():
-            self._asked_at = demand.time
-        if delay and now - max(self._armed_at, self._asked_at) > delay:
-            self.disarm(f"no demand for {delay:g} s", now)
-
-    def _free_lost_owner(self, now: float) -> None:
-        if self._control.owner and self._control.lost(now):
-            self._control.release("is silent", now)
 
     def _happen(self, event: Event) -> None:
         self.state = TRANSITIONS[self.state, event]

@@ -20,7 +20,7 @@ from vehicle import states
 from vehicle.failsafe import Action
 from vehicle.modes import OFFERED
 from vehicle.params import Params
-from vehicle.safety import LATE
+from vehicle.watch import LATE
 
 TIMEOUT = Params()["MAN_TIMEOUT"]
 STOP_TIME = 100 / Params()["MOT_DECEL"] + 3 * CYCLE + LATE

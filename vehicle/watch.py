@@ -1,0 +1,128 @@
+"""What time does to the vehicle's safety: a late loop, failsafes, nobody who drives; and what may move at a moment.
+
+The verbs that it uses are vehicle/safety.py's; what follows from which condition is vehicle/failsafe.py, RULES;
+vehicle/drive.py turns a Clearance into motor values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from dialects.enums import Failsafe, Severity
+from dialects.modes import Mode
+from vehicle.conditions import Scene, found
+from vehicle.control import Control
+from vehicle.demand import Demand
+from vehicle.failsafe import RULES, Action, Taken
+from vehicle.modes import OFFERED
+from vehicle.outputs import Clearance
+from vehicle.params import Params
+from vehicle.safety import Safety
+from vehicle.texts import Texts
+
+LATE = 0.1
+"""s between two cycles of 20 ms from which on the motors get zero for a cycle (vehicle.md, control loop late)."""
+BAD_VALUES = 3
+"""Cycles in a row with values that are not numbers, and the mode becomes HOLD."""
+
+
+class Watch:
+    """`update` once a cycle; the rest at any moment."""
+
+    def __init__(self, params: Params, safety: Safety, control: Control, texts: Texts, now: float) -> None:
+        self._params = params
+        self._safety = safety
+        self._control = control
+        self._texts = texts
+        self._cycle = self._asked_at = now
+
+    def is_late(self, now: float) -> bool:
+        """The control loop has not run for too long. A much too late one disarms."""
+        gap = now - self._cycle
+        if self._safety.armed and gap > self._params["FS_LOOP_TIMEOUT"]:
+            self._safety.overran(gap, now)
+        return gap > LATE
+
+    def update(self, now: float, refused: int, hazards: Mapping[Failsafe, float], *, driving: bool) -> None:
+        """One cycle: find what fails, do what follows.
+
+        `refused`: cycles in a row with values that are not numbers; `driving`: it moves by itself.
+        """
+        safety = self._safety
+        self._cycle = now
+        safety.wake()
+        self._control.lapse(now)
+        self._update_failsafes(hazards, now)
+        if refused >= BAD_VALUES and safety.armed and safety.mode is not Mode.HOLD:
+            self._texts.say(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
+            safety.hold()
+        if driving:
+            self._asked_at = now
+        self._disarm_idle(now)
+        if not safety.armed:
+            safety.free_lost_owner(now)
+
+    def clearance(self, now: float, own: Demand | None, *, late: bool) -> Clearance:
+        """The facts about motion at this moment. `own` is what self-driving wants."""
+        safety = self._safety
+        stopped = safety.failsafes.action(now) >= Action.NEUTRAL
+        if OFFERED[safety.mode].own:
+            return Clearance(
+                armed=safety.armed,
+                late=late,
+                held=stopped,
+                neutral_seen=safety.cleared,
+                demand_age=None if own is None else now - own.time,
+                timeout=LATE,
+            )
+        return Clearance(
+            armed=safety.armed,
+            late=late,
+            held=stopped or not OFFERED[safety.mode].manual,
+            neutral_seen=self._control.neutral_seen,
+            demand_age=self._control.age(now),
+            timeout=self._params["MAN_TIMEOUT"],
+        )
+
+    def _update_failsafes(self, hazards: Mapping[Failsafe, float], now: float) -> None:
+        armed, failsafes = self._safety.armed, self._safety.failsafes
+        before = failsafes.active
+        taken = failsafes.update(found(self._scene(hazards), now) if armed else {}, now)
+        over = before & ~failsafes.active if before and armed else Failsafe(0)
+        for cause in over:
+            self._texts.say(Severity.NOTICE, f"Failsafe over: {RULES[cause].words}", now)
+        for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
+            self._follow(step, now)
+
+    def _scene(self, hazards: Mapping[Failsafe, float]) -> Scene:
+        safety = self._safety
+        return Scene(
+            params=self._params,
+            control=self._control,
+            battery=safety.battery,
+            driven=OFFERED[safety.mode].manual,
+            latched=safety.failsafes.latched,
+            armed_at=safety.armed_at,
+            hazards=hazards,
+            alone=safety.mode is Mode.AUTO,
+        )
+
+    def _follow(self, step: Taken, now: float) -> None:
+        safety = self._safety
+        severity = Severity.CRITICAL if step.action >= Action.HOLD else Severity.WARNING
+        words = RULES[step.cause].words
+        self._texts.say(severity, f"Failsafe: {words}: {step.action.words}", now)
+        if step.action is Action.NEUTRAL:
+            self._control.close()
+        elif step.action is Action.HOLD or (step.action is Action.RTL and safety.choose_mode(Mode.RTL, now)):
+            safety.hold()
+        elif step.action is Action.DISARM:
+            safety.disarm(words, now)
+
+    def _disarm_idle(self, now: float) -> None:
+        delay = self._params["DISARM_DELAY"]
+        demand = self._control.demand
+        if demand and self._control.moving():
+            self._asked_at = demand.time
+        if delay and now - max(self._safety.armed_at, self._asked_at) > delay:
+            self._safety.disarm(f"no demand for {delay:g} s", now)
