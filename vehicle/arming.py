@@ -16,6 +16,8 @@ class Facts:
     params: Params
     state: State
     terminated: bool = False
+    pressed: str | None = None
+    """Why the emergency stop's own input stops the vehicle."""
     fault: str | None = None
     mode: str | None = None
     """Why the mode cannot work now."""
@@ -37,6 +39,8 @@ class Check:
 def _emergency_stop(facts: Facts) -> str | None:
     if facts.terminated:
         return "terminated, restart the vehicle"
+    if facts.pressed is not None:
+        return facts.pressed
     return "emergency stop, release it first" if facts.state is State.ESTOP else None
 
 

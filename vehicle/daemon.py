@@ -22,7 +22,7 @@ from link.link import LinkError
 from link.runner import Runner, open_links
 from vehicle.lock import MotorLock
 from vehicle.machine import Machine
-from vehicle.motors import MotorError, Motors, UnknownDriverError, open_motors
+from vehicle.motors import MotorError, Motors, UnknownDriverError, open_motors, stop_input
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.notify import Notifier
@@ -210,7 +210,8 @@ def _build(
     else:
         motors, sensors = _simulated_body(settings.simulation, params)
     try:
-        return Machine(rover, _logged(motors, settings.motor_log), sensors, completed=completed)
+        logged = _logged(motors, settings.motor_log)
+        return Machine(rover, logged, sensors, stop_input=stop_input(motors), completed=completed)
     except BaseException:
         motors.close()
         raise

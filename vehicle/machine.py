@@ -3,6 +3,7 @@
 It is a core like the rover inside it, so tests drive it in virtual time. Its rules:
 what the rover decides on arrival of a message goes to the motors before `receive` returns, and not at the next tick;
 a motor driver that fails is stopped first and told to the rover after;
+the emergency stop beside the motors is asked each cycle, and one that cannot be read is open;
 an exception of any kind stops the motors before it goes on;
 once closed, nothing turns again, whatever the rover still says.
 """
@@ -14,7 +15,7 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from link.core import Core, LinkReport, Outgoing, Received
-from vehicle.motors import MotorError, Motors
+from vehicle.motors import MotorError, Motors, StopPressedError
 from vehicle.outputs import Outputs
 from vehicle.readings import Readings
 from vehicle.sensors import Sensors
@@ -33,6 +34,12 @@ class Mind(Core, Protocol):
 
     def sense(self, readings: Readings, now: float) -> None:
         """Take what the sensors say, each cycle before the tick."""
+
+    def stop_input(self, reason: str | None, now: float) -> None:
+        """Why the emergency stop beside the motors stops them, or None while it is closed; each cycle before the tick.
+
+        Also at once where the motors refuse because of it; they are stopped already then.
+        """
 
     def motor_failed(self, reason: str, now: float) -> None:
         """The motors did not take their outputs and are stopped."""
@@ -107,9 +114,16 @@ class Machine:
     """A `link.core.Core` that owns its motors."""
 
     def __init__(
-        self, mind: Mind, motors: Motors, sensors: Sensors, *, completed: Callable[[float], None] = lambda now: None
+        self,
+        mind: Mind,
+        motors: Motors,
+        sensors: Sensors,
+        *,
+        stop_input: Callable[[], str | None] = lambda: None,
+        completed: Callable[[float], None] = lambda now: None,
     ) -> None:
-        """`completed` is told the time of each control cycle that came to its end, down to the motors.
+        """`stop_input` asks the emergency stop beside the motors (vehicle.motors.stop_input); `completed` is told the
+        time of each control cycle that came to its end, down to the motors.
 
         Raises MotorError where the driver has another number of motors than the rover's kind of drive.
         """
@@ -119,6 +133,7 @@ class Machine:
         self._mind = mind
         self._drivetrain = Drivetrain(motors)
         self._sensors = sensors
+        self._stop_input = stop_input
         self._completed = completed
         self._retry_due: float | None = None
         self._closed = False
@@ -180,16 +195,25 @@ class Machine:
             raise
 
     def _cycle(self, now: float) -> None:
+        self._mind.stop_input(self._stop_reason(), now)
         self._mind.sense(self._sensors.read(now), now)
         self._mind.tick(now)
         if self._retry_due is not None and now >= self._retry_due and not self._closed:
             self._retry(now)
+
+    def _stop_reason(self) -> str | None:
+        try:
+            return self._stop_input()
+        except MotorError as error:
+            return str(error)
 
     def _drive(self, now: float, *, refresh: bool) -> None:
         if self._closed:
             return
         try:
             self._drivetrain.follow(self._mind.outputs, refresh=refresh)
+        except StopPressedError as error:  # pressed since this cycle asked
+            self._mind.stop_input(str(error), now)
         except MotorError as error:
             if self._retry_due is None:  # told once, not each cycle until it is repaired
                 self._retry_due = now + RETRY

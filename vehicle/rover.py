@@ -159,6 +159,14 @@ class Rover:
         self._safety.battery.sense(readings.battery_voltage, now)
         self._complaints.sense(readings, now)
 
+    def stop_input(self, reason: str | None, now: float) -> None:
+        """The emergency stop's own input, each cycle: why it stops the rover, or None while it is closed."""
+        before = self._safety.state
+        if before is not State.OFF:
+            self._safety.stop_input(reason, now)
+        if self._safety.state is not before:
+            self._move(now)
+
     def motor_failed(self, reason: str, now: float) -> None:
         """The motor driver reports an error: zero, disarm, and no arming until `motor_repaired`."""
         self._safety.motor_failed(reason, now)

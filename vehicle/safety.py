@@ -35,6 +35,8 @@ class Safety:
         self.mode = self.intended = first_mode(params["INITIAL_MODE"])
         self.terminated = False
         """Emergency stop that only a restart ends (DO_FLIGHTTERMINATION)."""
+        self.pressed: str | None = None
+        """Why the emergency stop's own input stops the vehicle, while it does."""
         self.fault: str | None = None
         self.overrun = False
         """A late cycle has disarmed; until the next arming."""
@@ -73,6 +75,7 @@ class Safety:
             params=self._params,
             state=self.state,
             terminated=self.terminated,
+            pressed=self.pressed,
             fault=self.fault,
             battery_low=self.battery.low_since(now) is not None,
             battery_critical=self.battery.critical_since(now) is not None,
@@ -118,10 +121,18 @@ class Safety:
             self._happen(Event.STOP)
             self._texts.say(Severity.EMERGENCY, f"EMERGENCY STOP by {who}", now)
 
+    def stop_input(self, reason: str | None, now: float) -> None:
+        """Why the emergency stop's own input stops the vehicle, or None while it is closed."""
+        self.pressed = reason
+        if reason is not None:
+            self.emergency_stop(f"button: {reason}", now)
+
     def release(self, now: float) -> str | None:
         """End the emergency stop; stays disarmed. Returns why not."""
         if self.terminated:
             return "terminated, restart the vehicle"
+        if self.pressed is not None:
+            return self.pressed
         if self.state is State.ESTOP:
             self._happen(Event.RELEASE)
             self._texts.say(Severity.NOTICE, "Emergency stop released, disarmed", now)

@@ -22,7 +22,7 @@ class State(Enum):
     """Disarmed and able to arm."""
     ARMED = "armed"
     ESTOP = "estop"
-    """Emergency stop, latched until it is released."""
+    """Emergency stop, by a command or the button, latched until it is released."""
     FAULT = "fault"
     """The motor driver has failed."""
     OFF = "off"

@@ -73,7 +73,7 @@ class Bench:
         """One message of a ground station, and what the rover answers."""
         self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
         peer = Peer(0, address or f"gcs {system}")
-        self.rover.receive(Received(message, system, 190, self._sequence, peer, introduced, named), self.now)
+        self._receive(Received(message, system, 190, self._sequence, peer, introduced, named))
         self._collect()
 
     def heartbeat(self, system: int = DRIVER, *, introduced: bool = True) -> None:
@@ -122,8 +122,7 @@ class Bench:
 
     def cycle(self) -> None:
         """One tick now; the next is a cycle later."""
-        self.rover.sense(self.readings, self.now)
-        self.rover.tick(self.now)
+        self._tick()
         self._collect()
         self._next_cycle = self.now + CYCLE
 
@@ -131,6 +130,13 @@ class Bench:
         """The vehicle's process does not run for a while."""
         self.now += seconds
         self._next_cycle = self.now
+
+    def _receive(self, received: Received) -> None:
+        self.rover.receive(received, self.now)
+
+    def _tick(self) -> None:
+        self.rover.sense(self.readings, self.now)
+        self.rover.tick(self.now)
 
     def _collect(self) -> None:
         for outgoing in self.rover.messages_to_send():

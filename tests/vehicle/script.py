@@ -47,6 +47,11 @@ class Script:
         self._happen("messages_to_send")
         return [Outgoing(HEARTBEAT)]
 
+    def stop_input(self, reason: str | None, now: float) -> None:
+        if reason is not None:
+            self.calls.append(f"pressed: {reason}")
+            self.outputs = OFF
+
     def motor_failed(self, reason: str, now: float) -> None:
         self.calls.append(f"failed: {reason}")
         self.outputs = OFF

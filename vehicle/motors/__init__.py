@@ -9,7 +9,7 @@ A driver that has settings names their type `Settings` (a msgspec.Struct) and is
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol
@@ -49,6 +49,10 @@ class MotorError(Exception):
     """A motor driver cannot do what was asked. The text is one clear line."""
 
 
+class StopPressedError(MotorError):
+    """The emergency stop beside the motors is open, or was since they were enabled: no fault, but a stop that stays."""
+
+
 class UnknownDriverError(MotorError):
     """There is no such driver: the user's mistake, not a fault of the hardware."""
 
@@ -83,6 +87,19 @@ class Motors(Protocol):
 
     def close(self) -> None:
         """Neutral, then disabled, then let go of the hardware."""
+
+
+def stop_input(motors: Motors) -> Callable[[], str | None]:
+    """What asks the emergency stop beside `motors`: why it stops them, or None while closed; may raise MotorError.
+
+    It is asked each control cycle, with and without power. A driver has one if it has a method `stop_pressed`.
+    """
+    asked: Callable[[], str | None] = getattr(motors, "stop_pressed", _never)
+    return asked
+
+
+def _never() -> None:
+    """There is no such stop."""
 
 
 def checked(throttles: Sequence[float], count: int) -> tuple[float, ...]:

@@ -1,8 +1,8 @@
 """An emergency stop, a power switch and a sign of life on GPIO pins, around any driver; they work without the rover.
 
 The stop is a normally closed contact to ground: pressed, unplugged and broken are the same. While it is open no motor
-can be enabled, `set` raises, which disarms the rover, and the enable pin is off at the edge already, from gpiozero's
-own thread. Closing it again starts nothing: the rover has to be armed again.
+can be enabled, `set` raises, and the enable pin is off at the edge already, from gpiozero's own thread. The rover asks
+for it each cycle and latches its emergency stop (vehicle/safety.py): closing the contact starts and releases nothing.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import contextlib
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from vehicle.motors import MotorError, Motors
+from vehicle.motors import MotorError, Motors, StopPressedError
 from vehicle.motors.pins import DigitalInputDevice, DigitalOutputDevice, translated
 from vehicle.motors.settings import Safety
 
@@ -25,6 +25,8 @@ class SafetyPins:
         """Raises MotorError."""
         self.tripped = False
         """The stop was open at some time since the power was switched on."""
+        self._noticed = False
+        """... since `pressed` was asked last."""
         self._enable = self._estop = self._heartbeat = None
         with contextlib.ExitStack() as opened, translated("safety pins"):
             opened.callback(self.close)
@@ -39,13 +41,17 @@ class SafetyPins:
                 self._estop.when_deactivated = self._trip
             opened.pop_all()
 
+    def pressed(self) -> bool:
+        """The stop is open, or was since the last call. Raises MotorError where it cannot be read."""
+        noticed, self._noticed = self._noticed, False
+        return self._open() or noticed
+
     def check(self) -> None:
-        """Raises MotorError where the stop is open, or was since the power was switched on."""
-        with translated("emergency stop"):
-            if self._estop is not None and not self._estop.is_active:
-                self._trip()
+        """Raises StopPressedError where the stop is open, or was since the power was switched on; MotorError."""
+        if self._open():
+            self._trip()
         if self.tripped:
-            raise MotorError(PRESSED)
+            raise StopPressedError(PRESSED)
 
     def power_on(self) -> None:
         """Let the motors have power. Raises MotorError where the stop is open."""
@@ -83,9 +89,13 @@ class SafetyPins:
             steps.callback(self.power_off)
         self._enable = self._estop = self._heartbeat = None
 
+    def _open(self) -> bool:
+        with translated("emergency stop"):
+            return self._estop is not None and not self._estop.is_active
+
     def _trip(self) -> None:
         """Also called from gpiozero's thread at the edge."""
-        self.tripped = True
+        self.tripped = self._noticed = True
         if self._enable is not None:
             self._enable.off()
 
@@ -100,7 +110,9 @@ class GuardedMotors:
         self._enabled = False
 
     def enable(self) -> None:
-        """The driver first, from neutral, then the power. Raises MotorError while the stop is open."""
+        """The driver first, from neutral, then the power. Raises StopPressedError while the stop is open."""
+        if not self._enabled:
+            self._pins.tripped = False  # what was while there was no power is the rover's to remember
         self._pins.check()
         self._motors.enable()
         if not self._enabled:
@@ -112,11 +124,15 @@ class GuardedMotors:
         _both(self._pins.power_off, self._motors.disable)
 
     def set(self, throttles: Sequence[float]) -> None:
-        """Set the motors and beat. Raises MotorError while the stop is open."""
+        """Set the motors and beat. Raises StopPressedError while the stop is open."""
         self._pins.check()
         self._motors.set(throttles)
         if self._enabled:
             self._pins.beat()
+
+    def stop_pressed(self) -> str | None:
+        """Why the stop stops, or None: see vehicle.motors.stop_input."""
+        return PRESSED if self._pins.pressed() else None
 
     def close(self) -> None:
         """Power off, driver closed, pins let go."""

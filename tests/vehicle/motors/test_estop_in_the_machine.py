@@ -1,85 +1,221 @@
-"""The emergency stop's pin under the machine that drives the rover: pressed it disarms, released it starts nothing."""
+"""The emergency stop's pin under the real rover: pressed it stops and stays, let go it starts and releases nothing."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
 
+import pytest
 from gpiozero.pins.mock import MockFactory
 
-from link.core import LinkReport, Outgoing, Received
+from dialects import messages as m
+from dialects.enums import Command, Failsafe, ModeFlag, Result, State
+from link.core import Received
+from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, OTHER, Bench, said
+from vehicle import states
 from vehicle.machine import RETRY, Machine
-from vehicle.motors.safety_pins import GuardedMotors, SafetyPins
+from vehicle.motors import MotorError, open_motors, stop_input
+from vehicle.motors.safety_pins import PRESSED, GuardedMotors, SafetyPins
 from vehicle.motors.settings import Safety
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.outputs import Outputs
-from vehicle.readings import Readings
 from vehicle.sensors import NoSensors
 
 ESTOP, ENABLE = 17, 22
+SWITCH, DANGEROUS = Command.DO_SET_SAFETY_SWITCH_STATE, 1
+ZERO = Outputs((0.0, 0.0), enabled=False)
 
 
-class Driver:
-    """Full ahead while armed; disarmed by a motor failure, and armed again only by hand."""
+class Car(Bench):
+    """The rover in its machine, with the pins of a header; the contact is closed unless `pressed`."""
 
-    def __init__(self) -> None:
-        self.armed = True
-        self.reasons: list[str] = []
-        self.repaired = 0
+    def __init__(self, *, pressed: bool = False, enable_pin: int | None = ENABLE) -> None:
+        factory = MockFactory()
+        self.wheels = SimulatedMotors()
+        self.contact, self.power = factory.pin(ESTOP), factory.pin(ENABLE)
+        self.pins = SafetyPins(Safety(estop_pin=ESTOP, enable_pin=enable_pin), pin_factory=factory)
+        self.press() if pressed else self.let_go()
+        super().__init__()
+
+    @cached_property
+    def machine(self) -> Machine:
+        guarded = GuardedMotors(self.wheels, self.pins)
+        return Machine(self.rover, guarded, NoSensors(), stop_input=stop_input(guarded))
+
+    def press(self) -> None:
+        self.contact.drive_high()
+
+    def let_go(self) -> None:
+        self.contact.drive_low()
 
     @property
-    def outputs(self) -> Outputs:
-        return Outputs((1.0, 1.0) if self.armed else (0.0, 0.0), enabled=self.armed)
+    def rolling(self) -> bool:
+        return any(self.wheels.outputs)
 
-    def receive(self, received: Received, now: float) -> None: ...
-    def tick(self, now: float) -> None: ...
-    def observe(self, reports: Sequence[LinkReport], now: float) -> None: ...
-    def sense(self, readings: Readings, now: float) -> None: ...
-    def shutdown(self, now: float) -> None: ...
+    def drive(self, *_: Any) -> None:
+        super().drive()
+        assert self.rolling
 
-    def messages_to_send(self) -> list[Outgoing]:
-        return []
+    def _receive(self, received: Received) -> None:
+        self.machine.receive(received, self.now)
 
-    def motor_failed(self, reason: str, now: float) -> None:
-        self.armed = False
-        self.reasons.append(reason)
-
-    def motor_repaired(self, now: float) -> None:
-        self.repaired += 1
+    def _tick(self) -> None:
+        self.machine.tick(self.now)
 
 
-def test_pressed_and_released_while_driving() -> None:
-    pins, wheels, driver = MockFactory(), SimulatedMotors(), Driver()
-    safety = SafetyPins(Safety(estop_pin=ESTOP, enable_pin=ENABLE), pin_factory=pins)
-    estop, power = pins.pin(ESTOP), pins.pin(ENABLE)
-    estop.drive_low()
-    machine = Machine(driver, GuardedMotors(wheels, safety), NoSensors())
+def state(car: Car) -> states.State:
+    return car.rover.state
 
-    machine.tick(0.0)
-    assert wheels.outputs == (1.0, 1.0)
-    assert power.state
 
-    estop.drive_high()
-    assert not power.state, "the power must go without waiting for a cycle"
-    machine.tick(0.02)
-    assert wheels.outputs == (0.0, 0.0)
-    assert driver.reasons == ["the emergency stop is pressed, or its wire is open"]
+@pytest.mark.parametrize("enable_pin", [ENABLE, None])
+def test_pressed_everything_is_off_in_the_same_cycle_and_the_state_is_the_emergency_stop(
+    enable_pin: int | None,
+) -> None:
+    car = Car(enable_pin=enable_pin)
+    car.drive()
+    assert car.power.state == (enable_pin is not None)
+    car.press()
+    assert not car.power.state, "the power must go without waiting for a cycle"
+    car.cycle()
+    assert car.rover.outputs == ZERO
+    assert (car.wheels.outputs, car.wheels.enabled) == ((0.0, 0.0), False)
+    assert state(car) is states.State.ESTOP
+    car.wait(0.2, AHEAD)
+    beat = car.newest(m.Heartbeat)
+    assert beat.system_status == State.EMERGENCY
+    assert not beat.base_mode & ModeFlag.ARMED
+    failsafes = car.newest(m.RoverFailsafeStatus)
+    assert failsafes.active == failsafes.latched == Failsafe.ESTOP, "it is no fault of the motor driver"
+    assert [text for text in car.texts if "EMERGENCY" in text] == [f"EMERGENCY STOP by button: {PRESSED}"]
+    assert not said(car, "Motor driver failed")
 
-    machine.tick(0.02 + RETRY)
-    assert driver.repaired == 0, "pressed it must not count as repaired"
-    driver.armed = True  # somebody who arms against it
-    machine.tick(1.5)
-    assert wheels.outputs == (0.0, 0.0)
-    assert not power.state
-    driver.armed = False
 
-    estop.drive_low()
-    machine.tick(1.52 + RETRY)
-    machine.tick(1.6 + 2 * RETRY)
-    assert driver.repaired == 1
-    assert not power.state, "released it must not start anything"
-    driver.armed = True
-    machine.tick(1.62 + 2 * RETRY)
-    assert wheels.outputs == (1.0, 1.0)
-    assert power.state
-    machine.close()
-    assert not power.state
+def test_a_message_between_press_and_cycle_stops_too() -> None:
+    car = Car()
+    car.drive()
+    car.press()
+    car.stick(NEUTRAL)
+    assert state(car) is states.State.ESTOP
+    assert not car.rolling
+    assert not car.wheels.enabled
+
+
+def test_leaving_it_needs_the_contact_closed_and_the_ground_station_in_control_and_then_arming() -> None:
+    car = Car()
+    car.drive()
+    car.press()
+    car.wait(0.5, NEUTRAL)
+    assert car.command(SWITCH, DANGEROUS) is Result.FAILED
+    car.wait(0.2, NEUTRAL)
+    assert said(car, f"GCS {DRIVER}: release refused: {PRESSED}")
+    assert car.arm() is Result.FAILED
+    car.wait(0.2, NEUTRAL)
+    assert said(car, f"PreArm: {PRESSED}")
+
+    car.let_go()
+    car.wait(3 * RETRY, AHEAD)
+    assert state(car) is states.State.ESTOP, "closing the contact releases nothing"
+    assert car.arm() is Result.FAILED
+    assert car.command(SWITCH, DANGEROUS, system=OTHER) is Result.FAILED
+    assert car.command(SWITCH, DANGEROUS) is Result.ACCEPTED
+    assert state(car) is states.State.SAFE
+    car.wait(1.0, AHEAD)
+    assert not car.rolling
+    car.wait(0.1, NEUTRAL)
+    car.drive()
+    assert car.power.state
+
+
+def test_open_at_boot_nothing_arms_and_the_checks_say_why() -> None:
+    car = Car(pressed=True)
+    assert state(car) is states.State.ESTOP
+    assert car.arm() is Result.FAILED
+    assert car.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.FAILED, "nor by force"
+    assert car.command(Command.RUN_PREARM_CHECKS) is Result.ACCEPTED
+    car.wait(0.2)
+    assert car.texts.count(f"PreArm: {PRESSED}") == 1
+    assert car.newest(m.Heartbeat).system_status == State.EMERGENCY
+    car.let_go()
+    car.wait(CYCLE)
+    assert car.arm() is Result.FAILED
+    assert car.command(SWITCH, DANGEROUS) is Result.ACCEPTED
+    car.drive()
+
+
+def test_pressed_while_disarmed_it_stays_too_even_a_touch_shorter_than_a_cycle() -> None:
+    car = Car()
+    car.press()
+    car.let_go()
+    car.cycle()
+    assert state(car) is states.State.ESTOP
+    assert car.arm() is Result.FAILED
+    car.cycle()
+    assert car.command(SWITCH, DANGEROUS) is Result.ACCEPTED
+    car.drive()
+    assert state(car) is states.State.ARMED, "an old touch must not come back"
+
+
+def test_pressed_between_arming_and_the_first_cycle() -> None:
+    car = Car()
+    car.press()
+    assert car.arm() is Result.ACCEPTED  # the cycle has not asked yet
+    car.stick(NEUTRAL)
+    car.stick(AHEAD)
+    assert not car.rolling
+    car.cycle()
+    assert state(car) is states.State.ESTOP
+    assert not car.rolling
+
+
+def test_a_ground_stations_stop_is_not_released_while_the_contact_is_open() -> None:
+    car = Car()
+    car.drive()
+    car.command(SWITCH, 0)
+    car.press()
+    car.cycle()
+    assert car.command(SWITCH, DANGEROUS) is Result.FAILED
+    car.let_go()
+    car.cycle()
+    assert car.command(SWITCH, DANGEROUS) is Result.ACCEPTED
+
+
+def test_a_contact_that_cannot_be_read_is_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    car = Car()
+    car.drive()
+
+    def broken() -> bool:
+        raise MotorError("emergency stop: Input/output error")
+
+    monkeypatch.setattr(car.pins, "_open", broken)
+    car.cycle()
+    assert not car.rolling
+    assert state(car) is states.State.ESTOP
+    car.wait(0.1)
+    assert said(car, "EMERGENCY STOP by button: emergency stop: Input/output error")
+    assert car.command(SWITCH, DANGEROUS) is Result.FAILED
+    monkeypatch.undo()
+    car.cycle()
+    assert car.command(SWITCH, DANGEROUS) is Result.ACCEPTED
+
+
+def test_a_failed_driver_is_not_forgotten_behind_the_stop() -> None:
+    car = Car()
+    car.rover.motor_failed("no answer", car.now)
+    car.press()
+    car.cycle()
+    assert state(car) is states.State.ESTOP
+    car.let_go()
+    car.cycle()
+    assert car.command(SWITCH, DANGEROUS) is Result.ACCEPTED
+    assert state(car) is states.State.FAULT
+
+
+def test_after_the_end_the_contact_says_nothing_any_more() -> None:
+    car = Car()
+    car.machine.shutdown(car.now)
+    car.rover.stop_input(PRESSED, car.now)
+    assert state(car) is states.State.OFF
+
+
+def test_a_driver_without_such_an_input_never_stops() -> None:
+    assert stop_input(open_motors("simulated"))() is None
