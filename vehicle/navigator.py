@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from dialects import messages as m
 from dialects.enums import Command, DriveType, Failsafe
@@ -34,8 +34,18 @@ from vehicle.setpoints import Target
 
 FENCE_PERIOD = 0.1
 """s; at 1.5 m/s a rover is 15 cm beyond by then."""
+NO_MISSION = m.UINT16_MAX
+"""`total` of MISSION_CURRENT; 0 would say that nobody counts."""
 USUAL_SPEED = -2.0
 """Speed of DO_CHANGE_SPEED that means the usual one."""
+
+
+class PlanIds(NamedTuple):
+    """The ids of the plans in force, 0 for an empty one (link/services/mission_shelf.py)."""
+
+    mission: int = 0
+    fence: int = 0
+    rally: int = 0
 
 
 class Behaviour(Protocol):
@@ -71,6 +81,7 @@ class Navigator:
         self.guided = Guided(params, self.guide)
         self.mission = Mission(params, self.guide, self._home_point, self._effect)
         self.fence = Fence(params)
+        self.plan_ids = PlanIds()
         self.beyond = 0.0
         """m beyond the fence."""
         self._params = params
@@ -146,7 +157,8 @@ class Navigator:
         mission = self.mission
         paused = mission.progress is Progress.ACTIVE and (self.paused or mode is not Mode.AUTO)
         state = m.MISSION_PAUSED if paused else mission.progress
-        return m.MissionCurrent(mission.current, len(mission.items), state, 1 if mode is Mode.AUTO else 2)
+        total = len(mission.items) or NO_MISSION
+        return m.MissionCurrent(mission.current, total, state, 1 if mode is Mode.AUTO else 2, *self.plan_ids)
 
     def take(self, target: Target, now: float) -> None:
         """A setpoint for GUIDED."""

@@ -13,15 +13,18 @@ from link.services.ftp_files import Folder
 from link.services.mission import MissionServer
 from link.services.mission_files import PlanFolder
 from link.services.mission_items import Items
+from link.services.pacing import Pacer
 from vehicle.asking import Asking
 from vehicle.control import Control
-from vehicle.navigator import Navigator
+from vehicle.navigator import Navigator, PlanIds
 from vehicle.params import Params
 from vehicle.plan import RULES
 from vehicle.safety import Safety
 from vehicle.texts import Texts
 
 SERVOS = 16
+THIS_ITEM = -1
+"""Sequence of DO_SET_MISSION_CURRENT that leaves the item as it is."""
 
 
 class Plans:
@@ -35,8 +38,9 @@ class Plans:
         navigator: Navigator,
         texts: Texts,
         servos: tuple[int, ...],
+        pacer: Pacer,
     ) -> None:
-        """`servos` are the outputs that motors are at."""
+        """`servos` are the outputs that motors are at; `pacer` says how fast plans are told."""
         self._params = params
         self._safety = safety
         self._control = control
@@ -44,7 +48,8 @@ class Plans:
         self._navigator = navigator
         self._texts = texts
         self._servos = servos
-        self._server = MissionServer(self, RULES, system=control.system, component=1)
+        self._outbox: list[Outgoing] = []
+        self._server = MissionServer(self, RULES, system=control.system, component=1, pacer=pacer)
 
     def handlers(self) -> dict[int, Handler]:
         """The table for link.services.command.CommandServer."""
@@ -67,7 +72,8 @@ class Plans:
 
     def tick(self, now: float) -> list[Outgoing]:
         """What uploads need, and what the mission has reached."""
-        mission, outgoing = self._navigator.mission, self._server.tick(now)
+        mission, outgoing = self._navigator.mission, self._server.tick(now) + self._outbox
+        self._outbox.clear()
         if mission.reached:
             outgoing += [Outgoing(m.MissionItemReached(index)) for index in mission.reached]
             mission.reached.clear()
@@ -86,6 +92,7 @@ class Plans:
 
     def changed(self, kind: MissionType, items: Items) -> None:
         """Put it in force."""
+        self._navigator.plan_ids = PlanIds(**{each.name.lower(): self._server.plan_id(each) for each in RULES})
         if kind is MissionType.MISSION:
             self._navigator.mission.load(items)
         elif kind is MissionType.FENCE:
@@ -137,7 +144,12 @@ class Plans:
         return self._asking.refuse(request, refusal, now) if refusal else Result.ACCEPTED
 
     def _set_current(self, request: CommandRequest, now: float) -> Result:
-        return Result.ACCEPTED if self._selected(request.params[0]) else Result.DENIED
+        """-1 is the item under way, begun anew. Everybody is told the new item, as the specification wants."""
+        index = request.params[0]
+        if not self._selected(self._navigator.mission.current if index == THIS_ITEM else index):
+            return Result.DENIED
+        self._outbox.append(Outgoing(self.current()))
+        return Result.ACCEPTED
 
     def _enable_fence(self, request: CommandRequest, now: float) -> Result:
         """0 off, 1 on; 2, "the floor only", means nothing to a rover. Nobody takes it away from under way."""

@@ -78,7 +78,15 @@ class Rover:
         )
         self._commands = Commands(self._safety, self._control, self._texts)
         self._orders = Orders(params, self._safety, self._control, self._navigator, self._texts)
-        self._plans = Plans(params, self._safety, self._control, self._navigator, self._texts, self._drive.mixer.servos)
+        self._plans = Plans(
+            params,
+            self._safety,
+            self._control,
+            self._navigator,
+            self._texts,
+            self._drive.mixer.servos,
+            self._bandwidth.pacer,
+        )
         self._services = Services(
             params,
             self._control,

@@ -1,8 +1,9 @@
 """The mission protocol of a vehicle: its three plans (mission, fence, rally), uploaded, downloaded and cleared.
 
 Rules (mavlink.io/en/services/mission.html): an upload is asked for item by item and counts only when it is complete
-and valid; until then the old plan stays. One upload a plan at a time, a second sender is DENIED. What a plan means is
-the vehicle's work, and so is saving it. The other half is mission_client.py.
+and valid; until then the old plan stays. One upload a plan at a time, a second sender is DENIED. Who uploads may end
+it by a MISSION_ACK with an error. What a plan means is the vehicle's work, and so is saving it. Reading is in
+mission_download.py, ids are in mission_shelf.py; the other half is mission_client.py.
 """
 
 from __future__ import annotations
@@ -14,8 +15,11 @@ from typing import Protocol
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Outgoing, Received
-from link.services.mission_items import Items, MissionItem, PlanRules, to_message
-from link.services.mission_upload import Sender, Upload, sender_of
+from link.services.mission_download import Downloads
+from link.services.mission_items import Items, MissionItem, PlanRules
+from link.services.mission_shelf import Shelf
+from link.services.mission_upload import Sender, Upload, ack, sender_of
+from link.services.pacing import Pacer
 
 REMEMBER = 10.0
 """s in which the last item, said again because our answer was lost, is answered again."""
@@ -54,24 +58,35 @@ class MissionServer:
     """Keeps the plans of one system and component. `rules` has a line for each kind of plan that is offered."""
 
     def __init__(
-        self, planner: Planner, rules: Mapping[MissionType, PlanRules], *, system: int, component: int
+        self,
+        planner: Planner,
+        rules: Mapping[MissionType, PlanRules],
+        *,
+        system: int,
+        component: int,
+        pacer: Pacer | None = None,
     ) -> None:
         self._planner = planner
         self._rules = rules
         self._ids = (system, component)
-        self._plans: dict[MissionType, Items] = dict.fromkeys(rules, ())
+        self._shelf = Shelf(rules)
+        self._downloads = Downloads(self._shelf, pacer or Pacer(), lambda: int(planner.current().seq))
         self._uploads: dict[MissionType, Upload] = {}
         self._ended: dict[MissionType, _Ended] = {}
 
     def plan(self, kind: MissionType) -> Items:
         """The plan in force."""
-        return self._plans[kind]
+        return self._shelf[kind]
+
+    def plan_id(self, kind: MissionType) -> int:
+        """Its id: another one for another plan, 0 for none."""
+        return self._shelf.id_of(kind)
 
     def load(self, kind: MissionType, items: Sequence[MissionItem]) -> MissionResult:
         """Put a saved plan in force, where it passes the rules; the planner is not told."""
         verdict = self._rules[kind].judge(items)
         if verdict is MissionResult.ACCEPTED:
-            self._plans[kind] = tuple(items)
+            self._shelf.put(kind, items)
         return verdict
 
     def replace(self, kind: MissionType, items: Sequence[MissionItem]) -> MissionResult:
@@ -88,53 +103,21 @@ class MissionServer:
         target = (getattr(message, "target_system", None), getattr(message, "target_component", None))
         if not received.may_ask or target[0] != self._ids[0] or target[1] not in (0, self._ids[1]):
             return []
-        answer = self._reading(received)
+        answer = self._downloads.receive(received)
         if answer is not None:
             return answer
         return self._writing(received, now) if received.introduced else []
 
     def tick(self, now: float) -> list[Outgoing]:
         """Ask again for what did not come, give up what does not come at all."""
-        outgoing: list[Outgoing] = []
+        outgoing = self._downloads.tick(now)
         for kind, upload in list(self._uploads.items()):
             if upload.overdue(now):
                 del self._uploads[kind]
-                outgoing.append(_ack(upload.sender, kind, MissionResult.CANCELLED))
+                outgoing.append(ack(upload.sender, kind, MissionResult.CANCELLED))
             else:
                 outgoing += upload.ask_again(now)
         return outgoing
-
-    # ---- reading ----
-
-    def _reading(self, received: Received) -> list[Outgoing] | None:
-        sender = sender_of(received)
-        match received.message:
-            case m.MissionRequestList() as message:
-                return [self._count(message, sender)]
-            case m.MissionRequestInt() | m.MissionRequest() as message:
-                return [self._item(message, sender)]
-            case m.MissionRequestPartialList() as message:
-                return [_ack(sender, message.mission_type, MissionResult.UNSUPPORTED)]
-        return None
-
-    def _count(self, message: m.MissionRequestList, sender: Sender) -> Outgoing:
-        kind = self._kind(message.mission_type)
-        if kind is None:
-            return _ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
-        return Outgoing(m.MissionCount(sender.system, sender.component, len(self.plan(kind)), kind), sender.peer)
-
-    def _item(self, message: m.MissionRequestInt | m.MissionRequest, sender: Sender) -> Outgoing:
-        kind = self._kind(message.mission_type)
-        if kind is None:
-            return _ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
-        items = self.plan(kind)
-        if message.seq >= len(items):
-            return _ack(sender, kind, MissionResult.INVALID_SEQUENCE)
-        current = kind is MissionType.MISSION and self._planner.current().seq == message.seq
-        target = (sender.system, sender.component)
-        return Outgoing(to_message(items[message.seq], message.seq, kind, target, current=current), sender.peer)
-
-    # ---- writing ----
 
     def _writing(self, received: Received, now: float) -> list[Outgoing]:
         match received.message:
@@ -144,19 +127,21 @@ class MissionServer:
                 return self._take(message, sender_of(received), now)
             case m.MissionClearAll() as message:
                 verdict = self._clear(message, received, now)
-                return [_ack(sender_of(received), message.mission_type, verdict)]
+                return [ack(sender_of(received), message.mission_type, verdict)]
+            case m.MissionAck() as message if message.type != MissionResult.ACCEPTED:
+                self._abort(message, sender_of(received))
             case m.MissionSetCurrent() as message:
                 self._planner.select(message.seq, received, now)
                 return [Outgoing(self._planner.current())]
         return []
 
     def _begin(self, message: _Begin, received: Received, now: float) -> Outgoing:
-        sender, kind = sender_of(received), self._kind(message.mission_type)
+        sender, kind = sender_of(received), self._shelf.kind(message.mission_type)
         if kind is None:
-            return _ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
+            return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
         verdict = self._may_begin(kind, received, now)
         if verdict is not MissionResult.ACCEPTED:
-            return _ack(sender, kind, verdict)
+            return ack(sender, kind, verdict)
         return (
             self._whole(message, sender, kind, now)
             if isinstance(message, m.MissionCount)
@@ -173,7 +158,7 @@ class MissionServer:
     def _whole(self, message: m.MissionCount, sender: Sender, kind: MissionType, now: float) -> Outgoing:
         rules = self._rules[kind]
         if message.count > rules.capacity:
-            return _ack(sender, kind, MissionResult.NO_SPACE)
+            return ack(sender, kind, MissionResult.NO_SPACE)
         upload = Upload(sender, kind, rules, end=message.count, now=now)
         if not message.count:
             return self._end(upload, rules.check(()), -1, now)
@@ -183,13 +168,13 @@ class MissionServer:
     def _part(self, message: m.MissionWritePartialList, sender: Sender, kind: MissionType, now: float) -> Outgoing:
         items, first, last = self.plan(kind), message.start_index, message.end_index
         if not 0 <= first <= last < len(items):
-            return _ack(sender, kind, MissionResult.INVALID_SEQUENCE)
+            return ack(sender, kind, MissionResult.INVALID_SEQUENCE)
         upload = Upload(sender, kind, self._rules[kind], items=items, first=first, end=last + 1, now=now)
         self._uploads[kind] = upload
         return upload.ask(now)
 
     def _take(self, message: _Item, sender: Sender, now: float) -> list[Outgoing]:
-        kind = self._kind(message.mission_type)
+        kind = self._shelf.kind(message.mission_type)
         if kind is None:
             return []
         upload = self._uploads.get(kind)
@@ -201,12 +186,23 @@ class MissionServer:
     def _end(self, upload: Upload, verdict: MissionResult, last: int, now: float) -> Outgoing:
         kind = upload.kind
         self._uploads.pop(kind, None)
+        plan_id = 0
         if verdict is MissionResult.ACCEPTED:
-            self._plans[kind] = upload.items
-            self._planner.changed(kind, upload.items)
-        ack = _ack(upload.sender, kind, verdict)
-        self._ended[kind] = _Ended(upload.sender, last, now, ack)
-        return ack
+            self._put(kind, upload.items)
+            plan_id = self.plan_id(kind)
+        answer = ack(upload.sender, kind, verdict, plan_id)
+        self._ended[kind] = _Ended(upload.sender, last, now, answer)
+        return answer
+
+    def _put(self, kind: MissionType, items: Items) -> None:
+        self._shelf.put(kind, items)
+        self._planner.changed(kind, items)
+
+    def _abort(self, message: m.MissionAck, sender: Sender) -> None:
+        """Whoever uploads has thought better of it."""
+        kind = self._shelf.kind(message.mission_type)
+        if kind is not None and kind in self._uploads and self._uploads[kind].sender == sender:
+            del self._uploads[kind]
 
     @staticmethod
     def _said_again(ended: _Ended | None, message: _Item, sender: Sender, now: float) -> list[Outgoing]:
@@ -223,13 +219,5 @@ class MissionServer:
             return refused
         for kind in kinds:
             self._uploads.pop(kind, None)
-            self._plans[kind] = ()
-            self._planner.changed(kind, ())
+            self._put(kind, ())
         return MissionResult.ACCEPTED
-
-    def _kind(self, number: int) -> MissionType | None:
-        return next((kind for kind in self._rules if kind == number), None)
-
-
-def _ack(sender: Sender, kind: int, verdict: MissionResult) -> Outgoing:
-    return Outgoing(m.MissionAck(sender.system, sender.component, verdict, kind), sender.peer)

@@ -42,6 +42,9 @@ class MissionOutcome:
     """MAV_MISSION_RESULT; None: nobody answered."""
     items: Items = ()
     """What was downloaded."""
+    plan_id: int = 0
+    """Id of the vehicle's plan after an upload or a download (MISSION_CURRENT tells when it is another one); 0: it is
+    empty, or the vehicle has no ids."""
 
     @property
     def done(self) -> bool:
@@ -64,6 +67,7 @@ class _Work:
     restarts: int = 0
     count: int | None = None
     """Items of a download, once the vehicle has told."""
+    plan_id: int = 0
 
 
 class MissionClient:
@@ -113,13 +117,14 @@ class MissionClient:
             case m.MissionRequestInt() | m.MissionRequest() if work.job is Job.UPLOAD:
                 self._give(work, message.seq, now)
             case m.MissionCount() if work.job is Job.DOWNLOAD and work.count is None:
-                work.count = message.count
+                work.count, work.plan_id = message.count, message.opaque_id
                 self._next(work, now)
             case m.MissionItemInt() | m.MissionItem() if work.job is Job.DOWNLOAD and work.count is not None:
                 if message.seq == len(work.items) < work.count:
                     work.items.append(from_message(message))
                     self._next(work, now)
             case m.MissionAck() if message.type != MissionResult.ACCEPTED or self._said_all(work):
+                work.plan_id = message.opaque_id
                 self._acknowledged(work, message.type, now)
 
     def tick(self, now: float) -> None:
@@ -189,4 +194,4 @@ class MissionClient:
     def _finish(self, work: _Work, result: int | None) -> None:
         self._work = None
         items = tuple(work.items) if work.job is Job.DOWNLOAD and result == MissionResult.ACCEPTED else ()
-        self._outcomes.append(MissionOutcome(work.job, work.kind, result, items))
+        self._outcomes.append(MissionOutcome(work.job, work.kind, result, items, work.plan_id))

@@ -7,6 +7,7 @@ autocontinue. ArduPilot's tools put home into line 0; here every line is an item
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable, Sequence
 
 from dialects.enums import MissionResult, MissionType
@@ -56,12 +57,22 @@ def _item(number: int, line: str) -> MissionItem:
         raise PlanFileError(f"line {number} has {len(fields)} fields, not {FIELDS}")
     try:
         frame, command = int(fields[2]), int(fields[3])
-        one, two, three, four, x, y, z = map(float, fields[4:11])
+        x, y = float(fields[8]), float(fields[9])
+        one, two, three, four, z = (_float32(text) for text in (*fields[4:8], fields[10]))
         autocontinue = bool(int(fields[11]))
     except ValueError as error:
         raise PlanFileError(f"line {number}: {error}") from error
     scale = DEGREES if frame in GLOBAL_FRAMES else LOCAL
     return MissionItem(command, frame, (one, two, three, four), scaled(x, scale), scaled(y, scale), z, autocontinue)
+
+
+def _float32(text: str) -> float:
+    """As the wire would have it. Raises ValueError for what is too large for that."""
+    value = float(text)
+    try:
+        return float(struct.unpack("<f", struct.pack("<f", value))[0])
+    except OverflowError:
+        raise ValueError(f"{text} is too large") from None
 
 
 class PlanFolder:

@@ -155,7 +155,7 @@ def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
 def scaled(value: float, scale: float) -> int:
     """`value` times `scale` as an int32; NOWHERE for what is none."""
     number = value * scale
-    return round(number) if abs(number) < NOWHERE else NOWHERE  # NaN is not less than anything
+    return round(number) if -NOWHERE - 1 <= number <= NOWHERE else NOWHERE  # NaN is not less than anything
 
 
 def to_message(

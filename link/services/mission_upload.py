@@ -32,6 +32,11 @@ def sender_of(received: Received) -> Sender:
     return Sender(received.peer, received.system, received.component)
 
 
+def ack(sender: Sender, kind: int, verdict: MissionResult, plan_id: int = 0) -> Outgoing:
+    """MISSION_ACK. `plan_id` is the id of the new plan at the end of an upload."""
+    return Outgoing(m.MissionAck(sender.system, sender.component, verdict, kind, plan_id), sender.peer)
+
+
 class Upload:
     """Items `first` to `end` (not included) of a plan. What stands before and after them in `items` stays."""
 

@@ -11,6 +11,7 @@ from dialects.enums import MissionResult, MissionType
 from link.core import Received
 from link.services.mission import MissionServer
 from link.services.mission_items import ItemRule, Items, MissionItem, Place, PlanRules
+from link.services.pacing import Pacer
 from tests.link.services_world import from_gcs, messages
 
 NAV_WAYPOINT, NAV_LOITER_TIME, DO_JUMP, FENCE_CIRCLE = 16, 19, 177, 5003
@@ -58,9 +59,10 @@ class Vehicle:
     changes: list[tuple[MissionType, int]] = field(default_factory=list)
     selected: list[int] = field(default_factory=list)
     at: int = 0
+    pacer: Pacer | None = None
 
     def __post_init__(self) -> None:
-        self.server = MissionServer(self, RULES, system=1, component=1)
+        self.server = MissionServer(self, RULES, system=1, component=1, pacer=self.pacer)
 
     def may_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         return self.verdict

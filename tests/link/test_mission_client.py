@@ -36,12 +36,14 @@ def test_a_plan_goes_up_and_down_whatever_is_lost(seed: int, loss: float, length
     pair = Pair(vehicle.server, client, loss=loss, seed=seed)
     items = [waypoint(number) for number in range(length)]
     client.upload(items, MissionType.MISSION, pair.now)
-    assert ending(client, pair, within=200.0).done
+    uploaded = ending(client, pair, within=200.0)
+    assert uploaded.done
     assert plain(vehicle.plan) == plain(tuple(items))
     client.download(MissionType.MISSION, pair.now)
     outcome = ending(client, pair, within=200.0)
     assert outcome.done
     assert plain(outcome.items) == plain(tuple(items))
+    assert uploaded.plan_id == outcome.plan_id == vehicle.server.plan_id(MissionType.MISSION)
     client.clear(MissionType.MISSION, pair.now)
     assert ending(client, pair, within=30.0).done
     assert vehicle.plan == ()

@@ -15,8 +15,9 @@ from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.services.ftp import FtpError
 from link.services.mission_files import NAMES, PlanFileError, PlanFolder, read, write
-from link.services.mission_items import MissionItem
+from link.services.mission_items import MissionItem, from_message, to_message
 from tests.link.mission_vehicle import Vehicle, plain, waypoint
+from tests.link.services_world import through_the_wire
 
 FLOATS = st.floats(width=32)
 ITEMS = st.builds(
@@ -49,7 +50,17 @@ def test_pymavlink_reads_it(tmp_path: Path) -> None:
 def test_a_file_of_another_tool_is_read() -> None:
     text = "QGC WPL 110\r\n0\t1\t0\t16\t0\t0\t0\t0\t-35.363262\t149.165237\t584.1\t1\r\n\r\n"
     [item] = read(text.encode())
-    assert (item.x, item.y, item.z, item.command, item.frame) == (-353632620, 1491652370, 584.1, 16, 0)
+    assert (item.x, item.y, item.command, item.frame) == (-353632620, 1491652370, 16, 0)
+    assert item.z == pytest.approx(584.1)
+
+
+def test_values_are_those_that_the_wire_can_carry() -> None:
+    text = "QGC WPL 110\n0\t0\t2\t93\t0.1\tnan\t0\t0\t-214748.3648\t0\t0\t1\n"
+    [item] = read(text.encode())
+    assert m.MissionItemInt(1, 1, 0, 2, 93, 0, 1, *item.params, item.x, item.y, item.z).param1 == item.params[0]
+    again = from_message(through_the_wire(to_message(item, 0, 0, (1, 1))))  # type: ignore[arg-type]
+    assert repr(again) == repr(item)
+    assert item.x == -(2**31)
 
 
 @pytest.mark.parametrize(
@@ -60,6 +71,7 @@ def test_a_file_of_another_tool_is_read() -> None:
         (b"QGC WPL 110\n0 1 2\n", "line 2 has 3 fields, not 12"),
         (b"QGC WPL 110\n0 1 x 16 0 0 0 0 0 0 0 1\n", "line 2: invalid literal"),
         (b"QGC WPL 110\n0 1 3 16 0 0 0 0 \xff 0 0 1\n", "line 2: could not convert"),
+        (b"QGC WPL 110\n0 1 3 16 1e300 0 0 0 0 0 0 1\n", "line 2: 1e300 is too large"),
     ],
 )
 def test_what_is_no_plan_says_where(data: bytes, reason: str) -> None:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, MissionResult, MissionType, Result
+from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, said
 from tests.vehicle.field import GROUND, Field
@@ -182,10 +182,39 @@ class TestProgress:
         assert field.newest(m.MissionCurrent).seq == 0
         assert field.turning
 
+    def test_the_ids_of_all_plans_are_told_at_once_and_again_and_again(self) -> None:
+        field = Field()
+        field.wait(1.1)
+        told = field.newest(m.MissionCurrent)
+        assert (told.total, told.mission_id, told.fence_id, told.rally_points_id) == (65535, 0, 0, 0)
+        upload(field, way(5, 0))
+        assert field.newest(m.MissionAck).opaque_id
+        mission = field.newest(m.MissionAck).opaque_id
+        rally = (FenceItem.RALLY_POINT, Point(3, 3), ())
+        upload(field, rally, kind=MissionType.RALLY)
+        rally_id = field.newest(m.MissionAck).opaque_id
+        field.wait(0.1)  # less than the stream's second
+        told = field.newest(m.MissionCurrent)
+        assert (told.total, told.mission_id, told.fence_id, told.rally_points_id) == (1, mission, 0, rally_id)
+        before = len(field.all(m.MissionCurrent))
+        field.wait(5.0)
+        assert len(field.all(m.MissionCurrent)) - before == 5
+        assert field.newest(m.MissionCurrent).mission_id == mission
+
+    def test_the_item_that_is_chosen_by_command_is_told_to_all(self) -> None:
+        field = ready(way(6, 0), way(6, 6))
+        field.wait(1.1)
+        for index, seq in ((1, 1), (1, 1), (-1, 1), (0, 0)):
+            before = len(field.all(m.MissionCurrent))
+            assert field.command(Command.DO_SET_MISSION_CURRENT, index) is Result.ACCEPTED
+            field.wait(0.02)
+            assert [each.seq for each in field.all(m.MissionCurrent)[before:]][-1:] == [seq]
+        assert field.command(Command.DO_SET_MISSION_CURRENT, -2) is Result.DENIED
+
     def test_an_item_can_be_chosen(self) -> None:
         field = ready(way(6, 0), way(0, 6))
         assert field.command(Command.DO_SET_MISSION_CURRENT, 1) is Result.ACCEPTED
-        for wrong in (2, -1, 0.5, NAN):
+        for wrong in (2, -2, 0.5, NAN):
             assert field.command(Command.DO_SET_MISSION_CURRENT, wrong) is Result.DENIED
         start(field)
         field.until(Point(0, 6), 40.0)
