@@ -9,7 +9,7 @@ from vehicle.params import Params
 CRITICAL_TIMER = 3.0
 """s below BATT_CRT_VOLT: shorter than BATT_LOW_TIMER, because a lithium cell is damaged there."""
 SILENT = 5.0
-"""s without a reading after there was one (ArduPilot's battery sensor timeout)."""
+"""s without a reading (ArduPilot's battery sensor timeout)."""
 
 
 class BatteryWatch:
@@ -20,9 +20,16 @@ class BatteryWatch:
         self._low: float | None = None
         self._critical: float | None = None
         self._seen: float | None = None
+        self._expected = False
 
-    def sense(self, voltage: float | None, now: float) -> None:
-        """Take a reading; None or a bad number is no reading."""
+    @property
+    def present(self) -> bool:
+        """There is a battery sensor, or should be."""
+        return self._expected or self._seen is not None
+
+    def sense(self, voltage: float | None, now: float, *, expected: bool = False) -> None:
+        """Take a reading; None or a bad number is no reading. `expected`: the vehicle should have this sensor."""
+        self._expected = expected
         if voltage is None or not math.isfinite(voltage):
             return
         self._seen = now
@@ -38,8 +45,8 @@ class BatteryWatch:
         return self._after(self._critical, CRITICAL_TIMER, now)
 
     def silent(self, now: float) -> bool:
-        """There was a battery sensor and it has stopped."""
-        return self._seen is not None and now - self._seen > SILENT
+        """A battery sensor that there should be has never answered, or one that there was has stopped."""
+        return self._expected if self._seen is None else now - self._seen > SILENT
 
     @staticmethod
     def _began(since: float | None, low: bool, now: float) -> float | None:

@@ -68,6 +68,8 @@ class Readings:
     wheel_speeds: tuple[float, ...] = ()
     """m/s of each wheel, in motor order."""
     computer: Computer | None = None
+    configured: tuple[str, ...] = ()
+    """Sensors that there should be, whether they answer or not, by the name that SensorFault has."""
     faults: tuple[SensorFault, ...] = ()
     """Of the sensors that give nothing now; for the driver to read."""
 

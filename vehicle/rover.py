@@ -164,7 +164,7 @@ class Rover:
         """Take the newest readings."""
         self._readings = readings
         self._navigator.sense(readings, now)
-        self._safety.battery.sense(readings.battery_voltage, now)
+        self._safety.battery.sense(readings.battery_voltage, now, expected="battery" in readings.configured)
         self._complaints.sense(readings, now)
 
     def stop_input(self, reason: str | None, now: float) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from vehicle.battery import SILENT
 from vehicle.motors.settings import told
 from vehicle.readings import Computer, Readings, SensorFault
 from vehicle.sensors.encoders import Encoders, EncoderSettings
@@ -58,25 +59,34 @@ class Suite:
     """Fits `vehicle.sensors.Sensors`."""
 
     def __init__(self, sources: Sources) -> None:
-        self._sources = sources
         self._present = sources.present()
+        self._configured = tuple(self._present)
+        self._heard: dict[str, float] = {}
+        """When each gave something last, at first when it was asked first."""
 
     def read(self, now: float) -> Readings:
         """The newest of everything."""
-        sources = self._sources
+        newest = {name: source.latest(now) for name, source in self._present.items()}
+        for name, value in newest.items():
+            if value is not None or name not in self._heard:
+                self._heard[name] = now
         values: dict[str, Any] = {}
-        if (power := _newest(sources.battery, now)) is not None:
+        if (power := newest.get("battery")) is not None:
             values.update(battery_voltage=power.voltage, battery_current=power.current)
-        if (position := _newest(sources.gps, now)) is not None:
+        if (position := newest.get("gps")) is not None:
             values.update(_position(position))
-        if wheels := _newest(sources.encoders, now):
+        if wheels := newest.get("encoders"):
             values.update(wheel_speeds=wheels, speed=sum(wheels) / len(wheels))
-        return Readings(computer=_newest(sources.computer, now), faults=self.faults(), **values)
+        faults = self._faults(now)
+        return Readings(computer=newest.get("computer"), configured=self._configured, faults=faults, **values)
 
-    def faults(self) -> tuple[SensorFault, ...]:
-        """Why a sensor gives nothing, a line each."""
-        found = [(name, source.fault) for name, source in self._present.items()]
+    def _faults(self, now: float) -> tuple[SensorFault, ...]:
+        """Why a sensor gives nothing: what it says itself, or that it says nothing at all."""
+        found = [(name, source.fault or self._silence(name, now)) for name, source in self._present.items()]
         return tuple(SensorFault(name, fault) for name, fault in found if fault is not None)
+
+    def _silence(self, name: str, now: float) -> str | None:
+        return f"silent for {SILENT:g} s" if now - self._heard[name] > SILENT else None
 
     def close(self) -> None:
         """Let go of every sensor."""
@@ -112,10 +122,6 @@ def open_sensors(settings: SensorSettings) -> Suite:
 
 def _sampled(sample: Callable[[], Any], period: float, max_age: float) -> Sampler[Any]:
     return Sampler(sample, period=period, max_age=max_age)
-
-
-def _newest(source: Source[Any] | None, now: float) -> Any:
-    return None if source is None else source.latest(now)
 
 
 def _position(reading: GpsReading) -> dict[str, Any]:

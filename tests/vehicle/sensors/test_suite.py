@@ -20,10 +20,10 @@ class Given(Generic[T]):
     def __init__(self, value: T | None, fault: str | None = None) -> None:
         self.fault = fault
         self.closed = False
-        self._value = value
+        self.value = value
 
     def latest(self, now: float) -> T | None:
-        return self._value
+        return self.value
 
     def close(self) -> None:
         self.closed = True
@@ -55,24 +55,36 @@ def test_everything_becomes_one_reading() -> None:
         wheel_speeds=(0.4, 0.6),
         speed=0.5,
         computer=computer,
+        configured=("battery", "gps", "encoders", "computer"),
     )
 
 
 def test_nothing_there_and_nothing_known_is_nothing() -> None:
     assert Suite(Sources()).read(0.0) == NO_READINGS
     nothing = Suite(Sources(Given(None), Given(None), Given(None), Given(None)))
-    assert nothing.read(0.0) == NO_READINGS
+    assert nothing.read(0.0) == Readings(configured=("battery", "gps", "encoders", "computer"))
 
 
 def test_faults_are_listed_and_every_sensor_is_closed() -> None:
     battery, gps = Given[Power](None, "no chip"), Given[GpsReading](None)
     suite = Suite(Sources(battery=battery, gps=gps))
-    assert suite.faults() == (SensorFault("battery", "no chip"),)
-    assert suite.read(0.0).faults == suite.faults()
+    assert suite.read(0.0).faults == (SensorFault("battery", "no chip"),)
     with pytest.raises(OSError, match="no chip"):
         suite.close()
     assert battery.closed
     assert gps.closed
+
+
+def test_a_sensor_that_says_nothing_at_all_is_a_fault_after_a_while() -> None:
+    gps = Given[GpsReading](None)
+    suite = Suite(Sources(gps=gps))
+    assert suite.read(100.0).faults == suite.read(105.0).faults == ()
+    assert suite.read(105.1).faults == (SensorFault("gps", "silent for 5 s"),)
+    gps.value = GpsReading(Fix(1), Sky())
+    assert suite.read(106.0).faults == ()
+    gps.value = None
+    assert suite.read(111.0).faults == ()
+    assert suite.read(111.1).faults == (SensorFault("gps", "silent for 5 s"),)
 
 
 async def test_sensors_that_are_not_there_do_not_keep_the_rover_from_starting() -> None:
