@@ -75,6 +75,7 @@ class Commands:
             return Result.DENIED
         if not arm:
             self._safety.disarm(f"by GCS {request.system}", now)
+            self._safety.interrupt()
             return Result.ACCEPTED
         if not request.introduced:
             return self._refuse("arming", request, "no HEARTBEAT heard", now)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dialects.enums import DriveType, Limit
 from vehicle.demand import Demand
 from vehicle.mixer import MIXERS, Mixed, clamp, deadband, expo
-from vehicle.outputs import Clearance, Gate, Outputs, Permit
+from vehicle.outputs import Clearance, Gate, Outputs, Permit, Trial
 from vehicle.params import Params
 from vehicle.slew import Slew, SlewLimits
 
@@ -26,6 +26,8 @@ class Drive:
         self._params = params
         self._slews = [Slew() for _ in self.mixer.motors]
         self._gate = Gate(len(self._slews))
+        self._tested: int | None = None
+        """The motor that a test turns."""
         self._at = now
 
     @property
@@ -38,14 +40,18 @@ class Drive:
         permit = clearance.permit
         dt, self._at = max(0.0, now - self._at), now
         self.limits = Limit(0)
-        if permit is Permit.NONE:
+        trial = clearance.trial if permit is Permit.TEST else None
+        motor = None if trial is None else trial.motor
+        if permit is Permit.NONE or motor != self._tested:  # no test ramps down, nor into another one or a drive
             for slew in self._slews:
                 slew.reset()
+        self._tested = motor
         ramps = self._ramps()
-        targets = self._targets(demand if permit is Permit.DRIVE else None, limited)
+        targets = self._targets(demand if permit is Permit.DRIVE else None, limited) if trial is None else (
+            self._alone(trial))  # fmt: skip
         values = [slew.step(target, dt, ramps) for slew, target in zip(self._slews, targets, strict=True)]
         self._note_limits()
-        self.outputs = self._gate.judge(values, permit, 1.0 / ramps.decel, now)
+        self.outputs = self._gate.judge(values, permit, 1.0 / ramps.decel, now, trial)
         if self.outputs.throttles != tuple(values):  # refused: no ramp goes on from there
             for slew in self._slews:
                 slew.reset()
@@ -60,6 +66,10 @@ class Drive:
         if mixed.saturated:
             self.limits |= Limit.SATURATED
         return mixed.throttles
+
+    def _alone(self, trial: Trial) -> tuple[float, ...]:
+        """One motor, the others at rest."""
+        return tuple(trial.throttle if index == trial.motor else 0.0 for index in range(len(self._slews)))
 
     def _cap(self, throttle: float, limited: bool) -> float:
         largest = self._params["MOT_THR_MAX"] / 100

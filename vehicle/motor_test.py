@@ -14,9 +14,9 @@ from dialects.enums import DriveType
 from vehicle.lock import MotorLock
 from vehicle.mixer import MIXERS
 from vehicle.motors import open_motors
+from vehicle.outputs import TRIAL_LARGEST as LARGEST
+from vehicle.outputs import TRIAL_LONGEST as LONGEST
 
-LARGEST, LONGEST = 0.3, 3.0
-"""Throttle and s: enough to see a wheel turn, too little to run away with a rover that stands on it."""
 PERIOD = 0.02
 """s between writes: that of the control loop, so that controllers with a timeout of their own go on."""
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)

@@ -194,6 +194,8 @@ class Orders:
         if wish not in (0, 1):
             return Result.DENIED
         own = OFFERED[self._safety.mode].own
+        if wish == 0:
+            self._safety.interrupt()
         if wish == 0 and not own:
             self._safety.choose_mode(Mode.HOLD, now)
             return Result.ACCEPTED

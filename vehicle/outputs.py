@@ -1,7 +1,7 @@
 """The last gate before the motors: it refuses what it cannot vouch for, whoever asked for it.
 
 It does not trust the rest of the vehicle: it judges by a few plain facts (Clearance), checks every value, and times
-every deceleration itself.
+every deceleration and every motor test itself.
 """
 
 from __future__ import annotations
@@ -12,6 +12,9 @@ from enum import Enum
 
 SLACK = 0.05
 """s that a deceleration may take longer than its ramp: two cycles of 20 ms and a little, because it begins in one."""
+
+TRIAL_LARGEST, TRIAL_LONGEST = 0.3, 3.0
+"""Throttle and s of a motor test: enough to see a wheel turn, too little to run away with a rover that stands on it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +35,19 @@ class Permit(Enum):
     """Ramp down to zero, nothing else: stale demand, HOLD, failsafe, no neutral seen."""
     DRIVE = "drive"
     """Follow the demand."""
+    TEST = "test"
+    """Turn one motor, slowly and shortly: the only motion of a vehicle that is not armed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """One request to see one motor turn."""
+
+    number: int
+    """From 1, larger with each request: the gate gives each its time once."""
+    motor: int
+    """Its index."""
+    throttle: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +64,16 @@ class Clearance:
     """s since the demand in use came from the driver in control; None without one."""
     timeout: float = 0.0
     """s that a demand counts."""
+    trial: Trial | None = None
+    """The motor test under way. It means nothing while armed."""
 
     @property
     def permit(self) -> Permit:
         """Anything unknown or not a number is a no."""
-        if not self.armed or self.late:
+        if self.late:
             return Permit.NONE
+        if not self.armed:
+            return Permit.NONE if self.trial is None else Permit.TEST
         fresh = self.demand_age is not None and 0.0 <= self.demand_age <= self.timeout
         return Permit.DRIVE if fresh and self.neutral_seen and not self.held else Permit.FALL
 
@@ -67,13 +87,23 @@ class Gate:
         self._motors = motors
         self._before = (0.0,) * motors
         self._fall_began: float | None = None
+        self._trials = TrialClock()
 
-    def judge(self, throttles: Sequence[float], permit: Permit, fall_time: float, now: float) -> Outputs:
-        """What may go to the motors. `fall_time` is the longest a deceleration to zero may take, s."""
+    def judge(
+        self, throttles: Sequence[float], permit: Permit, fall_time: float, now: float, trial: Trial | None = None
+    ) -> Outputs:
+        """What may go to the motors. `fall_time` is the longest a deceleration to zero may take, s; `trial` is what
+        TEST is for."""
         self._note_fall(permit, now)
-        passed = permit is not Permit.NONE and self._sound(throttles) and self._falling(throttles, fall_time, now)
+        fits = self._trials.permits(throttles, trial if permit is Permit.TEST else None, now)
+        sound = permit is not Permit.NONE and self._sound(throttles)
+        passed = sound and (fits if permit is Permit.TEST else self._falling(throttles, fall_time, now))
         self._before = tuple(throttles) if passed else (0.0,) * self._motors
-        return Outputs(self._before, enabled=passed and (permit is Permit.DRIVE or any(self._before)))
+        powered = permit in (Permit.DRIVE, Permit.TEST) or any(self._before)
+        outputs = Outputs(self._before, enabled=passed and powered)
+        if permit is Permit.TEST:  # nothing ramps down from a test
+            self._before = (0.0,) * self._motors
+        return outputs
 
     def _sound(self, throttles: Sequence[float]) -> bool:
         # NaN fails every comparison, so that it is refused here too.
@@ -92,3 +122,25 @@ class Gate:
             return True
         smaller = all(abs(new) <= abs(old) for new, old in zip(throttles, self._before, strict=True))
         return smaller and (now - self._fall_began <= fall_time + SLACK or not any(throttles))
+
+
+class TrialClock:
+    """The gate's own watch on motor tests: each request is given its time once, and what was interrupted is over."""
+
+    def __init__(self) -> None:
+        self._spent = 0
+        """Requests up to this number have had their time."""
+        self._number = 0
+        self._began = 0.0
+
+    def permits(self, throttles: Sequence[float], trial: Trial | None, now: float) -> bool:
+        """Called in every cycle; None where none is permitted, which ends the one before."""
+        if trial is None or trial.number != self._number:
+            self._spent, self._number = max(self._spent, self._number), 0
+        if trial is None or trial.number <= self._spent:
+            return False
+        if not self._number:
+            self._number, self._began = trial.number, now
+        others = any(value for index, value in enumerate(throttles) if index != trial.motor)
+        slow = all(abs(value) <= TRIAL_LARGEST for value in throttles)  # false for NaN
+        return slow and not others and 0.0 <= now - self._began < TRIAL_LONGEST

@@ -96,6 +96,8 @@ TABLE: tuple[Parameter, ...] = (
               safety=True),
     Parameter("MOT_THR_MAX", 100, 30, 100, "%", "Largest throttle", safety=True),
     Parameter("MOT_STR_THR_MIX", 0.5, 0.2, 1, "", "Skid steering at its limit: more keeps steering, less throttle"),
+    Parameter("MOT_TEST_MAX", 30, 0, 30, "%", "Largest throttle of DO_MOTOR_TEST and ACTUATOR_TEST; 0: no tests over "
+              "the air", safety=True),
     Parameter("MOT_REV_DELAY", 0, 0, 1, "s", "Pause at zero before a motor reverses", safety=True),
     # Shape
     Parameter("SPEED_MAX", 1.5, 0.1, 30, "m/s", "Top speed"),

@@ -12,6 +12,7 @@ from link.services import timesync
 from link.services.command import CommandServer
 from link.services.ftp_files import MemoryFolder
 from vehicle import status
+from vehicle.actuator_test import ActuatorTest
 from vehicle.bandwidth import Bandwidth
 from vehicle.commands import Commands
 from vehicle.complaints import Complaints
@@ -77,6 +78,7 @@ class Rover:
             keeper=keeper,
         )
         self._commands = Commands(self._safety, self._control, self._texts)
+        self._actuator_test = ActuatorTest(params, self._safety, self._control, self._texts, self._drive.mixer.motors)
         self._orders = Orders(params, self._safety, self._control, self._navigator, self._texts)
         self._plans = Plans(
             params,
@@ -98,7 +100,7 @@ class Rover:
         )
         self._requests = Requests(self._telemetry, self._look, self._services.messages())
         handlers = self._commands.handlers() | self._requests.handlers()
-        handlers |= self._orders.handlers() | self._plans.handlers()
+        handlers |= self._orders.handlers() | self._plans.handlers() | self._actuator_test.handlers()
         self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
 
     @property
@@ -116,6 +118,7 @@ class Rover:
         if self._safety.state is State.OFF:
             return
         self._control.hear(received, now)
+        self._actuator_test.hear(received, now)
         if isinstance(received.message, m.RoverOperatorPresence):
             # It says what the demand behind it is worth and asks for nothing: the ramp's time is the demand's to use.
             self._control.operator(received, received.message, now)
@@ -194,7 +197,8 @@ class Rover:
     def _move(self, now: float, *, late: bool | None = None) -> None:
         """Outputs of this moment, and what they and the state make worth telling."""
         late = self._watch.is_late(now) if late is None else late
-        clearance = self._watch.clearance(now, self._navigator.demand, late=late)
+        trial = self._actuator_test.trial(now, late=late)
+        clearance = self._watch.clearance(now, self._navigator.demand, late=late, trial=trial)
         limited = self._safety.failsafes.action(now) >= Action.LIMIT
         self._drive.step(self._wanted(now), clearance, limited=limited, now=now)
         if clearance.permit is not Permit.DRIVE:

@@ -114,6 +114,11 @@ class Safety:
         self._texts.say(Severity.NOTICE, f"Disarmed: {why}", now)
         self.free_lost_owner(now)
 
+    def interrupt(self) -> None:
+        """Nothing goes on that was asked for while disarmed: a motor test is over."""
+        if not self.armed:
+            self._renew(cleared=False)
+
     def emergency_stop(self, who: str, now: float, *, terminate: bool = False) -> None:
         """Motors to zero at once, until somebody releases it. `terminate`: until a restart."""
         self.terminated |= terminate

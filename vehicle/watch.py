@@ -15,7 +15,7 @@ from vehicle.control import Control
 from vehicle.demand import Demand
 from vehicle.failsafe import RULES, Action, Taken
 from vehicle.modes import OFFERED
-from vehicle.outputs import Clearance
+from vehicle.outputs import Clearance, Trial
 from vehicle.params import Params
 from vehicle.safety import Safety
 from vehicle.texts import Texts
@@ -62,8 +62,8 @@ class Watch:
         if not safety.armed:
             safety.free_lost_owner(now)
 
-    def clearance(self, now: float, own: Demand | None, *, late: bool) -> Clearance:
-        """The facts about motion at this moment. `own` is what self-driving wants."""
+    def clearance(self, now: float, own: Demand | None, *, late: bool, trial: Trial | None = None) -> Clearance:
+        """The facts about motion at this moment. `own` is what self-driving wants, `trial` the motor test under way."""
         safety = self._safety
         stopped = safety.failsafes.action(now) >= Action.NEUTRAL
         if OFFERED[safety.mode].own:
@@ -74,6 +74,7 @@ class Watch:
                 neutral_seen=safety.cleared,
                 demand_age=None if own is None else now - own.time,
                 timeout=LATE,
+                trial=trial,
             )
         return Clearance(
             armed=safety.armed,
@@ -82,6 +83,7 @@ class Watch:
             neutral_seen=self._control.neutral_seen,
             demand_age=self._control.age(now),
             timeout=self._params["MAN_TIMEOUT"],
+            trial=trial,
         )
 
     def _update_failsafes(self, hazards: Mapping[Failsafe, float], now: float) -> None:

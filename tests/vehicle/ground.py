@@ -61,7 +61,7 @@ class Ground:
         self._talk()
 
         def armed() -> bool:
-            self._send(CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
+            self.say(CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
             return self.armed
 
         self.wait(armed, "the vehicle arms")
@@ -82,11 +82,12 @@ class Ground:
         return [text_of(message) for message in self.heard if isinstance(message, StatusText)]
 
     def _talk(self) -> None:
-        self._send(Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, 4, 3))
+        self.say(Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, 4, 3))
         if self.demand is not None:
-            self._send(manual_control(self.demand, 1))
+            self.say(manual_control(self.demand, 1))
 
-    def _send(self, message: Message) -> None:
+    def say(self, message: Message) -> None:
+        """Send it, once the vehicle has shown where it is."""
         if self._vehicle is None:
             return
         data = codec.frame(message.id, codec.encode_payload(message), self._sequence, 255, 190)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle.outputs import Clearance, Gate, Outputs, Permit
+from vehicle.outputs import TRIAL_LARGEST, TRIAL_LONGEST, Clearance, Gate, Outputs, Permit, Trial
 
 CLEARED = Clearance(armed=True, late=False, held=False, neutral_seen=True, demand_age=0.1, timeout=0.45)
 FALL_TIME = 0.4
@@ -84,6 +84,97 @@ def test_at_rest_without_permit_the_enable_line_is_off() -> None:
     gate = Gate(2)
     assert not gate.judge((0.0, 0.0), Permit.FALL, FALL_TIME, 0.0).enabled
     assert gate.judge((0.0, 0.0), Permit.DRIVE, FALL_TIME, 0.02).enabled
+
+
+TRIAL = Trial(1, 0, 0.2)
+
+
+def test_a_motor_test_is_permitted_while_disarmed_and_on_time() -> None:
+    asked = Clearance(trial=TRIAL)
+    assert asked.permit is Permit.TEST
+    assert replace(asked, late=True).permit is Permit.NONE
+    assert replace(asked, armed=True).permit is Permit.FALL
+    assert replace(CLEARED, trial=TRIAL).permit is Permit.DRIVE
+
+
+def test_a_motor_test_passes_one_motor_for_three_seconds_and_no_longer() -> None:
+    gate = Gate(2)
+    for cycle in range(150):
+        assert gate.judge((-0.3, 0.0), Permit.TEST, FALL_TIME, 10 + cycle * 0.02, TRIAL) == Outputs((-0.3, 0.0), True)
+    for cycle in range(150, 400):
+        assert gate.judge((-0.3, 0.0), Permit.TEST, FALL_TIME, 10 + cycle * 0.02, TRIAL) == ZERO
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [(0.301, 0.0), (-0.301, 0.0), (0.2, 0.2), (0.0, 0.2), (0.2, -1e-9), (math.nan, 0.0), (0.2, math.nan), (0.2,)],
+)
+def test_what_is_no_motor_test_is_refused(wrong: tuple[float, ...]) -> None:
+    gate = Gate(2)
+    assert gate.judge((0.2, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL).enabled
+    assert gate.judge(wrong, Permit.TEST, FALL_TIME, 0.02, TRIAL) == ZERO
+
+
+def test_without_a_request_there_is_no_motor_test() -> None:
+    assert Gate(2).judge((0.2, 0.0), Permit.TEST, FALL_TIME, 0.0) == ZERO
+
+
+@pytest.mark.parametrize("between", [Permit.NONE, Permit.FALL, Permit.DRIVE])
+def test_an_interrupted_motor_test_is_over_and_a_new_request_has_its_own_time(between: Permit) -> None:
+    gate = Gate(2)
+    assert gate.judge((0.2, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL).enabled
+    gate.judge((0.0, 0.0), between, FALL_TIME, 0.02, TRIAL)
+    assert gate.judge((0.2, 0.0), Permit.TEST, FALL_TIME, 0.04, TRIAL) == ZERO
+    assert gate.judge((0.2, 0.0), Permit.TEST, FALL_TIME, 0.06, Trial(2, 0, 0.2)).enabled
+    assert gate.judge((0.2, 0.0), Permit.TEST, FALL_TIME, 0.08, TRIAL) == ZERO  # an older one does not come back
+    assert gate.judge((0.2, 0.0), Permit.TEST, FALL_TIME, 0.10, Trial(2, 0, 0.2)) == ZERO
+
+
+def test_a_renewed_motor_test_goes_on() -> None:
+    gate = Gate(2)
+    for number in range(1, 11):
+        for now in (float(number), number + 0.9):
+            assert gate.judge((0.2, 0.0), Permit.TEST, FALL_TIME, now, Trial(number, 0, 0.2)).enabled
+    assert gate.judge((0.2, 0.0), Permit.TEST, FALL_TIME, 13.5, Trial(10, 0, 0.2)) == ZERO
+
+
+def test_nothing_ramps_down_from_a_motor_test() -> None:
+    gate = Gate(2)
+    gate.judge((0.3, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL)
+    assert gate.judge((0.2, 0.0), Permit.FALL, FALL_TIME, 0.02) == ZERO
+
+
+def test_a_clock_that_goes_back_ends_a_motor_test() -> None:
+    gate = Gate(2)
+    gate.judge((0.3, 0.0), Permit.TEST, FALL_TIME, 5.0, TRIAL)
+    assert gate.judge((0.3, 0.0), Permit.TEST, FALL_TIME, 4.0, TRIAL) == ZERO
+
+
+@given(
+    st.lists(
+        st.tuples(
+            st.one_of(st.none(), st.integers(1, 4)),
+            st.lists(st.sampled_from([0.0, 0.1, 0.3, -0.3, 0.31, math.nan]), min_size=2, max_size=2).map(tuple),
+            st.floats(0.001, 1.0),
+        )
+    )
+)
+def test_no_request_turns_a_motor_for_longer_or_faster_than_it_may(
+    moves: list[tuple[int | None, tuple[float, ...], float]],
+) -> None:
+    gate, now, first = Gate(2), 0.0, dict[int, float]()
+    for number, values, dt in moves:
+        now += dt
+        trial = None if number is None else Trial(number, 0, 0.2)
+        outputs = gate.judge(values, Permit.NONE if trial is None else Permit.TEST, FALL_TIME, now, trial)
+        if number is None:
+            assert outputs == ZERO
+            continue
+        first.setdefault(number, now)
+        if any(outputs.throttles):
+            assert abs(outputs.throttles[0]) <= TRIAL_LARGEST
+            assert outputs.throttles[1] == 0
+            assert now - first[number] < TRIAL_LONGEST
 
 
 @given(

@@ -1,4 +1,7 @@
-"""Whatever comes in whatever order: the rover moves only for a fresh demand of its driver, and nothing raises."""
+"""Whatever comes in whatever order: the rover moves only for a fresh demand of its driver, and nothing raises.
+
+Disarmed it turns one wheel at most, slowly, as long as somebody asked for, and not after any stop.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ from hypothesis import strategies as st
 from dialects import codec
 from dialects import messages as m
 from dialects.axes import Axes, manual_control
-from dialects.enums import Command
+from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.core import Peer, Received
 from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench
@@ -42,6 +45,8 @@ class Witness:
     permitted: float = -math.inf
     """When motion was last permitted."""
     before: tuple[float, ...] = (0.0, 0.0)
+    tested: float = -math.inf
+    """Until when a motor test may turn a wheel."""
 
     def demand(self, axes: Axes, system: int) -> None:
         if system != self.bench.rover._control.owner:
@@ -59,9 +64,9 @@ class Witness:
         if rover._control.owner != self.owner:
             self.owner, self.neutral_seen, self.last_demand = rover._control.owner, False, -math.inf
         if rover.state is not states.State.ARMED:
-            assert not any(rover.outputs.throttles)
-            assert not rover.outputs.enabled
-            self.neutral_seen, self.permitted = False, -math.inf
+            self._disarmed()
+            return
+        self.tested = -math.inf
         if self.neutral_seen and now - self.last_demand <= TIMEOUT:
             self.permitted = now
         if any(rover.outputs.throttles):
@@ -74,6 +79,15 @@ class Witness:
         if not OFFERED[rover._safety.mode].manual or rover._safety.failsafes.action(now) >= Action.NEUTRAL:
             assert all(abs(new) <= abs(old) for new, old in zip(rover.outputs.throttles, self.before, strict=True))
         self.before = rover.outputs.throttles
+
+    def _disarmed(self) -> None:
+        outputs = self.bench.rover.outputs
+        if turns := [value for value in outputs.throttles if value]:
+            assert self.bench.now < self.tested
+            assert len(turns) == 1
+            assert abs(turns[0]) <= 0.3
+        assert not outputs.enabled or self.bench.now < self.tested
+        self.neutral_seen, self.permitted, self.before = False, -math.inf, (0.0, 0.0)
 
     def _lapse(self) -> None:
         if self.moving and self.bench.now - self.last_demand > TIMEOUT:
@@ -102,7 +116,9 @@ STEPS = st.one_of(
     st.tuples(st.just("command"), COMMANDS, NUMBERS, NUMBERS, SYSTEMS),
     st.tuples(st.just("freeze"), st.sampled_from([0.05, 0.15, 0.3])),
     st.tuples(st.just("motor"), st.booleans()),
-)
+    st.tuples(st.just("test"), st.sampled_from([1, 2]), st.sampled_from([30.0, -10.0, 31.0, 100.0, math.nan]),
+              st.sampled_from([0.5, 1.0, 3.0, 4.0, -1.0]), SYSTEMS),
+)  # fmt: skip
 
 
 @dataclass
@@ -136,16 +152,29 @@ class Script:
         self.bench.set_mode(Mode.MANUAL, system)
 
     def command(self, command: int, first: float, second: float, system: int) -> None:
-        self.bench.command(command, first, second, system=system)
+        if self.bench.command(command, first, second, system=system) is Result.ACCEPTED and command in STOPS:
+            self.witness.tested = -math.inf if first == 0 else self.witness.tested
+
+    def test(self, motor: int, percent: float, seconds: float, system: int) -> None:
+        if self.bench.command(Command.DO_MOTOR_TEST, motor, 0, percent, seconds, system=system) is Result.ACCEPTED:
+            assert abs(percent) <= 30
+            self.witness.tested = self.bench.now + seconds
 
     def freeze(self, seconds: float) -> None:
         """A process that does not run cannot act; the first thing it does when it runs again must be right."""
         self.bench.freeze(seconds)
         self.bench.cycle()
+        if seconds > LATE:
+            self.witness.tested = -math.inf
 
     def motor(self, works: bool) -> None:
         rover = self.bench.rover
         rover.motor_repaired(self.bench.now) if works else rover.motor_failed("broken", self.bench.now)
+        if not works:
+            self.witness.tested = -math.inf
+
+
+STOPS = (Command.COMPONENT_ARM_DISARM, Command.DO_SET_SAFETY_SWITCH_STATE)
 
 
 def going() -> Script:
@@ -171,6 +200,17 @@ def test_the_witness_sees_motion() -> None:
     script = going()
     assert script.bench.turning
     assert script.witness.permitted == script.bench.now
+
+
+@settings(max_examples=120, deadline=None)
+@given(st.lists(STEPS, max_size=20))
+def test_disarmed_a_wheel_turns_for_a_motor_test_only(steps: list[Step]) -> None:
+    script = Script(bench := Bench(), Witness(bench))
+    script.test(1, 30.0, 3.0, DRIVER)
+    script.wait(0.3, None, DRIVER)
+    assert bench.turning
+    for step in steps:
+        script.play(step)
 
 
 FRAMES = st.tuples(

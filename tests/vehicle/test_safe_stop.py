@@ -11,7 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.vehicle.ground import Ground, drive, running
+from dialects.enums import Command
+from dialects.messages import CommandLong
+from tests.vehicle.ground import Ground, Vehicle, drive, running
 from tests.vehicle.motors.across_processes import NAME, FiledPca9685
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.fake_sysfs import FakeSysfs
@@ -84,12 +86,32 @@ def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
 
 @pytest.mark.e2e
 def test_after_a_kill_safe_stop_ends_what_turns(rig: Rig, tmp_path: Path) -> None:
+    kill_while_it_turns(rig, tmp_path, drive)
+
+
+@pytest.mark.e2e
+def test_after_a_kill_in_a_motor_test_safe_stop_ends_it(tmp_path: Path) -> None:
+    def test(ground: Ground, vehicle: Vehicle) -> None:
+        ground.wait(lambda: bool(ground.heard), "a first message of the vehicle")
+        ground.wait(lambda: asked(ground) or vehicle.turning(), "a wheel turns")
+        assert not ground.armed
+
+    def asked(ground: Ground) -> bool:
+        ground.say(CommandLong(1, 1, Command.DO_MOTOR_TEST, 0, 1, 0, 30, 3, 0, 0, 0))
+        return False
+
+    with ExitStack() as opened:
+        kill_while_it_turns(pca9685(opened, tmp_path), tmp_path, test)
+
+
+def kill_while_it_turns(rig: Rig, tmp_path: Path, turn: Callable[[Ground, Vehicle], None]) -> None:
+    """`turn` makes the wheels turn; what follows must end it."""
     file = tmp_path / "rover.toml"
     with Ground() as ground:
         file.write_text(f'endpoints = ["{ground.endpoint}"]\n[motors]\n{rig.motors}\n')
         with running(tmp_path, "--config", str(file)) as vehicle:
             assert "ready" in vehicle.ready()
-            drive(ground, vehicle)
+            turn(ground, vehicle)
             ground.wait(rig.turning, "the hardware turns the wheels")
             vehicle.process.kill()
             vehicle.process.wait(10)
