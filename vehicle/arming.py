@@ -24,6 +24,8 @@ class Facts:
     battery_low: bool = False
     battery_critical: bool = False
     battery_silent: bool = False
+    computer: str | None = None
+    """What is wrong with the Pi's supply or temperature now."""
     sticks_moving: bool = False
 
 
@@ -79,6 +81,10 @@ def _battery(facts: Facts) -> str | None:
     return "battery low" if facts.battery_low else None
 
 
+def _computer(facts: Facts) -> str | None:
+    return facts.computer if facts.params["FS_PI_ACT"] else None
+
+
 def _sticks(facts: Facts) -> str | None:
     return "throttle or steering not neutral" if facts.sticks_moving else None
 
@@ -91,6 +97,7 @@ CHECKS: tuple[Check, ...] = (
     Check(_saved_settings, hard=True),
     Check(_mode, hard=True),
     Check(_battery, hard=False),
+    Check(_computer, hard=False),
     Check(_sticks, hard=False),
 )
 

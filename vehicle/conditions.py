@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from dialects.enums import Failsafe
 from vehicle.battery import BatteryWatch
+from vehicle.computer_watch import ComputerWatch
 from vehicle.control import Control
 from vehicle.params import Params
 
@@ -24,6 +25,7 @@ class Scene:
     params: Params
     control: Control
     battery: BatteryWatch
+    computer: ComputerWatch
     driven: bool
     """The mode obeys the driver's demand."""
     latched: Failsafe
@@ -66,6 +68,10 @@ def _battery_critical(scene: Scene, now: float) -> float | None:
     return _while_armed(scene, scene.battery.critical_since(now))
 
 
+def _overheat(scene: Scene, now: float) -> float | None:
+    return _while_armed(scene, scene.computer.since()) if scene.params["FS_PI_ACT"] else None
+
+
 def _while_armed(scene: Scene, began: float | None) -> float | None:
     """Somebody who arms by force gets the whole countdown."""
     return None if began is None else max(began, scene.armed_at)
@@ -81,6 +87,7 @@ CONDITIONS: dict[Failsafe, Callable[[Scene, float], float | None]] = {
     Failsafe.OPERATOR: _operator,
     Failsafe.BATTERY_LOW: _battery_low,
     Failsafe.BATTERY_CRITICAL: _battery_critical,
+    Failsafe.OVERHEAT: _overheat,
 }
 """Condition -> since when it holds, or None; asked each cycle while armed."""
 

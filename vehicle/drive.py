@@ -73,11 +73,10 @@ class Drive:
 
     def _cap(self, throttle: float, limited: bool) -> float:
         largest = self._params["MOT_THR_MAX"] / 100
-        reason = Limit.SPEED
-        if limited and largest > HALF:
-            largest, reason = HALF, Limit.BATTERY
+        if limited:
+            largest = min(largest, HALF)
         if abs(throttle) > largest:
-            self.limits |= reason
+            self.limits |= Limit.SPEED
         return clamp(throttle, largest)
 
     def _ramps(self) -> SlewLimits:

@@ -78,6 +78,8 @@ RULES: dict[Failsafe, Rule] = {
         Step(0, Action.LIMIT), Step(0, Action.HOLD, only_if="FS_LOW_ACT"))),
     Failsafe.BATTERY_CRITICAL: Rule("battery critical", (
         Step(0, Action.HOLD), Step(10, Action.DISARM)), blocks_modes=True),
+    Failsafe.OVERHEAT: Rule("Pi too hot or its supply too weak", (
+        Step(0, Action.LIMIT), Step("FS_PI_TIMER", Action.HOLD, only_if="FS_PI_ACT", value=2))),
     Failsafe.GUIDED_LOSS: Rule("setpoints lost", (
         Step(0, Action.NEUTRAL), Step(4, Action.HOLD))),
     Failsafe.POSITION: Rule("position lost", (

@@ -15,7 +15,7 @@ from vehicle import status
 from vehicle.actuator_test import ActuatorTest
 from vehicle.bandwidth import Bandwidth
 from vehicle.commands import Commands
-from vehicle.complaints import Complaints
+from vehicle.complaints import Complaints, of_sensors
 from vehicle.control import Control
 from vehicle.demand import Demand
 from vehicle.drive import Drive
@@ -168,7 +168,8 @@ class Rover:
         self._readings = readings
         self._navigator.sense(readings, now)
         self._safety.battery.sense(readings.battery_voltage, now, expected="battery" in readings.configured)
-        self._complaints.sense(readings, now)
+        self._safety.computer.sense(readings.computer, now)
+        self._complaints.update(of_sensors(readings), now)
 
     def stop_input(self, reason: str | None, now: float) -> None:
         """The emergency stop's own input, each cycle: why it stops the rover, or None while it is closed."""

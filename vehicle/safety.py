@@ -11,6 +11,7 @@ from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
 from vehicle.arming import Facts, problems
 from vehicle.battery import BatteryWatch
+from vehicle.computer_watch import ComputerWatch
 from vehicle.control import Control
 from vehicle.failsafe import RULES, Failsafes
 from vehicle.modes import OFFERED, first_mode
@@ -47,6 +48,7 @@ class Safety:
         itself what went on before."""
         self.failsafes = Failsafes(params)
         self.battery = BatteryWatch(params)
+        self.computer = ComputerWatch(params, texts)
         self._params = params
         self._control = control
         self._texts = texts
@@ -80,6 +82,7 @@ class Safety:
             battery_low=self.battery.low_since(now) is not None,
             battery_critical=self.battery.critical_since(now) is not None,
             battery_silent=self.battery.silent(now),
+            computer=self.computer.trouble(),
             mode=self._unready(self.mode),
             sticks_moving=self._control.moving() and not self._control.stale(now),
         )

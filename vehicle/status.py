@@ -139,6 +139,7 @@ def limits(view: View) -> Limit:
         Limit.ESTOP: safety.state is states.State.ESTOP,
         Limit.FAILSAFE: safety.failsafes.action(view.now) >= Action.NEUTRAL or bool(safety.failsafes.latched),
         Limit.FENCE: bool(safety.failsafes.active & Failsafe.FENCE),
+        Limit.BATTERY: bool(safety.failsafes.active & (Failsafe.BATTERY_LOW | Failsafe.BATTERY_CRITICAL)),
         Limit.STALE: control.stale(view.now),
         Limit.NEUTRAL_FIRST: safety.armed and not control.neutral_seen,
     }

@@ -102,6 +102,7 @@ class Watch:
             params=self._params,
             control=self._control,
             battery=safety.battery,
+            computer=safety.computer,
             driven=OFFERED[safety.mode].manual,
             latched=safety.failsafes.latched,
             armed_at=safety.armed_at,

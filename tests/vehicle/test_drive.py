@@ -68,7 +68,7 @@ def test_a_limited_throttle_is_told() -> None:
     for start, throttle, limited in ((0.0, 1.0, False), (2.0, 1.0, True), (4.0, 0.3, True)):
         throttles = run(drive, demand(throttle), limited=limited, start=start).throttles
         found.append((round(throttles[0], 2), drive.limits))
-    assert found == [(0.7, Limit.SPEED), (0.5, Limit.BATTERY), (0.28, Limit(0))]
+    assert found == [(0.7, Limit.SPEED), (0.5, Limit.SPEED), (0.28, Limit(0))]
 
 
 def test_expo_is_softer_around_neutral() -> None:
