@@ -17,6 +17,7 @@ from tests.vehicle.ground import Ground, Vehicle, drive, running
 from tests.vehicle.motors.across_processes import NAME, FiledPca9685
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.fake_sysfs import FakeSysfs
+from tests.vehicle.motors.filed_pins import PINS, installed
 from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
 
@@ -42,6 +43,8 @@ class Rig:
 
     motors: str
     turning: Callable[[], bool]
+    silent: Callable[[], bool] = lambda: True
+    """Nothing beside the wheels is left on either."""
 
 
 def roboclaw(opened: ExitStack, folder: Path) -> Rig:
@@ -70,12 +73,47 @@ def sysfs(opened: ExitStack, folder: Path) -> Rig:
     return Rig(words, lambda: there.exists() and any(_away_from_neutral(tree.pulse(number)) for number in (0, 1)))
 
 
+def on_pins(motors: str, inputs: set[int], enable: int | None = None) -> Callable[[ExitStack, Path], Rig]:
+    """A bridge's `inputs`, of which any high one turns a wheel, and what has to be high too."""
+
+    def rig(opened: ExitStack, folder: Path) -> Rig:
+        header = opened.enter_context(installed(folder))
+
+        def turning() -> bool:
+            high = header.driven_high()
+            return bool(inputs & high) and (enable is None or enable in high)
+
+        return Rig(motors, turning, lambda: not any(header.level(number) for number in range(PINS)))
+
+    return rig
+
+
 def _away_from_neutral(pulse: float | None) -> bool:
     """Farther than a step of the chip."""
     return pulse is not None and abs(pulse - 1.5e-3) > 5e-6
 
 
-RIGS = {"roboclaw": roboclaw, "sabertooth": sabertooth, "pca9685": pca9685, "sysfs-pwm": sysfs}
+TWO_INPUTS = """driver = "gpio"
+bridges = [
+    { wiring = "two-inputs", forward = 5, backward = 6 }, { wiring = "two-inputs", forward = 19, backward = 26 }
+]"""
+PHASE_ENABLE = """driver = "gpio"
+bridges = [
+    { wiring = "phase-enable", enable = 13, phase = 16 }, { wiring = "phase-enable", enable = 12, phase = 20 }
+]"""
+ARTICLE_CAR = 'driver = "article-car"'
+BESIDE = "safety = { enable_pin = 22, heartbeat_pin = 27 }"
+
+RIGS = {
+    "roboclaw": roboclaw,
+    "sabertooth": sabertooth,
+    "pca9685": pca9685,
+    "sysfs-pwm": sysfs,
+    "gpio, two inputs": on_pins(TWO_INPUTS, {5, 6, 19, 26}),
+    "gpio, phase and enable": on_pins(PHASE_ENABLE, {13, 12}),
+    "article-car": on_pins(ARTICLE_CAR, {10, 9, 8, 7}),
+    "article-car with safety pins": on_pins(f"{ARTICLE_CAR}\n{BESIDE}", {10, 9, 8, 7}, enable=22),
+}
 
 
 @pytest.fixture(params=RIGS)
@@ -121,6 +159,7 @@ def kill_while_it_turns(rig: Rig, tmp_path: Path, turn: Callable[[Ground, Vehicl
     assert ended.returncode == 0
     assert ended.stderr.endswith("motors neutral and without power\n")
     assert not rig.turning()
+    assert rig.silent()
 
 
 def test_a_mistake_elsewhere_in_the_file_does_not_keep_motors_turning(tmp_path: Path) -> None:
