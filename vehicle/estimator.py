@@ -4,7 +4,8 @@ Fast sensors carry the estimate from cycle to cycle, slow ones pull it back to t
 
     gyro - bias --integrate--> yaw <--HEADING_TIME-- compass + offset; the pull also teaches the gyro's bias
     GPS course while moving --OFFSET_TIME--> offset of the compass (mounting, declination, iron in the chassis)
-    wheels along yaw --integrate--> position <--POSITION_TIME-- GPS; one fix far off is left out, many are believed
+    GPS speed while moving --SCALE_TIME--> scale of the wheels (tyres, and settings that are not quite right)
+    wheels * scale along yaw --integrate--> position <--POSITION_TIME-- GPS; one fix far off is left out, many are not
 
 Each pull begins as a plain mean (gain 1/n) and settles at its time constant, so that the first seconds are not lost.
 Receivers of this class wander by decimetres over half a minute: POSITION_TIME hides the wander as far as the drift of
@@ -18,6 +19,7 @@ from typing import NamedTuple
 
 from vehicle.place import Origin, Point, wrap
 from vehicle.readings import Readings
+from vehicle.reckoning import Gain, Reckoning
 
 HEADING_TIME = 3.0
 """s; a magnetometer's noise is gone by then, a gyro's bias of 1 deg/s has made 3 degrees."""
@@ -25,14 +27,24 @@ BIAS_TIME = 20.0
 """s until the gyro's bias is learned."""
 BIAS_MAX = 0.1
 """rad/s: a larger one is no bias but a broken gyro."""
-OFFSET_TIME = 15.0
-"""s of straight driving until the compass's offset is learned."""
-POSITION_TIME = 40.0
-"""s; longer hides more of the wander, and shows more of what 1 degree of heading and 1 % of wheel make."""
+OFFSET_TIME = 60.0
+"""s of straight driving until the compass's offset is learned; one course is good to 4 degrees at 0.8 m/s."""
+SCALE_TIME = 120.0
+"""s of straight driving until the scale of the wheels is learned."""
+SCALE_CREDIT = 25
+"""Courses that the wheels' own word is worth: 5 s, or the first one would change it by 7 %."""
+SCALE_MAX = 0.2
+"""Wheels that are off by more slip, or are set wrongly: SPEED_MAX is for that."""
+POSITION_TIME = 100.0
+"""s; longer hides more of the wander, and shows more of what wheels and heading still have wrong."""
 COURSE_SPEED = 0.4
 """m/s from which on the GPS knows a course: its velocity is good to 0.05 m/s."""
 COURSE_RATE = 0.3
 """rad/s of turn up to which course and heading are taken for the same."""
+WHEELLESS_TIME = 20.0
+"""s; the same without wheels: a speed that comes from fixes drifts away sooner."""
+FIX_PERIOD = 0.2
+"""s between two fixes of usual receivers."""
 GPS_LOST = 3.0
 """s without a fix (vehicle.md, position lost)."""
 GPS_SAME = 1.0
@@ -80,18 +92,6 @@ class Estimate(NamedTuple):
         return None if self.origin is None else self.origin.globe(self.place)
 
 
-class _Gain:
-    """How much of an error is taken away by the n-th of measurements that come each `dt`."""
-
-    def __init__(self, time: float) -> None:
-        self._time = time
-        self._count = 0
-
-    def next(self, dt: float) -> float:
-        self._count += 1
-        return max(1.0 / self._count, dt / (self._time + dt))
-
-
 class Estimator:
     """The filter. `sense` each cycle."""
 
@@ -100,10 +100,12 @@ class Estimator:
         self._at: float | None = None
         self._yaw: float | None = None
         self._bias = self._offset = 0.0
-        self._offset_gain = _Gain(OFFSET_TIME)
+        self._scale = 1.0
+        self._offset_gain = Gain(OFFSET_TIME)
+        self._scale_gain = Gain(SCALE_TIME, SCALE_CREDIT)
         self._speed: float | None = None
-        self._north = self._east = 0.0
-        self._place_gain = _Gain(POSITION_TIME)
+        self._reckoning = Reckoning()
+        self._place_gain = Gain(POSITION_TIME)
         self._origin: Origin | None = None
         self._fix: tuple[float | None, ...] = ()
         self._fix_at = -math.inf
@@ -118,7 +120,7 @@ class Estimator:
         self._turn(rate, _sane(readings.yaw, 1e6), dt)
         wheels = _sane(readings.speed, 50.0)
         if wheels is not None:
-            self._speed = wheels
+            self._speed = wheels * self._scale
         self._move(dt, wheels is not None)
         fix = self._new_fix(readings, now)
         if fix is not None:
@@ -143,8 +145,7 @@ class Estimator:
         if self._yaw is None or self._speed is None:
             return
         way = self._speed * dt
-        self._north += way * math.cos(self._yaw)
-        self._east += way * math.sin(self._yaw)
+        self._reckoning.step(way, self._yaw)
         self._drift += DRIFT * abs(way) if wheels else BLIND_DRIFT * dt
 
     def _new_fix(self, readings: Readings, now: float) -> tuple[float, float] | None:
@@ -167,14 +168,14 @@ class Estimator:
         dt = min(GPS_SAME, now - self._fix_at)
         self._fix_at = now
         if self._origin is None:  # what was driven before the first fix stays as it is
-            self._origin = Origin(*Origin(*fix).globe(Point(-self._north, -self._east)))
+            self._origin = Origin(*Origin(*fix).globe(Point(-self._reckoning.north, -self._reckoning.east)))
         error = self._origin.point(*fix)
-        north_off, east_off = error.north - self._north, error.east - self._east
+        north_off, east_off = error.north - self._reckoning.north, error.east - self._reckoning.east
         if self._is_outlier(math.hypot(north_off, east_off)):
             return
+        self._place_gain.time = POSITION_TIME if wheels else WHEELLESS_TIME
         gain = self._place_gain.next(dt)
-        self._north += gain * north_off
-        self._east += gain * east_off
+        self._reckoning.pull(north_off, east_off, gain)
         self._drift *= 1.0 - gain
 
     def _is_outlier(self, distance: float) -> bool:
@@ -184,27 +185,39 @@ class Estimator:
         self._outliers += 1
         if self._outliers < OUTLIERS:
             return True
-        self._place_gain = _Gain(POSITION_TIME)  # begins with a gain of 1: the fix is believed
+        self._place_gain = Gain(POSITION_TIME)  # begins with a gain of 1: the fix is believed
         self._outliers = 0
         return False
 
     def _take_velocity(self, north: float, east: float, rate: float | None, compass: bool, wheels: bool) -> None:
         speed = math.hypot(north, east)
+        along = speed if self._yaw is None else north * math.cos(self._yaw) + east * math.sin(self._yaw)
         if not wheels:
-            along = speed if self._yaw is None else north * math.cos(self._yaw) + east * math.sin(self._yaw)
             self._speed = along if self._speed is None else (self._speed + along) / 2
         if speed < COURSE_SPEED or abs(rate or 0.0) > COURSE_RATE:
             return
+        if wheels and self._yaw is not None:
+            self._learn_scale(along)
         course = math.atan2(east, north) + (math.pi if (self._speed or 0.0) < 0.0 else 0.0)
         if self._yaw is None:
             self._yaw = wrap(course)
             return
-        change = wrap(course - self._yaw) * self._offset_gain.next(0.2)
+        change = wrap(course - self._yaw) * self._offset_gain.next(FIX_PERIOD)
         if compass:
             self._offset = wrap(self._offset + change)
+            self._reckoning.turn(change)
         else:
             self._learn_bias(-change / BIAS_TIME)
         self._yaw = wrap(self._yaw + change)
+
+    def _learn_scale(self, along: float) -> None:
+        speed = self._speed or 0.0
+        if abs(speed) < COURSE_SPEED:
+            return
+        error = (along - speed) / speed * self._scale * self._scale_gain.next(FIX_PERIOD)
+        scale = max(1.0 - SCALE_MAX, min(1.0 + SCALE_MAX, self._scale + error))
+        self._reckoning.stretch(scale / self._scale)
+        self._scale = scale
 
     def _learn_bias(self, change: float) -> None:
         self._bias = max(-BIAS_MAX, min(BIAS_MAX, self._bias + change))
@@ -218,7 +231,7 @@ class Estimator:
             yaw=self._yaw,
             yaw_rate=None if rate is None else rate - self._bias,
             speed=self._speed,
-            place=Point(self._north, self._east),
+            place=self._reckoning.place,
             moving_place=self._origin is not None or (self._yaw is not None and wheels is not None),
             origin=self._origin,
             accuracy=accuracy,

@@ -89,6 +89,27 @@ def test_the_bias_of_the_gyro_is_learned() -> None:
     assert ride.estimate.yaw_rate == pytest.approx(0.0, abs=0.03)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_wheels_that_are_not_what_the_settings_say_are_learned(seed: int) -> None:
+    ride = Ride(seed, Noise(wheel_scale=0.08))
+    ride.throttles = (0.6, 0.6)
+    ride.run(90.0)
+    assert ride.estimate.speed == pytest.approx(ride.body.motion.speed, abs=0.07)  # 0.02 of it is a reading's own noise
+    assert max(ride.errors) < 1.5  # wheels that are 8 % off make 6 m of 80
+
+
+def test_wheels_that_slip_on_the_spot_teach_nothing() -> None:
+    slipping, steady = Estimator(), Estimator()
+    for cycle in range(3000):
+        for estimator, speed in ((slipping, 1.0), (steady, 0.0)):
+            estimator.sense(
+                Readings(yaw=0.0, speed=speed, latitude=50.0, longitude=8.0, gps_fix=3, velocity_north=0.0,
+                         velocity_east=0.0), cycle / 50
+            )  # fmt: skip
+    assert slipping.estimate.speed == 1.0
+    assert steady.estimate.speed == 0.0
+
+
 @pytest.mark.parametrize(
     "missing", [{"yaw": None}, {"yaw_rate": None}, {"speed": None}, {"yaw": None, "speed": None}], ids=str
 )

@@ -80,7 +80,7 @@ def _along(leg: Leg, place: Point) -> bool:
 CORNERS = [Point(0, 0), Point(40, 0), Point(40, 25), Point(10, 30), Point(0, 0)]
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", range(8))
 def test_ten_minutes_stay_within_half_a_metre_of_the_lines(seed: int) -> None:
     rounds = [way(place.north, place.east) for place in CORNERS[1:]]
     field = Field(seed)
@@ -93,7 +93,7 @@ def test_ten_minutes_stay_within_half_a_metre_of_the_lines(seed: int) -> None:
     finish(field, 1200.0)
     assert field.now - began > 580.0
     assert said(field, "AUTO: mission complete: HOLD")
-    assert beside(field, CORNERS) < 0.5
+    assert beside(field, CORNERS) < 0.45
     assert [each.seq for each in field.all(m.MissionItemReached)] == [0, 1, 2, 3] * 4
 
 
