@@ -265,7 +265,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--system": {"metavar": "N", "type": _system, "help": "MAVLink system id, 1 to 255 (default 1)"},
     "--param": {"metavar": "NAME=VALUE", "type": _param, "action": "append", "default": [],
                 "help": "set a parameter; repeatable"},
-    "--state": {"metavar": "FOLDER", "help": "keep parameters that are set there; a simulation keeps none otherwise"},
+    "--state": {"metavar": "FOLDER", "help": "keep parameters and plans there; a simulation keeps none otherwise"},
     "--motor-log": {"metavar": "FILE", "help": "append each change of the motors: CLOCK_MONOTONIC ns, throttles"},
     "--log-file": {"metavar": "FILE", "help": "append the log with times and tracebacks; stderr has the brief one"},
     "--verbose": {"action": "store_true", "help": "log more"},

@@ -21,6 +21,8 @@ class Facts:
     fault: str | None = None
     mode: str | None = None
     """Why the mode cannot work now."""
+    fence: str | None = None
+    """Why the fence, which counts, is none."""
     battery_low: bool = False
     battery_critical: bool = False
     battery_silent: bool = False
@@ -73,6 +75,10 @@ def _mode(facts: Facts) -> str | None:
     return f"the mode cannot work: {facts.mode}" if facts.mode else None
 
 
+def _fence(facts: Facts) -> str | None:
+    return facts.fence
+
+
 def _battery(facts: Facts) -> str | None:
     if facts.battery_silent:
         return "battery sensor is silent"
@@ -96,6 +102,7 @@ CHECKS: tuple[Check, ...] = (
     Check(_settings, hard=True),
     Check(_saved_settings, hard=True),
     Check(_mode, hard=True),
+    Check(_fence, hard=True),
     Check(_battery, hard=False),
     Check(_computer, hard=False),
     Check(_sticks, hard=False),

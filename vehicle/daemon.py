@@ -28,6 +28,7 @@ from vehicle.motors.simulated import SimulatedMotors
 from vehicle.notify import Notifier
 from vehicle.param_store import ParamStore
 from vehicle.params import ParamError, Params
+from vehicle.plan_store import PlanStore
 from vehicle.rover import Rover
 from vehicle.sensors import NoSensors, Sensors
 from vehicle.sensors.suite import SensorSettings, open_sensors
@@ -117,9 +118,14 @@ async def _serve(settings: Settings) -> int:
         params = _params(settings, keeper)
         if keeper is not None:
             opened.callback(keeper.close)
+        plans = None if settings.state is None else PlanStore(settings.state)
+        if plans is not None:
+            opened.callback(plans.close)
+            for damage in plans.damage.values():
+                log.warning("%s", damage)
         notifier = Notifier()
         opened.callback(notifier.close)
-        rover = Rover(params, now=now, wall_clock=time.time(), keeper=keeper)
+        rover = Rover(params, now=now, wall_clock=time.time(), keeper=keeper, plan_keeper=plans)
         machine = _build(settings, params, rover, opened, notifier.alive)
         try:
             return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]), notifier)

@@ -37,6 +37,8 @@ class Fence:
     """The fence in force. The rover must be inside every inclusion and outside every exclusion, as in ArduPilot."""
 
     def __init__(self, params: Params) -> None:
+        self.damage: str | None = None
+        """Why the kept fence is lost: where it was nobody knows, so that it is no fence that counts."""
         self._params = params
         self._items: Items = ()
         self._areas: list[Area] = []
@@ -47,9 +49,14 @@ class Fence:
         """It counts."""
         return bool(self._params["FENCE_ENABLE"])
 
-    def load(self, items: Items) -> None:
-        """Another plan; it has passed the rules of plan.py."""
-        self._items = items
+    @property
+    def missing(self) -> str | None:
+        """Why nobody may drive inside it, though it counts."""
+        return f"{self.damage}, upload it again or set FENCE_ENABLE 0" if self.enabled and self.damage else None
+
+    def load(self, items: Items, damage: str | None = None) -> None:
+        """Another plan; it has passed the rules of plan.py. `damage`: why the kept one is lost."""
+        self._items, self.damage = items, damage
         self._origin = None
 
     def breach(self, place: Point, origin: Origin | None, home: Point | None) -> float:

@@ -248,6 +248,7 @@ class Navigator:
             self.guide.reverse = bool(first)
         elif item.command == Command.DO_FENCE_ENABLE and first:
             self._params.set("FENCE_ENABLE", 1.0)
+            self.ended = self.fence.missing
 
     def _home_point(self) -> Point | None:
         return None if self.home is None else Point(self.home.north, self.home.east)

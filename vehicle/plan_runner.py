@@ -63,15 +63,21 @@ class Mission:
         self._held_since: float | None = None
         self._jumped: dict[int, int] = {}
         self._ending: str | None = None
+        self._damage: str | None = None
 
     @property
     def goal(self) -> Point | None:
         """Where it goes now."""
         return self._task.goal if self._task else None
 
-    def load(self, items: Items) -> None:
-        """Another mission, from its first item."""
-        self.items = items
+    @property
+    def missing(self) -> str:
+        """Why there is none."""
+        return self._damage or "there is no mission"
+
+    def load(self, items: Items, damage: str | None = None) -> None:
+        """Another mission, from its first item. `damage`: why the kept one is lost."""
+        self.items, self._damage = items, damage
         self.select(0)
 
     def select(self, index: int) -> None:
@@ -84,7 +90,7 @@ class Mission:
 
     def unready(self, estimate: Estimate) -> str | None:
         """Why it cannot begin."""
-        return None if self.items else "there is no mission"
+        return None if self.items else self.missing
 
     def begin(self, estimate: Estimate, now: float) -> None:
         """Chosen: go on with the item that was under way, on a new line from here. A complete one begins anew."""

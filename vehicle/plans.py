@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
 from dialects import messages as m
 from dialects.enums import Command, MissionResult, MissionType, Result, Severity
@@ -23,8 +24,26 @@ from vehicle.safety import Safety
 from vehicle.texts import Texts
 
 SERVOS = 16
+REMIND = 30.0
+"""s between two texts that a kept plan is lost, as ArduPilot repeats what forbids to arm."""
 THIS_ITEM = -1
 """Sequence of DO_SET_MISSION_CURRENT that leaves the item as it is."""
+
+
+class PlanKeeper(Protocol):
+    """Remembers plans for the next start."""
+
+    plans: dict[MissionType, Items]
+    """What was kept."""
+    damage: dict[MissionType, str]
+    """Why a kept plan could not be had."""
+
+    @property
+    def problem(self) -> str | None:
+        """Why plans are not kept, one line."""
+
+    def keep(self, kind: MissionType, items: Items) -> None:
+        """Remember it, soon. Never blocks and never raises."""
 
 
 class Plans:
@@ -38,9 +57,14 @@ class Plans:
         navigator: Navigator,
         texts: Texts,
         servos: tuple[int, ...],
+        *,
         pacer: Pacer,
+        keeper: PlanKeeper | None = None,
     ) -> None:
-        """`servos` are the outputs that motors are at; `pacer` says how fast plans are told."""
+        """`servos` are the outputs that motors are at; `pacer` says how fast plans are told.
+
+        Without a `keeper` they end with the program.
+        """
         self._params = params
         self._safety = safety
         self._control = control
@@ -48,8 +72,13 @@ class Plans:
         self._navigator = navigator
         self._texts = texts
         self._servos = servos
+        self._keeper = keeper
+        self._damage: dict[MissionType, str] = {}
+        self._remind_due = -math.inf
         self._outbox: list[Outgoing] = []
         self._server = MissionServer(self, RULES, system=control.system, component=1, pacer=pacer)
+        if keeper is not None:
+            self._restore(keeper)
 
     def handlers(self) -> dict[int, Handler]:
         """The table for link.services.command.CommandServer."""
@@ -72,6 +101,7 @@ class Plans:
 
     def tick(self, now: float) -> list[Outgoing]:
         """What uploads need, and what the mission has reached."""
+        self._remind(now)
         mission, outgoing = self._navigator.mission, self._server.tick(now) + self._outbox
         self._outbox.clear()
         if mission.reached:
@@ -91,12 +121,11 @@ class Plans:
         return MissionResult.DENIED
 
     def changed(self, kind: MissionType, items: Items) -> None:
-        """Put it in force."""
-        self._navigator.plan_ids = PlanIds(**{each.name.lower(): self._server.plan_id(each) for each in RULES})
-        if kind is MissionType.MISSION:
-            self._navigator.mission.load(items)
-        elif kind is MissionType.FENCE:
-            self._navigator.fence.load(items)
+        """Put it in force, and keep it."""
+        self._damage.pop(kind, None)
+        self._use(kind, items)
+        if self._keeper is not None:
+            self._keeper.keep(kind, items)
 
     def select(self, sequence: int, received: Received, now: float) -> None:
         """MISSION_SET_CURRENT."""
@@ -110,6 +139,37 @@ class Plans:
     def current(self) -> m.MissionCurrent:
         """MISSION_CURRENT."""
         return self._navigator.mission_current(self._safety.mode)
+
+    # What was kept
+
+    def _restore(self, keeper: PlanKeeper) -> None:
+        for kind in RULES:
+            damage = keeper.damage.get(kind)
+            if damage is None and self._server.load(kind, keeper.plans.get(kind, ())) is not MissionResult.ACCEPTED:
+                damage = f"saved {kind.name.lower()} is not one for this version"
+            if damage is not None:
+                self._damage[kind] = damage
+            self._use(kind, self._server.plan(kind))
+
+    def _use(self, kind: MissionType, items: Items) -> None:
+        navigator = self._navigator
+        navigator.plan_ids = PlanIds(**{each.name.lower(): self._server.plan_id(each) for each in RULES})
+        if kind is MissionType.MISSION:
+            navigator.mission.load(items, self._damage.get(kind))
+        elif kind is MissionType.FENCE:
+            navigator.fence.load(items, self._damage.get(kind))
+
+    def _remind(self, now: float) -> None:
+        """Nobody may have listened when the vehicle started."""
+        if self._keeper is None or now < self._remind_due:
+            return
+        self._remind_due = now + REMIND
+        if not self._safety.armed:
+            for damage in self._damage.values():
+                self._texts.say(Severity.WARNING, f"{damage[0].upper()}{damage[1:]}: upload it again", now)
+        if self._keeper.problem:
+            text = f"Plans are not saved: {self._keeper.problem}"
+            self._texts.say_once(f"plans {self._keeper.problem}", Severity.WARNING, text, now)
 
     def _in_use(self, kind: MissionType) -> str | None:
         if not self._safety.armed:
@@ -132,7 +192,7 @@ class Plans:
         first = request.params[0]
         mission = self._navigator.mission
         if not mission.items:
-            return self._asking.refuse(request, "there is no mission", now)
+            return self._asking.refuse(request, mission.missing, now)
         if not self._safety.armed:
             return self._asking.refuse(request, "not armed", now)
         last = request.params[1]
@@ -158,6 +218,8 @@ class Plans:
             return Result.UNSUPPORTED
         if wish not in (0, 1):
             return Result.DENIED
+        if wish == 1 and self._navigator.fence.damage:
+            return self._asking.refuse(request, self._navigator.fence.damage, now)
         if wish == 0 and self._safety.armed and self._navigator.fence.enabled:
             return self._asking.refuse(request, "disarm first", now)
         self._params.set("FENCE_ENABLE", wish)

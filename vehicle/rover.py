@@ -27,7 +27,7 @@ from vehicle.orders import Orders
 from vehicle.outputs import Outputs, Permit
 from vehicle.param_service import Keeper, ParamService
 from vehicle.params import Params
-from vehicle.plans import Plans
+from vehicle.plans import PlanKeeper, Plans
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.requests import Requests
 from vehicle.safety import Safety
@@ -47,11 +47,17 @@ class Rover:
     """A `link.core.Core`. Drive it with `receive` as messages come, `sense` with readings, `tick` at 50 Hz."""
 
     def __init__(
-        self, params: Params, *, now: float, wall_clock: float | None = None, keeper: Keeper | None = None
+        self,
+        params: Params,
+        *,
+        now: float,
+        wall_clock: float | None = None,
+        keeper: Keeper | None = None,
+        plan_keeper: PlanKeeper | None = None,
     ) -> None:
         """`now` is the monotonic time of boot; `wall_clock` the Unix time at `now`, None where it is not known.
 
-        `keeper` remembers parameters that are set; without one they end with the program.
+        `keeper` remembers parameters that are set, `plan_keeper` plans; without them they end with the program.
         """
         self._params = params
         self._boot = now
@@ -64,7 +70,14 @@ class Rover:
         self._control = Control(params, self._texts, system=self._system, boot=now)
         self._drive = Drive(params, now)
         self._navigator = Navigator(params, self._drive.kind)
-        self._safety = Safety(params, self._control, self._texts, now, self._navigator.unready)
+        self._safety = Safety(
+            params,
+            self._control,
+            self._texts,
+            now,
+            self._navigator.unready,
+            unfenced=lambda: self._navigator.fence.missing,
+        )
         self._watch = Watch(params, self._safety, self._control, self._texts, now)
         self._telemetry = Telemetry(now)
         self._bandwidth = Bandwidth()
@@ -87,7 +100,8 @@ class Rover:
             self._navigator,
             self._texts,
             self._drive.mixer.servos,
-            self._bandwidth.pacer,
+            pacer=self._bandwidth.pacer,
+            keeper=plan_keeper,
         )
         self._services = Services(
             params,

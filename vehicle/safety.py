@@ -30,8 +30,9 @@ class Safety:
         texts: Texts,
         now: float,
         unready: Callable[[Mode], str | None] = lambda mode: None,
+        unfenced: Callable[[], str | None] = lambda: None,
     ) -> None:
-        """`unready` says why a mode cannot work now, or None."""
+        """`unready` says why a mode cannot work now, or None; `unfenced`, why a fence that counts is none."""
         self.state = State.BOOT
         self.mode = self.intended = first_mode(params["INITIAL_MODE"])
         self.terminated = False
@@ -53,6 +54,7 @@ class Safety:
         self._control = control
         self._texts = texts
         self._unready = unready
+        self._unfenced = unfenced
         self.armed_at = now
         """When it was armed last."""
 
@@ -84,6 +86,7 @@ class Safety:
             battery_silent=self.battery.silent(now),
             computer=self.computer.trouble(),
             mode=self._unready(self.mode),
+            fence=self._unfenced(),
             sticks_moving=self._control.moving() and not self._control.stale(now),
         )
         return problems(facts, force=force)

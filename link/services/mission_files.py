@@ -2,7 +2,8 @@
 for MAVLink FTP whose files are the plans in force.
 
 A line has, with tabs between: number, current, frame, command, parameters 1..4, latitude, longitude, altitude,
-autocontinue. ArduPilot's tools put home into line 0; here every line is an item, as on the wire.
+autocontinue. ArduPilot's tools put home into line 0; here every line is an item, as on the wire. A line that begins
+with # is a comment.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ def read(data: bytes) -> Items:
     header, *lines = text.splitlines() or [""]
     if header.strip() != HEADER:
         raise PlanFileError(f"line 1 is not {HEADER!r}")
-    return tuple(_item(number, line) for number, line in enumerate(lines, start=2) if line.strip())
+    spoken = ((number, line) for number, line in enumerate(lines, start=2) if line.strip() and line[0] != "#")
+    return tuple(_item(number, line) for number, line in spoken)
 
 
 def _line(number: int, item: MissionItem) -> str:

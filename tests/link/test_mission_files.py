@@ -63,6 +63,12 @@ def test_values_are_those_that_the_wire_can_carry() -> None:
     assert item.x == -(2**31)
 
 
+def test_comments_are_passed_over() -> None:
+    assert plain(read(b"QGC WPL 110\n# made by hand\n" + write([waypoint()]).partition(b"\n")[2])) == plain(
+        (waypoint(),)
+    )
+
+
 @pytest.mark.parametrize(
     ("data", "reason"),
     [

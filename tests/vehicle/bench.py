@@ -12,6 +12,7 @@ from dialects.enums import Autopilot, Command, Result, Type
 from dialects.modes import Mode
 from link.core import Peer, Received
 from vehicle.params import Params
+from vehicle.plans import PlanKeeper
 from vehicle.readings import Computer, Readings
 from vehicle.rover import Rover
 from vehicle.states import State
@@ -35,9 +36,12 @@ EVERYTHING = Readings(
 class Bench:
     """`now` moves only in `wait`, a cycle of 20 ms at a time; every message the rover sends must be encodable."""
 
+    plans: PlanKeeper | None = None
+    """What keeps its plans; a class of its own may have one."""
+
     def __init__(self, now: float = 100.0, **params: float) -> None:
         self.now = now
-        self.rover = Rover(Params(params), now=now)
+        self.rover = Rover(Params(params), now=now, plan_keeper=self.plans)
         self.readings = Readings()
         self.sent: list[m.Message] = []
         self.peers: list[Peer | None] = []

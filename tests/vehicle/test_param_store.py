@@ -16,9 +16,10 @@ from hypothesis import strategies as st
 
 from vehicle import daemon
 from vehicle.daemon import Settings
-from vehicle.param_file import DamagedError, dump, parsed
+from vehicle.param_file import dump, parsed
 from vehicle.param_store import ParamStore
 from vehicle.params import PARAMETERS
+from vehicle.sealed import DamagedError
 
 VALUES = {"MAN_TIMEOUT": 0.4, "SPEED_MAX": 2.0}
 

@@ -1,0 +1,99 @@
+"""The folder that keeps things over a restart: written by a thread, whole or not at all; the loop never waits.
+
+A new file is written beside the old one, brought to the disk, and takes its name in one step: a power cut leaves the
+old file or the new one. A file that is damaged nevertheless is kept aside, and counts until a good one is written.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from vehicle.sealed import DamagedError
+
+CLOSING = 2.0
+"""s that the end of the program waits for the last write; a disk that takes longer is broken."""
+
+T = TypeVar("T")
+_Wish = tuple[str, Callable[[], bytes]]
+
+
+def read(path: Path, parse: Callable[[bytes], T]) -> T | None:
+    """What a file holds; None where there is none. `parse` raises DamagedError.
+
+    Raises DamagedError, in words to be put behind the name of what is missing, also where a damaged file was found and
+    put aside before and no good one was written since.
+    """
+    aside = path.with_name(f"{path.name}.damaged")
+    try:
+        return parse(path.read_bytes())
+    except FileNotFoundError:
+        if aside.exists():
+            raise DamagedError("damaged") from None
+        return None
+    except DamagedError:
+        with contextlib.suppress(OSError):  # read-only: then it stays where it is
+            path.replace(aside)
+        raise DamagedError("damaged") from None
+    except OSError as error:
+        raise DamagedError(f"cannot be read, {error.strerror}") from error
+
+
+class Scribe:
+    """Writes files into one folder, one after the other, in a thread of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.problem: str | None = None
+        """Why the last file was not written; the one before is still there."""
+        self._folder = folder
+        self._wishes: queue.SimpleQueue[_Wish | None] = queue.SimpleQueue()
+        self._thread: threading.Thread | None = None
+
+    def write(self, name: str, make: Callable[[], bytes]) -> None:
+        """Have a file written. Returns at once; `make` gives its bytes, in the thread."""
+        self._wishes.put((name, make))
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._write_on, name="scribe", daemon=True)
+            self._thread.start()
+
+    def close(self) -> None:
+        """Wait for what is being written."""
+        if self._thread is not None:
+            self._wishes.put(None)
+            self._thread.join(CLOSING)
+
+    def _write_on(self) -> None:
+        while (wish := self._wishes.get()) is not None:
+            name, make = wish
+            try:
+                self._write(self._folder / name, make())
+                self.problem = None
+            except OSError as error:
+                self.problem = str(error.strerror)
+
+    def _write(self, path: Path, data: bytes) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        new = path.with_name(f"{path.name}.new")
+        descriptor = os.open(new, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o600)
+        try:
+            written = os.write(descriptor, data)
+            if written != len(data):
+                raise OSError(0, "No space left on device")
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+        new.replace(path)
+        self._bring_names_to_disk()
+
+    def _bring_names_to_disk(self) -> None:
+        """Without it the new file may be there after a power cut, and its name not."""
+        folder = os.open(self._folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
