@@ -17,6 +17,7 @@ StatusText = rover.MAVLink_statustext_message
 CommandLong = rover.MAVLink_command_long_message
 CommandInt = rover.MAVLink_command_int_message
 CommandAck = rover.MAVLink_command_ack_message
+SetupSigning = rover.MAVLink_setup_signing_message
 CommandCancel = rover.MAVLink_command_cancel_message
 SystemTime = rover.MAVLink_system_time_message
 RadioStatus = rover.MAVLink_radio_status_message

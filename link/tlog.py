@@ -16,6 +16,7 @@ from link.framer import Framer
 
 STAMP = 8
 _STAMP = struct.Struct(">Q")
+_MAGIC_V2, _SETUP_SIGNING = bytes([MAGIC_V2]), (256).to_bytes(3, "little")
 _LEAST = STAMP + 8  # and the shortest frame
 _DAY = 86_400_000_000
 
@@ -29,7 +30,9 @@ class Record(NamedTuple):
 
 
 def record(microseconds: int, raw: bytes) -> bytes:
-    """The bytes of one record."""
+    """The bytes of one record; none for SETUP_SIGNING, because its key belongs into no file."""
+    if raw[:1] == _MAGIC_V2 and raw[7:10] == _SETUP_SIGNING:
+        return b""
     return _STAMP.pack(microseconds) + raw
 
 

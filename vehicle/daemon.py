@@ -1,7 +1,8 @@
 """The rover daemon: links, rover, motors and signals joined in one process; what is decided is decided in the cores.
 
 Whatever ends it (a signal, a broken driver, a fault in our own code) the order is the same: motors neutral and without
-power, last messages, exit code with one line. Exit codes: 0 asked to stop, 1 a fault, 2 the user's mistake.
+power, last messages, exit code with one line. Exit codes: 0 asked to stop, 1 a fault, 2 the user's mistake, 80 to 82
+what a ground station asked for (vehicle/leaving.py).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from typing import Any
 from link.endpoint import EndpointError
 from link.link import LinkError
 from link.runner import Runner, open_links
+from vehicle.leaving import Leave
 from vehicle.lock import MotorLock
 from vehicle.machine import Machine
 from vehicle.motors import MotorError, Motors, UnknownDriverError, open_motors, stop_input
@@ -126,9 +128,10 @@ async def _serve(settings: Settings) -> int:
         notifier = Notifier()
         opened.callback(notifier.close)
         rover = Rover(params, now=now, wall_clock=time.time(), keeper=keeper, plan_keeper=plans)
-        machine = _build(settings, params, rover, opened, notifier.alive)
+        cycles = Cycles(rover, notifier)
+        machine = _build(settings, params, rover, opened, cycles.completed)
         try:
-            return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]), notifier)
+            return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]), notifier, cycles)
         except BaseException as error:
             machine.abandon(error, asyncio.get_running_loop().time())
             raise
@@ -152,9 +155,26 @@ def _params(settings: Settings, keeper: ParamStore | None) -> Params:
     return params
 
 
-async def _drive(machine: Machine, endpoints: Sequence[str], system: int, notifier: Notifier) -> int:
+class Cycles:
+    """What follows from a completed control cycle: the watchdog is fed, and a wish to leave is heard."""
+
+    def __init__(self, rover: Rover, notifier: Notifier) -> None:
+        self.ending: Ending | None = None
+        self._rover = rover
+        self._notifier = notifier
+
+    def completed(self, now: float) -> None:
+        """One more."""
+        self._notifier.alive(now)
+        leave = self._rover.leaving(now)
+        if leave is not None and self.ending is not None:
+            self.ending.leave(leave)
+
+
+async def _drive(machine: Machine, endpoints: Sequence[str], system: int, notifier: Notifier, cycles: Cycles) -> int:
     runner = Runner(machine, open_links(endpoints, system=system, component=COMPONENT, wanted=HEARD), period=PERIOD)
     ending = Ending(machine, runner, notifier.stopping)
+    cycles.ending = ending
     ending.listen(asyncio.get_running_loop())
     gc.collect()
     gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
@@ -174,6 +194,7 @@ class Ending:
         self._runner = runner
         self._reason: str | None = None
         self._fault: Exception | None = None
+        self._code = STOPPED
 
     def listen(self, loop: asyncio.AbstractEventLoop) -> None:
         """Take signals and what callbacks raise."""
@@ -187,7 +208,13 @@ class Ending:
         if self._fault is not None:
             raise self._fault
         log.info("%s", self._reason)
-        return STOPPED
+        return self._code
+
+    def leave(self, leave: Leave) -> None:
+        """A ground station asked for it."""
+        if self._reason is None:
+            self._code = int(leave)
+        self._end(f"{leave.words} as a ground station asked, motors neutral")
 
     def _end(self, reason: str, fault: Exception | None = None, message: str = "") -> None:
         """The same order as everywhere: motors, last messages (Runner.run sends them), end."""

@@ -52,6 +52,7 @@ class ParamService:
         self._control = control
         self._texts = texts
         self._keeper = keeper or NoKeeper()
+        self._announced: list[Outgoing] = []
         self._server = ParamServer(
             params.table,
             params,
@@ -69,14 +70,30 @@ class ParamService:
         return self._server.receive(received, now)
 
     def tick(self, now: float) -> list[Outgoing]:
-        """The next values of running lists."""
-        return self._server.tick(now)
+        """The next values of running lists, and those that the vehicle itself has changed."""
+        announced, self._announced = self._announced, []
+        return announced + self._server.tick(now)
 
     def observe(self, now: float) -> None:
         """About once a second: are values kept?"""
         if self._keeper.problem:
             text = f"Parameters are not saved: {self._keeper.problem}"
             self._texts.say_once(f"keeper {self._keeper.problem}", Severity.WARNING, text, now)
+
+    @property
+    def unkept(self) -> str | None:
+        """Why what is set ends with the program, or None."""
+        return "nothing is kept in this run" if isinstance(self._keeper, NoKeeper) else self._keeper.problem
+
+    def reset(self, now: float) -> None:
+        """Defaults for all that a ground station may set; who listens is told what that changed."""
+        table = [each for each in self._params.table if not each.read_only]
+        changed = [each for each in table if self._params[each.name] != each.default]
+        for each in changed:
+            self._params.set(each.name, each.default)
+            self._changed(each.name, each.default)
+        self._announced += self._server.announce(each.name for each in changed)
+        self._texts.say(Severity.NOTICE, f"Parameters: {len(changed)} back to their defaults", now)
 
     def _changed(self, name: str, value: float) -> None:
         self._params.damage = None  # somebody sees to the parameters

@@ -35,6 +35,8 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("MAV_SYSID", 1, 1, 255, "", "System id of this vehicle; after a restart", whole=True, needs_reboot=True),
     Parameter("MAV_GCS_SYSID", 0, 0, 255, "", "Only this ground station may take control; 0: the first that arms",
               safety=True, whole=True),
+    Parameter("REBOOT_ENABLE", 0, 0, 2, "", "PREFLIGHT_REBOOT_SHUTDOWN: 0 denied, 1 restarts this program, 2 also "
+              "reboots or shuts down the computer on board", whole=True, read_only=True),
     # Manual driving
     Parameter("MAN_TIMEOUT", 0.45, 0.2, 2, "s", "A demand older than this is neutral. 9 frames of 20 Hz; less than "
               "0.5 s, so that the wheels begin to slow by then", safety=True),

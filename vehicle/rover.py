@@ -21,6 +21,7 @@ from vehicle.demand import Demand
 from vehicle.drive import Drive
 from vehicle.failsafe import Action
 from vehicle.fields import UINT8, UINT32, whole
+from vehicle.leaving import Leave
 from vehicle.modes import OFFERED
 from vehicle.navigator import Navigator
 from vehicle.orders import Orders
@@ -28,6 +29,7 @@ from vehicle.outputs import Outputs, Permit
 from vehicle.param_service import Keeper, ParamService
 from vehicle.params import Params
 from vehicle.plans import PlanKeeper, Plans
+from vehicle.preflight import Preflight
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.requests import Requests
 from vehicle.safety import Safety
@@ -112,9 +114,11 @@ class Rover:
             ids=(self._system, COMPONENT),
             pacer=self._bandwidth.pacer,
         )
+        self._preflight = Preflight(params, self._safety, self._control, self._param_service, self._texts)
         self._requests = Requests(self._telemetry, self._look, self._services.messages())
         handlers = self._commands.handlers() | self._requests.handlers()
         handlers |= self._orders.handlers() | self._plans.handlers() | self._actuator_test.handlers()
+        handlers |= self._preflight.handlers()
         self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
 
     @property
@@ -126,6 +130,10 @@ class Rover:
     def state(self) -> State:
         """Safety state, for the daemon's log and for tests."""
         return self._safety.state
+
+    def leaving(self, now: float) -> Leave | None:
+        """How the program is to end because a ground station asked for it, or None."""
+        return self._preflight.leaving(now)
 
     def receive(self, received: Received, now: float) -> None:
         """Take one message; a fresh demand is in `outputs` when this returns."""
@@ -143,6 +151,7 @@ class Rover:
             self._outgoing += self._plans.receive(received, now)
             self._outgoing += self._param_service.receive(received, now)
             self._outgoing += self._services.receive(received, now)
+            self._preflight.receive(received, now)
 
     def tick(self, now: float) -> None:
         """Let time pass: act on silence, send what is due."""

@@ -8,6 +8,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from vehicle.leaving import Leave
+
 HARDWARE_GROUPS = ("dialout", "gpio", "i2c", "video")
 """Groups that may use serial ports, pins, I2C and the supply's monitor on Raspberry Pi OS."""
 HOMES = (Path("/home"), Path("/root"))
@@ -24,7 +26,7 @@ Description=MAVLink rover (mavhelm)
 After=network.target
 # Never give up: a rover on the road has nobody who starts it again.
 StartLimitIntervalSec=0
-
+{power_units}
 [Service]
 Type=notify
 ExecStart={vehicle} --config {config}
@@ -35,7 +37,7 @@ WatchdogSec=1
 WatchdogSignal=SIGKILL
 Restart=always
 RestartSec=0.5
-TimeoutStartSec=30
+{no_restart}TimeoutStartSec=30
 # The daemon stops its motors at once; this also limits safe-stop, which a slow Pi needs 2 s to load.
 TimeoutStopSec=5
 StateDirectory=mavhelm
@@ -94,6 +96,25 @@ SystemCallErrorNumber=EPERM
 WantedBy=multi-user.target
 """
 
+POWER: dict[str, Leave] = {"reboot": Leave.REBOOT, "poweroff": Leave.POWER_OFF}
+"""What the computer does -> the daemon's exit code that asks for it."""
+
+POWER_TEMPLATE = """\
+# Printed by `vehicle systemd-unit --power {word}`. To install it:
+#   vehicle systemd-unit --power {word} | sudo tee /etc/systemd/system/rover-{word}.service
+#   sudo systemctl daemon-reload
+
+[Unit]
+Description=MAVLink rover: {word}, because a ground station asked for it
+
+[Service]
+Type=oneshot
+# How the rover's daemon ended; systemd says it since version 251. After any other end nothing happens.
+ExecCondition=/usr/bin/test "${{MONITOR_EXIT_STATUS}}" = {code}
+ExecStart=/usr/bin/systemctl --no-block {word}
+"""
+"""The daemon itself has no rights for it. Started by OnFailure= of the unit."""
+
 
 @dataclass(frozen=True, slots=True)
 class Place:
@@ -107,6 +128,8 @@ class Place:
     user: str | None = None
     """Who it runs as; None for a user that exists only while it runs."""
     driver: str = ""
+    power: bool = False
+    """REBOOT_ENABLE is 2: a ground station may reboot the computer and shut it down."""
 
 
 def unit(place: Place) -> str:
@@ -119,9 +142,18 @@ def unit(place: Place) -> str:
         config=_word(place.config),
         user=f"User={place.user}" if place.user else "DynamicUser=yes",
         groups=groups,
+        power_units="OnFailure=rover-reboot.service rover-poweroff.service\n" if place.power else "",
+        no_restart=f"RestartPreventExitStatus={' '.join(str(int(code)) for code in POWER.values())}\n"
+        if place.power
+        else "",
         home=f"ProtectHome={'read-only' if in_home else 'yes'}",
         tunables=f"# {PWM} writes to /sys.\nProtectKernelTunables=no" if pwm else "ProtectKernelTunables=yes",
     )
+
+
+def power_unit(word: str) -> str:
+    """The unit that does `word` of POWER."""
+    return POWER_TEMPLATE.format(word=word, code=int(POWER[word]))
 
 
 def existing_groups() -> tuple[str, ...]:

@@ -111,14 +111,19 @@ def _safe_stop(asked: argparse.Namespace) -> int:
     return DONE
 
 
-def _motor_table(path: str) -> dict[str, Any]:
-    """[motors] of a file, as it stands there. Raises VerbError."""
+def _tables(path: str) -> dict[str, Any]:
+    """A file as it stands there. Raises VerbError."""
     try:
-        table = tomllib.loads(Path(path).read_text(encoding="utf-8")).get("motors")
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         raise VerbError(f"{path}: {error.strerror}") from error
     except ValueError as error:  # of TOML, or of UTF-8
         raise VerbError(f"{path}: {error}") from error
+
+
+def _motor_table(path: str) -> dict[str, Any]:
+    """[motors] of a file, as it stands there. Raises VerbError."""
+    table = _tables(path).get("motors")
     if not isinstance(table, dict) or "driver" not in table:
         raise VerbError(f"{path}: no [motors] driver, so there is nothing to stop")
     return table
@@ -129,15 +134,23 @@ def _unit_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--user", help="who it runs as; default the owner of the home it lives in, else nobody in particular"
     )
+    parser.add_argument(
+        "--power", choices=("reboot", "poweroff"), help="print the unit that does this when a ground station asks"
+    )
 
 
 def _systemd_unit(asked: argparse.Namespace) -> int:
-    from vehicle.unit import Place, existing_groups, owner, unit
+    from vehicle.unit import Place, existing_groups, owner, power_unit, unit
 
+    if asked.power:
+        sys.stdout.write(power_unit(asked.power))
+        return DONE
     config, python = Path(asked.config).absolute(), Path(sys.executable)
     table = _motor_table(asked.config)
     user = asked.user or owner(config, python)
-    place = Place(config, python, existing_groups(), user, str(table["driver"]))
+    params = _tables(asked.config).get("params")
+    power = isinstance(params, dict) and params.get("REBOOT_ENABLE") == 2
+    place = Place(config, python, existing_groups(), user, str(table["driver"]), power)
     sys.stdout.write(unit(place))
     return DONE
 

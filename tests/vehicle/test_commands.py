@@ -218,7 +218,7 @@ class TestModes:
         assert not bench.turning
 
 
-@pytest.mark.parametrize("command", [65535, 0, Command.PREFLIGHT_REBOOT_SHUTDOWN])
+@pytest.mark.parametrize("command", [65535, 0, 521])
 def test_58_an_unknown_command_is_unsupported(command: int) -> None:
     bench = Bench()
     bench.drive()

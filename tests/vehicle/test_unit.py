@@ -18,6 +18,7 @@ from vehicle.unit import Place, owner, unit
 PYTHON = Path(sys.executable)
 PLACES = {
     "of nobody": Place(Path("/etc/rover.toml"), PYTHON, ("dialout",)),
+    "with power": Place(Path("/etc/rover.toml"), PYTHON, power=True),
     "in a home": Place(Path("/home/pi/rover.toml"), PYTHON, ("dialout", "video"), user="daemon", driver="sysfs-pwm"),
 }
 
@@ -47,7 +48,7 @@ def test_it_is_watched_restarted_and_its_motors_are_stopped_after_any_end(place:
 
 
 def test_who_it_runs_as_and_what_it_may_touch() -> None:
-    nobody, home = (service(place) for place in PLACES.values())
+    nobody, home = (service(PLACES[name]) for name in ("of nobody", "in a home"))
     assert (nobody["DynamicUser"], nobody["ProtectHome"], nobody["ProtectKernelTunables"]) == ("yes", "yes", "yes")
     assert (home["User"], home["ProtectHome"], home["ProtectKernelTunables"]) == ("daemon", "read-only", "no")
     assert nobody["SupplementaryGroups"] == "dialout"
@@ -67,6 +68,37 @@ def test_the_owner_of_a_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert owner(file, PYTHON) == file.owner()
     assert owner(Path("/etc/rover.toml"), Path("/usr/bin/python3")) is None
     assert owner(tmp_path / "none", Path("/usr/bin/python3")) is None
+
+
+def test_only_where_the_file_allows_it_the_computer_follows_the_exit_code() -> None:
+    assert "RestartPreventExitStatus" not in unit(PLACES["of nobody"])
+    assert "OnFailure" not in unit(PLACES["of nobody"])
+    assert service(PLACES["with power"])["RestartPreventExitStatus"] == "81 82"
+    assert "\nOnFailure=rover-reboot.service rover-poweroff.service\n" in unit(PLACES["with power"])
+
+
+@pytest.mark.parametrize(("word", "code"), [("reboot", 81), ("poweroff", 82)])
+def test_the_unit_that_does_it(word: str, code: int, tmp_path: Path) -> None:
+    printed, out, error = said_by("systemd-unit", "--power", word)
+    assert (printed, error) == (0, "")
+    assert f'\nExecCondition=/usr/bin/test "${{MONITOR_EXIT_STATUS}}" = {code}\n' in out
+    assert f"\nExecStart=/usr/bin/systemctl --no-block {word}\n" in out
+    if shutil.which("systemd-analyze"):
+        file = tmp_path / f"rover-{word}.service"
+        file.write_text(out)
+        told = subprocess.run(
+            ["systemd-analyze", "verify", str(file)], capture_output=True, text=True, check=False, timeout=60
+        )
+        assert (told.returncode, file.name in told.stderr) == (0, False)
+
+
+@pytest.mark.parametrize(
+    ("params", "allowed"), [("REBOOT_ENABLE = 2", True), ("REBOOT_ENABLE = 1", False), ("", False)]
+)
+def test_the_command_sees_what_the_file_allows(tmp_path: Path, params: str, allowed: bool) -> None:
+    file = tmp_path / "rover.toml"
+    file.write_text(f'[motors]\ndriver = "simulated"\n[params]\n{params}\n')
+    assert ("OnFailure" in said_by("systemd-unit", "--config", str(file))[1]) is allowed
 
 
 @analysed
