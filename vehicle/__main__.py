@@ -59,7 +59,7 @@ station asked for a restart of this program, of the computer, or to shut it down
 Whatever ends it, the motors are neutral and without power first.
 """
 
-SIMULATION_ONLY = ("home", "sim_battery", "sim_seed")
+SIMULATION_ONLY = ("home", "sim_battery", "sim_seed", "sim_truth")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -142,6 +142,7 @@ def _settings(asked: argparse.Namespace, config: Config, parser: _Parser) -> Set
         home=Home(*asked.home) if asked.home else Home(),
         battery=1.0 if asked.sim_battery is None else asked.sim_battery,
         seed=1 if asked.sim_seed is None else asked.sim_seed,
+        truth=asked.sim_truth,
     )
     pinned = dict(config.params)
     if config.identity.system is not None:
@@ -273,6 +274,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--home": {"metavar": "LAT,LON", "type": _home, "help": "where the simulated rover starts, degrees"},
     "--sim-battery": {"metavar": "CHARGE", "type": _charge, "help": "its charge, 0 to 1 (default 1)"},
     "--sim-seed": {"metavar": "N", "type": int, "help": "of the noise of its sensors (default 1)"},
+    "--sim-truth": {"metavar": "FILE", "help": "append where it really is: CLOCK_MONOTONIC ns, m, m, rad, m/s"},
     "--version": {"action": _Version, "nargs": 0, "help": "show the version and end"},
 }  # fmt: skip
 """Every option, in the order of --help."""

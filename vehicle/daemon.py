@@ -37,6 +37,7 @@ from vehicle.sensors.suite import SensorSettings, open_sensors
 from vehicle.sim.battery import Battery
 from vehicle.sim.body import Home, SimulatedBody
 from vehicle.sim.chassis import AckermannChassis, Frame, SkidChassis
+from vehicle.sim.truth import WatchedBody
 from vehicle.telemetry import HEARD
 
 log = logging.getLogger(__name__)
@@ -66,6 +67,8 @@ class Simulation:
     """Charge at the start, 0..1."""
     seed: int = 1
     """Of the sensors' noise."""
+    truth: str | None = None
+    """File to append to where it really is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -278,7 +281,16 @@ def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sen
         home=simulation.home,
         seed=simulation.seed,
     )
-    return motors, body
+    return motors, _watched(body, simulation.truth)
+
+
+def _watched(body: SimulatedBody, path: str | None) -> Sensors:
+    if path is None:
+        return body
+    try:
+        return WatchedBody(body, MotorLog(path).write, time.monotonic_ns)
+    except OSError as error:
+        raise SettingsError(f"truth log {path}: {error.strerror}") from error
 
 
 def _logged(motors: Motors, path: str | None) -> Motors:

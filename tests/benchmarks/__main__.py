@@ -22,6 +22,7 @@ from tests.benchmarks import (
     link_loss,
     loop_lateness,
     machine,
+    mission,
     receive_path,
     serial_key,
 )
@@ -36,6 +37,7 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "serial_key": (serial_key.run, "the same over a serial cable at 57600 and 921600 baud"),
     "loop_lateness": (loop_lateness.run, "how late the vehicle's control cycles are, idle and on a busy machine"),
     "bridge": (bridge.run, "the bridge as a router, beside MAVProxy, pymavlink and C"),
+    "mission": (mission.run, "ten minutes of AUTO in real time: how far the rover really is beside its lines"),
     "link_loss": (link_loss.run, "key to motor over a network that delays and loses"),
 }
 """Name -> what runs it, and what it measures. To add one: a module with `run(Options) -> Report` and a line here."""
@@ -47,7 +49,7 @@ TLOG = machine.ROOT.parent / "shared" / "data" / "ardurover.tlog"
 def main(argv: Sequence[str] | None = None) -> int:
     """Run what is asked for; the exit code."""
     asked = _parser().parse_args(argv)
-    options = Options(quick=asked.quick, tlog=asked.tlog, say=_say)
+    options = Options(quick=asked.quick, tlog=asked.tlog, say=_say, seeds=tuple(asked.seed or (1,)))
     facts, failures = machine.facts(), {}
     reports: dict[str, Report] = {}
     for name in asked.only or BENCHMARKS:
@@ -96,6 +98,13 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--quick", action="store_true", help="a short run, to see that they work")
     parser.add_argument("--out", metavar="FILE", type=Path, help="write the JSON to FILE too")
     parser.add_argument("--markdown", action="store_true", help="print tables for docs/performance.md instead of JSON")
+    parser.add_argument(
+        "--seed",
+        metavar="N",
+        type=int,
+        action="append",
+        help="of the sensors' noise of `mission` (default 1); repeatable",
+    )
     parser.add_argument(
         "--tlog",
         metavar="FILE",

@@ -108,6 +108,8 @@ class Options:
     """A telemetry log for the framer; None: the made mix alone."""
     say: Callable[[str], None]
     """Progress, for a person."""
+    seeds: tuple[int, ...] = (1,)
+    """Of the noise of simulated sensors."""
 
 
 class BenchmarkError(Exception):

@@ -43,11 +43,11 @@ def test_an_endpoint_may_stand_anywhere(monkeypatch: pytest.MonkeyPatch, words: 
 
 
 def test_everything_a_simulation_takes(monkeypatch: pytest.MonkeyPatch) -> None:
-    words = "--sim --system 7 --home -33.5,151.25 --sim-battery 0.3 --sim-seed 5 --motor-log m --param speed_max=3"
-    settings = settings_of(monkeypatch, *words.split())
+    words = "--sim --system 7 --home -33.5,151.25 --sim-battery 0.3 --sim-seed 5 --sim-truth t"
+    settings = settings_of(monkeypatch, *words.split(), *["--motor-log", "m", "--param", "speed_max=3"])
     assert settings.simulation is not None
     assert settings.simulation.home[:2] == (-33.5, 151.25)
-    assert (settings.simulation.battery, settings.simulation.seed) == (0.3, 5)
+    assert (settings.simulation.battery, settings.simulation.seed, settings.simulation.truth) == (0.3, 5, "t")
     assert settings.params == {"FS_LOOP_TIMEOUT": 1.0, "SPEED_MAX": 3.0}
     assert settings.pinned == {"MAV_SYSID": 7}
     assert settings.motor_log == "m"

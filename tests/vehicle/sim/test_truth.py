@@ -1,0 +1,25 @@
+"""The record of where the simulated rover really is."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from vehicle.sim.body import SimulatedBody
+from vehicle.sim.truth import WatchedBody
+
+
+def test_the_truth_is_told_ten_times_a_second_and_the_readings_stay_what_they_are() -> None:
+    lines: list[str] = []
+    watched, alone = (SimulatedBody(lambda: (0.5, 0.5), seed=3) for _ in range(2))
+    body = WatchedBody(watched, lines.append, lambda: 7)
+    for cycle in range(101):
+        assert body.read(cycle / 50) == alone.read(cycle / 50)
+    rows = [[float(word) for word in line.split()] for line in lines]
+    assert 16 <= len(rows) <= 21
+    stamp, north, east, yaw, speed = rows[-1]
+    assert (stamp, east, yaw) == (7, 0.0, 0.0)
+    assert north == pytest.approx(1.3, abs=0.2)
+    assert speed == pytest.approx(0.75, abs=0.02)
+    assert all(map(math.isfinite, rows[0]))
