@@ -10,6 +10,7 @@ from vehicle.guidance import STOPPED_SHORT, Guide, Leg, arrived
 from vehicle.params import Params
 from vehicle.pilot import STAND, Motion
 from vehicle.place import Point
+from vehicle.rally import Haven
 
 CRUMB = 1.0
 """m between two points of the trail: finer than the corners this rover can drive around."""
@@ -25,29 +26,36 @@ class Done:
 
 
 class Return:
-    """RTL: straight to home, then HOLD."""
+    """RTL: straight to the nearest of home and the rally points, then HOLD."""
 
-    def __init__(self, params: Params, guide: Guide, home: Callable[[], Point | None]) -> None:
-        self.goal: Point | None = None
+    def __init__(self, params: Params, guide: Guide, haven: Callable[[Estimate], Haven | None]) -> None:
         self._params = params
         self._guide = guide
-        self._home = home
+        self._best = haven
+        self._haven: Haven | None = None
         self._leg: Leg | None = None
+
+    @property
+    def goal(self) -> Point | None:
+        """Where it goes; chosen once, when it begins."""
+        return self._haven.point if self._haven else None
 
     def unready(self, estimate: Estimate) -> str | None:
         """Why it cannot begin."""
-        return None if self._home() else "home is not known"
+        return None if self._best(estimate) else "home is not known"
 
     def begin(self, estimate: Estimate, now: float) -> None:
         """From here."""
-        self.goal = self._home()
-        self._leg = Leg(estimate.place, self.goal) if self.goal else None
+        self._haven = self._best(estimate)
+        self._leg = Leg(estimate.place, self._haven.point) if self._haven else None
         self._guide.begin()
 
     def step(self, estimate: Estimate, speed: float, now: float) -> Motion | Done:
-        """On the line to home."""
-        if self._leg is None or arrived(self._leg, estimate.place, STOPPED_SHORT):
-            return Done("home is reached")
+        """On the line."""
+        if self._haven is None or self._leg is None:
+            return Done("home is not known")
+        if arrived(self._leg, estimate.place, STOPPED_SHORT):
+            return Done(f"{self._haven.words} is reached")
         return self._guide.follow(self._leg, estimate, self._params["RTL_SPEED"] or speed, 0.0)
 
 

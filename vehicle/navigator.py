@@ -28,6 +28,7 @@ from vehicle.params import Params
 from vehicle.pilot import STAND, Motion, Pilot
 from vehicle.place import Home, Point
 from vehicle.plan_runner import Mission, Progress
+from vehicle.rally import Havens
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety import Safety
 from vehicle.setpoints import Target
@@ -79,8 +80,9 @@ class Navigator:
         """m/s that somebody asked for instead of WP_SPEED."""
         self.guide = Guide(params, kind)
         self.guided = Guided(params, self.guide)
-        self.mission = Mission(params, self.guide, self._home_point, self._effect)
         self.fence = Fence(params)
+        self.havens = Havens(params, self._home_point, self.trespass)
+        self.mission = Mission(params, self.guide, self.havens.best, self._effect)
         self.plan_ids = PlanIds()
         self.beyond = 0.0
         """m beyond the fence."""
@@ -94,7 +96,7 @@ class Navigator:
             Mode.AUTO: self.mission,
             Mode.GUIDED: self.guided,
             Mode.LOITER: Loiter(params, self.guide),
-            Mode.RTL: Return(params, self.guide, self._home_point),
+            Mode.RTL: Return(params, self.guide, self.havens.best),
             Mode.SMART_RTL: Retrace(params, self.guide, self._trail),
         }
         self._epoch = -1

@@ -78,6 +78,8 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("WP_PIVOT_ANGLE", 60, 10, 180, "deg", "Corners sharper than this are turned on the spot"),
     Parameter("WP_PIVOT_RATE", 60, 5, 360, "deg/s", "Turn rate on the spot"),
     Parameter("RTL_SPEED", 0, 0, 30, "m/s", "Speed on the way home; 0: as usual"),
+    Parameter("RALLY_LIMIT_KM", 0.5, 0, 100, "km", "RTL goes home where no rally point is so near; 0: any distance"),
+    Parameter("RALLY_INCL_HOME", 1, 0, 1, "", "RTL goes home where home is nearer than the rally points", whole=True),
     Parameter("LOIT_RADIUS", 1, 0.3, 20, "m", "LOITER drives back when it is farther away; radius of circles"),
     Parameter("ACRO_TURN_RATE", 180, 10, 720, "deg/s", "Turn rate at full steering in ACRO"),
     Parameter("TURN_RADIUS", 0.55, 0.1, 30, "m", "Turning circle's radius at full steering, of wheels that steer"),

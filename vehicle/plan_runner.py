@@ -21,6 +21,7 @@ from vehicle.params import Params
 from vehicle.pilot import Motion
 from vehicle.place import Point
 from vehicle.plan_tasks import Circle, Face, Go, Task, Wait
+from vehicle.rally import Haven
 
 SEARCH_MAX = 100
 """Items looked through for the next NAV item; more is a circle of jumps."""
@@ -44,10 +45,10 @@ class Mission:
         self,
         params: Params,
         guide: Guide,
-        home: Callable[[], Point | None],
+        haven: Callable[[Estimate], Haven | None],
         effect: Callable[[MissionItem], None],
     ) -> None:
-        """`effect` does what a DO item says."""
+        """`haven` is where to return to from there; `effect` does what a DO item says."""
         self.items: Items = ()
         self.current = 0
         """Index of the item under way, or of the one to begin with."""
@@ -56,7 +57,7 @@ class Mission:
         """Items reached and not told yet."""
         self._params = params
         self._guide = guide
-        self._home = home
+        self._haven = haven
         self._effect = effect
         self._task: Task | None = None
         self._waiting: list[MissionItem] = []
@@ -163,8 +164,9 @@ class Mission:
                 radius = _number(item.params[2]) or self._params["LOIT_RADIUS"]
                 return Circle(self._place(item, estimate), radius, first)
             case Command.NAV_RETURN_TO_LAUNCH:
-                self._ending = "home is reached"
-                return Go(Leg(start, self._home() or start), STOPPED_SHORT)
+                haven = self._haven(estimate) or Haven(start, "the end")
+                self._ending = f"{haven.words} is reached"
+                return Go(Leg(start, haven.point), STOPPED_SHORT)
         return self._leg(item, index, estimate, start)
 
     def _leg(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> Task:

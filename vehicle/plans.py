@@ -158,6 +158,8 @@ class Plans:
             navigator.mission.load(items, self._damage.get(kind))
         elif kind is MissionType.FENCE:
             navigator.fence.load(items, self._damage.get(kind))
+        else:
+            navigator.havens.load(items)
 
     def _remind(self, now: float) -> None:
         """Nobody may have listened when the vehicle started."""
