@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import difflib
 import math
-import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -150,6 +149,7 @@ def _settings(asked: argparse.Namespace, config: Config, parser: _Parser) -> Set
     return daemon.Settings(
         endpoints=config.endpoints,
         motors=config.motors,
+        config=Path(asked.config) if asked.config else None,
         sensors=config.sensors,
         simulation=simulation if asked.sim else None,
         pinned=pinned,
@@ -165,11 +165,9 @@ def _state(asked: argparse.Namespace, config: Config) -> Path | None:
         return Path(asked.state) if asked.state else None
     if config.state:
         return Path(config.state)
-    if "STATE_DIRECTORY" in os.environ:  # from systemd's StateDirectory=
-        return Path(os.environ["STATE_DIRECTORY"].partition(":")[0])
-    from platformdirs import user_state_path
+    from vehicle.motor_copy import usual_state
 
-    return user_state_path("mavhelm")
+    return usual_state()
 
 
 def _refuse_contradictions(asked: argparse.Namespace, config: Config, parser: _Parser) -> None:

@@ -24,6 +24,7 @@ from link.runner import Runner, open_links
 from vehicle.leaving import Leave
 from vehicle.lock import MotorLock
 from vehicle.machine import Machine
+from vehicle.motor_copy import copied
 from vehicle.motors import MotorError, Motors, UnknownDriverError, open_motors, stop_input
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
@@ -78,6 +79,8 @@ class Settings:
     endpoints: tuple[str, ...]
     motors: Mapping[str, Any] = field(default_factory=lambda: {"driver": "simulated"})
     """The driver's name as `driver`, and its settings; a simulation has its own."""
+    config: Path | None = None
+    """The file that says so; safe-stop is told the same one."""
     sensors: SensorSettings | None = None
     """None: a rover that measures nothing. A simulation has its own."""
     simulation: Simulation | None = None
@@ -255,6 +258,7 @@ def _build(
 
 def _body(settings: Settings, opened: contextlib.ExitStack) -> tuple[Motors, Sensors]:
     opened.callback(MotorLock(settings.motors).close)
+    opened.enter_context(copied(settings.motors, settings.config))
     own = {key: value for key, value in settings.motors.items() if key != "driver"}
     motors = open_motors(settings.motors["driver"], own)
     if settings.sensors is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -98,17 +98,31 @@ def _config_option(parser: argparse.ArgumentParser) -> None:
 
 
 def _safe_stop(asked: argparse.Namespace) -> int:
-    """Reads no more of the file than it needs: a slip of the pen elsewhere in it must not keep motors turning."""
+    """Stops what a killed vehicle drove, and what the file names now, where that is something else."""
+    from vehicle.motor_copy import left_behind
+
+    driven = left_behind(Path(asked.config))
+    try:
+        named = _motor_table(asked.config)
+    except VerbError as error:
+        if driven is None:
+            raise
+        named = driven
+        sys.stderr.write(f"vehicle safe-stop: {error}; so only what the vehicle drove is stopped\n")
+    for table in [named] if driven in (None, named) else [driven, named]:
+        _stop(table)
+    return DONE
+
+
+def _stop(motors: Mapping[str, Any]) -> None:
     from vehicle.motors import safe_stop
 
-    table = _motor_table(asked.config)
-    driver = str(table.pop("driver", ""))
-    problems = safe_stop(driver, table)
+    driver = str(motors["driver"])
+    problems = safe_stop(driver, {key: value for key, value in motors.items() if key != "driver"})
     for problem in problems:
         sys.stderr.write(f"vehicle safe-stop: {problem}\n")
     word = "motors may still turn, cut their power" if problems else "motors neutral and without power"
     sys.stderr.write(f"vehicle safe-stop: {driver}: {word}\n")
-    return DONE
 
 
 def _tables(path: str) -> dict[str, Any]:

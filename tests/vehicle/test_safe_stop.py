@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -125,6 +126,7 @@ def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
 @pytest.mark.e2e
 def test_after_a_kill_safe_stop_ends_what_turns(rig: Rig, tmp_path: Path) -> None:
     kill_while_it_turns(rig, tmp_path, drive)
+    ends_what_turns(rig, tmp_path)
 
 
 @pytest.mark.e2e
@@ -139,11 +141,51 @@ def test_after_a_kill_in_a_motor_test_safe_stop_ends_it(tmp_path: Path) -> None:
         return False
 
     with ExitStack() as opened:
-        kill_while_it_turns(pca9685(opened, tmp_path), tmp_path, test)
+        rig = pca9685(opened, tmp_path)
+        kill_while_it_turns(rig, tmp_path, test)
+        ends_what_turns(rig, tmp_path)
+
+
+@pytest.mark.e2e
+@pytest.mark.parametrize(
+    ("now", "says"),
+    [
+        ("[motors\n", "rover.toml: Expected ']'"),
+        (None, "rover.toml: No such file or directory; so only what the vehicle drove is stopped"),
+        ('[motors]\ndriver = "simulated"\n', "vehicle safe-stop: simulated: motors neutral and without power"),
+    ],
+    ids=["broken", "gone", "other motors"],
+)
+def test_a_file_that_was_changed_while_the_vehicle_drove_keeps_nothing_turning(
+    tmp_path: Path, now: str | None, says: str
+) -> None:
+    file = tmp_path / "rover.toml"
+    with ExitStack() as opened:
+        rig = roboclaw(opened, tmp_path)
+        kill_while_it_turns(rig, tmp_path, drive)
+        file.unlink() if now is None else file.write_text(now)
+        code, said = safe_stop(file)
+        assert code == 0
+        assert says in said
+        assert "vehicle safe-stop: roboclaw: motors neutral and without power\n" in said
+        assert not rig.turning()
+
+
+@pytest.mark.e2e
+def test_a_vehicle_that_ends_as_it_should_leaves_nothing_to_stop(tmp_path: Path) -> None:
+    file, kept = tmp_path / "rover.toml", tmp_path / "mavhelm"
+    with Ground() as ground:
+        file.write_text(f'endpoints = ["{ground.endpoint}"]\n[motors]\ndriver = "simulated"\n')
+        with running(tmp_path, "--config", str(file)) as vehicle:
+            assert "ready" in vehicle.ready()
+            assert len(list(kept.glob("motors-*.json"))) == 1
+            vehicle.process.terminate()
+            assert vehicle.ended()[0] == 0
+    assert list(kept.iterdir()) == []
 
 
 def kill_while_it_turns(rig: Rig, tmp_path: Path, turn: Callable[[Ground, Vehicle], None]) -> None:
-    """`turn` makes the wheels turn; what follows must end it."""
+    """`turn` makes the wheels turn, and they go on: what follows must end it."""
     file = tmp_path / "rover.toml"
     with Ground() as ground:
         file.write_text(f'endpoints = ["{ground.endpoint}"]\n[motors]\n{rig.motors}\n')
@@ -154,10 +196,21 @@ def kill_while_it_turns(rig: Rig, tmp_path: Path, turn: Callable[[Ground, Vehicl
             vehicle.process.kill()
             vehicle.process.wait(10)
     assert rig.turning()  # nobody is there to stop it
+
+
+def safe_stop(file: Path) -> tuple[int, str]:
+    """As systemd runs it: exit code, and what it says."""
     words = [sys.executable, "-m", "vehicle", "safe-stop", "--config", str(file)]
-    ended = subprocess.run(words, capture_output=True, text=True, check=False, timeout=30)
-    assert ended.returncode == 0
-    assert ended.stderr.endswith("motors neutral and without power\n")
+    environment = {**os.environ, "XDG_STATE_HOME": str(file.parent)}
+    ended = subprocess.run(words, capture_output=True, text=True, check=False, timeout=30, env=environment)
+    return ended.returncode, ended.stderr
+
+
+def ends_what_turns(rig: Rig, folder: Path) -> None:
+    code, said = safe_stop(folder / "rover.toml")
+    assert code == 0
+    assert said.endswith("motors neutral and without power\n")
+    assert said.count("\n") == 1
     assert not rig.turning()
     assert rig.silent()
 
