@@ -30,6 +30,7 @@ from link.frame import Counts, Frame, noise_hint
 from link.framer import Framer
 from link.peer import PeerState
 from link.source import NEW, Order
+from link.tape import Tape
 
 MAX_PEERS = 8
 PEER_SILENCE = 10.0
@@ -65,6 +66,8 @@ class Channel:
         self.name = name
         self.index = index
         self.ids = (system, component)
+        self.tape: Tape | None = None
+        """Takes every frame that arrives."""
         self._capacity = capacity
         self._flow = FlowControl()
         self._stream = stream
@@ -140,6 +143,8 @@ class Channel:
 
     def _accept(self, state: PeerState, frames: list[Frame], now: float) -> list[Received]:
         accepted: list[Received] = []
+        if self.tape is not None and frames:
+            self.tape.heard(frames, now)
         for frame in frames:
             number, system, component, sequence, _ = frame
             sender = (system, component)

@@ -15,6 +15,7 @@ from link.core import Core, LinkReport, Outgoing, Received
 from link.link import Link
 from link.openers import open_wires
 from link.router import Delivery, Router
+from link.tape import Tape
 
 log = logging.getLogger(__name__)
 
@@ -70,7 +71,9 @@ class Runner:
         period: float,
         route: bool | None = None,
         broken: Callable[[Exception], None] | None = None,
+        tape: Tape | None = None,
     ) -> None:
+        """`tape` takes what all links hear, and what the core says, also where nobody listens."""
         self._core = core
         self._broken = broken
         self._links = links
@@ -81,6 +84,9 @@ class Runner:
         self._report_due = 0.0
         self._tick_due = 0.0
         self._timer: asyncio.TimerHandle | None = None
+        self._tape = tape
+        for link in links:
+            link.channel.tape = tape
 
     async def run(self) -> None:
         """Run until stop() or until the core raises; that exception is raised here. Closes the links at the end."""
@@ -193,6 +199,8 @@ class Runner:
                 link.wire.send(data, address)
                 if self._sent:
                     self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())
+        if self._tape:
+            self._tape.said(outgoing.message, asyncio.get_running_loop().time())
 
 
 def _router(links: Sequence[Link]) -> Router:

@@ -156,6 +156,7 @@ def _settings(asked: argparse.Namespace, config: Config, parser: _Parser) -> Set
         params={**(SIMULATION_PARAMS if asked.sim else {}), **dict(asked.param)},
         motor_log=asked.motor_log or config.log.motors,
         state=_state(asked, config),
+        logs=_logs(asked, config),
     )
 
 
@@ -168,6 +169,15 @@ def _state(asked: argparse.Namespace, config: Config) -> Path | None:
     from vehicle.motor_copy import usual_state
 
     return usual_state()
+
+
+def _logs(asked: argparse.Namespace, config: Config) -> Path | None:
+    """Where drives are recorded. A simulation records nothing, unless it is told where."""
+    folder = asked.tlog or (None if asked.sim else config.log.tlog)
+    if folder:
+        return Path(folder)
+    state = _state(asked, config)
+    return None if state is None else state / "logs"
 
 
 def _refuse_contradictions(asked: argparse.Namespace, config: Config, parser: _Parser) -> None:
@@ -266,6 +276,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--param": {"metavar": "NAME=VALUE", "type": _param, "action": "append", "default": [],
                 "help": "set a parameter; repeatable"},
     "--state": {"metavar": "FOLDER", "help": "keep parameters and plans there; a simulation keeps none otherwise"},
+    "--tlog": {"metavar": "FOLDER", "help": "record each drive there (default: logs in the folder of --state)"},
     "--motor-log": {"metavar": "FILE", "help": "append each change of the motors: CLOCK_MONOTONIC ns, throttles"},
     "--log-file": {"metavar": "FILE", "help": "append the log with times and tracebacks; stderr has the brief one"},
     "--verbose": {"action": "store_true", "help": "log more"},

@@ -47,6 +47,8 @@ class LogSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Log more."""
     motors: str | None = None
     """Append each change of the motors here: CLOCK_MONOTONIC ns and the throttles."""
+    tlog: str | None = None
+    """Folder for the telemetry log of each drive; without it `logs` in the folder of `state`."""
 
 
 class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

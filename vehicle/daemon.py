@@ -21,6 +21,7 @@ from typing import Any
 from link.endpoint import EndpointError
 from link.link import LinkError
 from link.runner import Runner, open_links
+from link.tape import Tape
 from vehicle.leaving import Leave
 from vehicle.lock import MotorLock
 from vehicle.machine import Machine
@@ -32,6 +33,7 @@ from vehicle.notify import Notifier
 from vehicle.param_store import ParamStore
 from vehicle.params import ParamError, Params
 from vehicle.plan_store import PlanStore
+from vehicle.recorder import VehicleRecorder
 from vehicle.rover import Rover
 from vehicle.sensors import NoSensors, Sensors
 from vehicle.sensors.suite import SensorSettings, open_sensors
@@ -91,6 +93,8 @@ class Settings:
     motor_log: str | None = None
     state: Path | None = None
     """Folder that keeps what ground stations set; None: nothing is kept."""
+    logs: Path | None = None
+    """Folder of telemetry logs; None: nothing is recorded."""
 
 
 class SettingsError(Exception):
@@ -133,11 +137,14 @@ async def _serve(settings: Settings) -> int:
                 log.warning("%s", damage)
         notifier = Notifier()
         opened.callback(notifier.close)
-        rover = Rover(params, now=now, wall_clock=time.time(), keeper=keeper, plan_keeper=plans)
+        system = int(params["MAV_SYSID"])
+        recorder = _recorder(settings, system, opened)
+        rover = Rover(params, now=now, wall_clock=time.time(), keeper=keeper, plan_keeper=plans, recording=recorder)
         cycles = Cycles(rover, notifier)
         machine = _build(settings, params, rover, opened, cycles.completed)
+        tape = recorder.tape if recorder else None
         try:
-            return await _drive(machine, settings.endpoints, int(params["MAV_SYSID"]), notifier, cycles)
+            return await _drive(machine, settings.endpoints, system, notifier, cycles, tape)
         except BaseException as error:
             machine.abandon(error, asyncio.get_running_loop().time())
             raise
@@ -177,8 +184,24 @@ class Cycles:
             self.ending.leave(leave)
 
 
-async def _drive(machine: Machine, endpoints: Sequence[str], system: int, notifier: Notifier, cycles: Cycles) -> int:
-    runner = Runner(machine, open_links(endpoints, system=system, component=COMPONENT, wanted=HEARD), period=PERIOD)
+def _recorder(settings: Settings, system: int, opened: contextlib.ExitStack) -> VehicleRecorder | None:
+    if settings.logs is None:
+        return None
+    recorder = VehicleRecorder(settings.logs, system=system, component=COMPONENT)
+    opened.callback(recorder.close)
+    return recorder
+
+
+async def _drive(
+    machine: Machine,
+    endpoints: Sequence[str],
+    system: int,
+    notifier: Notifier,
+    cycles: Cycles,
+    tape: Tape | None,
+) -> int:
+    links = open_links(endpoints, system=system, component=COMPONENT, wanted=HEARD)
+    runner = Runner(machine, links, period=PERIOD, tape=tape)
     ending = Ending(machine, runner, notifier.stopping)
     cycles.ending = ending
     ending.listen(asyncio.get_running_loop())

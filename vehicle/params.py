@@ -107,6 +107,12 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("MOT_TEST_MAX", 30, 0, 30, "%", "Largest throttle of DO_MOTOR_TEST and ACTUATOR_TEST; 0: no tests over "
               "the air", safety=True),
     Parameter("MOT_REV_DELAY", 0, 0, 1, "s", "Pause at zero before a motor reverses", safety=True),
+    # Logs
+    Parameter("LOG_BACKEND_TYPE", 1, 0, 1, "", "Telemetry logs of each drive: 0 none, 1 files", whole=True),
+    Parameter("LOG_DISARMED", 0, 0, 1, "", "0: record from arming until 15 s after disarming, 1: always", whole=True),
+    Parameter("LOG_MAX_FILES", 500, 2, 500, "", "More logs than this: the oldest is removed", whole=True),
+    Parameter("LOG_FILE_MB_FREE", 500, 10, 1000, "MB", "Less than this is free: the oldest logs are removed",
+              whole=True),
     # Shape
     Parameter("SPEED_MAX", 1.5, 0.1, 30, "m/s", "Top speed"),
     Parameter("TRACK_WIDTH", 0.35, 0.05, 5, "m", "Distance between left and right wheels"),

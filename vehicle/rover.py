@@ -10,7 +10,6 @@ from dialects.modes import Mode
 from link.core import LinkReport, Outgoing, Received
 from link.services import timesync
 from link.services.command import CommandServer
-from link.services.ftp_files import MemoryFolder
 from vehicle import status
 from vehicle.actuator_test import ActuatorTest
 from vehicle.bandwidth import Bandwidth
@@ -22,6 +21,7 @@ from vehicle.drive import Drive
 from vehicle.failsafe import Action
 from vehicle.fields import UINT8, UINT32, whole
 from vehicle.leaving import Leave
+from vehicle.logbook import Logbook, Recording
 from vehicle.modes import OFFERED
 from vehicle.navigator import Navigator
 from vehicle.orders import Orders
@@ -56,10 +56,12 @@ class Rover:
         wall_clock: float | None = None,
         keeper: Keeper | None = None,
         plan_keeper: PlanKeeper | None = None,
+        recording: Recording | None = None,
     ) -> None:
         """`now` is the monotonic time of boot; `wall_clock` the Unix time at `now`, None where it is not known.
 
         `keeper` remembers parameters that are set, `plan_keeper` plans; without them they end with the program.
+        `recording` writes logs.
         """
         self._params = params
         self._boot = now
@@ -105,11 +107,11 @@ class Rover:
             pacer=self._bandwidth.pacer,
             keeper=plan_keeper,
         )
+        self._logbook = Logbook(params, self._control, self._texts, lambda: self._safety.armed, recording)
         self._services = Services(
             params,
             self._control,
-            self._texts,
-            logs=MemoryFolder(),
+            self._logbook,
             missions=self._plans.folder(),
             ids=(self._system, COMPONENT),
             pacer=self._bandwidth.pacer,
@@ -164,6 +166,7 @@ class Rover:
         self._outgoing += self._param_service.tick(now)
         self._outgoing += self._services.tick(now)
         self._outgoing += self._plans.tick(now)
+        self._logbook.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves, about once a second."""
@@ -172,6 +175,7 @@ class Rover:
         self._bandwidth.observe(reports)
         self._telemetry.limit(self._bandwidth.telemetry)
         self._param_service.observe(now)
+        self._logbook.observe(now)
         for report in reports:
             self._outgoing.append(Outgoing(self._link_status(report)))
             for name in report.dialect_mismatch:

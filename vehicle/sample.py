@@ -45,7 +45,7 @@ SENSORS: dict[str, Any] = {
 TOP: dict[str, Any] = {
     "state": "/var/lib/mavhelm",
     "identity": {"system": 1},
-    "log": {"file": "/var/log/rover.log", "motors": "/tmp/motors.log"},
+    "log": {"file": "/var/log/rover.log", "motors": "/tmp/motors.log", "tlog": "/var/lib/mavhelm/logs"},
 }
 
 HEAD = """\

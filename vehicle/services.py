@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from dialects import messages as m
-from dialects.enums import Severity
 from link.core import Outgoing, Received
 from link.services import metadata
 from link.services.ftp_files import Folder, MadeFiles, Query, Tree
@@ -17,9 +16,9 @@ from link.services.log import LogServer
 from link.services.pacing import Pacer
 from link.services.param_pack import pack
 from vehicle.control import Control
+from vehicle.logbook import Logbook
 from vehicle.params import Params
 from vehicle.status import VERSION
-from vehicle.texts import Texts
 from vehicle.view import View
 
 VENDOR, MODEL = "mavhelm", "rover"
@@ -32,9 +31,8 @@ class Services:
         self,
         params: Params,
         control: Control,
-        texts: Texts,
+        logbook: Logbook,
         *,
-        logs: Folder,
         missions: Folder,
         ids: tuple[int, int],
         pacer: Pacer,
@@ -45,18 +43,19 @@ class Services:
         described = MadeFiles({name: _constant(data) for name, data in self._metadata.files.items()})
         packed = MadeFiles({"param.pck": lambda query: pack(table, params, query)})
         self._ftp = FtpServer(
-            Tree(described, {"@PARAM": packed, "logs": logs, "missions": missions}),
+            Tree(described, {"@PARAM": packed, "logs": logbook.folder(), "missions": missions}),
             system=system,
             component=component,
             pacer=pacer,
             allowed=lambda received: control.stranger(received.system) is None,
         )
         self._log = LogServer(
-            logs,
+            logbook.recording.folder,
             system=system,
             component=component,
             pacer=pacer,
-            say=lambda text, now: texts.say(Severity.NOTICE, text, now),
+            when=logbook.recording.when,
+            erase=logbook.erase,
         )
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:

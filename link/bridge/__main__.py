@@ -14,12 +14,13 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from link.bridge.bridge import Bridge
-from link.bridge.recorder import Recorder, RecorderError
+from link.bridge.recorder import RecorderError, record_to
 from link.bridge.screens import Screen, Teller, print_json
 from link.bridge.status import Status
 from link.endpoint import EndpointError, endpoint_help, parse
 from link.link import LinkError, Wire
 from link.openers import open_wires
+from link.recorder import Recorder
 
 log = logging.getLogger(__name__)
 
@@ -91,13 +92,13 @@ def _recorder(folder: Path | None, wires: Sequence[Wire], stack: ExitStack) -> R
     if folder is None:
         return None
     try:
-        recorder = Recorder(folder)
+        path, recorder = record_to(folder)
     except RecorderError:
         for wire in wires:
             wire.close()
         raise
     stack.callback(recorder.close)
-    log.info("recording to %s", recorder.path)
+    log.info("recording to %s", path)
     return recorder
 
 

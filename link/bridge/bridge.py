@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 
-from link.bridge.recorder import Recorder
 from link.bridge.status import Status, StatusMeter
 from link.link import Wire
+from link.recorder import Recorder
 from link.router import Delivery, Router
 
 TICK = 0.05
@@ -91,17 +90,18 @@ class Bridge:
         tape = self._router.tape
         if tape:
             self._router.tape = []
-            recorder.add(time.time_ns() // 1000, tape)
+            recorder.add(self._loop.time(), tape)
 
     def _tick(self) -> None:
         for delivery in self._router.tick(self._loop.time()):
             self._send(delivery)
         if self._recorder:
             self._record(self._recorder)
-            self._recorder.hand_over()
+            self._recorder.tick(self._loop.time())
 
     def _tell_status(self) -> None:
-        self._tell(self._meter.read(self._loop.time(), self._recorder.problem if self._recorder else None))
+        problem = self._recorder.problem if self._recorder else None
+        self._tell(self._meter.read(self._loop.time(), problem and f"recording: {problem}"))
 
     async def _every(self, period: float, step: Callable[[], None]) -> None:
         due = self._loop.time()

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from link.services.ftp import MAX_DATA, FtpError, FtpPacket, Op, crc32
-from link.services.ftp_files import Bytes, Content, Entry, Location, Tree
+from link.services.ftp_files import Bytes, Content, Entry, Location, NotYetError, Tree
 from link.services.ftp_sessions import Client, Session, Sessions
 
 CRC_PIECE = 64 * 1024
@@ -41,7 +41,10 @@ class Answers:
         if (question.request.size or 0) > MAX_DATA:
             return FtpError.INVALID_SIZE
         handler = _HANDLERS.get(question.request.op)
-        return handler(self, question, now) if handler else FtpError.UNKNOWN_COMMAND
+        try:
+            return handler(self, question, now) if handler else FtpError.UNKNOWN_COMMAND
+        except NotYetError:
+            return None
 
     # ---- sessions ----
 
@@ -93,13 +96,16 @@ class Answers:
             return FtpError.INVALID_SESSION
         if request.offset >= session.content.size:
             return FtpError.END_OF_FILE
-        return session.content.read(request.offset, request.size or MAX_DATA)
+        data = session.content.read(request.offset, request.size or MAX_DATA)
+        return FtpError.FAIL if data == b"" else data  # empty: it is gone
 
     def _crc(self, question: Question, now: float) -> Answer:
         content = question.content = question.content or self._find(question)
         if content is None:
             return FtpError.NOT_FOUND
         piece = content.read(question.offset, CRC_PIECE)
+        if piece == b"" and question.offset < content.size:
+            return FtpError.FAIL  # it is gone
         if piece is not None:
             question.crc, question.offset = crc32(piece, question.crc), question.offset + len(piece)
         return question.crc.to_bytes(4, "little") if question.offset >= content.size else None
@@ -148,8 +154,11 @@ class Answers:
         return None if data is None else place.folder.store(place.name, data) or b""
 
     def _remove(self, question: Question, now: float) -> Answer:
-        place = self._writable(question)
-        return place if isinstance(place, FtpError) else place.folder.remove(place.name) or b""
+        """A folder that is not written may still let files go, as logs."""
+        place = self._tree.find(question.request.data)
+        if place is None or not place.name or place.query:
+            return FtpError.NOT_FOUND
+        return (place.folder.remove(place.name) if question.allowed else FtpError.PROTECTED) or b""
 
     def _protected(self, question: Question, now: float) -> Answer:
         """The tree has the shape it has."""

@@ -35,8 +35,13 @@ class Content(Protocol):
         """Up to `size` bytes, fewer only at the end; None: not here yet, ask again at the next tick."""
 
 
+class NotYetError(Exception):
+    """The disk has not answered; the same question at a later tick gets its answer."""
+
+
 class Folder(Protocol):
-    """A provider of files. It is called inside the control loop: it must not wait for a disk."""
+    """A provider of files. It is called inside the control loop and must not wait for a disk: entries(), open()
+    and remove() may raise NotYetError."""
 
     def entries(self) -> Sequence[Entry]:
         """The files, in an order that stays."""

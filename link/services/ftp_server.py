@@ -117,6 +117,9 @@ class FtpServer:
         outgoing: list[Outgoing] = []
         while session.burst:
             data = session.content.read(session.burst.offset, session.burst.size)
+            if data == b"":
+                outgoing.append(_gone(session, session.burst))
+                break
             if not data or not self._pacer.take(session.client.peer, FRAME_OVERHEAD + len(data), now):
                 break
             session.used = now
@@ -133,6 +136,12 @@ def _piece(session: Session, burst: Burst, data: bytes) -> Outgoing:
     if complete:
         session.burst = None
     return _to(session.client, packet)
+
+
+def _gone(session: Session, burst: Burst) -> Outgoing:
+    """The file has ended before its size: somebody removed it."""
+    session.burst = None
+    return _to(session.client, FtpPacket(burst.sequence, Op.NAK, session.number, bytes([FtpError.FAIL]), 0, Op.BURST))
 
 
 def _ack(question: Question, data: bytes) -> Outgoing:

@@ -1,19 +1,21 @@
-"""The log protocol of a vehicle: lists and sends the files of a folder, by number; it never erases them.
+"""The log protocol of a vehicle: lists, sends and erases the files of a folder, by number.
 
 MAVLink FTP serves the same folder faster; this is for clients that know only LOG_REQUEST_LIST (MAVSDK, MAVProxy,
-QGroundControl). Numbers begin at 0, as QGroundControl expects of all but ArduPilot.
+QGroundControl). Numbers begin at 0, as QGroundControl expects of all but ArduPilot, and mean for each client what they
+meant in the last list that it asked for: the folder may have changed since.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from dialects import messages as m
 from link.core import Outgoing, Peer, Received
-from link.services.ftp_files import Content, Entry, Folder
+from link.services.ftp_files import Content, Entry, Folder, NotYetError
 from link.services.pacing import OVERHEAD, Pacer
 
 DATA_SIZE = 90
@@ -38,6 +40,11 @@ class _Wish(NamedTuple):
 class _Client:
     """What is on its way to one peer."""
 
+    logs: list[Entry] | None = None
+    """As it was told; None before it has asked."""
+    list_from: int | None = None
+    """Where the list begins that it waits for, and where it ends."""
+    list_to: int = 0
     listing: deque[m.LogEntry] = field(default_factory=deque)
     wishes: deque[_Wish] = field(default_factory=deque)
     content: Content | None = None
@@ -47,12 +54,12 @@ class _Client:
     @property
     def idle(self) -> bool:
         """Is nothing on its way?"""
-        return not self.listing and not self.wishes
+        return self.list_from is None and not self.listing and not self.wishes
 
 
 class LogServer:
-    """Answers for one system and component. `when` gives a log's Unix time in s, 0 where it is not known; `say` gets a
-    line for the driver."""
+    """Answers for one system and component. `when` gives a log's Unix time in s, 0 where it is not known; `erase` is
+    handed every wish to erase all logs."""
 
     def __init__(
         self,
@@ -62,61 +69,72 @@ class LogServer:
         component: int,
         pacer: Pacer,
         when: Callable[[str], int] = lambda name: 0,
-        say: Callable[[str, float], None] = lambda text, now: None,
+        erase: Callable[[Received, float], None] = lambda received, now: None,
     ) -> None:
         self._logs = logs
         self._ids = (system, component)
         self._pacer = pacer
         self._when = when
-        self._say = say
+        self._erase = erase
         self._clients: dict[Peer, _Client] = {}
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Take one message; nothing where it is not for us or its sender may not ask. Answers come by
-        tick()."""
+        """Take one message; nothing where it is not for us or its sender may not ask. All answers come by tick()."""
         message = received.message
         if not received.may_ask or getattr(message, "target_system", 0) != self._ids[0]:
             return []
         if getattr(message, "target_component", 0) not in (0, self._ids[1]):
             return []
         match message:
-            case m.LogRequestList():
-                self._list(message, received.peer)
-            case m.LogRequestData():
-                return self._want(message, received.peer)
-            case m.LogRequestEnd():
-                self._clients.pop(received.peer, None)
+            case m.LogRequestList() if client := self._client(received.peer):
+                client.list_from, client.list_to = message.start, message.end
+            case m.LogRequestData() if client := self._client(received.peer):
+                wish = _Wish(message.id, message.ofs, message.ofs + message.count)
+                if wish not in client.wishes and len(client.wishes) < MAX_WISHES:
+                    client.wishes.append(wish)
+            case m.LogRequestEnd() if client := self._clients.get(received.peer):
+                self._clients[received.peer] = _Client(client.logs)
             case m.LogErase():
-                self._say("Logs are not erased over the air", now)
+                self._erase(received, now)
         return []
 
     def tick(self, now: float) -> list[Outgoing]:
-        """The next entries and data of all clients, as far as the links have room."""
+        """The next entries and data of all clients, as far as the disk has brought them and the links have room."""
         outgoing: list[Outgoing] = []
-        for peer, client in list(self._clients.items()):
-            while client.listing and self._pacer.take(peer, LIST_FRAME, now):
-                outgoing.append(Outgoing(client.listing.popleft(), peer))
-            while client.wishes and (data := self._next(client)) and self._pacer.take(peer, DATA_FRAME, now):
-                outgoing.append(Outgoing(self._sent(client, data), peer))
-            if client.idle:
-                del self._clients[peer]
+        for peer, client in self._clients.items():
+            if not client.idle:
+                outgoing += [Outgoing(message, peer) for message in self._next_messages(peer, client, now)]
         return outgoing
+
+    def _next_messages(self, peer: Peer, client: _Client, now: float) -> Iterator[m.Message]:
+        with suppress(NotYetError):
+            self._make_list(client)
+            while client.listing and self._pacer.take(peer, LIST_FRAME, now):
+                yield client.listing.popleft()
+            while client.wishes and (data := self._next_data(client)) and self._pacer.take(peer, DATA_FRAME, now):
+                yield self._sent(client, data)
 
     def _entries(self) -> list[Entry]:
         return [entry for entry in self._logs.entries() if entry.size is not None][:MAX_LOGS]
 
     def _client(self, peer: Peer) -> _Client | None:
+        """The known one, or a new one in the place of one that wants nothing; None where all want something."""
         if peer not in self._clients and len(self._clients) >= MAX_CLIENTS:
-            return None
+            leaving = next((each for each, client in self._clients.items() if client.idle), None)
+            if leaving is None:
+                return None
+            del self._clients[leaving]
         return self._clients.setdefault(peer, _Client())
 
-    def _list(self, message: m.LogRequestList, peer: Peer) -> None:
-        client = self._client(peer)
-        if client is None:
+    def _make_list(self, client: _Client) -> None:
+        """What it asked for. Only a list from its beginning is a new numbering: a part fills what got lost of one."""
+        start = client.list_from
+        if start is None:
             return
-        logs = self._entries()
+        logs = client.logs = self._entries() if start == 0 or client.logs is None else client.logs
+        client.list_from = None
         last = max(0, len(logs) - 1)
-        chosen = range(message.start, min(message.end, last) + 1) if logs else range(0)
+        chosen = range(start, min(client.list_to, last) + 1) if logs else range(0)
         client.listing = deque(
             m.LogEntry(number, len(logs), last, self._when(logs[number].name), logs[number].size or 0)
             for number in chosen
@@ -124,28 +142,19 @@ class LogServer:
         if not logs:
             client.listing.append(m.LogEntry(0, 0, 0, 0, 0))
 
-    def _want(self, message: m.LogRequestData, peer: Peer) -> list[Outgoing]:
-        logs, client = self._entries(), self._client(peer)
-        if client is None:
-            return []
-        if message.id >= len(logs):
-            return [Outgoing(_data(message.id, message.ofs, b""), peer)]
-        wish = _Wish(message.id, message.ofs, message.ofs + message.count)
-        if wish not in client.wishes and len(client.wishes) < MAX_WISHES:
-            client.wishes.append(wish)
-        return []
-
-    def _next(self, client: _Client) -> m.LogData | None:
-        """The next data of the first wish; None while the disk has not brought it."""
+    def _next_data(self, client: _Client) -> m.LogData | None:
+        """The next data of the first wish; None while the disk has not brought it. Raises NotYetError."""
         wish = client.wishes[0]
         if client.content is None:
-            logs = self._entries()
-            client.content = self._logs.open(logs[wish.log].name, {}) if wish.log < len(logs) else None
-            client.at = wish.start
+            client.content, client.at = self._open(client, wish.log), wish.start
         if client.content is None:
             return _data(wish.log, wish.start, b"")
         data = client.content.read(client.at, max(0, min(DATA_SIZE, wish.end - client.at)))
         return None if data is None else _data(wish.log, client.at, data)
+
+    def _open(self, client: _Client, number: int) -> Content | None:
+        logs = client.logs = self._entries() if client.logs is None else client.logs
+        return self._logs.open(logs[number].name, {}) if number < len(logs) else None
 
     @staticmethod
     def _sent(client: _Client, data: m.LogData) -> m.LogData:

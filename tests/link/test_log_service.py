@@ -1,4 +1,4 @@
-"""The log protocol: a list, the bytes of a log, and nothing is ever erased."""
+"""The log protocol: a list, the bytes of a log, and who wants all of them erased."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Vehicle:
     files: dict[str, bytes] = field(default_factory=lambda: {"0.bin": LOG, "1.bin": b"", "2.bin": bytes(180)})
     rate: float = 1e6
     slow: bool = False
-    said: list[str] = field(default_factory=list)
+    erasers: list[int] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.server = LogServer(
@@ -35,7 +35,7 @@ class Vehicle:
             component=1,
             pacer=Pacer(lambda peer: self.rate),
             when=lambda name: 1_700_000_000,
-            say=lambda text, now: self.said.append(text),
+            erase=lambda received, now: self.erasers.append(received.system),
         )
 
     def ask(self, message: m.Message, now: float = 0.0, ticks: int = 100, **who: Any) -> list[Any]:
@@ -123,11 +123,32 @@ def test_two_peers_do_not_mix() -> None:
     assert [message.id for message in messages(sent)] == [0, 2]
 
 
-def test_logs_are_never_erased() -> None:
+def test_who_wants_to_erase_all_is_told_on() -> None:
     vehicle = Vehicle()
     assert vehicle.ask(m.LogErase(1, 1)) == []
-    assert len(vehicle.said) == 1
+    assert vehicle.ask(m.LogErase(2, 1)) == []
+    assert vehicle.erasers == [255]
     assert len(vehicle.files) == 3
+
+
+def test_numbers_mean_what_they_meant_in_the_list() -> None:
+    """The oldest log goes and a new one comes while somebody downloads."""
+    vehicle = Vehicle()
+    assert len(vehicle.ask(m.LogRequestList(1, 1, 0, 0xFFFF))) == 3
+    del vehicle.files["0.bin"]
+    vehicle.files["3.bin"] = bytes(10)
+    assert content(vehicle.ask(m.LogRequestData(1, 1, 2, 0, 0xFFFF_FFFF))) == bytes(180)
+    assert content(vehicle.ask(m.LogRequestData(1, 1, 0, 0, 0xFFFF_FFFF))) == b""
+    assert [each.size for each in vehicle.ask(m.LogRequestList(1, 1, 1, 1))] == [0]
+    assert [each.size for each in vehicle.ask(m.LogRequestList(1, 1, 0, 1))] == [0, 180]
+    assert content(vehicle.ask(m.LogRequestData(1, 1, 2, 0, 0xFFFF_FFFF))) == bytes(10)
+
+
+def test_many_clients_may_come_one_after_the_other() -> None:
+    vehicle = Vehicle()
+    for number in range(MAX_CLIENTS * 3):
+        peer = PEER._replace(address=number)
+        assert len(vehicle.ask(m.LogRequestList(1, 1, 0, 0xFFFF), peer=peer)) == 3
 
 
 @pytest.mark.parametrize(

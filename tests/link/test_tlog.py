@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects.messages import Attitude, Heartbeat
-from link.bridge.recorder import Recorder, RecorderError
+from link.bridge.recorder import RecorderError, record_to
 from link.tlog import Record, read, record
 from tests.link.frames import demand, frame, heartbeat, version_1
 from tests.link.test_router import unknown
@@ -63,23 +62,24 @@ def test_any_bytes_are_read_without_raising(soup: bytes) -> None:
     assert len(found) > 90
 
 
-# ---- the recorder ----
+# ---- the bridge's recorder ----
 
 
 def test_a_session_is_one_file_and_pymavlink_reads_it(tmp_path: Path) -> None:
-    recorder = Recorder(tmp_path / "logs")
-    second = Recorder(tmp_path / "logs")
+    path, recorder = record_to(tmp_path / "logs")
+    other, second = record_to(tmp_path / "logs")
     for number, raw in enumerate(FRAMES):
-        recorder.add(START + number * 1000, [raw, heartbeat(number)])
-        recorder.hand_over()
+        recorder.add(100.0 + number * 0.02, [raw, heartbeat(number)])
+        recorder.tick(100.0 + number * 0.02)
     recorder.close()
     second.close()
-    assert second.path != recorder.path
-    assert [each.raw for each in read(recorder.path.read_bytes())][::2] == FRAMES
-    assert _read_by_pymavlink(recorder.path) == [("ATTITUDE", 1), ("HEARTBEAT", 255)] * 100
+    assert other != path
+    assert [each.raw for each in read(path.read_bytes())][::2] == FRAMES
+    assert read_by_pymavlink(path) == [("ATTITUDE", 1), ("HEARTBEAT", 255)] * 100
 
 
-def _read_by_pymavlink(path: Path) -> list[tuple[str, int]]:
+def read_by_pymavlink(path: Path) -> list[tuple[str, int]]:
+    """Kind and system of each message."""
     from pymavlink import mavutil
 
     log = mavutil.mavlink_connection(str(path))  # type: ignore[no-untyped-call]
@@ -93,15 +93,4 @@ def _read_by_pymavlink(path: Path) -> list[tuple[str, int]]:
 def test_nowhere_to_record_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(RecorderError, match=r"--tlog .*file"):
-        Recorder(tmp_path / "file")
-
-
-def test_a_full_disk_ends_the_recording_and_nothing_else(tmp_path: Path) -> None:
-    recorder = Recorder(tmp_path)
-    with open("/dev/full", "wb") as full:
-        os.dup2(full.fileno(), recorder._file.fileno())
-    recorder.add(START, FRAMES)
-    recorder.close()
-    assert "No space left" in (recorder.problem or "")
-    recorder.add(START, FRAMES)
-    recorder.hand_over()
+        record_to(tmp_path / "file")

@@ -11,6 +11,7 @@ from dialects.axes import Axes, manual_control
 from dialects.enums import Autopilot, Command, Result, Type
 from dialects.modes import Mode
 from link.core import Peer, Received
+from vehicle.logbook import Recording
 from vehicle.params import Params
 from vehicle.plans import PlanKeeper
 from vehicle.readings import Computer, Readings
@@ -39,9 +40,12 @@ class Bench:
     plans: PlanKeeper | None = None
     """What keeps its plans; a class of its own may have one."""
 
+    recording: Recording | None = None
+    """What writes its logs."""
+
     def __init__(self, now: float = 100.0, **params: float) -> None:
         self.now = now
-        self.rover = Rover(Params(params), now=now, plan_keeper=self.plans)
+        self.rover = Rover(Params(params), now=now, plan_keeper=self.plans, recording=self.recording)
         self.readings = Readings()
         self.sent: list[m.Message] = []
         self.peers: list[Peer | None] = []

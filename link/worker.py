@@ -1,0 +1,50 @@
+"""A thread for what may take long, such as a disk: jobs go in, in order, and whoever hands them over never waits."""
+
+from __future__ import annotations
+
+import logging
+import queue
+import threading
+from collections.abc import Callable
+
+log = logging.getLogger(__name__)
+
+Job = Callable[[], None]
+
+
+class Worker:
+    """Runs jobs one after the other. The thread begins with the first job and does not keep the program from ending."""
+
+    def __init__(self, name: str, limit: int) -> None:
+        """`limit`: jobs that may wait."""
+        self._name = name
+        self._jobs: queue.Queue[Job | None] = queue.Queue(limit)
+        self._thread: threading.Thread | None = None
+
+    def put(self, job: Job) -> bool:
+        """Have it run; False where too much waits already."""
+        try:
+            self._jobs.put_nowait(job)
+        except queue.Full:
+            return False
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._work, name=self._name, daemon=True)
+            self._thread.start()
+        return True
+
+    def close(self, patience: float) -> None:
+        """Run what waits and end, for at most `patience` s; a disk that takes longer is broken."""
+        if self._thread is None:
+            return
+        try:
+            self._jobs.put(None, timeout=patience)
+        except queue.Full:
+            return
+        self._thread.join(patience)
+
+    def _work(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            try:
+                job()
+            except Exception:
+                log.exception("a job of the thread %r failed", self._name)
