@@ -19,7 +19,17 @@ from vehicle.navigator import USUAL_SPEED, Navigator
 from vehicle.params import Params
 from vehicle.place import Home
 from vehicle.safety import Safety
-from vehicle.setpoints import Place, Refusal, Setpoint, Target, attitude_target, globe_point, position_target
+from vehicle.setpoints import (
+    OLDEST,
+    Place,
+    Refusal,
+    SenderClock,
+    Setpoint,
+    Target,
+    attitude_target,
+    globe_point,
+    position_target,
+)
 from vehicle.texts import Texts
 
 GLOBAL_FRAMES = (0, 3, 5, 6)
@@ -30,9 +40,6 @@ AIRSPEED, GROUNDSPEED = 0, 1
 """SPEED_TYPE; a rover's are the same."""
 KEEP_SPEED = -1
 """A speed of DO_CHANGE_SPEED and DO_REPOSITION that is none."""
-REORDERED = 1.0
-"""s; a setpoint whose sender's clock went back is an old one, unless nothing came for so long: then the sender has
-started anew."""
 
 
 class Orders:
@@ -45,7 +52,8 @@ class Orders:
         self._asking = Asking(control, texts)
         self._navigator = navigator
         self._texts = texts
-        self._newest: tuple[int, float] = (0, -math.inf)
+        self._clock = SenderClock()
+        self._epoch = -1
 
     def handlers(self) -> dict[int, Handler]:
         """The table for link.services.command.CommandServer."""
@@ -66,9 +74,11 @@ class Orders:
         system = self._control.system
         if message.target_system not in (0, system) or message.target_component not in (0, 1):
             return False
-        if not received.introduced or self._is_old(message.time_boot_ms, now):
+        if not received.introduced:
             return False
-        target = self._target(received, message)
+        target = self._unwanted(received) or self._timed(message, now)
+        if target is None:  # overtaken by a newer one
+            return False
         if isinstance(target, Refusal):
             key = f"setpoint {received.system} {target.why}"
             text = f"Setpoint of GCS {received.system} ignored: {target.why}"
@@ -79,25 +89,31 @@ class Orders:
         self._safety.begin()
         return True
 
-    def _target(self, received: Received, message: Setpoint) -> Target | Refusal:
+    def _unwanted(self, received: Received) -> Refusal | None:
         if self._control.owner != received.system:
             return Refusal(self._control.stranger(received.system) or "nobody is in control, arm to take it")
         if self._safety.mode is not Mode.GUIDED:
             return Refusal(f"mode is {self._safety.mode.name}, not GUIDED")
         if not self._safety.armed:
             return Refusal("not armed")
+        return None
+
+    def _timed(self, message: Setpoint, now: float) -> Target | Refusal | None:
+        """None for one that was overtaken. A clock is learnt anew with each choice of a mode, and arming."""
+        if self._epoch != self._safety.epoch:
+            self._epoch = self._safety.epoch
+            self._clock = SenderClock()
+        age = self._clock.age(message.time_boot_ms, now)
+        if age is None:
+            return None
+        return Refusal("it is old, by its sender's clock") if age > OLDEST else self._target(message)
+
+    def _target(self, message: Setpoint) -> Target | Refusal:
         if isinstance(message, m.SetAttitudeTarget):
             return attitude_target(message, self._navigator.cruise())
         target = position_target(message, self._navigator.estimate)
         beyond = self._navigator.trespass(target.point) if isinstance(target, Place) else 0.0
         return Refusal("it lies beyond the fence") if beyond else target
-
-    def _is_old(self, boot_ms: int, now: float) -> bool:
-        newest, at = self._newest
-        if newest - boot_ms > 0 and now - at < REORDERED:
-            return True
-        self._newest = (boot_ms, now)
-        return False
 
     # Commands
 

@@ -25,6 +25,15 @@ POSITION, VELOCITY, ACCELERATION, FORCE, YAW, YAW_RATE = 1 | 2, 8 | 16, 64 | 128
 """POSITION_TARGET_TYPEMASK: a bit that is set says "ignore"."""
 ATTITUDE_YAW_RATE, ATTITUDE_THRUST, ATTITUDE_Q = 4, 64, 128
 """ATTITUDE_TARGET_TYPEMASK."""
+OLDEST = 1.0
+"""s; an older setpoint is not driven by (bad input 47)."""
+REORDERED = 1.0
+"""s; a setpoint whose sender's clock went back was overtaken, unless nothing came for so long: then the sender has
+started anew."""
+CLOCK_DRIFT = 5e-4
+"""s/s by which a sender's clock may be slower than ours; a crystal's is a tenth of it."""
+WRAP = 2**32
+"""ms; where time_boot_ms begins again."""
 FARTHEST = 1e5
 """m; a place beyond is no place for a rover."""
 
@@ -53,6 +62,37 @@ class Refusal:
     """Why a setpoint is none."""
 
     why: str
+
+
+class SenderClock:
+    """How old a sender's setpoints are when they arrive, against the fastest of them.
+
+    No clocks have to agree: what waited in a radio or a socket is late against what did not. The two ways of TIMESYNC
+    would know no more, because time_boot_ms is another clock than the one that it compares.
+    """
+
+    def __init__(self) -> None:
+        self._newest = 0
+        self._at = -math.inf
+        self._least = math.inf
+        """Least difference of the two clocks seen, s."""
+
+    def age(self, boot_ms: int, now: float) -> float | None:
+        """s; None for one that was overtaken. 0 where the sender has no clock: many scripts send 0."""
+        if not boot_ms:
+            return 0.0
+        ahead = (boot_ms - self._newest + WRAP // 2) % WRAP - WRAP // 2
+        quiet = now - self._at
+        if ahead < 0 and quiet < REORDERED:
+            return None
+        if not math.isfinite(quiet) or ahead < 0:
+            self._least, unwrapped = math.inf, boot_ms
+        else:
+            self._least, unwrapped = self._least + CLOCK_DRIFT * quiet, self._newest + ahead
+        self._newest, self._at = unwrapped, now
+        difference = now - unwrapped / 1000
+        self._least = min(self._least, difference)
+        return difference - self._least
 
 
 Setpoint = m.SetPositionTargetLocalNed | m.SetPositionTargetGlobalInt | m.SetAttitudeTarget
