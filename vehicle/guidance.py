@@ -24,6 +24,8 @@ CRAWL = 0.12
 """m/s: the slowest approach; more than what an encoder can just see."""
 PIVOTED = math.radians(5)
 """rad; a pivot ends this near its heading."""
+GRAVITY = 9.81
+"""m/s/s"""
 STOPPED_SHORT = 0.15
 """m from a point where the rover is to stand: closer than its own length, and than the GPS knows."""
 
@@ -76,9 +78,11 @@ class Guide:
         ahead = max(LOOKAHEAD, LOOKAHEAD_TIME * abs(estimate.speed or 0.0))
         tangent = centre.bearing(estimate.place) + side * math.pi / 2
         inward = side * math.atan2(out, ahead)
-        motion = self.head(tangent + inward, estimate, speed)
+        motion = self.head(tangent + inward, estimate, min(speed, math.sqrt(self._grip * abs(radius))))
         turning = side * motion.speed / max(abs(radius), LOOKAHEAD)  # the circle itself, besides the error
-        return Motion(motion.speed, self._limited(motion.turn_rate + turning)) if not self._pivoting else motion
+        if self._pivoting:
+            return motion
+        return Motion(motion.speed, self.limited(motion.turn_rate + turning, motion.speed, estimate))
 
     def head(self, course: float, estimate: Estimate, speed: float) -> Motion:
         """On a course, at up to `speed` m/s as far as the course is ahead."""
@@ -89,14 +93,15 @@ class Guide:
             return Motion(0.0, clamp(self._params["ATC_STR_ANG_P"] * error, rate))
         slowed = max(CRAWL, speed * math.cos(error)) if abs(error) < math.pi / 2 else CRAWL
         along = min(speed, slowed)
-        return Motion(-along if self.reverse else along, self._limited(self._params["ATC_STR_ANG_P"] * error))
+        motion = -along if self.reverse else along
+        return Motion(motion, self.limited(self._params["ATC_STR_ANG_P"] * error, motion, estimate))
 
     def steer(self, heading: float, estimate: Estimate, speed: float) -> Motion:
         """Nose on a heading, forward or, with a negative speed, backward; stops for a sharp turn where it can pivot."""
         error = wrap(heading - (estimate.yaw or 0.0))
         if self._must_pivot(error):
             return self.pivot(heading, estimate)
-        return Motion(speed, self._limited(self._params["ATC_STR_ANG_P"] * error))
+        return Motion(speed, self.limited(self._params["ATC_STR_ANG_P"] * error, speed, estimate))
 
     def pivot(self, heading: float, estimate: Estimate) -> Motion:
         """Turn on the spot to a heading; STAND once there, and where the wheels cannot do it."""
@@ -120,8 +125,16 @@ class Guide:
         self._pivoting = self._pivots and abs(error) > (PIVOTED if self._pivoting else self._pivot_angle)
         return self._pivoting
 
-    def _limited(self, rate: float) -> float:
-        return clamp(rate, math.radians(self._params["ATC_STR_RAT_MAX"]))
+    def limited(self, rate: float, speed: float, estimate: Estimate) -> float:
+        """A turn rate, cut to ATC_STR_RAT_MAX and to what ATC_TURN_MAX_G allows at this speed."""
+        fastest = max(abs(speed), abs(estimate.speed or 0.0))
+        largest = math.radians(self._params["ATC_STR_RAT_MAX"])
+        return clamp(rate, min(largest, self._grip / fastest) if fastest else largest)
+
+    @property
+    def _grip(self) -> float:
+        """m/s/s to the side at most."""
+        return self._params["ATC_TURN_MAX_G"] * GRAVITY
 
 
 def arrived(leg: Leg, place: Point, radius: float) -> bool:

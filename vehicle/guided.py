@@ -63,7 +63,7 @@ class Guided:
     def _hold(self, course: Course, speed: float, estimate: Estimate) -> Motion:
         if course.heading is not None:
             return self._guide.steer(course.heading, estimate, speed)
-        return Motion(speed, clamp(course.turn_rate or 0.0, math.radians(self._params["ATC_STR_RAT_MAX"])))
+        return Motion(speed, self._guide.limited(course.turn_rate or 0.0, speed, estimate))
 
     def _go(self, place: Place, estimate: Estimate, speed: float) -> Motion:
         if self._leg is None or arrived(self._leg, estimate.place, STOPPED_SHORT):

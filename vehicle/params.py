@@ -92,6 +92,8 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("ATC_SPEED_I", 0.2, 0, 2, "", "... and for each m that was missed"),
     Parameter("ATC_STR_ANG_P", 2, 0.5, 10, "", "rad/s for each rad off the course"),
     Parameter("ATC_STR_RAT_MAX", 120, 10, 720, "deg/s", "Largest turn rate while driving by itself"),
+    Parameter("ATC_TURN_MAX_G", 0.6, 0.1, 10, "g", "Largest sideways acceleration while driving by itself; "
+              "rovers that may tip need less"),
     Parameter("ATC_STR_RAT_P", 0.1, 0, 2, "", "Steering for each rad/s that is missing"),
     Parameter("ATC_STR_RAT_I", 0.2, 0, 2, "", "... and for each rad that was missed"),
     Parameter("ATC_STR_RAT_FF", 0.23, 0, 3, "", "Steering for each rad/s that is wanted"),
