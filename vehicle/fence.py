@@ -39,6 +39,10 @@ class Fence:
     def __init__(self, params: Params) -> None:
         self.damage: str | None = None
         """Why the kept fence is lost: where it was nobody knows, so that it is no fence that counts."""
+        self.breaches = 0
+        """How often the rover has gone beyond it."""
+        self.breached_at: float | None = None
+        """When it did so last."""
         self._params = params
         self._items: Items = ()
         self._areas: list[Area] = []

@@ -55,6 +55,10 @@ class Guide:
     def __init__(self, params: Params, kind: DriveType) -> None:
         self.reverse = False
         """Drive backwards along the path."""
+        self.leg: Leg | None = None
+        """The line it follows; None where it follows none."""
+        self.course: float | None = None
+        """rad; where it steers."""
         self._params = params
         self._pivots = kind is not DriveType.ACKERMANN
         self._pivoting = False
@@ -62,9 +66,11 @@ class Guide:
     def begin(self) -> None:
         """Another path: a pivot that was under way is not wanted any more."""
         self._pivoting = False
+        self.leg = self.course = None
 
     def follow(self, leg: Leg, estimate: Estimate, speed: float, end_speed: float) -> Motion:
         """Along a leg with up to `speed` m/s, and `end_speed` at its end."""
+        self.leg = leg
         remaining, beside = leg.beside(estimate.place)
         ahead = max(LOOKAHEAD, LOOKAHEAD_TIME * abs(estimate.speed or 0.0))
         braking = math.sqrt(end_speed**2 + 2.0 * self._params["ATC_DECEL_MAX"] * max(0.0, remaining))
@@ -86,6 +92,7 @@ class Guide:
 
     def head(self, course: float, estimate: Estimate, speed: float) -> Motion:
         """On a course, at up to `speed` m/s as far as the course is ahead."""
+        self.course = course
         nose = (estimate.yaw or 0.0) + (math.pi if self.reverse else 0.0)
         error = wrap(course - nose)
         if self._must_pivot(error):
@@ -98,6 +105,7 @@ class Guide:
 
     def steer(self, heading: float, estimate: Estimate, speed: float) -> Motion:
         """Nose on a heading, forward or, with a negative speed, backward; stops for a sharp turn where it can pivot."""
+        self.course = heading
         error = wrap(heading - (estimate.yaw or 0.0))
         if self._must_pivot(error):
             return self.pivot(heading, estimate)

@@ -14,10 +14,6 @@ from vehicle.estimator import Estimate
 from vehicle.fields import INT16, INT32, UINT8, UINT16, real, whole
 from vehicle.view import View
 
-ABSOLUTE = 0
-"""MAV_FRAME_GLOBAL"""
-ONLY_POSITION = 0xDF8
-"""POSITION_TARGET_TYPEMASK: everything else is to be ignored."""
 RSSI_UNKNOWN = 255
 
 
@@ -84,19 +80,6 @@ def global_position_int(view: View) -> m.Message | None:
         vz=0,
         hdg=_heading(view.estimate, 100.0, unknown=m.UINT16_MAX),
     )
-
-
-def position_target(view: View) -> m.Message | None:
-    """POSITION_TARGET_GLOBAL_INT: where a mode that drives by itself goes."""
-    goal, origin = view.navigator.goal(view.safety.mode), view.estimate.origin
-    if goal is None or origin is None:
-        return None
-    latitude, longitude = origin.globe(goal)
-    return m.PositionTargetGlobalInt(
-        time_boot_ms=view.boot_ms, coordinate_frame=ABSOLUTE, type_mask=ONLY_POSITION,
-        lat_int=whole(latitude, INT32, 1e7), lon_int=whole(longitude, INT32, 1e7), alt=real(view.readings.altitude),
-        vx=0.0, vy=0.0, vz=0.0, afx=0.0, afy=0.0, afz=0.0, yaw=0.0, yaw_rate=0.0,
-    )  # fmt: skip
 
 
 def estimator_status(view: View) -> m.Message:

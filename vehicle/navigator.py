@@ -31,7 +31,7 @@ from vehicle.plan_runner import Mission, Progress
 from vehicle.rally import Havens
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety import Safety
-from vehicle.setpoints import Target
+from vehicle.setpoints import Course, Target
 
 FENCE_PERIOD = 0.1
 """s; at 1.5 m/s a rover is 15 cm beyond by then."""
@@ -75,6 +75,8 @@ class Navigator:
         """What the mode wants now; None where it wants nothing, or drives not by itself."""
         self.ended: str | None = None
         """Why the mode has nothing more to do."""
+        self.wanted: Motion | None = None
+        """What the mode wants, before it is a demand."""
         self.paused = False
         self.speed: float | None = None
         """m/s that somebody asked for instead of WP_SPEED."""
@@ -116,6 +118,11 @@ class Navigator:
         behaviour = self._behaviours.get(mode)
         return behaviour.goal if behaviour else None
 
+    def course(self, mode: Mode) -> Course | None:
+        """The velocity that somebody asks for in GUIDED, while it counts."""
+        target = self.guided.target if mode is Mode.GUIDED and self.wanted is not None else None
+        return target if isinstance(target, Course) else None
+
     def sense(self, readings: Readings, now: float) -> None:
         """Take the readings of this cycle; the first place on the globe is home."""
         self._readings = readings
@@ -124,7 +131,12 @@ class Navigator:
             self.home = Home(*estimate.globe, readings.altitude or 0.0, *estimate.place)
         if now >= self._fence_due:
             self._fence_due = now + FENCE_PERIOD
-            self.beyond = self.trespass(estimate.place) if estimate.good else 0.0
+            self._watch_fence(estimate, now)
+
+    def _watch_fence(self, estimate: Estimate, now: float) -> None:
+        before, self.beyond = self.beyond, self.trespass(estimate.place) if estimate.good else 0.0
+        if self.beyond and not before:
+            self.fence.breaches, self.fence.breached_at = self.fence.breaches + 1, now
 
     def trespass(self, place: Point) -> float:
         """m that a place lies beyond the fence; 0 within."""
@@ -187,11 +199,11 @@ class Navigator:
         self.renew(safety, now)
         behaviour = self._behaviours.get(safety.mode)
         self._remember(safety)
-        motion = self._motion(behaviour, now) if behaviour and safety.cleared else None
-        if motion is None:
+        self.wanted = self._motion(behaviour, now) if behaviour and safety.cleared else None
+        if self.wanted is None:
             self.demand = None
             return
-        throttle, steering = self._pilot.step(motion, self.estimate, now)
+        throttle, steering = self._pilot.step(self.wanted, self.estimate, now)
         self.demand = Demand(throttle, steering, now, 0, 0, direct=True)
 
     def acro(self, demand: Demand | None, now: float) -> Demand | None:

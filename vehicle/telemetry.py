@@ -10,7 +10,7 @@ from dialects.codec import MAX_FRAME
 from dialects.enums import DataStream
 from link.rate import TokenBucket
 from link.services.pacing import OVERHEAD
-from vehicle import computer, motion, status
+from vehicle import computer, goals, motion, status
 from vehicle.view import View
 
 FASTEST = 0.02
@@ -79,8 +79,13 @@ STREAMS: tuple[Stream, ...] = (
     Stream(m.LocalPositionNed, 4, motion.local_position_ned, DataStream.POSITION),
     Stream(m.GlobalPositionInt, 2, motion.global_position_int, DataStream.POSITION),
     Stream(m.EstimatorStatus, 1, motion.estimator_status, DataStream.EXTENDED_STATUS),
-    Stream(m.PositionTargetGlobalInt, 1, motion.position_target, DataStream.POSITION,
+    Stream(m.PositionTargetGlobalInt, 1, goals.position_target_global, DataStream.POSITION,
            change=lambda view: view.navigator.goal(view.safety.mode)),
+    Stream(m.PositionTargetLocalNed, 1, goals.position_target_local, DataStream.POSITION,
+           change=lambda view: view.navigator.goal(view.safety.mode)),
+    Stream(m.NavControllerOutput, 2, goals.nav_controller_output, DataStream.EXTENDED_STATUS),
+    Stream(m.FenceStatus, 1, goals.fence_status, DataStream.EXTENDED_STATUS,
+           change=lambda view: (view.navigator.fence.enabled, view.navigator.beyond > 0.0)),
     Stream(m.ServoOutputRaw, 2, motion.servo_output_raw, DataStream.RC_CHANNELS),
     Stream(m.RcChannels, 2, motion.rc_channels, DataStream.RC_CHANNELS),
     Stream(m.HomePosition, 0.5, status.home_position, change=lambda view: view.home),
