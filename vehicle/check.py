@@ -19,6 +19,7 @@ from vehicle.sensors.encoders import Encoders
 from vehicle.sensors.gps import Gpsd
 from vehicle.sensors.pi_health import PiHealth
 from vehicle.sensors.power import PowerMonitor
+from vehicle.settled import Settled, settled
 
 GPS_WAIT = 3.0
 """s for a first report: gpsd answers at once, receivers give one each second."""
@@ -40,17 +41,19 @@ class Finding:
         return f"{'ok  ' if self.well else 'FAIL'}  {self.item}: {self.seen}"
 
 
-def findings(path: str) -> Iterator[Finding]:
-    """Item by item as they are tried; the file alone where it has mistakes."""
+def findings(path: str, state: str | None = None) -> Iterator[Finding]:
+    """Item by item as they are tried; the file alone where it has mistakes. `state`: folder of kept parameters."""
     try:
         config = load(path)
     except ConfigError as error:
         yield from (Finding("settings", False, problem, mistake=True) for problem in error.problems)
         return
     yield Finding("settings", True, path)
+    known = settled(config, state)
+    yield _parameters(config, known)
     yield from _links(config)
     if config.motors:
-        yield _tried("motors", lambda: _motors(config))
+        yield _tried("motors", lambda: _motors(config, known.params))
     else:
         yield Finding("motors", False, 'none; add [motors] and driver = "NAME"', mistake=True)
     sensors = config.sensors
@@ -94,9 +97,16 @@ def _link(endpoint: str) -> str:
     return "opens"
 
 
-def _motors(config: Config) -> str:
-    kind = DriveType(int(Params(config.params)["DRIVE_TYPE"]))
-    wanted = len(MIXERS[kind].motors)
+def _parameters(config: Config, known: Settled) -> Finding:
+    problem = known.damage or "; ".join(f"a kept one is not used: {each}" for each in known.left_out)
+    seen = f"{len(config.params)} from the file, {known.kept} kept in {known.folder}"
+    return Finding("parameters", not problem, f"{seen}: {problem}" if problem else seen)
+
+
+def _motors(config: Config, params: Params) -> str:
+    kind = DriveType(int(params["DRIVE_TYPE"]))
+    names = MIXERS[kind].motors
+    wanted = len(names)
     with contextlib.ExitStack() as opened:
         opened.callback(MotorLock(config.motors).close)
         motors = open_motors(config.motors["driver"], {k: v for k, v in config.motors.items() if k != "driver"})
@@ -107,6 +117,8 @@ def _motors(config: Config) -> str:
             raise _AbsentError(f"the driver has {motors.count} motors, DRIVE_TYPE {kind:d} needs {wanted}")
         version = getattr(motors, "version", None)
         told = f", it calls itself {version()}" if version is not None else ""
+        turned = [name for number, name in enumerate(names, start=1) if params[f"MOT{number}_REVERSED"]]
+        told += f"; reversed: {', '.join(turned)}" if turned else ""
         return f"{config.motors['driver']} with {motors.count} motors, neutral and without power{told}"
 
 

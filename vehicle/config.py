@@ -15,7 +15,7 @@ import msgspec
 from link.endpoint import EndpointError, parse
 from vehicle.explain import explained, suggestion
 from vehicle.motors import DRIVERS, PROFILES, MotorError, UnknownDriverError, settings_type
-from vehicle.motors.settings import Around
+from vehicle.motors.settings import RETIRED, Around
 from vehicle.params import PARAMETERS, ParamError, Params
 from vehicle.sensors.suite import SensorSettings
 
@@ -118,6 +118,9 @@ def _endpoint_problems(endpoints: list[str]) -> list[str]:
 def _motor_problems(table: Mapping[str, Any]) -> list[str]:
     if not isinstance(table.get("driver"), str):
         return [f"motors.driver: missing; add it, one of {', '.join(DRIVERS)}, or your own as module:Class"]
+    retired = [f"motors.{key}: {words}" for key, words in RETIRED.items() if key in table]
+    if retired:
+        return retired
     name = table["driver"]
     try:
         kind = settings_type(name)
@@ -145,7 +148,16 @@ def _problem(table: Mapping[str, Any], kind: Any, also: tuple[str, ...] = ()) ->
 
 def _param_problems(table: Mapping[str, Any]) -> list[str]:
     found = ((name, _param_problem(name, value)) for name, value in table.items())
-    return [f"params.{name}: {problem}" for name, problem in found if problem]
+    problems = [f"params.{name}: {problem}" for name, problem in found if problem]
+    return problems or _param_contradictions(table)
+
+
+def _param_contradictions(table: Mapping[str, Any]) -> list[str]:
+    try:
+        Params(table)
+    except ParamError as error:
+        return [f"params: {error}"]
+    return []
 
 
 def _param_problem(name: str, value: Any) -> str | None:

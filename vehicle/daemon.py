@@ -26,12 +26,12 @@ from vehicle.leaving import Leave
 from vehicle.lock import MotorLock
 from vehicle.machine import Machine
 from vehicle.motor_copy import copied
-from vehicle.motors import MotorError, Motors, UnknownDriverError, open_motors, stop_input
+from vehicle.motors import USUAL_PARAMS, MotorError, Motors, UnknownDriverError, open_motors, stop_input
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.notify import Notifier
 from vehicle.param_store import ParamStore
-from vehicle.params import ParamError, Params
+from vehicle.params import ParamError, Params, in_force
 from vehicle.plan_store import PlanStore
 from vehicle.recorder import VehicleRecorder
 from vehicle.rover import Rover
@@ -153,15 +153,12 @@ async def _serve(settings: Settings) -> int:
 
 
 def _params(settings: Settings, keeper: ParamStore | None) -> Params:
-    """Defaults, what was kept, the file of settings, this run: the later wins. Raises ParamError."""
-    params = Params(pinned=settings.pinned.keys())
-    for name, value in (keeper.values if keeper else {}).items():
-        try:
-            params.set(name, value)
-        except ParamError as error:  # of another version of this program
-            log.warning("a kept parameter is not used: %s", error)
-    for name, value in {**settings.pinned, **settings.params}.items():
-        params.set(name, value)
+    """Defaults, a known car's, what was kept, the file of settings, this run: the later wins. Raises ParamError."""
+    usual = {} if settings.simulation else USUAL_PARAMS.get(settings.motors["driver"], {})
+    given, kept = {**settings.pinned, **settings.params}, keeper.values if keeper else {}
+    params, left_out = in_force(given, kept=kept, usual=usual, pinned=settings.pinned.keys())
+    for problem in left_out:
+        log.warning("a kept parameter is not used: %s", problem)
     params.damage = keeper.damage if keeper else None
     if params.damage:
         log.warning("%s: all parameters that were set have their defaults, and nobody can arm", params.damage)

@@ -1,10 +1,14 @@
-"""From a demand to motor values: dead band, expo, limits, mixer, ramps, gate. Who may drive is not decided here."""
+"""From a demand to motor values: dead band, expo, limits, mixer, ramps, fit, gate; not who may drive."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 from dialects.enums import DriveType, Limit
 from vehicle.demand import Demand
-from vehicle.mixer import MIXERS, Mixed, clamp, deadband, expo
+from vehicle.fit import fitted
+from vehicle.mixer import MIXERS, AtLimit, clamp, deadband, expo, pivot_share
 from vehicle.outputs import Clearance, Gate, Outputs, Permit, Trial
 from vehicle.params import Params
 from vehicle.slew import Slew, SlewLimits
@@ -25,10 +29,21 @@ class Drive:
         self.outputs = Outputs((0.0,) * len(self.mixer.motors), enabled=False)
         self._params = params
         self._slews = [Slew() for _ in self.mixer.motors]
-        self._gate = Gate(len(self._slews))
+        self._gate = Gate(len(self._slews), self.mixer.driven)
         self._tested: int | None = None
         """The motor that a test turns."""
         self._at = now
+
+    @property
+    def wheels(self) -> tuple[float, ...]:
+        """What each wheel does now, -1..1, ahead positive, steering to the right positive; the motors' `outputs` differ
+        by how they are wired."""
+        return self._gate.wheels
+
+    @property
+    def driving(self) -> tuple[float, ...]:
+        """Of `wheels` those that move the rover."""
+        return self._gate.wheels[: self.mixer.driven]
 
     @property
     def refused(self) -> int:
@@ -46,13 +61,12 @@ class Drive:
             for slew in self._slews:
                 slew.reset()
         self._tested = motor
-        ramps = self._ramps()
-        targets = self._targets(demand if permit is Permit.DRIVE else None, limited) if trial is None else (
-            self._alone(trial))  # fmt: skip
-        values = [slew.step(target, dt, ramps) for slew, target in zip(self._slews, targets, strict=True)]
+        wanted = demand if permit is Permit.DRIVE else None
+        wheels = self._ramped(self._targets(wanted, limited) if trial is None else self._alone(trial), dt)
         self._note_limits()
-        self.outputs = self._gate.judge(values, permit, 1.0 / ramps.decel, now, trial)
-        if self.outputs.throttles != tuple(values):  # refused: no ramp goes on from there
+        motors = fitted(wheels, self.mixer, self._params)
+        self.outputs = self._gate.judge(wheels, motors, permit, 100 / self._params["MOT_DECEL"], now, trial)
+        if self.wheels != wheels:  # refused: no ramp goes on from there
             for slew in self._slews:
                 slew.reset()
         return self.outputs
@@ -62,10 +76,16 @@ class Drive:
             return (0.0,) * len(self._slews)
         throttle, steering, sideways = shape(demand, self._params)
         throttle, sideways = self._cap(throttle, limited), self._cap(sideways, limited)
-        mixed: Mixed = self.mixer.mix(throttle, steering, self._params["MOT_STR_THR_MIX"], sideways)
+        params = self._params
+        mixed = self.mixer.mix(
+            throttle, steering, sideways, AtLimit(params["MOT_STR_THR_MIX"], params["MOT_THST_ASYM"])
+        )
         if mixed.saturated:
             self.limits |= Limit.SATURATED
-        return mixed.throttles
+        if self.mixer.driven < len(self.mixer.motors):
+            return mixed.throttles
+        share = pivot_share(throttle, steering, sideways, params["MOT_PIVOT_MAX"] / 100)
+        return tuple(share * value for value in mixed.throttles)
 
     def _alone(self, trial: Trial) -> tuple[float, ...]:
         """One motor, the others at rest."""
@@ -79,9 +99,14 @@ class Drive:
             self.limits |= Limit.SPEED
         return clamp(throttle, largest)
 
-    def _ramps(self) -> SlewLimits:
+    def _ramped(self, targets: Sequence[float], dt: float) -> tuple[float, ...]:
         params = self._params
-        return SlewLimits(params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100, params["MOT_REV_DELAY"])
+        wheel = SlewLimits(params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100, params["MOT_REV_DELAY"])
+        servo = replace(wheel, reverse_delay=0.0)  # its gears do not mind, and the rover would go straight on meanwhile
+        limits = (wheel if index < self.mixer.driven else servo for index in range(len(targets)))
+        return tuple(
+            slew.step(target, dt, limit) for slew, target, limit in zip(self._slews, targets, limits, strict=True)
+        )
 
     def _note_limits(self) -> None:
         if any(slew.limited for slew in self._slews):
@@ -99,5 +124,5 @@ def shape(demand: Demand, params: Params) -> tuple[float, float, float]:
     return (
         expo(deadband(throttle, band), params["MANUAL_EXPO"]),
         expo(deadband(steering, band), params["MANUAL_STR_EXPO"]),
-        deadband(sideways, band),
+        expo(deadband(sideways, band), params["MANUAL_EXPO"]),
     )

@@ -27,7 +27,7 @@ class Look:
     readings: Readings
     estimate: Estimate
     throttles: Sequence[float]
-    """As the motors get them."""
+    """Of the wheels that drive, as they are to turn."""
     needs_position: bool
     """What drives goes by the estimate's place."""
     guided_lost: float | None

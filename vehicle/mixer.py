@@ -1,6 +1,6 @@
 """Throttle, steering and sideways -> one value for each motor; no ramps and no limits in time.
 
-To add an arrangement of wheels, write a function (throttle, steering, mix, sideways) -> values and a line in MIXERS.
+To add an arrangement of wheels, write a function (throttle, steering, sideways, limit) -> values and a line in MIXERS.
 """
 
 from __future__ import annotations
@@ -21,10 +21,20 @@ class Mixed:
 
 
 @dataclass(frozen=True, slots=True)
+class AtLimit:
+    """What a mixer goes by where not all fits (MOT_STR_THR_MIX, MOT_THST_ASYM)."""
+
+    mix: float = 0.5
+    """0.5 cuts throttle and steering alike, 1 keeps all of the steering."""
+    asymmetry: float = 1.0
+    """How many times more a motor pushes ahead than back, at least 1."""
+
+
+@dataclass(frozen=True, slots=True)
 class Mixer:
     """How one arrangement of wheels is driven."""
 
-    mix: Callable[[float, float, float, float], Mixed]
+    mix: Callable[[float, float, float, AtLimit], Mixed]
     motors: tuple[str, ...]
     servos: tuple[int, ...]
     """Servo output (1..16) of each motor in SERVO_OUTPUT_RAW: ArduRover's default wiring."""
@@ -37,25 +47,42 @@ class Mixer:
         return sum(motor != "steering" for motor in self.motors)
 
 
-def skid(throttle: float, steering: float, mix: float, sideways: float = 0.0) -> Mixed:
-    """Left, right. Beyond the limit `mix` (MOT_STR_THR_MIX) shares what there is: 0.5 cuts both, 1 keeps steering.
+def skid(throttle: float, steering: float, sideways: float, limit: AtLimit) -> Mixed:
+    """Left, right. Steering is clockwise positive.
 
-    ArduRover's rule (AP_MotorsUGV::output_skid_steering) with equal thrust both ways. Steering is clockwise positive.
+    ArduRover's rule (AP_MotorsUGV::output_skid_steering): a motor that pushes less backwards is asked for more there,
+    so that throttle ends at -1/asymmetry, and what does not fit is shared by `mix`.
     """
-    sum_ = abs(throttle) + abs(steering)
-    if sum_ <= 1.0:
-        return Mixed((throttle + steering, throttle - steering))
-    fair = 1.0 / sum_
+    lowest = -1.0 / limit.asymmetry
+    best = (1.0 + lowest) / 2  # throttle with most room for steering
+    room = 1.0 - best if throttle >= best else max(throttle, 0.0) - lowest
+    fits = clamp(steering, room), max(throttle, lowest) if throttle < 0.0 else throttle
+    steer, push = fits
+    excess = max(push + abs(steer), (push - abs(steer)) / lowest)
+    if excess > 1.0:
+        steer, push = _shared(steer, push, excess, lowest, best, limit.mix)
+    sides = (_strengthened(side, limit.asymmetry) for side in (push + steer, push - steer))
+    return Mixed(tuple(sides), saturated=excess > 1.0 or fits != (steering, throttle))
+
+
+def _shared(
+    steer: float, push: float, excess: float, lowest: float, best: float, mix: float
+) -> tuple[float, float]:  # fmt: skip
+    """Steering and throttle that fit together."""
+    fair, weight = 1.0 / excess, abs(mix - 0.5) / 0.5
+    keep = fair + (1.0 - fair) * weight
     if mix >= 0.5:
-        steering *= fair + (1.0 - fair) * (mix - 0.5) / 0.5
-        throttle = math.copysign(1.0 - abs(steering), throttle)
-    else:
-        throttle *= fair + (1.0 - fair) * (0.5 - mix) / 0.5
-        steering = math.copysign(1.0 - abs(throttle), steering)
-    return Mixed((_unit(throttle + steering), _unit(throttle - steering)), saturated=True)
+        steer *= keep
+        return steer, 1.0 - abs(steer) if push >= best else lowest + abs(steer)
+    push *= keep
+    return math.copysign(1.0 - push if push >= best else push - lowest, steer), push
 
 
-def ackermann(throttle: float, steering: float, mix: float, sideways: float = 0.0) -> Mixed:
+def _strengthened(side: float, asymmetry: float) -> float:
+    return _unit(side * asymmetry if side < 0.0 else side)
+
+
+def ackermann(throttle: float, steering: float, sideways: float, limit: AtLimit) -> Mixed:
     """Throttle and steering servo, apart, as in a car."""
     return Mixed((throttle, steering))
 
@@ -66,7 +93,7 @@ FOUR_WHEELS: tuple[tuple[int, int, int], ...] = ((1, 1, 1), (1, -1, -1), (1, 1, 
 mecanum wheels form an X."""
 
 
-def four_wheels(throttle: float, steering: float, mix: float, sideways: float = 0.0) -> Mixed:
+def four_wheels(throttle: float, steering: float, sideways: float, limit: AtLimit) -> Mixed:
     """Each wheel its sum; beyond the limit all are cut by the same factor, so that the direction stays."""
     sums = [throttle * ahead + steering * turn + sideways * side for ahead, turn, side in FOUR_WHEELS]
     largest = max(1.0, *(abs(each) for each in sums))
@@ -83,6 +110,15 @@ def clamp(value: float, largest: float) -> float:
     if value > largest:
         return largest
     return -largest if value < -largest else value
+
+
+def pivot_share(throttle: float, steering: float, sideways: float, pivot: float) -> float:
+    """What is left of the motors' values: all where nothing turns, `pivot` on the spot, in between by how much of each.
+
+    MOT_PIVOT_MAX, of drives that turn by their wheels: on the spot they skid, and that takes more than it should give.
+    """
+    turn, travel = abs(steering), abs(throttle) + abs(sideways)
+    return (travel + pivot * turn) / (travel + turn) if travel + turn else 1.0
 
 
 CORNERS = ("front left", "front right", "rear left", "rear right")

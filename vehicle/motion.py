@@ -35,13 +35,13 @@ def attitude(view: View) -> m.Message | None:
 
 def vfr_hud(view: View) -> m.Message:
     """VFR_HUD: speed over ground, heading and throttle, also where only the throttle is known."""
-    readings, throttles = view.readings, view.drive.outputs.throttles
+    readings, driving = view.readings, view.drive.driving
     speed = abs(view.estimate.speed or 0.0)
     return m.VfrHud(
         airspeed=speed,
         groundspeed=speed,
         heading=_heading(view.estimate, 1.0, unknown=0) % 360,
-        throttle=whole(max(abs(value) for value in throttles), UINT16, 100),
+        throttle=whole(max(abs(value) for value in driving), UINT16, 100),
         alt=real(readings.altitude),
         climb=0.0,
     )
@@ -121,7 +121,7 @@ def gps_raw_int(view: View) -> m.Message | None:
 
 
 def servo_output_raw(view: View) -> m.Message:
-    """SERVO_OUTPUT_RAW: each motor's output as a pulse, at the servo numbers of ArduRover's default wiring."""
+    """SERVO_OUTPUT_RAW: what each motor gets, as a pulse, at the servo numbers of ArduRover's default wiring."""
     pulses = [0] * 16
     for servo, value in zip(view.drive.mixer.servos, view.drive.outputs.throttles, strict=True):
         pulses[servo - 1] = pulse(value)

@@ -11,11 +11,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from dialects.enums import DriveType
+from vehicle.fit import fitted
 from vehicle.lock import MotorLock
 from vehicle.mixer import MIXERS
 from vehicle.motors import open_motors
 from vehicle.outputs import TRIAL_LARGEST as LARGEST
 from vehicle.outputs import TRIAL_LONGEST as LONGEST
+from vehicle.params import Params
 
 PERIOD = 0.02
 """s between writes: that of the control loop, so that controllers with a timeout of their own go on."""
@@ -28,16 +30,16 @@ class RefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Wish:
-    """Which motor, how fast, how long."""
+    """What the motors get, and how long."""
 
-    index: int
-    throttle: float
+    throttles: tuple[float, ...]
     time: float
 
 
-def wish(motor: str, throttle: float, seconds: float, drive_type: float) -> Wish:
+def wish(motor: str, throttle: float, seconds: float, params: Params) -> Wish:
     """What was asked for, checked. `motor` is a name of this kind of drive, or a number from 1. Raises RefusedError."""
-    names = MIXERS[DriveType(int(drive_type))].motors
+    mixer = MIXERS[DriveType(int(params["DRIVE_TYPE"]))]
+    names = mixer.motors
     known = {name.replace(" ", "-"): index for index, name in enumerate(names)}
     known |= {str(index + 1): index for index in range(len(names))}
     if motor.lower() not in known:
@@ -46,7 +48,9 @@ def wish(motor: str, throttle: float, seconds: float, drive_type: float) -> Wish
         raise RefusedError(f"throttle {throttle:g} is not in -{LARGEST:g} to {LARGEST:g}")
     if not (math.isfinite(seconds) and 0.0 < seconds <= LONGEST):
         raise RefusedError(f"time {seconds:g} s is not more than 0 and at most {LONGEST:g}")
-    return Wish(known[motor.lower()], throttle, seconds)
+    wheels = [0.0] * len(names)
+    wheels[known[motor.lower()]] = throttle
+    return Wish(fitted(wheels, mixer, params), seconds)
 
 
 def turn(table: Mapping[str, Any], wanted: Wish) -> signal.Signals | None:
@@ -59,16 +63,14 @@ def turn(table: Mapping[str, Any], wanted: Wish) -> signal.Signals | None:
         opened.callback(MotorLock(table).close)
         motors = open_motors(table["driver"], settings)
         opened.callback(motors.close)
-        if wanted.index >= motors.count:
-            raise RefusedError(f"the motor driver has {motors.count} motors only")
-        throttles = [0.0] * motors.count
+        if len(wanted.throttles) != motors.count:
+            raise RefusedError(f"the driver has {motors.count} motors, DRIVE_TYPE needs {len(wanted.throttles)}")
         opened.callback(motors.disable)
-        opened.callback(motors.set, tuple(throttles))
+        opened.callback(motors.set, (0.0,) * motors.count)
         motors.enable()
-        throttles[wanted.index] = wanted.throttle
         end = time.monotonic() + wanted.time
         while (left := end - time.monotonic()) > 0:
-            motors.set(throttles)
+            motors.set(wanted.throttles)
             ended = signal.sigtimedwait(SIGNALS, min(PERIOD, left))
             if ended is not None:
                 return signal.Signals(ended.si_signo)

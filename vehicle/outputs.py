@@ -14,12 +14,14 @@ SLACK = 0.05
 """s that a deceleration may take longer than its ramp: two cycles of 20 ms and a little, because it begins in one."""
 
 TRIAL_LARGEST, TRIAL_LONGEST = 0.3, 3.0
-"""Throttle and s of a motor test: enough to see a wheel turn, too little to run away with a rover that stands on it."""
+"""Throttle and s of a motor test: enough to see a wheel turn, too little to run away with a rover that stands on it.
+What the motor gets of it follows its parameters, as when driving."""
 
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """What the motors must get now. `throttles` are -1..1 in motor order: left, right or throttle, steering."""
+    """What the motors must get now. `throttles` are -1..1 in motor order: left, right or throttle, steering. Each is as
+    its motor is wired (vehicle/fit.py), and all are zero where not enabled."""
 
     throttles: tuple[float, ...]
     enabled: bool
@@ -79,35 +81,40 @@ class Clearance:
 
 
 class Gate:
-    """Passes motor values or replaces them by zero."""
+    """Passes motor values or replaces them by zero. It times what the wheels are to do, and passes what that makes of
+    their motors (vehicle/fit.py): a smallest output is a step at zero, which is no stop that takes too long."""
 
-    def __init__(self, motors: int) -> None:
+    def __init__(self, motors: int, driven: int | None = None) -> None:
+        """`driven` motors, the first ones, turn wheels: all unless told."""
         self.refused = 0
         """Values that were not numbers or out of range, in a row."""
-        self._motors = motors
-        self._before = (0.0,) * motors
+        self.wheels = (0.0,) * motors
+        """What the wheels were let do by the last judgement."""
+        self._still = self._before = (0.0,) * motors
+        self._driven = motors if driven is None else driven
         self._fall_began: float | None = None
         self._trials = TrialClock()
 
     def judge(
-        self, throttles: Sequence[float], permit: Permit, fall_time: float, now: float, trial: Trial | None = None
-    ) -> Outputs:
+        self, wheels: Sequence[float], motors: Sequence[float], permit: Permit, fall_time: float, now: float,
+        trial: Trial | None = None,
+    ) -> Outputs:  # fmt: skip
         """What may go to the motors. `fall_time` is the longest a deceleration to zero may take, s; `trial` is what
         TEST is for."""
         self._note_fall(permit, now)
-        fits = self._trials.permits(throttles, trial if permit is Permit.TEST else None, now)
-        sound = permit is not Permit.NONE and self._sound(throttles)
-        passed = sound and (fits if permit is Permit.TEST else self._falling(throttles, fall_time, now))
-        self._before = tuple(throttles) if passed else (0.0,) * self._motors
-        powered = permit in (Permit.DRIVE, Permit.TEST) or any(self._before)
-        outputs = Outputs(self._before, enabled=passed and powered)
-        if permit is Permit.TEST:  # nothing ramps down from a test
-            self._before = (0.0,) * self._motors
-        return outputs
+        fits = self._trials.permits(wheels, trial if permit is Permit.TEST else None, now)
+        sound = permit is not Permit.NONE and self._sound(wheels, motors)
+        passed = sound and (fits if permit is Permit.TEST else self._falling(wheels, fall_time, now))
+        self.wheels = tuple(wheels) if passed else self._still
+        self._before = self._still if permit is Permit.TEST else self.wheels  # nothing ramps down from a test
+        enabled = passed and (permit in (Permit.DRIVE, Permit.TEST) or any(self.wheels))
+        return Outputs(tuple(motors) if enabled else self._still, enabled)
 
-    def _sound(self, throttles: Sequence[float]) -> bool:
+    def _sound(self, wheels: Sequence[float], motors: Sequence[float]) -> bool:
         # NaN fails every comparison, so that it is refused here too.
-        sound = len(throttles) == self._motors and all(-1.0 <= value <= 1.0 for value in throttles)
+        count = len(self._still)
+        sound = len(wheels) == len(motors) == count and all(-1.0 <= value <= 1.0 for value in (*wheels, *motors))
+        sound = sound and not any(motors[each] for each in range(self._driven) if not wheels[each])
         self.refused = 0 if sound else self.refused + 1
         return sound
 
@@ -117,11 +124,11 @@ class Gate:
         elif self._fall_began is None:
             self._fall_began = now
 
-    def _falling(self, throttles: Sequence[float], fall_time: float, now: float) -> bool:
+    def _falling(self, wheels: Sequence[float], fall_time: float, now: float) -> bool:
         if self._fall_began is None:
             return True
-        smaller = all(abs(new) <= abs(old) for new, old in zip(throttles, self._before, strict=True))
-        return smaller and (now - self._fall_began <= fall_time + SLACK or not any(throttles))
+        smaller = all(abs(new) <= abs(old) for new, old in zip(wheels, self._before, strict=True))
+        return smaller and (now - self._fall_began <= fall_time + SLACK or not any(wheels))
 
 
 class TrialClock:
@@ -133,7 +140,7 @@ class TrialClock:
         self._number = 0
         self._began = 0.0
 
-    def permits(self, throttles: Sequence[float], trial: Trial | None, now: float) -> bool:
+    def permits(self, wheels: Sequence[float], trial: Trial | None, now: float) -> bool:
         """Called in every cycle; None where none is permitted, which ends the one before."""
         if trial is None or trial.number != self._number:
             self._spent, self._number = max(self._spent, self._number), 0
@@ -141,6 +148,6 @@ class TrialClock:
             return False
         if not self._number:
             self._number, self._began = trial.number, now
-        others = any(value for index, value in enumerate(throttles) if index != trial.motor)
-        slow = all(abs(value) <= TRIAL_LARGEST for value in throttles)  # false for NaN
+        others = any(value for index, value in enumerate(wheels) if index != trial.motor)
+        slow = all(abs(value) <= TRIAL_LARGEST for value in wheels)  # false for NaN
         return slow and not others and 0.0 <= now - self._began < TRIAL_LONGEST

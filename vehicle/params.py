@@ -30,6 +30,25 @@ class Parameter:
     """No ground station sets it: it must fit the hardware, or is pinned by the file of settings."""
 
 
+MOTORS = 4
+"""Motors with parameters of their own: of the kind of drive that has most."""
+
+
+def _motor(number: int) -> tuple[Parameter, ...]:
+    """What fits one motor to its wheel (vehicle/fit.py); in the order of vehicle/mixer.py, `Mixer.motors`."""
+    name = f"MOT{number}"
+    return (
+        Parameter(f"{name}_REVERSED", 0, 0, 1, "", f"Motor {number} is wired or mounted the other way round",
+                  safety=True, whole=True),
+        Parameter(f"{name}_MIN", 0, 0, 80, "%", f"What motor {number} needs to turn at all; not for a steering servo",
+                  safety=True),
+        Parameter(f"{name}_MAX", 100, 25, 100, "%", f"Largest output of motor {number}; less on the faster side makes "
+                  "a rover run straight", safety=True),
+        Parameter(f"{name}_TRIM", 0, -20, 20, "%", f"Added to what motor {number} gets: the centre of a steering "
+                  "servo; a motor that drives gets it only while it turns", safety=True),
+    )  # fmt: skip
+
+
 TABLE: tuple[Parameter, ...] = (
     # Identity
     Parameter("MAV_SYSID", 1, 1, 255, "", "System id of this vehicle; after a restart", whole=True, needs_reboot=True),
@@ -41,7 +60,7 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("MAN_TIMEOUT", 0.45, 0.2, 2, "s", "A demand older than this is neutral. 9 frames of 20 Hz; less than "
               "0.5 s, so that the wheels begin to slow by then", safety=True),
     Parameter("MAN_DEADBAND", 3, 0, 20, "%", "Demands smaller than this are neutral"),
-    Parameter("MANUAL_EXPO", 0, 0, 0.9, "", "Softness of throttle near neutral; 0 is linear"),
+    Parameter("MANUAL_EXPO", 0, 0, 0.9, "", "Softness of throttle, also sideways, near neutral; 0 is linear"),
     Parameter("MANUAL_STR_EXPO", 0, 0, 0.9, "", "Softness of steering near neutral; 0 is linear"),
     Parameter("INITIAL_MODE", 0, 0, 4, "", "Mode after start: 0 MANUAL, 4 HOLD", whole=True),
     Parameter("OPR_TIMEOUT", 10, 2, 60, "s", "Without a key or stick event for so long while moving: stop"),
@@ -109,6 +128,13 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("MOT_TEST_MAX", 30, 0, 30, "%", "Largest throttle of DO_MOTOR_TEST and ACTUATOR_TEST; 0: no tests over "
               "the air", safety=True),
     Parameter("MOT_REV_DELAY", 0, 0, 1, "s", "Pause at zero before a motor reverses", safety=True),
+    Parameter("MOT_PIVOT_MAX", 100, 10, 100, "%", "Share of full for turning on the spot; curves are in between",
+              safety=True),
+    Parameter("MOT_THST_EXPO", 0, -1, 1, "", "Thrust curve of motors that drive; 0 is linear, more is more at half",
+              safety=True),
+    Parameter("MOT_THST_ASYM", 1, 1, 10, "", "Skid steering: how many times more a motor pushes ahead than back",
+              safety=True),
+    *(parameter for number in range(1, MOTORS + 1) for parameter in _motor(number)),
     # Logs
     Parameter("LOG_BACKEND_TYPE", 1, 0, 1, "", "Telemetry logs of each drive: 0 none, 1 files", whole=True),
     Parameter("LOG_DISARMED", 0, 0, 1, "", "0: record from arming until 15 s after disarming, 1: always", whole=True),
@@ -123,6 +149,10 @@ TABLE: tuple[Parameter, ...] = (
 
 PARAMETERS: dict[str, Parameter] = {parameter.name: parameter for parameter in TABLE}
 
+ASCENDING: tuple[tuple[str, str], ...] = tuple((f"MOT{n}_MIN", f"MOT{n}_MAX") for n in range(1, MOTORS + 1))
+"""Pairs of which the first must be smaller. Their defaults are their extremes, so that two values that fit each other
+may be set one after the other in any order."""
+
 
 class ParamError(ValueError):
     """An unknown name or a value that is not allowed; the message is one clear line."""
@@ -131,9 +161,19 @@ class ParamError(ValueError):
 class Params:
     """The settings in force. They live in memory; vehicle/param_store.py keeps what is set."""
 
-    def __init__(self, values: Mapping[str, float] | None = None, *, pinned: Collection[str] = ()) -> None:
-        """Defaults, with `values` in their place; no ground station changes the `pinned`. Raises ParamError."""
+    def __init__(
+        self,
+        values: Mapping[str, float] | None = None,
+        *,
+        pinned: Collection[str] = (),
+        usual: Mapping[str, float] | None = None,
+    ) -> None:
+        """Defaults, with `values` in their place. Raises ParamError.
+
+        No ground station changes the `pinned`; a reset goes back to what is `usual` for this car.
+        """
         self.pinned = frozenset(pinned)
+        self._usual = dict(usual or {})
         self.damage: str | None = None
         """Why saved values could not be had; nobody arms before somebody has set one anew."""
         self._values = {parameter.name: float(parameter.default) for parameter in TABLE}
@@ -142,8 +182,12 @@ class Params:
 
     @property
     def table(self) -> tuple[Parameter, ...]:
-        """TABLE as ground stations see it: what is pinned is read only."""
-        return tuple(replace(each, read_only=each.read_only or each.name in self.pinned) for each in TABLE)
+        """TABLE as ground stations see it: what is pinned is read only, and the defaults are this car's."""
+        usual, pinned = self._usual, self.pinned
+        return tuple(
+            replace(each, read_only=each.read_only or each.name in pinned, default=usual.get(each.name, each.default))
+            for each in TABLE
+        )
 
     def __getitem__(self, name: str) -> float:
         return self._values[name]
@@ -163,4 +207,32 @@ class Params:
             raise ParamError(f"{name} must be {parameter.low:g} to {parameter.high:g}, not {value:g}")
         if parameter.whole and value != int(value):
             raise ParamError(f"{name} must be a whole number, not {value:g}")
+        self._refuse_descent({**self._values, name: value})
         self._values[name] = float(value)
+
+    @staticmethod
+    def _refuse_descent(values: Mapping[str, float]) -> None:
+        for small, large in ASCENDING:
+            if values[small] >= values[large]:
+                raise ParamError(f"{small} {values[small]:g} must be smaller than {large} {values[large]:g}")
+
+
+def in_force(
+    given: Mapping[str, float], *, kept: Mapping[str, float], usual: Mapping[str, float], pinned: Collection[str] = ()
+) -> tuple[Params, list[str]]:
+    """Defaults, what is `usual` for this car, what was `kept`, what is `given` now: the later wins.
+
+    Raises ParamError for what is given. What was kept and does not fit is left out, a line each: it comes from another
+    version of this program, or the file of settings has changed since, and no ground station could mend it.
+    """
+    Params({**usual, **given})  # they fit each other, whatever is kept
+    first = {name: value for name, value in usual.items() if name not in kept}
+    params = Params({**first, **given}, pinned=pinned, usual=usual)
+    left_out = []
+    for name, value in kept.items():
+        if name not in given:
+            try:
+                params.set(name, value)
+            except ParamError as error:
+                left_out.append(str(error))
+    return params, left_out

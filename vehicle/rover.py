@@ -244,7 +244,7 @@ class Rover:
 
     def _cycle(self, now: float) -> None:
         """What fails, what follows, and what self-driving wants then."""
-        driving = self._drive.outputs.throttles[: self._drive.mixer.driven]
+        driving = self._drive.driving
         hazards = self._navigator.hazards(self._safety, driving, now)
         moves = OFFERED[self._safety.mode].own and any(driving)
         self._watch.update(now, self._drive.refused, hazards, driving=moves)

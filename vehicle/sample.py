@@ -10,7 +10,7 @@ import msgspec
 
 from vehicle.config import Config, NoSettings
 from vehicle.docstrings import field_docs, words
-from vehicle.motors import DRIVERS, PROFILES, MotorError, settings_type
+from vehicle.motors import DRIVERS, PROFILES, USUAL_PARAMS, MotorError, settings_type
 from vehicle.motors.settings import Around
 from vehicle.params import TABLE, Parameter
 from vehicle.sensors.suite import SensorSettings
@@ -33,9 +33,7 @@ EXAMPLES: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 """Driver -> what has no default."""
 AROUND: dict[str, Any] = {
-    "limits": {},
     "safety": {"estop_pin": 17, "enable_pin": 22, "heartbeat_pin": 27},
-    "shape": [{}, {"reversed": True}],
 }
 SENSORS: dict[str, Any] = {
     "battery": {"kind": "ina219"},
@@ -82,7 +80,9 @@ def sample() -> str:
 
 def _driver(name: str) -> str:
     if name in PROFILES:
-        return f'\n# ---- {name}: a known car, with its settings\n#driver = "{name}"\n'
+        usual = ", ".join(f"{key} = {value:g}" for key, value in USUAL_PARAMS.get(name, {}).items())
+        also = f"# Unless you set them, its parameters are {usual}.\n" if usual else ""
+        return f'\n# ---- {name}: a known car, with its settings\n{also}#driver = "{name}"\n'
     try:
         kind = settings_type(name) or NoSettings
     except MotorError as error:  # its library is missing here

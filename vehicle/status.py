@@ -147,10 +147,10 @@ def limits(view: View) -> Limit:
 
 
 def drive_status(view: View) -> m.Message:
-    """ROVER_DRIVE_STATUS: the driver's demand while it counts as fresh, the outputs, and why they differ."""
+    """ROVER_DRIVE_STATUS: the driver's demand while it counts as fresh, what the wheels do, and why that differs."""
     control = view.control
     demand = None if control.stale(view.now) else control.demand
-    output = [whole(value, INT16, 10000) for value in view.drive.outputs.throttles]
+    output = [whole(value, INT16, 10000) for value in view.drive.wheels]
     return m.RoverDriveStatus(
         time_boot_ms=view.boot_ms,
         demand_age_ms=whole(control.age(view.now), UINT16, 1000, unknown=m.UINT16_MAX),
@@ -190,7 +190,7 @@ def drive_info(view: View) -> m.Message:
         throttle_axis=X_AXIS,
         steering_axis=R_AXIS,
         throttle_neutral=0,
-        motor_count=len(view.drive.outputs.throttles),
+        motor_count=len(view.drive.wheels),
     )
 
 

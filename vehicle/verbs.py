@@ -56,6 +56,15 @@ def _file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", nargs="?", default=DEFAULT_FILE, metavar="FILE", help=f"default {DEFAULT_FILE}")
 
 
+def _state_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--state", metavar="FOLDER", help="where the vehicle keeps parameters, if not as its file says")
+
+
+def _check_options(parser: argparse.ArgumentParser) -> None:
+    _file(parser)
+    _state_option(parser)
+
+
 def _nothing(parser: argparse.ArgumentParser) -> None:
     """Takes no options."""
 
@@ -85,7 +94,7 @@ def _check(asked: argparse.Namespace) -> int:
     from vehicle.check import findings
 
     code = DONE
-    for finding in findings(asked.file):
+    for finding in findings(asked.file, asked.state):
         sys.stdout.write(f"{finding}\n")
         sys.stdout.flush()
         if not finding.well:
@@ -171,6 +180,7 @@ def _systemd_unit(asked: argparse.Namespace) -> int:
 
 def _motor_test_options(parser: argparse.ArgumentParser) -> None:
     _config_option(parser)
+    _state_option(parser)
     parser.add_argument("motor", metavar="MOTOR", help="its number from 1, or its name: left, right, throttle, ...")
     parser.add_argument("--throttle", type=float, default=0.15, metavar="N", help="-0.3 to 0.3 (default 0.15)")
     parser.add_argument("--time", type=float, default=1.0, metavar="S", help="seconds, at most 3 (default 1)")
@@ -181,11 +191,16 @@ def _motor_test(asked: argparse.Namespace) -> int:
     from vehicle.config import ConfigError, load
     from vehicle.motor_test import RefusedError, turn, wish
     from vehicle.motors import MotorError
-    from vehicle.params import Params
+    from vehicle.settled import settled
 
     try:
         config = load(asked.config)
-        wanted = wish(asked.motor, asked.throttle, asked.time, Params(config.params)["DRIVE_TYPE"])
+        known = settled(config, asked.state)
+        if known.damage:  # the wheel might turn the other way than the vehicle would turn it
+            raise VerbError(f"{known.folder}: {known.damage}")
+        for problem in known.left_out:
+            sys.stderr.write(f"vehicle motor-test: a kept parameter is not used: {problem}\n")
+        wanted = wish(asked.motor, asked.throttle, asked.time, known.params)
         _motor_table(asked.config)
         if not asked.yes:
             _ask(
@@ -213,7 +228,7 @@ def _ask(question: str) -> None:
 
 VERBS: dict[str, Verb] = {
     "init": Verb("write a file of settings with every key and its default", _file, _init),
-    "check": Verb("check that file and try the hardware, without moving anything", _file, _check),
+    "check": Verb("check that file and try the hardware, without moving anything", _check_options, _check),
     "schema": Verb("print the JSON schema of that file, for editors", _nothing, _schema),
     "motor-test": Verb("turn one motor, slowly and shortly", _motor_test_options, _motor_test),
     "safe-stop": Verb("stop the motors that a killed vehicle left turning", _config_option, _safe_stop),

@@ -75,7 +75,7 @@ class Values(Protocol):
         """The value now."""
 
     def set(self, name: str, value: float) -> None:
-        """Put a checked value in force."""
+        """Put a checked value in force. Raises ValueError, one line, where it contradicts another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,16 +173,23 @@ class ParamServer:
         if index is None:
             self._say(f"No parameter {m.printable(name)}", now)
             return [self._fault(message._param_id_raw, -1, ParamFault.DOES_NOT_EXIST, received)]
-        refusal = self._refusal(self._table[index], message, received)
+        refusal = self._refusal(self._table[index], message, received) or self._put(name, message.param_value)
         if refusal:
             self._say(f"{name} not changed: {refusal.reason}", now)
             fault = self._fault(message._param_id_raw, index, refusal.fault, received)
             return [fault, Outgoing(self._value(index), received.peer)]
-        value = shortest(message.param_value)
-        if not same(value, self._values[name]):
-            self._values.set(name, value)
-            self._changed(name, value)
         return [Outgoing(self._value(index))]
+
+    def _put(self, name: str, received: float) -> Refusal | None:
+        value = shortest(received)
+        if same(value, self._values[name]):
+            return None
+        try:
+            self._values.set(name, value)
+        except ValueError as error:
+            return Refusal(ParamFault.VALUE_OUT_OF_RANGE, str(error))
+        self._changed(name, value)
+        return None
 
     def _refusal(self, setting: Setting, message: m.ParamSet, received: Received) -> Refusal | None:
         if not self._allowed(received):

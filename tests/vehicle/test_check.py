@@ -13,6 +13,7 @@ from tests.vehicle.motors.across_processes import NAME, FiledPca9685
 from tests.vehicle.motors.controllers import RoboClaw
 from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
+from vehicle.param_file import dump
 from vehicle.sample import sample
 
 FREE = 'endpoints = ["udpout:127.0.0.1:9"]\n'
@@ -20,11 +21,19 @@ QUIET = "[sensors]\ncomputer = false\n"
 
 
 def checked(folder: Path, text: str) -> tuple[int, list[str]]:
+    """The exit code and the lines, without those of parameters where they are as usual."""
+    code, lines = all_checked(folder, text)
+    usual = "kept in FOLDER"
+    return code, [line for line in lines if not (line.startswith("ok    parameters: ") and line.endswith(usual))]
+
+
+def all_checked(folder: Path, text: str, *words: str) -> tuple[int, list[str]]:
     file = folder / "rover.toml"
     file.write_text(text)
-    code, out, error = said_by("check", str(file))
+    state = () if "--state" in words else ("--state", str(folder))
+    code, out, error = said_by("check", str(file), *state, *words)
     assert error == ""
-    return code, [line.replace(str(file), "FILE") for line in out.splitlines()]
+    return code, [line.replace(str(file), "FILE").replace(str(folder), "FOLDER") for line in out.splitlines()]
 
 
 @pytest.fixture
@@ -143,3 +152,37 @@ def test_without_a_file_it_says_how_to_get_one(tmp_path: Path) -> None:
     code, out, _ = said_by("check", str(tmp_path / "rover.toml"))
     assert code == 2
     assert "`vehicle init" in out
+
+
+def test_it_reckons_with_the_parameters_that_the_vehicle_keeps(tmp_path: Path) -> None:
+    text = f'{FREE}[motors]\ndriver = "simulated"\n{QUIET}[params]\nMOT2_REVERSED = 1\nMOT1_MAX = 50\n'
+    code, lines = all_checked(tmp_path, text)
+    assert code == 0
+    assert lines[1] == "ok    parameters: 2 from the file, 0 kept in FOLDER"
+    assert lines[-1] == "ok    motors: simulated with 2 motors, neutral and without power; reversed: right"
+    (tmp_path / "parameters").write_bytes(dump({"MOT1_REVERSED": 1.0, "MOT2_REVERSED": 0.0, "MOT1_MIN": 60.0}))
+    code, lines = all_checked(tmp_path, text)
+    assert code == 1
+    assert lines[1] == (
+        "FAIL  parameters: 2 from the file, 1 kept in FOLDER: "
+        "a kept one is not used: MOT1_MIN 60 must be smaller than MOT1_MAX 50"
+    )
+    assert lines[-1].endswith("; reversed: left, right")
+
+
+def test_kept_parameters_that_are_damaged_are_a_fault(tmp_path: Path) -> None:
+    (tmp_path / "parameters").write_bytes(b"half a fi")
+    text = f'{FREE}state = "{tmp_path}"\n[motors]\ndriver = "simulated"\n{QUIET}'
+    code, lines = all_checked(tmp_path, text)
+    assert code == 1
+    assert lines[1] == "FAIL  parameters: 0 from the file, 0 kept in FOLDER: parameter file damaged"
+    assert all_checked(tmp_path, text, "--state", "/nowhere")[1][1].endswith("0 kept in /nowhere")
+
+
+def test_an_older_file_learns_where_its_settings_went(tmp_path: Path) -> None:
+    code, lines = checked(tmp_path, '[motors]\ndriver = "simulated"\nshape = [{reversed = true}, {}]\n')
+    assert code == 2
+    assert lines == [
+        "FAIL  settings: FILE: motors.shape: is parameters now; in [params], for each motor: MOT1_REVERSED = 1, "
+        "MOT1_MIN and MOT1_MAX in %"
+    ]

@@ -34,7 +34,7 @@ system = 7
 [motors]
 driver = "roboclaw"
 port = "/dev/serial0"
-shape = [{ reversed = true }, {}]
+safety = { estop_pin = 17 }
 [sensors]
 computer = false
 [sensors.gps]
@@ -51,7 +51,7 @@ motors = "/tmp/motors"
         endpoints=("udpin:0.0.0.0:14550", "serial:/dev/ttyAMA0:57600"),
         state="/srv/rover",
         identity=Identity(system=7),
-        motors={"driver": "roboclaw", "port": "/dev/serial0", "shape": [{"reversed": True}, {}]},
+        motors={"driver": "roboclaw", "port": "/dev/serial0", "safety": {"estop_pin": 17}},
         sensors=SensorSettings(gps=GpsSettings(host="10.0.0.2"), computer=False),
         params={"MAN_TIMEOUT": 0.3, "SPEED_MAX": 2.0},
         log=LogSettings(file="/var/log/rover", verbose=True, motors="/tmp/motors"),
@@ -82,14 +82,15 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ('[motors]\ndriver = "robclaw"', "motors.driver: unknown motor driver 'robclaw'; did you mean 'roboclaw'?"),
         ('[motors]\ndriver = "no_such:Car"', "motors.driver: motor driver 'no_such:Car' cannot be loaded"),
         ('[motors]\ndriver = "roboclaw"', "motors.port: missing; add it"),
-        ('[motors]\ndriver = "simulated"\nx = 1', "motors.x: unknown key; there are shape, limits, safety"),
+        ('[motors]\ndriver = "simulated"\nx = 1', "motors.x: unknown key; there are safety"),
         (ROBOCLAW + "buad = 38400", "motors.buad: unknown key; did you mean baud?"),
         (ROBOCLAW + "baud = 3", "motors.baud: must be at least 2400"),
         (ROBOCLAW + 'baud = "fast"', 'motors.baud: must be a whole number, not text in "quotes"'),
-        (ROBOCLAW + "shap = []", "motors.shap: unknown key; did you mean shape?"),
-        (ROBOCLAW + "shape = [{}, {reversd = true}]", "motors.shape[1].reversd: unknown key; did you mean reversed?"),
+        (ROBOCLAW + "safty = {}", "motors.safty: unknown key; did you mean safety?"),
+        (ROBOCLAW + "shape = [{}, {reversed = true}]", "motors.shape: is parameters now; in [params], for each motor: "
+         "MOT1_REVERSED = 1, MOT1_MIN and MOT1_MAX in %"),
         (ROBOCLAW + "safety = {estop_pin = 40}", "motors.safety.estop_pin: must be at most 27"),
-        (ROBOCLAW + "[motors.limits]\ndriving = 2.0", "motors.limits.driving: must be at most 1"),
+        (ROBOCLAW + "[motors.limits]\ndriving = 0.6", "motors.limits: is parameters now; in [params]: MOT1_MAX and "),
         (GPIO + 'wiring = "two-input"', "motors.bridges[0].wiring: 'two-input' is not known; did you mean two-inputs?"),
         (GPIO + "forward = 1", "motors.bridges[0].wiring: missing; add it, one of two-inputs, phase-enable"),
         (GPIO + 'wiring = "two-inputs"\nfoward = 1', "motors.bridges[0].foward: unknown key; did you mean forward?"),
@@ -102,6 +103,9 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ("[params]\nman_timeout = 1", "params.man_timeout: unknown parameter; did you mean MAN_TIMEOUT"),
         ("[params]\nMAN_TIMEOUT = 9", "params.MAN_TIMEOUT: must be 0.2 to 2, not 9"),
         ("[params]\nMAN_TIMEOUT = nan", "params.MAN_TIMEOUT: must be 0.2 to 2, not nan"),
+        ("[params]\nMOT1_MIN = 81", "params.MOT1_MIN: must be 0 to 80, not 81"),
+        ("[params]\nMOT1_MIN = 60\nMOT1_MAX = 60", "params: MOT1_MIN 60 must be smaller than MOT1_MAX 60"),
+        ("[params]\nMOT2_MAX = 30\nMOT2_MIN = 40", "params: MOT2_MIN 40 must be smaller than MOT2_MAX 30"),
         ('[params]\nMAN_TIMEOUT = "1"', "params.MAN_TIMEOUT: must be a number"),
         ("[params]\nMAN_TIMEOUT = true", "params.MAN_TIMEOUT: must be a number"),
     ],

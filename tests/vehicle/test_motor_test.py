@@ -20,6 +20,8 @@ from tests.vehicle.words import said_by
 from vehicle.motor_test import RefusedError, Wish, turn, wish
 from vehicle.motors import MotorError
 from vehicle.motors.simulated import SimulatedMotors
+from vehicle.param_file import dump
+from vehicle.params import Params
 
 ASKED: list[str] = []
 
@@ -65,7 +67,17 @@ def _forget(monkeypatch: pytest.MonkeyPatch) -> None:
     [("left", 1, 0), ("RIGHT", 1, 1), ("2", 1, 1), ("steering", 2, 1), ("rear-left", 4, 2), ("4", 3, 3)],
 )
 def test_a_motor_has_a_name_and_a_number(motor: str, drive: int, index: int) -> None:
-    assert wish(motor, -0.3, 3.0, drive) == Wish(index, -0.3, 3.0)
+    throttles = [0.0] * (2 if drive < 3 else 4)
+    throttles[index] = -0.3
+    assert wish(motor, -0.3, 3.0, Params({"DRIVE_TYPE": drive})) == Wish(tuple(throttles), 3.0)
+
+
+def test_the_motor_gets_what_it_gets_when_driving() -> None:
+    params = Params({"MOT1_REVERSED": 1, "MOT1_MIN": 20, "MOT2_TRIM": 10})
+    assert wish("left", 0.25, 1.0, params).throttles == pytest.approx((-0.4, 0.0))
+    car = Params({"DRIVE_TYPE": 2, "MOT1_TRIM": 10, "MOT2_TRIM": 10, "MOT2_REVERSED": 1})
+    assert wish("throttle", 0.25, 1.0, car).throttles == pytest.approx((0.35, 0.1))
+    assert wish("steering", 0.2, 1.0, car).throttles == pytest.approx((0.0, -0.12))
 
 
 @pytest.mark.parametrize(
@@ -86,13 +98,13 @@ def test_a_motor_has_a_name_and_a_number(motor: str, drive: int, index: int) -> 
 )
 def test_56_what_is_too_much_is_refused(motor: str, throttle: float, seconds: float, says: str) -> None:
     with pytest.raises(RefusedError) as refusal:
-        wish(motor, throttle, seconds, 1)
+        wish(motor, throttle, seconds, Params())
     assert str(refusal.value).startswith(says)
 
 
 def test_one_motor_turns_and_ends_neutral_and_without_power() -> None:
     began = time.monotonic()
-    assert turn(TABLE, Wish(1, 0.2, 0.1)) is None
+    assert turn(TABLE, Wish((0.0, 0.2), 0.1)) is None
     assert 0.1 <= time.monotonic() - began < 2.0
     assert ASKED[:2] == ["open", "enable"]
     assert ASKED[2:-3] == ["0 0.2"] * len(ASKED[2:-3])
@@ -103,7 +115,7 @@ def test_one_motor_turns_and_ends_neutral_and_without_power() -> None:
 def test_a_driver_that_fails_is_stopped_too(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Noted, "breaks_at", 3)
     with pytest.raises(MotorError, match="no reply"):
-        turn(TABLE, Wish(0, 0.2, 1.0))
+        turn(TABLE, Wish((0.2, 0.0), 1.0))
     assert "0.2 0" in ASKED
     assert ASKED[-3:] == ["0 0", "disable", "disable"]
 
@@ -114,16 +126,16 @@ def test_a_signal_ends_it_at_once() -> None:
     signal.pthread_kill(threading.get_ident(), signal.SIGTERM)  # other threads of the test runner do not hold it back
     began = time.monotonic()
     try:
-        assert turn(TABLE, Wish(0, 0.2, 3.0)) is signal.SIGTERM
+        assert turn(TABLE, Wish((0.2, 0.0), 3.0)) is signal.SIGTERM
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
     assert time.monotonic() - began < 1.0
     assert ASKED[-3:] == ["0 0", "disable", "disable"]
 
 
-def test_a_motor_that_the_driver_lacks_is_refused_before_any_has_power() -> None:
-    with pytest.raises(RefusedError, match="2 motors only"):
-        turn(TABLE, Wish(2, 0.2, 1.0))
+def test_another_number_of_motors_is_refused_before_any_has_power() -> None:
+    with pytest.raises(RefusedError, match="the driver has 2 motors, DRIVE_TYPE needs 4"):
+        turn(TABLE, wish("3", 0.2, 1.0, Params({"DRIVE_TYPE": 4})))
     assert "enable" not in ASKED
 
 
@@ -137,8 +149,11 @@ def line() -> Iterator[OnPty]:
 
 
 def file_for(line: OnPty, folder: Path) -> Path:
+    """What is there already goes on at its end."""
     file = folder / "rover.toml"
-    file.write_text(f'[motors]\ndriver = "roboclaw"\nport = "{line.path}"\nreply_time = 0.05\n')
+    more = file.read_text() if file.exists() else ""
+    motors = f'[motors]\ndriver = "roboclaw"\nport = "{line.path}"\nreply_time = 0.05\n'
+    file.write_text(f'state = "{folder}"\n{motors}{more}')
     return file
 
 
@@ -193,6 +208,31 @@ def test_killed_the_controllers_own_timeout_ends_it(line: OnPty, tmp_path: Path)
     line.until(lambda: not any(line.controller.outputs), within=2.0)
 
 
+@pytest.mark.parametrize("where", ["file", "kept", "neither"])
+def test_a_reversed_motor_turns_as_the_vehicle_turns_it(line: OnPty, tmp_path: Path, where: str) -> None:
+    if where == "file":
+        (tmp_path / "rover.toml").write_text("[params]\nMOT2_REVERSED = 1\n")
+    elif where == "kept":
+        (tmp_path / "parameters").write_bytes(dump({"MOT2_REVERSED": 1.0}))
+    words = command(line, tmp_path, "right", "--throttle", "0.25", "--time", "3", "--yes")
+    process = subprocess.Popen(words, stderr=subprocess.PIPE)
+    wanted = 0.25 if where == "neither" else -0.25
+    line.until(lambda: line.controller.outputs[1] == pytest.approx(wanted, abs=1e-4))
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=10)
+    assert process.returncode == 0
+    assert line.controller.outputs == [0.0, 0.0]
+
+
+def test_without_knowing_what_is_kept_nothing_turns(line: OnPty, tmp_path: Path) -> None:
+    (tmp_path / "parameters").write_bytes(b"MOT2_REVERSED 1.0\n")
+    words = ["--config", str(file_for(line, tmp_path)), "right", "--yes"]
+    code, _, error = said_by("motor-test", *words)
+    assert (code, error) == (2, f"vehicle motor-test: {tmp_path}: parameter file damaged\n")
+    code, _, _ = said_by("motor-test", *words, "--time", "0.1", "--state", str(tmp_path / "elsewhere"))
+    assert code == 0
+
+
 def test_while_a_vehicle_runs_it_is_refused(line: OnPty, tmp_path: Path) -> None:
     words = command(line, tmp_path, "right", "--time", "3", "--yes")
     process = subprocess.Popen(words, stderr=subprocess.DEVNULL)  # holds the motors as a vehicle does
@@ -216,7 +256,7 @@ def test_while_a_vehicle_runs_it_is_refused(line: OnPty, tmp_path: Path) -> None
 )
 def test_a_mistake_is_one_line(tmp_path: Path, words: str, says: str) -> None:
     file = tmp_path / "rover.toml"
-    file.write_text('[motors]\ndriver = "simulated"\n')
+    file.write_text(f'state = "{tmp_path}"\n[motors]\ndriver = "simulated"\n')
     code, out, error = said_by("motor-test", "--config", str(file), *words.split())
     assert (code, out, error.count("\n")) == (2, "", 1)
     assert error.startswith("vehicle motor-test: ")

@@ -8,14 +8,15 @@ import stat
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle import daemon
-from vehicle.daemon import Settings
+from vehicle import daemon, settled
+from vehicle.daemon import Settings, Simulation
 from vehicle.param_file import dump, parsed
 from vehicle.param_store import ParamStore
 from vehicle.params import PARAMETERS
@@ -174,6 +175,27 @@ def test_what_wins(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     assert params.pinned == {"TRACK_WIDTH"}
     assert [record.levelname for record in caplog.records] == ["WARNING", "WARNING"]
     assert params.damage is None
+
+
+def test_a_known_cars_parameters_are_its_defaults(tmp_path: Path) -> None:
+    kept(tmp_path, MOT2_MAX=80.0)
+    settings = Settings((), motors={"driver": "article-car"}, pinned={"MOT_PIVOT_MAX": 50.0})
+    params = daemon._params(settings, ParamStore(tmp_path))
+    assert [params[name] for name in ("MOT1_MAX", "MOT2_MAX", "MOT_PIVOT_MAX")] == [60.0, 80.0, 50.0]
+    simulated = daemon._params(replace(settings, simulation=Simulation()), None)
+    assert simulated["MOT1_MAX"] == 100.0
+
+
+def test_where_the_programs_beside_a_vehicle_look(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "home"))
+    monkeypatch.delenv("STATE_DIRECTORY", raising=False)
+    monkeypatch.setattr(settled, "SERVICE", tmp_path / "service")
+    assert settled.state_of(None) == tmp_path / "home" / "mavhelm"
+    (tmp_path / "service").symlink_to("/no/such/folder")  # of a user that exists only while the service runs
+    assert settled.state_of(None) == tmp_path / "service"
+    monkeypatch.setenv("STATE_DIRECTORY", "/run/one:/run/two")
+    assert settled.state_of(None) == Path("/run/one")
+    assert settled.state_of("/srv/rover") == Path("/srv/rover")
 
 
 def test_damage_reaches_the_arming_checks(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:

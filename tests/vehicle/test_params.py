@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from vehicle.params import TABLE, ParamError, Parameter, Params
+from vehicle.params import ASCENDING, PARAMETERS, TABLE, ParamError, Parameter, Params, in_force
 
 
 @pytest.mark.parametrize("parameter", TABLE, ids=lambda parameter: parameter.name)
@@ -38,7 +38,8 @@ def test_values_replace_defaults() -> None:
 @pytest.mark.parametrize(
     ("name", "value"),
     [("MAN_TIMEOUT", 60), ("MAN_TIMEOUT", 0), ("MAN_TIMEOUT", math.nan), ("MOT_DECEL", 100), ("MAV_SYSID", 1.5),
-     ("MAV_SYSID", math.inf), ("NO_SUCH", 1)],
+     ("MAV_SYSID", math.inf), ("NO_SUCH", 1), ("MOT1_MIN", 81), ("MOT2_MAX", 24), ("MOT3_TRIM", 21),
+     ("MOT4_REVERSED", 0.5)],
 )  # fmt: skip
 def test_bad_values_are_refused_in_one_line_and_change_nothing(name: str, value: float) -> None:
     params = Params()
@@ -48,3 +49,57 @@ def test_bad_values_are_refused_in_one_line_and_change_nothing(name: str, value:
     assert name in str(refusal.value)
     assert "\n" not in str(refusal.value)
     assert {each: params[each] for each in params} == before
+
+
+# ---- values that must fit each other
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [(("MOT1_MIN", 60), ("MOT1_MAX", 60)), (("MOT2_MAX", 30), ("MOT2_MIN", 40)), (("MOT4_MIN", 80), ("MOT4_MAX", 25))],
+)
+def test_a_smallest_that_is_not_smaller_is_refused(first: tuple[str, float], second: tuple[str, float]) -> None:
+    params = Params(dict([first]))
+    with pytest.raises(ParamError, match=r"^MOT\d_MIN \d+ must be smaller than MOT\d_MAX \d+$"):
+        params.set(*second)
+    assert params[second[0]] == PARAMETERS[second[0]].default
+    assert params[first[0]] == first[1]
+
+
+@pytest.mark.parametrize(("small", "large"), ASCENDING)
+def test_values_that_fit_may_come_in_any_order(small: str, large: str) -> None:
+    fits = [(small, 60.0), (large, 61.0)]
+    for each in (fits, fits[::-1]):
+        params = Params(dict(each))
+        assert (params[small], params[large]) == (60.0, 61.0)
+        params, left_out = in_force({}, kept=dict(each), usual={large: 30.0})
+        assert (params[small], params[large], left_out) == (60.0, 61.0, [])
+    assert PARAMETERS[small].default == PARAMETERS[small].low
+    assert PARAMETERS[large].default == PARAMETERS[large].high
+
+
+def test_the_later_wins() -> None:
+    given, kept, usual = {"SPEED_MAX": 4.0}, {"SPEED_MAX": 3.0, "WP_SPEED": 3.0}, {"SPEED_MAX": 2.0, "WP_SPEED": 2.0}
+    params, left_out = in_force(given, kept=kept, usual={**usual, "RTL_SPEED": 2.0}, pinned=given)
+    assert [params[name] for name in ("SPEED_MAX", "WP_SPEED", "RTL_SPEED")] == [4.0, 3.0, 2.0]
+    assert left_out == []
+    pinned = [each.name for each in params.table if each.read_only and not PARAMETERS[each.name].read_only]
+    assert pinned == ["SPEED_MAX"]
+
+
+def test_kept_values_that_fit_no_more_are_left_out_and_told() -> None:
+    kept = {"MOT1_MIN": 60.0, "MOT2_MIN": 10.0, "GONE": 1.0, "MAN_TIMEOUT": 99.0}
+    params, left_out = in_force({"MOT1_MAX": 50.0}, kept=kept, usual={})
+    assert (params["MOT1_MIN"], params["MOT1_MAX"], params["MOT2_MIN"]) == (0.0, 50.0, 10.0)
+    assert left_out == [
+        "MOT1_MIN 60 must be smaller than MOT1_MAX 50",
+        "no parameter 'GONE'",
+        "MAN_TIMEOUT must be 0.2 to 2, not 99",
+    ]
+
+
+def test_what_is_given_and_contradicts_is_refused() -> None:
+    with pytest.raises(ParamError, match="MOT1_MIN 60 must be smaller than MOT1_MAX 50"):
+        in_force({"MOT1_MAX": 50.0, "MOT1_MIN": 60.0}, kept={}, usual={})
+    with pytest.raises(ParamError, match="MOT1_MIN 70 must be smaller than MOT1_MAX 60"):  # of the article's car
+        in_force({"MOT1_MIN": 70.0}, kept={}, usual={"MOT1_MAX": 60.0})

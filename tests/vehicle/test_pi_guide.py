@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from vehicle.motors import DRIVERS, check_settings
+from vehicle.params import Params
 from vehicle.sensors.suite import sensor_settings
 
 GUIDE = (Path(__file__).parents[2] / "docs" / "pi.md").read_text()
@@ -20,6 +21,13 @@ MOTORS = [table["motors"] for table in TABLES if "motors" in table]
 @pytest.mark.parametrize("table", MOTORS, ids=lambda table: table["driver"])
 def test_a_motor_table_is_right(table: dict[str, Any]) -> None:
     check_settings(table["driver"], {key: value for key, value in table.items() if key != "driver"})
+
+
+def test_a_table_of_parameters_is_right() -> None:
+    tables = [table["params"] for table in TABLES if "params" in table]
+    assert tables
+    for table in tables:
+        Params(table)
 
 
 def test_a_sensor_table_is_right() -> None:

@@ -35,13 +35,19 @@ PROFILES: dict[str, dict[str, Any]] = {
             {"wiring": "two-inputs", "forward": 8, "backward": 7},
         ],
         "frequency": 2000.0,
-        "limits": {"driving": 0.6, "turning": 0.4},
     },
 }
-"""Name of a driver -> settings it begins with. A known car is a driver and its settings, no code.
+"""Name of a driver -> settings it begins with. A known car is a driver, its settings and its parameters, no code.
 
-article-car is the car of the Circuit Cellar articles, parts 1 and 2: left motor, right motor, BCM pins; its program
-drove with 60 % duty and turned on the spot with 40 %.
+article-car is the car of the Circuit Cellar articles, parts 1 and 2: left motor, right motor, BCM pins.
+"""
+
+USUAL_PARAMS: dict[str, dict[str, float]] = {
+    "article-car": {"MOT1_MAX": 60, "MOT2_MAX": 60, "MOT_PIVOT_MAX": 66.7},
+}
+"""Name of a driver -> parameters that a known car has instead of the defaults; whoever sets one wins.
+
+The program of the article's car drove with 60 % duty and turned on the spot with 40 %, 66.7 % of that.
 """
 
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 import msgspec
 
 from vehicle.motors import Motors, MotorSettingsError
-from vehicle.motors.shaping import Limits, Shape, ShapedMotors
 
 if TYPE_CHECKING:
     from vehicle.motors.safety_pins import SafetyPins
@@ -38,10 +37,6 @@ class Safety(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Around(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What every driver takes beside its own settings."""
 
-    shape: tuple[Shape, ...] = ()
-    """One for each motor, or none."""
-    limits: Limits | None = None
-    """Largest outputs of two motors that steer by their difference."""
     safety: Safety | None = None
 
     def guard(self) -> SafetyPins | None:
@@ -53,21 +48,27 @@ class Around(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return SafetyPins(self.safety)
 
     def wrap(self, motors: Motors, guard: SafetyPins | None) -> Motors:
-        """`motors` with all this around them. Raises MotorSettingsError."""
-        if self.shape or self.limits:
-            motors = ShapedMotors(motors, self.shape, self.limits)
-        if guard is not None:
-            from vehicle.motors.safety_pins import GuardedMotors
+        """`motors` with all this around them."""
+        if guard is None:
+            return motors
+        from vehicle.motors.safety_pins import GuardedMotors
 
-            motors = GuardedMotors(motors, guard)
-        return motors
+        return GuardedMotors(motors, guard)
+
+
+RETIRED = {
+    "shape": "is parameters now; in [params], for each motor: MOT1_REVERSED = 1, MOT1_MIN and MOT1_MAX in %",
+    "limits": "is parameters now; in [params]: MOT1_MAX and MOT2_MAX in % for driving, MOT_PIVOT_MAX for turning",
+}
+"""Keys of older files -> what to write instead. vehicle/config.py refuses them; here they are passed over, because
+safe-stop must stop the motors with any file."""
 
 
 def split(table: Mapping[str, Any]) -> tuple[Around, dict[str, Any]]:
     """What goes around the driver, and the rest, which is its own. Raises MotorSettingsError."""
     names = Around.__struct_fields__
     around = parsed({key: value for key, value in table.items() if key in names}, Around)
-    return around, {key: value for key, value in table.items() if key not in names}
+    return around, {key: value for key, value in table.items() if key not in names and key not in RETIRED}
 
 
 def parsed(table: Mapping[str, Any], kind: type[T]) -> T:

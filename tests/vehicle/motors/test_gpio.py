@@ -8,8 +8,20 @@ from gpiozero import Device
 from gpiozero.pins.mock import MockFactory, MockPWMPin
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
-from vehicle.motors import DRIVERS, MotorError, Motors, MotorSettingsError, open_motors, safe_stop
+from vehicle.demand import Demand
+from vehicle.drive import Drive
+from vehicle.motors import (
+    DRIVERS,
+    USUAL_PARAMS,
+    MotorError,
+    Motors,
+    MotorSettingsError,
+    open_motors,
+    safe_stop,
+)
 from vehicle.motors.gpio import GpioMotors, GpioSettings, PhaseEnable, TwoInputs
+from vehicle.outputs import Clearance
+from vehicle.params import in_force
 
 TWO_INPUTS = GpioSettings(bridges=(TwoInputs(10, 9), TwoInputs(8, 7)))
 PHASE_ENABLE = GpioSettings(bridges=(PhaseEnable(enable=12, phase=5), PhaseEnable(enable=13, phase=6)))
@@ -84,38 +96,52 @@ def article_car() -> Motors:
     return open_motors("article-car")
 
 
+def driven(sticks: tuple[float, float], driver: str, kept: dict[str, float] | None = None) -> tuple[float, ...]:
+    """What the vehicle's motors get once throttle and steering were held for a while."""
+    params, _ = in_force({"MAN_DEADBAND": 0}, kept=kept or {}, usual=USUAL_PARAMS[driver])
+    drive = Drive(params, 0.0)
+    clearance = Clearance(armed=True, held=False, neutral_seen=True, demand_age=0.0, timeout=1.0)
+    return drive.step(Demand(*sticks, 0.0, 255, 0), clearance, limited=False, now=10.0).throttles
+
+
 class TestArticleCar:
     """The car of the articles, on its own wires: BCM 10, 9 left and 8, 7 right."""
 
     @pytest.mark.parametrize(
-        ("throttles", "pins"),
+        ("sticks", "pins"),
         [
-            ((1.0, 1.0), {10: 0.6, 9: 0.0, 8: 0.6, 7: 0.0}),
-            ((-1.0, -1.0), {10: 0.0, 9: 0.6, 8: 0.0, 7: 0.6}),
-            ((-1.0, 1.0), {10: 0.0, 9: 0.4, 8: 0.4, 7: 0.0}),
-            ((1.0, -1.0), {10: 0.4, 9: 0.0, 8: 0.0, 7: 0.4}),
-            ((0.5, 0.5), {10: 0.3, 9: 0.0, 8: 0.3, 7: 0.0}),
+            ((1.0, 0.0), {10: 0.6, 9: 0.0, 8: 0.6, 7: 0.0}),
+            ((-1.0, 0.0), {10: 0.0, 9: 0.6, 8: 0.0, 7: 0.6}),
+            ((0.0, -1.0), {10: 0.0, 9: 0.4, 8: 0.4, 7: 0.0}),
+            ((0.0, 1.0), {10: 0.4, 9: 0.0, 8: 0.0, 7: 0.4}),
+            ((0.5, 0.0), {10: 0.3, 9: 0.0, 8: 0.3, 7: 0.0}),
+            ((0.5, 0.5), {10: 0.5, 9: 0.0, 8: 0.0, 7: 0.0}),
             ((0.0, 0.0), {10: 0.0, 9: 0.0, 8: 0.0, 7: 0.0}),
         ],
-        ids=["forward", "backward", "left", "right", "half forward", "stop"],
+        ids=["forward", "backward", "left", "right", "half forward", "curve", "stop"],
     )
     def test_does_what_its_own_program_did(
-        self, factory: MockFactory, throttles: tuple[float, float], pins: dict[int, float]
+        self, factory: MockFactory, sticks: tuple[float, float], pins: dict[int, float]
     ) -> None:
         motors = article_car()
         motors.enable()
-        motors.set(throttles)
-        assert {pin: factory.pin(pin).state for pin in pins} == pytest.approx(pins)
+        motors.set(driven(sticks, "article-car"))
+        assert {pin: factory.pin(pin).state for pin in pins} == pytest.approx(pins, abs=1e-3)
         assert [factory.pin(pin).frequency for pin in pins] == [2000.0] * 4
 
     def test_is_in_the_table(self) -> None:
         assert DRIVERS["article-car"] == DRIVERS["gpio"]
 
-    def test_one_setting_can_be_replaced(self, factory: MockFactory) -> None:
-        motors = open_motors("article-car", {"limits": {"driving": 1.0, "turning": 0.5}})
+    def test_the_full_power_of_its_motors_is_a_matter_of_parameters(self, factory: MockFactory) -> None:
+        motors = article_car()
         motors.enable()
-        motors.set((1.0, 1.0))
-        assert factory.pin(10).state == pytest.approx(1.0)
+        motors.set(driven((1.0, 0.0), "article-car", {"MOT1_MAX": 100.0, "MOT2_MAX": 80.0}))
+        assert [factory.pin(pin).state for pin in (10, 8)] == pytest.approx([1.0, 0.8])
+
+    def test_one_setting_can_be_replaced(self, factory: MockFactory) -> None:
+        motors = open_motors("article-car", {"frequency": 500.0})
+        motors.enable()
+        assert factory.pin(10).frequency == 500.0
 
 
 @pytest.mark.parametrize(

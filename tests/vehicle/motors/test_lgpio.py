@@ -6,7 +6,6 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 from gpiozero import Device
@@ -55,17 +54,17 @@ def chip(monkeypatch: pytest.MonkeyPatch) -> Chip:
     return chip
 
 
-def driven(throttles: tuple[float, float], settings: dict[str, Any] | None = None) -> Motors:
-    motors = open_motors("article-car", settings)
+def driven(throttles: tuple[float, float]) -> Motors:
+    motors = open_motors("article-car")
     motors.enable()
     motors.set(throttles)
     return motors
 
 
 def test_the_articles_car_gets_60_percent_at_2_khz(chip: Chip) -> None:
-    motors = driven((1.0, 1.0))
+    motors = driven((0.6, 0.6))
     assert chip.pwm == {10: (2000, 60), 9: (2000, 0), 8: (2000, 60), 7: (2000, 0)}
-    motors.set((-1.0, 1.0))
+    motors.set((-0.4, 0.4))
     assert chip.pwm == {10: (2000, 0), 9: (2000, 40), 8: (2000, 40), 7: (2000, 0)}
     motors.disable()
     assert chip.pwm == dict.fromkeys((10, 9, 8, 7), (2000, 0))
@@ -74,7 +73,7 @@ def test_the_articles_car_gets_60_percent_at_2_khz(chip: Chip) -> None:
 
 def test_an_output_moves_in_steps_of_one_percent_rounded_down(chip: Chip) -> None:
     """Why this driver is not for servos; docs/pi.md says so too."""
-    motors = driven((0.509, 0.511), {"limits": {}})
+    motors = driven((0.509, 0.511))
     assert (chip.pwm[10], chip.pwm[8]) == ((2000, 50), (2000, 51))
     motors.close()
 

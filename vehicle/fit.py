@@ -1,0 +1,65 @@
+"""From what a wheel is to do to what its motor gets: direction, smallest and largest output, offset, thrust curve.
+
+Everything before this thinks in wheels: 1 is full ahead, however the motor is wired. Pure arithmetic on values that the
+ramps have decided. Zero stays zero for every motor that drives, whatever the parameters say.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from vehicle.mixer import Mixer, clamp
+from vehicle.params import MOTORS, Params
+
+NAMES = tuple(tuple(f"MOT{n}_{what}" for what in ("REVERSED", "MIN", "MAX", "TRIM")) for n in range(1, MOTORS + 1))
+"""The parameters of each motor."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """One motor's; shares of full, the first smaller than the second."""
+
+    reversed: bool = False
+    smallest: float = 0.0
+    """Output of the smallest throttle that is not zero."""
+    largest: float = 1.0
+    """Output of full throttle, which nothing exceeds."""
+    trim: float = 0.0
+    """Added to what the motor gets, so the same way for a reversed one."""
+    curve: float = 0.0
+    """MOT_THST_EXPO, -1..1."""
+
+    def drive(self, throttle: float) -> float:
+        """What a motor that drives gets, for -1..1. The trim never turns it on, round, or beyond its largest."""
+        if throttle == 0.0:
+            return 0.0
+        direction = math.copysign(1.0, -throttle if self.reversed else throttle)
+        size = self.smallest + (self.largest - self.smallest) * thrust(abs(throttle), self.curve)
+        return direction * min(self.largest, max(0.0, size + direction * self.trim))
+
+    def steer(self, steering: float) -> float:
+        """What a steering servo gets, for -1..1: its centre is the trim, its ends are the largest either way."""
+        turned = -steering if self.reversed else steering
+        reach = self.largest - self.trim if turned >= 0.0 else self.largest + self.trim
+        return clamp(self.trim + turned * reach, self.largest)
+
+
+def thrust(throttle: float, curve: float) -> float:
+    """Throttle 0..1 that gives this share of the thrust: ArduRover's MOT_THST_EXPO, its formula without its 0/0."""
+    if curve == 0.0 or throttle == 0.0:
+        return throttle
+    root = math.sqrt(max(0.0, (1.0 - curve) ** 2 + 4.0 * curve * throttle))
+    return min(1.0, 2.0 * throttle / (1.0 - curve + root))
+
+
+def fitted(wheels: Sequence[float], mixer: Mixer, params: Params) -> tuple[float, ...]:
+    """What the motors get; as many as `wheels`, each -1..1 where its wheel's value is."""
+    curve = params["MOT_THST_EXPO"]
+    outputs = []
+    for index, wheel in enumerate(wheels):
+        reversed_, smallest, largest, trim = (params[name] for name in NAMES[index])
+        fit = Fit(bool(reversed_), smallest / 100, largest / 100, trim / 100, curve)
+        outputs.append(fit.drive(wheel) if index < mixer.driven else fit.steer(wheel))
+    return tuple(outputs)
