@@ -126,6 +126,16 @@ def test_a_second_sender_is_denied_while_one_is_busy_and_the_first_may_begin_aga
     assert vehicle.give(waypoint(), 0, 0.3)[0].type == MissionResult.ACCEPTED
 
 
+def test_what_may_not_be_changed_any_more_at_the_end_stays() -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint(9)])
+    vehicle.ask(m.MissionCount(1, 1, 2))
+    vehicle.give(waypoint(0), 0)
+    vehicle.verdict = MissionResult.DENIED
+    assert [(ack.type, ack.opaque_id) for ack in vehicle.give(waypoint(1), 1)] == [(MissionResult.DENIED, 0)]
+    assert plain(vehicle.plan) == plain((waypoint(9),))
+
+
 def test_plans_of_different_kinds_go_up_side_by_side() -> None:
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 1, MissionType.MISSION))
