@@ -20,10 +20,10 @@ STEP = 0.02
 class Rover:
     """The vehicle, and the ports where it looks for its ground stations."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *options: str) -> None:
         self.port = free_port()
         self.second_port = free_port()
-        self.vehicle = Vehicle(folder, self.port, f"udpout:127.0.0.1:{self.second_port}")
+        self.vehicle = Vehicle(folder, self.port, f"udpout:127.0.0.1:{self.second_port}", *options)
 
     def wait(self, condition: Callable[[], bool], within: float, what: str) -> None:
         """Look at the motors until `condition`."""
@@ -43,9 +43,15 @@ class Rover:
 
 
 @pytest.fixture
-def rover(tmp_path: Path) -> Iterator[Rover]:
+def options() -> tuple[str, ...]:
+    """More words for the vehicle; a test file may have its own."""
+    return ()
+
+
+@pytest.fixture
+def rover(tmp_path: Path, options: tuple[str, ...]) -> Iterator[Rover]:
     """A simulated rover; ended with the test."""
     with ExitStack() as stack:
-        rover = Rover(tmp_path)
+        rover = Rover(tmp_path, *options)
         stack.callback(rover.vehicle.end)
         yield rover

@@ -207,7 +207,17 @@ def files(system: Any, folder: str) -> None:
     step("meaning", lambda: metadata.get_metadata(1, kinds.PARAMETER).json_metadata)
 
 
-SCENARIOS = {each.__name__: each for each in (identity, parameters, driving, guided, mission, files)}
+def recordings(system: Any, folder: str) -> None:
+    """The list of logs, and each of them."""
+    logs = plugin("log_files", system)
+    entries = logs.get_entries()
+    step("logs", lambda: [[entry.id, entry.date, entry.size_bytes] for entry in entries])
+    for entry in entries:
+        path = f"{folder}/fetched-{entry.id}"
+        step(f"log {entry.id}", partial(finished, partial(logs.download_log_file_async, entry, path)))
+
+
+SCENARIOS = {each.__name__: each for each in (identity, parameters, driving, guided, mission, files, recordings)}
 
 
 def main(port: str, scenario: str, folder: str) -> None:
