@@ -84,7 +84,7 @@ class Rover:
         )
         self._watch = Watch(params, self._safety, self._control, self._texts, now)
         self._telemetry = Telemetry(now)
-        self._bandwidth = Bandwidth()
+        self._bandwidth = Bandwidth(lambda: self._safety.armed)
         self._param_service = ParamService(
             params,
             self._control,
