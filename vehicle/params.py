@@ -176,6 +176,8 @@ class Params:
         self._usual = dict(usual or {})
         self.damage: str | None = None
         """Why saved values could not be had; nobody arms before somebody has set one anew."""
+        self.untold: set[str] = set()
+        """What was put in force and ground stations were not told of (param_service.py)."""
         self._values = {parameter.name: float(parameter.default) for parameter in TABLE}
         for name, value in (values or {}).items():
             self.set(name, value)
@@ -209,6 +211,7 @@ class Params:
             raise ParamError(f"{name} must be a whole number, not {value:g}")
         self._refuse_descent({**self._values, name: value})
         self._values[name] = float(value)
+        self.untold.add(name)
 
     @staticmethod
     def _refuse_descent(values: Mapping[str, float]) -> None:
