@@ -124,12 +124,12 @@ class MissionServer:
             case m.MissionCount() | m.MissionWritePartialList() as message:
                 return [self._begin(message, received, now)]
             case m.MissionItem() | m.MissionItemInt() as message:
-                return self._take(message, received, now)
+                return self._take(message, sender_of(received), now)
             case m.MissionClearAll() as message:
                 verdict = self._clear(message, received, now)
                 return [ack(sender_of(received), message.mission_type, verdict)]
             case m.MissionAck() as message if message.type != MissionResult.ACCEPTED:
-                self._abort(message, sender_of(received))
+                return self._refused(message, sender_of(received), now)
             case m.MissionSetCurrent() as message:
                 self._planner.select(message.seq, received, now)
                 return [Outgoing(self._planner.current())]
@@ -173,19 +173,15 @@ class MissionServer:
         self._uploads[kind] = upload
         return upload.ask(now)
 
-    def _take(self, message: _Item, received: Received, now: float) -> list[Outgoing]:
-        sender, kind = sender_of(received), self._shelf.kind(message.mission_type)
+    def _take(self, message: _Item, sender: Sender, now: float) -> list[Outgoing]:
+        kind = self._shelf.kind(message.mission_type)
         if kind is None:
             return []
         upload = self._uploads.get(kind)
         if upload is None or upload.sender != sender:
             return self._said_again(self._ended.get(kind), message, sender, now)
         answer = upload.take(message, now)
-        if isinstance(answer, list):
-            return answer
-        if answer is MissionResult.ACCEPTED:  # since it began, the vehicle may have set off by the old plan
-            answer = self._planner.may_write(received, kind, now)
-        return [self._end(upload, answer, message.seq, now)]
+        return answer if isinstance(answer, list) else [self._end(upload, answer, message.seq, now)]
 
     def _end(self, upload: Upload, verdict: MissionResult, last: int, now: float) -> Outgoing:
         kind = upload.kind
@@ -202,11 +198,16 @@ class MissionServer:
         self._shelf.put(kind, items)
         self._planner.changed(kind, items)
 
-    def _abort(self, message: m.MissionAck, sender: Sender) -> None:
-        """Whoever uploads has thought better of it."""
+    def _refused(self, message: m.MissionAck, sender: Sender, now: float) -> list[Outgoing]:
+        """Whoever uploads has thought better of it, or wants to be asked in another way."""
         kind = self._shelf.kind(message.mission_type)
-        if kind is not None and kind in self._uploads and self._uploads[kind].sender == sender:
-            del self._uploads[kind]
+        upload = None if kind is None else self._uploads.get(kind)
+        if kind is None or upload is None or upload.sender != sender:
+            return []
+        if message.type == MissionResult.UNSUPPORTED and upload.asked_in_floats:
+            return upload.keep_to_int(now)
+        del self._uploads[kind]
+        return []
 
     @staticmethod
     def _said_again(ended: _Ended | None, message: _Item, sender: Sender, now: float) -> list[Outgoing]:

@@ -59,6 +59,9 @@ class Upload:
         self._end = end
         self._heard = self._asked = now
         self._as_int = True
+        self._only_int = False
+        self.asked_in_floats = False
+        """MISSION_REQUEST was sent."""
 
     @property
     def items(self) -> Items:
@@ -68,6 +71,7 @@ class Upload:
     def ask(self, now: float) -> Outgoing:
         """The question for the next item."""
         self._asked = now
+        self.asked_in_floats |= not self._as_int
         request = m.MissionRequestInt if self._as_int else m.MissionRequest
         return Outgoing(request(self.sender.system, self.sender.component, self._next, self.kind), self.sender.peer)
 
@@ -96,5 +100,12 @@ class Upload:
         wait for nothing else."""
         if now - self._asked < ASK_AGAIN:
             return []
-        self._as_int = not self._as_int
+        self._as_int = self._only_int or not self._as_int
+        return [self.ask(now)]
+
+    def keep_to_int(self, now: float) -> list[Outgoing]:
+        """Ask by MISSION_REQUEST_INT from now on: MAVSDK refuses MISSION_REQUEST with UNSUPPORTED."""
+        if self._only_int:
+            return []  # the refusal of an older question
+        self._as_int = self._only_int = True
         return [self.ask(now)]
