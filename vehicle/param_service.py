@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable
 from typing import Protocol
 
@@ -11,7 +10,7 @@ from link.core import Outgoing, Received
 from link.services.pacing import Pacer
 from link.services.param import ParamServer
 from vehicle.control import Control
-from vehicle.params import ParamError, Params
+from vehicle.params import Params
 from vehicle.texts import Texts
 
 
@@ -53,7 +52,7 @@ class ParamService:
         self._control = control
         self._texts = texts
         self._keeper = keeper or NoKeeper()
-        params.untold.clear()
+        self._announced: list[Outgoing] = []
         self._server = ParamServer(
             params.table,
             params,
@@ -72,8 +71,7 @@ class ParamService:
 
     def tick(self, now: float) -> list[Outgoing]:
         """The next values of running lists, and those that the vehicle itself has changed."""
-        announced = self._server.announce(sorted(self._params.untold)) if self._params.untold else []
-        self._params.untold.clear()
+        announced, self._announced = self._announced, []
         return announced + self._server.tick(now)
 
     def observe(self, now: float) -> None:
@@ -89,22 +87,14 @@ class ParamService:
 
     def reset(self, now: float) -> None:
         """Defaults for all that a ground station may set; who listens is told what that changed."""
-        before = {name: self._params[name] for name in self._params}
         table = [each for each in self._params.table if not each.read_only]
-        for _ in range(2):  # one value may have to make room for another
-            for each in table:
-                with contextlib.suppress(ParamError):
-                    self._params.set(each.name, each.default)
-        changed = [each for each in table if self._params[each.name] != before[each.name]]
+        changed = [each for each in table if self._params[each.name] != each.default]
         for each in changed:
-            self._keep(each.name, each.default)
-        self._params.untold = {each.name for each in changed}
+            self._params.set(each.name, each.default)
+            self._changed(each.name, each.default)
+        self._announced += self._server.announce(each.name for each in changed)
         self._texts.say(Severity.NOTICE, f"Parameters: {len(changed)} back to their defaults", now)
 
     def _changed(self, name: str, value: float) -> None:
-        self._params.untold.discard(name)  # its answer tells everybody
-        self._keep(name, value)
-
-    def _keep(self, name: str, value: float) -> None:
         self._params.damage = None  # somebody sees to the parameters
         self._keeper.keep(name, value)
