@@ -18,12 +18,15 @@ class LossyPipe:
         self.loss = loss
         self.cut = False
         """While true all is lost, also what is under way."""
+        self.lost = 0
+        """How many were lost by chance or by a cut, those under way not counted."""
         self._random = random.Random(seed)
         self._under_way: deque[tuple[float, bytes]] = deque()
 
     def send(self, data: bytes, now: float) -> None:
         """Put `data` on its way, or lose it."""
         if self.cut or self._random.random() < self.loss:
+            self.lost += 1
             return
         arrival = now + max(0.0, self.delay + self._random.uniform(-self.jitter, self.jitter))
         if self._under_way:

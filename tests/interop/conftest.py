@@ -1,7 +1,8 @@
-"""Our vehicle as a process, looking for foreign ground stations on two UDP ports of this machine."""
+"""Our vehicle as a process, looking for foreign ground stations on two UDP ports of this machine, near or far."""
 
 from __future__ import annotations
 
+import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -11,27 +12,44 @@ from pathlib import Path
 import pytest
 
 from tests.e2e.programs import Vehicle
-from tests.e2e.relay import free_port
+from tests.e2e.relay import Relay, free_port
 
+HOME = (-35.3632581, 149.1652363)
+"""Where the simulated rover starts, degrees."""
 STEP = 0.02
 """s between two looks at the motor log."""
 
 
 class Rover:
-    """The vehicle, and the ports where it looks for its ground stations."""
+    """The vehicle, and the ports where it looks for its ground stations; `relay` is before the first of them."""
 
-    def __init__(self, folder: Path, *options: str) -> None:
-        self.port = free_port()
+    def __init__(self, folder: Path, relay: Relay | None = None) -> None:
+        self.port = relay.ground_port if relay else free_port()
         self.second_port = free_port()
-        self.vehicle = Vehicle(folder, self.port, f"udpout:127.0.0.1:{self.second_port}", *options)
+        self.vehicle = Vehicle(
+            folder, relay.vehicle_port if relay else self.port, f"udpout:127.0.0.1:{self.second_port}"
+        )
 
-    def wait(self, condition: Callable[[], bool], within: float, what: str) -> None:
-        """Look at the motors until `condition`."""
+    def soon(self, condition: Callable[[], bool], within: float) -> bool:
+        """Look at the motors until `condition`; False where it does not come."""
         deadline = time.monotonic() + within
         tick = threading.Event()
         while not condition():
-            assert time.monotonic() < deadline, f"not within {within} s: {what}; {self.vehicle.outputs()[-3:]}"
+            if time.monotonic() >= deadline:
+                return False
             tick.wait(STEP)
+        return True
+
+    def wait(self, condition: Callable[[], bool], within: float, what: str) -> None:
+        """Look at the motors until `condition`."""
+        assert self.soon(condition, within), f"not within {within} s: {what}; {self.vehicle.outputs()[-3:]}"
+
+    def speaks(self, within: float = 15.0) -> None:
+        """Wait until it has started and sends."""
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ear:
+            ear.bind(("127.0.0.1", self.second_port))
+            ear.settimeout(within)
+            ear.recv(65536)
 
     def drives(self, within: float = 5.0) -> None:
         """Wait until the wheels turn."""
@@ -42,16 +60,31 @@ class Rover:
         self.wait(lambda: not self.vehicle.turning(), within, "the wheels stop")
 
 
-@pytest.fixture
-def options() -> tuple[str, ...]:
-    """More words for the vehicle; a test file may have its own."""
-    return ()
+LOSS = 0.1
+"""Of the frames of each direction, on a lossy link."""
 
 
 @pytest.fixture
-def rover(tmp_path: Path, options: tuple[str, ...]) -> Iterator[Rover]:
+def rover(tmp_path: Path) -> Iterator[Rover]:
     """A simulated rover; ended with the test."""
     with ExitStack() as stack:
-        rover = Rover(tmp_path, *options)
+        rover = Rover(tmp_path)
+        stack.callback(rover.vehicle.end)
+        yield rover
+
+
+@pytest.fixture
+def relay() -> Iterator[Relay]:
+    """A network that loses frames."""
+    relay = Relay(loss=LOSS)
+    yield relay
+    relay.close()
+
+
+@pytest.fixture
+def far_rover(tmp_path: Path, relay: Relay) -> Iterator[Rover]:
+    """A simulated rover behind a network that loses frames; ended with the test."""
+    with ExitStack() as stack:
+        rover = Rover(tmp_path, relay)
         stack.callback(rover.vehicle.end)
         yield rover

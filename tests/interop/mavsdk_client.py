@@ -1,88 +1,22 @@
-"""A user's script for MAVSDK: `python mavsdk_client.py PORT SCENARIO FOLDER`. Prints JSON, a line a step.
+"""A user's script for MAVSDK: `python -m tests.interop.mavsdk_client PORT SCENARIO FOLDER SYSTEM`.
 
+Prints JSON, a line a step.
 A process of its own: MAVSDK is a C++ library with threads, and what crashes there must not take pytest along. What
 MAVSDK itself has to say goes to stderr.
 """
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import threading
-import time
-from collections.abc import Callable
-from enum import Enum
 from functools import partial
 from importlib import import_module
 from typing import Any
 
 from mavsdk import ComponentType, Configuration, Mavsdk
 
-PATIENCE = 10.0
-"""s for an answer that MAVSDK brings by a callback."""
-
-
-def plugin(name: str, system: Any) -> Any:
-    """The plugin's object; MAVSDK has a module of the same name for each."""
-    module = import_module(f"mavsdk.plugins.{name}.{name}")
-    return getattr(module, "".join(part.capitalize() for part in name.split("_")))(system)
-
-
-def step(name: str, run: Callable[[], Any]) -> Any:
-    """Run a step; print what came of it and how long it took."""
-    start = time.monotonic()
-    try:
-        value, error = run(), None
-    except Exception as exception:
-        value, error = None, f"{type(exception).__name__}: {exception}"
-    print(
-        json.dumps({"step": name, "value": shown(value), "error": error, "took": time.monotonic() - start}), flush=True
-    )
-    return value
-
-
-def shown(value: Any) -> Any:
-    """As JSON has it."""
-    if isinstance(value, Enum):
-        return value.name
-    return value if isinstance(value, int | float | str | list | None) else str(value)
-
-
-def first(subscribe: Callable[[Callable[..., None]], Any], good: Callable[[Any], bool]) -> Any:
-    """The first value of a stream that is `good`."""
-    came, found = threading.Event(), []
-
-    def take(value: Any, *_: Any) -> None:
-        if good(value) and not came.is_set():
-            found.append(value)
-            came.set()
-
-    subscribe(take)
-    if not came.wait(PATIENCE):
-        raise TimeoutError("nothing came")
-    return found[0]
-
-
-def finished(start: Callable[[Callable[..., None]], Any]) -> str:
-    """The final result of a transfer that reports its progress."""
-    done, results = threading.Event(), []
-
-    def take(result: Any, *_: Any) -> None:
-        if result.name != "NEXT":
-            results.append(result.name)
-            done.set()
-
-    start(take)
-    if not done.wait(PATIENCE):
-        raise TimeoutError("it did not end")
-    return str(results[0])
-
-
-def wait_for_line(end: threading.Event) -> None:
-    """Set `end` when a line comes on stdin."""
-    sys.stdin.readline()
-    end.set()
+from tests.interop.mavsdk_tools import PATIENCE, by_hand, finished, first, insist, plugin, step, wait_until
 
 
 def identity(system: Any, folder: str) -> None:
@@ -121,11 +55,7 @@ def driving(system: Any, folder: str) -> None:
     action, manual, telemetry = (plugin(name, system) for name in ("action", "manual_control", "telemetry"))
     first(telemetry.subscribe_health, lambda value: value.is_global_position_ok)
     step("arm", action.arm)
-    end = threading.Event()
-    threading.Thread(target=wait_for_line, args=(end,), daemon=True).start()
-    begun = time.monotonic()
-    while not end.wait(0.05):  # neutral first, then ahead
-        manual.set_manual_control_input(0.0 if time.monotonic() - begun < 0.3 else 0.5, 0.0, 0.0, 0.0)
+    by_hand(manual, 0.5)
     step("hold", action.hold)
     step("disarm", action.disarm)
 
@@ -149,27 +79,34 @@ def guided(system: Any, folder: str) -> None:
     step("disarm", action.disarm)
 
 
+def here(telemetry: Any) -> tuple[int, int]:
+    """Where the rover is, in degrees x 1e7, once it knows."""
+    first(telemetry.subscribe_health, lambda value: value.is_global_position_ok)
+    place = first(telemetry.subscribe_position, lambda value: abs(value.latitude_deg) > 1)
+    return round(place.latitude_deg * 1e7), round(place.longitude_deg * 1e7)
+
+
+def item(number: int, command: int, first: float, north: int, east: int, kind: int = 0) -> Any:
+    """An item of a plan."""
+    make = import_module("mavsdk.plugins.mission_raw.mission_raw").MissionItem
+    return make(number, 3, command, number == 0, 1, first, 0, 0, float("nan"), north, east, 0, kind)
+
+
+def shape(plan: list[Any]) -> list[list[int]]:
+    """What must come back as it was."""
+    return [[each.seq, each.command, each.x, each.y] for each in plan]
+
+
 def mission(system: Any, folder: str) -> None:
     """Upload, download, be refused, drive it to its end, clear."""
     action, raw, telemetry = (plugin(name, system) for name in ("action", "mission_raw", "telemetry"))
-    make = import_module("mavsdk.plugins.mission_raw.mission_raw").MissionItem
-    first(telemetry.subscribe_health, lambda value: value.is_global_position_ok)
-    here = first(telemetry.subscribe_position, lambda value: abs(value.latitude_deg) > 1)
-    north, east = round(here.latitude_deg * 1e7), round(here.longitude_deg * 1e7)
-    plan = [make(n, 3, 16, n == 0, 1, 0, 0, 0, float("nan"), north + 300 * n, east, 0, 0) for n in range(2)]
+    north, east = here(telemetry)
+    plan = [item(n, 16, 0, north + 300 * n, east) for n in range(2)]
     step("upload", lambda: raw.upload_mission(plan))
-    step("download", lambda: [[each.seq, each.command, each.x, each.y] for each in raw.download_mission()] == [
-        [each.seq, each.command, each.x, each.y] for each in plan])  # fmt: skip
-    step("refused", lambda: raw.upload_mission([make(0, 3, 22, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0)]))
-    step(
-        "fence",
-        lambda: raw.upload_geofence(
-            [
-                make(n, 3, 5001, 0, 1, 3, 0, 0, 0, north + (n == 1) * 90000, east + (n == 2) * 90000, 0, 1)
-                for n in range(3)
-            ]
-        ),
-    )
+    step("download", lambda: shape(raw.download_mission()) == shape(plan))
+    step("refused", lambda: raw.upload_mission([item(0, 22, 0, north, east)]))
+    fence = [item(n, 5001, 3, north + (n == 1) * 90000, east + (n == 2) * 90000, kind=1) for n in range(3)]
+    step("fence", lambda: raw.upload_geofence(fence))
     step("fence back", lambda: len(raw.download_geofence()))
     step("arm", action.arm)
     step("start", raw.start_mission)
@@ -178,14 +115,6 @@ def mission(system: Any, folder: str) -> None:
     step("disarm", action.disarm)
     step("clear", raw.clear_mission)
     step("empty", lambda: len(raw.download_mission()))
-
-
-def wait_until(condition: Callable[[], bool]) -> bool:
-    """Look until it is so."""
-    deadline, pause = time.monotonic() + 2 * PATIENCE, threading.Event()
-    while not condition() and time.monotonic() < deadline:
-        pause.wait(0.1)
-    return condition()
 
 
 def files(system: Any, folder: str) -> None:
@@ -207,22 +136,36 @@ def files(system: Any, folder: str) -> None:
     step("meaning", lambda: metadata.get_metadata(1, kinds.PARAMETER).json_metadata)
 
 
-def recordings(system: Any, folder: str) -> None:
-    """The list of logs, and each of them."""
-    logs = plugin("log_files", system)
-    entries = logs.get_entries()
-    step("logs", lambda: [[entry.id, entry.date, entry.size_bytes] for entry in entries])
-    for entry in entries:
-        path = f"{folder}/fetched-{entry.id}"
-        step(f"log {entry.id}", partial(finished, partial(logs.download_log_file_async, entry, path)))
+def lossy(system: Any, folder: str) -> None:
+    """All of it, over a link that loses: what fails is tried again."""
+    action, ftp, manual, param, raw, telemetry = (
+        plugin(name, system) for name in ("action", "ftp", "manual_control", "param", "mission_raw", "telemetry")
+    )
+    step("parameters", lambda: len(insist(param.get_all_params).float_params))
+    step("set", lambda: insist(lambda: param.set_param_float("SPEED_MAX", 1.4)))
+    step("get", lambda: insist(lambda: param.get_param_float("SPEED_MAX")))
+    path = "/missions/mission.waypoints"
+    step("file", lambda: finished(lambda take: ftp.download_async(path, folder, True, take)))
+    north, east = here(telemetry)
+    plan = [item(n, 16, 0, north + 200 + 100 * n, east) for n in range(2)]
+    step("upload", lambda: insist(lambda: raw.upload_mission(plan)))
+    step("download", lambda: shape(insist(raw.download_mission)) == shape(plan))
+    step("arm", lambda: insist(action.arm))
+    by_hand(manual, 0.5)
+    sys.stdin.readline()
+    step("start", lambda: insist(raw.start_mission))
+    step("finished", lambda: wait_until(lambda: raw.is_mission_finished()))
+    step("disarm", lambda: insist(action.disarm))
 
 
-SCENARIOS = {each.__name__: each for each in (identity, parameters, driving, guided, mission, files, recordings)}
+SCENARIOS = {each.__name__: each for each in (identity, parameters, driving, guided, mission, files, lossy)}
 
 
-def main(port: str, scenario: str, folder: str) -> None:
+def main(port: str, scenario: str, folder: str, system_id: str) -> None:
     """Connect and run one scenario."""
-    sdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
+    configuration = Configuration.create_with_component_type(ComponentType.GROUND_STATION)
+    configuration.system_id = int(system_id)
+    sdk = Mavsdk(configuration)
     step("connect", lambda: str(sdk.add_any_connection(f"udpin://127.0.0.1:{port}")))
     system = step("discover", lambda: sdk.first_autopilot(10.0))
     SCENARIOS[scenario](system, folder)

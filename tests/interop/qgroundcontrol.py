@@ -1,7 +1,8 @@
 """What QGroundControl does when it meets a vehicle: its steps in their order, its repeats and time limits.
 
 Written after reading InitialConnectStateMachine, StandardModes, RequestMetaDataTypeStateMachine and ParameterManager of
-its sources; it is not QGroundControl. It is stricter: where QGroundControl would go on after a time limit, this fails.
+its sources; it is not QGroundControl. It is stricter: where QGroundControl would go on without what did not come, this
+asks again and counts it in `repeats`, or fails. Files and plans are in qgc_files.py and qgc_plans.py.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from dialects import codec
 from dialects import messages as m
 from dialects.enums import Command, Result
 from link.framer import Framer
-from link.services.ftp import FtpPacket, Op, crc32, parse
+from link.services.ftp import crc32
+from tests.interop.qgc_files import LIMIT, Download, DownloadError
 
 Kind = TypeVar("Kind", bound=m.Message)
 
@@ -26,8 +28,8 @@ TRIES, COMMAND_LIMIT = 3, 3.0
 """Of a command, and s for each."""
 PARAMETERS_BEGIN, PARAMETERS_GAP = 5.0, 3.0
 """s until the first parameter, and between two."""
-PLAN_LIMIT, FTP_LIMIT = 1.5, 1.0
-"""s; ours."""
+PARAMETER_TRIES, PARAMETER_BATCH = 5, 10
+"""How often it asks for missing ones, and for how many at once."""
 NOT_SELECTABLE = 2
 """MAV_MODE_PROPERTY_NOT_USER_SELECTABLE."""
 JOYSTICK = 1 / 25
@@ -35,21 +37,26 @@ JOYSTICK = 1 / 25
 
 
 class QGroundControl:
-    """One connection."""
+    """One connection. `haste` divides the limits for its questions: it is the stricter by it."""
 
-    def __init__(self, port: int, system: int = SYSTEM) -> None:
+    def __init__(self, port: int, system: int = SYSTEM, haste: float = 1.0) -> None:
         self._system = system
+        self._haste = haste
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind(("127.0.0.1", port))
         self._framer = Framer(stream=False)
         self._vehicle: tuple[str, int] | None = None
         self._sequence = 0
-        self._ftp_sequence = 0
         self._beat_due = 0.0
+        self.watch: Callable[[m.Message], object] = lambda message: None
+        """Is told all that comes."""
         self.repeats = 0
         """Questions that had to be asked again."""
 
-    def close(self) -> None:
+    def __enter__(self) -> QGroundControl:
+        return self
+
+    def __exit__(self, *_: object) -> None:
         """Close its port."""
         self._socket.close()
 
@@ -78,6 +85,7 @@ class QGroundControl:
                 continue
             for frame in self._framer.feed(data, time.monotonic()):
                 message = codec.decode(frame.message_id, frame.payload)
+                self.watch(message)
                 if isinstance(message, kind) and wanted(message):
                     return message
         return None
@@ -101,7 +109,7 @@ class QGroundControl:
         for confirmation in range(TRIES):
             self.repeats += confirmation > 0
             self.send(m.CommandLong(1, 1, command, confirmation, *full))
-            ack = self.wait(m.CommandAck, COMMAND_LIMIT, lambda each: each.command == command)
+            ack = self.wait(m.CommandAck, COMMAND_LIMIT / self._haste, lambda each: each.command == command)
             if ack is not None:
                 return Result(ack.result)
         raise AssertionError(f"no answer to command {command}")
@@ -119,23 +127,27 @@ class QGroundControl:
                     came.setdefault(type(message), message)
                 return len(came) == 2
 
-            self.wait(m.Message, COMMAND_LIMIT, both)
+            self.wait(m.Message, COMMAND_LIMIT / self._haste, both)
             answer = came.get(kind)
             if isinstance(answer, kind) and m.CommandAck in came:
                 return answer
         raise AssertionError(f"no {kind.msgname}")
 
     def modes(self) -> list[str]:
-        """3: the names of all modes that a driver may choose; the last one ends it."""
+        """3: the names of all modes that a driver may choose; the last one ends it. What was lost is asked for again,
+        where QGroundControl would do without."""
         mode = self.request(m.AvailableModes, 0)
-        modes = [mode]
+        modes = {mode.mode_index: mode}
         while mode.mode_index < mode.number_modes:
-            following = self.wait(m.AvailableModes, COMMAND_LIMIT)
-            assert following is not None
+            following = self.wait(m.AvailableModes, COMMAND_LIMIT / self._haste)
+            if following is None:
+                break
             mode = following
-            modes.append(mode)
-        assert [each.mode_index for each in modes] == list(range(1, mode.number_modes + 1))
-        return [each.mode_name for each in modes if not each.properties & NOT_SELECTABLE]
+            modes[mode.mode_index] = mode
+        for index in set(range(1, mode.number_modes + 1)) - modes.keys():
+            self.repeats += 1
+            modes[index] = self.request(m.AvailableModes, index)
+        return [each.mode_name for _, each in sorted(modes.items()) if not each.properties & NOT_SELECTABLE]
 
     def metadata(self) -> dict[str, dict[str, object]]:
         """4: what the parameters mean, by name."""
@@ -148,56 +160,36 @@ class QGroundControl:
         return {each["name"]: each for each in json.loads(lzma.decompress(packed))["parameters"]}
 
     def download(self, path: str) -> bytes:
-        """A file by a burst."""
-        opened = self._ftp(Op.OPEN, data=path.encode())
-        assert opened.op == Op.ACK, path
-        size = int.from_bytes(opened.data[:4], "little")
-        content = b""
-        piece = self._ftp(Op.BURST, session=opened.session, size=239)
-        while True:
-            assert (piece.op, piece.offset) == (Op.ACK, len(content))
-            content += piece.data
-            if len(content) >= size:
-                break
-            following = self.wait(m.FileTransferProtocol, FTP_LIMIT)
-            assert following is not None
-            piece = parse(following)
-        self._ftp(Op.TERMINATE, session=opened.session)
-        return content
-
-    def _ftp(self, op: Op, *, session: int = 0, data: bytes = b"", size: int | None = None) -> FtpPacket:
-        self._ftp_sequence = (self._ftp_sequence + 2) & 0xFFFF
-        packet = FtpPacket(self._ftp_sequence, op, session, data, size=size)
-        for attempt in range(TRIES):
-            self.repeats += attempt > 0
-            self.send(packet.message(1, 1))
-            answer = self.wait(m.FileTransferProtocol, FTP_LIMIT, lambda each: parse(each).asked == op)
-            if answer is not None:
-                return parse(answer)
-        raise AssertionError(f"no answer to {op.name}")
+        """A file, tried again where QGroundControl would go on without it."""
+        for _ in range(TRIES):
+            try:
+                return Download(self, path, LIMIT / self._haste).run()
+            except DownloadError:
+                self.repeats += 1
+        raise AssertionError(f"no {path}")
 
     def parameters(self) -> dict[str, float]:
-        """5: the whole list."""
+        """5: the whole list; what is missing is asked for by its number."""
+        values: dict[int, m.ParamValue] = {}
         self.send(m.ParamRequestList(1, 0))
-        values: dict[str, float] = {}
-        limit = PARAMETERS_BEGIN
-        while True:
-            value = self.wait(m.ParamValue, limit)
-            assert value is not None, "Vehicle did not respond to request for parameters"
-            values[value.param_id] = value.param_value
-            limit = PARAMETERS_GAP
-            if len(values) == value.param_count:
-                return values
+        for _ in range(PARAMETER_TRIES):
+            limit = PARAMETERS_GAP if values else PARAMETERS_BEGIN
+            while value := self.wait(m.ParamValue, limit / self._haste):
+                values[value.param_index] = value
+                limit = PARAMETERS_GAP
+                if len(values) == value.param_count:
+                    return {values[number].param_id: values[number].param_value for number in sorted(values)}
+            self.repeats += 1
+            self._ask_for_missing(values)
+        raise AssertionError("Vehicle did not respond to request for parameters")
 
-    def plan(self, kind: int) -> int:
-        """6 to 8: how long a plan is."""
-        for attempt in range(TRIES):
-            self.repeats += attempt > 0
-            self.send(m.MissionRequestList(1, 1, kind))
-            count = self.wait(m.MissionCount, PLAN_LIMIT, lambda each: each.mission_type == kind)
-            if count is not None:
-                return int(count.count)
-        raise AssertionError(f"no answer for plan {kind}")
+    def _ask_for_missing(self, values: dict[int, m.ParamValue]) -> None:
+        if not values:
+            self.send(m.ParamRequestList(1, 0))
+            return
+        total = next(iter(values.values())).param_count
+        for number in [number for number in range(total) if number not in values][:PARAMETER_BATCH]:
+            self.send(m.ParamRequestRead(1, 1, b"", number))
 
     def joystick(self, throttle: int, steering: int, until: Callable[[], bool], within: float) -> None:
         """Its joystick for a while: x ahead, r turn, 25 times a second."""

@@ -2,45 +2,29 @@
 
 from __future__ import annotations
 
-import os
 import re
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
 from link.framer import Framer
-from tests.interop.conftest import Rover
+from tests.interop import mavproxy as mavproxy_program
+from tests.interop.conftest import HOME, Rover
 from tests.interop.conversation import Conversation
+from tests.interop.mavproxy import plan_file
 from vehicle.params import TABLE
 
-MAVPROXY = Path(__file__).parents[2] / ".venv-mavproxy/bin"
-"""Its own environment: it wants libraries that we do not. `.ci/run` makes it."""
-HOME = (-35.3632581, 149.1652363)
-"""Where the simulated rover starts."""
-MODULES = "log,wp,rally,fence,ftp,param,arm,mode,rc,misc,cmdlong,battery"
-"""Of its usual modules those that need no map, no plot and no screen."""
-
-pytestmark = [
-    pytest.mark.interop,
-    pytest.mark.skipif(
-        not (MAVPROXY / "mavproxy.py").exists() and "MAVHELM_CI" not in os.environ,
-        reason="MAVProxy is not installed: .ci/run shows how to put it into .venv-mavproxy",
-    ),
-]
+pytestmark = [pytest.mark.interop, mavproxy_program.needed]
 
 
 @pytest.fixture
 def mavproxy(rover: Rover, tmp_path: Path) -> Iterator[Conversation]:
     """MAVProxy, connected."""
-    command = [str(MAVPROXY / "python"), str(MAVPROXY / "mavproxy.py"), f"--default-modules={MODULES}"]
-    program = Conversation([*command, f"--master=udpin:127.0.0.1:{rover.port}"], tmp_path)
-    try:
+    with mavproxy_program.started(rover.port, tmp_path) as program:
         yield program
-    finally:
-        program.end()
 
 
 def test_it_connects_reads_all_parameters_and_sets_one(mavproxy: Conversation) -> None:
@@ -136,9 +120,3 @@ def test_a_mission_inside_a_fence(mavproxy: Conversation, rover: Rover, tmp_path
     rover.stands()
     mavproxy.say("disarm")
     mavproxy.hear("DISARMED")
-
-
-def plan_file(command: int, first: int, places: Sequence[tuple[float, float]]) -> str:
-    """A plan as MAVProxy reads it; `first` is parameter 1 of each item."""
-    lines = (f"{n}\t0\t3\t{command}\t{first}\t0\t0\t0\t{x:.7f}\t{y:.7f}\t0\t1" for n, (x, y) in enumerate(places))
-    return "\n".join(["QGC WPL 110", *lines, ""])

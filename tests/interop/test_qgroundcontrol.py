@@ -9,6 +9,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Capability, Command, Result
+from tests.interop import qgc_plans
 from tests.interop.conftest import Rover
 from tests.interop.qgroundcontrol import QGroundControl
 from vehicle.params import TABLE
@@ -19,10 +20,9 @@ pytestmark = pytest.mark.interop
 @pytest.fixture
 def ground(rover: Rover) -> Iterator[QGroundControl]:
     """It, connected."""
-    ground = QGroundControl(rover.port)
-    ground.meet()
-    yield ground
-    ground.close()
+    with QGroundControl(rover.port) as ground:
+        ground.meet()
+        yield ground
 
 
 def test_the_connect_sequence_comes_to_its_end(ground: QGroundControl) -> None:
@@ -35,7 +35,7 @@ def test_the_connect_sequence_comes_to_its_end(ground: QGroundControl) -> None:
     assert list(values) == [parameter.name for parameter in TABLE]
     assert set(values) == set(meaning)
     assert (meaning["SPEED_MAX"]["units"], meaning["SPEED_MAX"]["max"]) == ("m/s", 30)
-    assert [ground.plan(kind) for kind in (0, 1, 2)] == [0, 0, 0]
+    assert [qgc_plans.count(ground, kind) for kind in (0, 1, 2)] == [0, 0, 0]
     assert ground.repeats == 0
     assert time.monotonic() - begun < 5
 
@@ -59,8 +59,7 @@ def test_what_it_asks_of_other_vehicles_is_answered_too(ground: QGroundControl) 
 
 
 def test_a_second_one_drives_only_after_it_was_given_control(ground: QGroundControl, rover: Rover) -> None:
-    second = QGroundControl(rover.second_port, system=254)
-    try:
+    with QGroundControl(rover.second_port, system=254) as second:
         second.meet()
         assert second.request(m.AutopilotVersion)
         assert ground.command(Command.COMPONENT_ARM_DISARM, 1) is Result.ACCEPTED
@@ -76,5 +75,3 @@ def test_a_second_one_drives_only_after_it_was_given_control(ground: QGroundCont
         second.joystick(0, 0, until=lambda: False, within=0.3)
         second.joystick(600, 0, until=rover.vehicle.turning, within=5)
         assert rover.vehicle.turning()
-    finally:
-        second.close()

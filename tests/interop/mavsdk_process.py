@@ -1,0 +1,118 @@
+"""The script mavsdk_client.py with one of its scenarios, as a process: its steps as they come."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import re
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PATIENCE = 40.0
+"""s for a step: longer than MAVSDK's own limits."""
+
+needed = pytest.mark.skipif(
+    importlib.util.find_spec("mavsdk") is None and "MAVHELM_CI" not in os.environ,
+    reason='MAVSDK is not installed: pip install -e ".[interop]"',
+)
+
+
+class Step(NamedTuple):
+    """What a step of the script came to."""
+
+    name: str
+    value: object
+    error: str | None
+    took: float
+
+
+class Client:
+    """The process. A thread reads what it says, so that it never waits for us."""
+
+    def __init__(self, port: int, scenario: str, folder: Path, system: int = 245) -> None:
+        self._log = folder / f"mavsdk-{system}.log"
+        with self._log.open("w") as log:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "tests.interop.mavsdk_client", str(port), scenario, str(folder), str(system)],
+                cwd=folder,
+                env={**os.environ, "PYTHONPATH": str(ROOT)},
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=log,
+                text=True,
+            )
+        self.discovery = 0.0
+        """s that MAVSDK took to find the vehicle."""
+        self._news = threading.Condition()
+        self._steps: list[Step] = []
+        self._ended = False
+        self._thread = threading.Thread(target=self._listen, name="mavsdk", daemon=True)
+        self._thread.start()
+
+    def step(self, name: str, value: str = "", within: float = PATIENCE) -> Step:
+        """Wait for a step of that name, and with a value that matches; each is taken once."""
+        deadline = time.monotonic() + within
+        with self._news:
+            while (found := self._find(name, value)) is None:
+                left = deadline - time.monotonic()
+                if left <= 0 or self._ended:
+                    raise AssertionError(f"no {name!r} {value}\n{self._steps}\n{self._log.read_text()}")
+                self._news.wait(left)
+            self._steps.remove(found)
+            return found
+
+    def good(self, name: str) -> Step:
+        """Wait for a step that must succeed."""
+        step = self.step(name)
+        assert step.error is None, f"{name}: {step.error}\n{self._log.read_text()}"
+        return step
+
+    def say(self, line: str = "") -> None:
+        """What it waits for."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(f"{line}\n")
+        self._process.stdin.flush()
+
+    def end(self) -> None:
+        """End it, whatever state it is in."""
+        self._process.kill()
+        self._process.wait(10)
+        self._thread.join(5)
+        for pipe in (self._process.stdin, self._process.stdout):
+            if pipe is not None:
+                pipe.close()
+
+    def _find(self, name: str, value: str) -> Step | None:
+        return next((each for each in self._steps if each.name == name and re.search(value, str(each.value))), None)
+
+    def _listen(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            told = json.loads(line)
+            with self._news:
+                self._steps.append(Step(told["step"], told["value"], told["error"], told["took"]))
+                self._news.notify_all()
+        with self._news:
+            self._ended = True
+            self._news.notify_all()
+
+
+@contextmanager
+def started(port: int, scenario: str, folder: Path, system: int = 245) -> Iterator[Client]:
+    """The process, with the vehicle found."""
+    client = Client(port, scenario, folder, system)
+    try:
+        client.good("discover")
+        yield client
+    finally:
+        client.end()

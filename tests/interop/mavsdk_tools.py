@@ -1,0 +1,104 @@
+"""What a script for MAVSDK needs: its plugins by name, values from callbacks, and steps that are told as JSON."""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+import time
+from collections.abc import Callable
+from enum import Enum
+from importlib import import_module
+from typing import Any
+
+PATIENCE = 10.0
+"""s for an answer that MAVSDK brings by a callback."""
+
+
+def plugin(name: str, system: Any) -> Any:
+    """The plugin's object; MAVSDK has a module of the same name for each."""
+    module = import_module(f"mavsdk.plugins.{name}.{name}")
+    return getattr(module, "".join(part.capitalize() for part in name.split("_")))(system)
+
+
+def step(name: str, run: Callable[[], Any]) -> Any:
+    """Run a step; print what came of it and how long it took."""
+    start = time.monotonic()
+    try:
+        value, error = run(), None
+    except Exception as exception:
+        value, error = None, f"{type(exception).__name__}: {exception}"
+    print(
+        json.dumps({"step": name, "value": shown(value), "error": error, "took": time.monotonic() - start}), flush=True
+    )
+    return value
+
+
+def shown(value: Any) -> Any:
+    """As JSON has it."""
+    if isinstance(value, Enum):
+        return value.name
+    return value if isinstance(value, int | float | str | list | None) else str(value)
+
+
+def first(subscribe: Callable[[Callable[..., None]], Any], good: Callable[[Any], bool]) -> Any:
+    """The first value of a stream that is `good`."""
+    came, found = threading.Event(), []
+
+    def take(value: Any, *_: Any) -> None:
+        if good(value) and not came.is_set():
+            found.append(value)
+            came.set()
+
+    subscribe(take)
+    if not came.wait(PATIENCE):
+        raise TimeoutError("nothing came")
+    return found[0]
+
+
+def finished(start: Callable[[Callable[..., None]], Any]) -> str:
+    """The final result of a transfer that reports its progress."""
+    done, results = threading.Event(), []
+
+    def take(result: Any, *_: Any) -> None:
+        if result.name != "NEXT":
+            results.append(result.name)
+            done.set()
+
+    start(take)
+    if not done.wait(PATIENCE):
+        raise TimeoutError("it did not end")
+    return str(results[0])
+
+
+def wait_until(condition: Callable[[], bool]) -> bool:
+    """Look until it is so."""
+    deadline, pause = time.monotonic() + 2 * PATIENCE, threading.Event()
+    while not condition() and time.monotonic() < deadline:
+        pause.wait(0.1)
+    return condition()
+
+
+def insist(attempt: Callable[[], Any]) -> Any:
+    """Try until it works, as an operator does on a lossy link; MAVSDK's own repeats come to nothing now and then."""
+    deadline = time.monotonic() + 2 * PATIENCE
+    while True:
+        try:
+            return attempt()
+        except Exception:
+            if time.monotonic() > deadline:
+                raise
+
+
+def by_hand(manual: Any, throttle: float) -> None:
+    """Hold the stick, neutral first, until a line comes on stdin."""
+    end = threading.Event()
+
+    def listen() -> None:
+        sys.stdin.readline()
+        end.set()
+
+    threading.Thread(target=listen, daemon=True).start()
+    begun = time.monotonic()
+    while not end.wait(0.05):
+        manual.set_manual_control_input(0.0 if time.monotonic() - begun < 0.3 else throttle, 0.0, 0.0, 0.0)

@@ -1,0 +1,106 @@
+"""How QGroundControl downloads a file (FTPManager): one burst after the other, then the holes piece by piece.
+
+It answers silence by asking again from where it is, with the same sequence number, and takes only answers with the
+number it expects.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from dialects import messages as m
+from link.services.ftp import MAX_DATA, SEQUENCE, FtpError, FtpPacket, Op, parse
+
+if TYPE_CHECKING:
+    from tests.interop.qgroundcontrol import QGroundControl
+
+LIMIT, TRIES = 1.0, 3
+"""s for each answer, and how often it asks again."""
+
+
+class DownloadError(Exception):
+    """QGroundControl gave up: it goes on without the file."""
+
+
+class Download:
+    """One file."""
+
+    def __init__(self, ground: QGroundControl, path: str, limit: float = LIMIT) -> None:
+        self._ground = ground
+        self._limit = limit
+        self._path = path
+        self._expected = 0
+        """The sequence number of the next answer."""
+        self._holes: list[tuple[int, int]] = []
+        self._content = bytearray()
+
+    def run(self) -> bytes:
+        """The content. Raises DownloadError."""
+        opened = self._ask(FtpPacket(0, Op.OPEN, data=self._path.encode()), tries=0)
+        if opened.op != Op.ACK:
+            raise DownloadError(f"{self._path}: {opened.data!r}")
+        size = int.from_bytes(opened.data[:4], "little")
+        self._burst(opened.session)
+        while self._holes:
+            self._fill(opened.session)
+        if len(self._content) != size:
+            raise DownloadError(f"{self._path}: {len(self._content)} bytes of {size}")
+        self._ask(FtpPacket(0, Op.RESET))
+        return bytes(self._content)
+
+    def _burst(self, session: int) -> None:
+        """To the end of the file, which is told by a refusal."""
+        ask = True
+        while True:
+            request = FtpPacket(0, Op.BURST, session, offset=len(self._content), size=MAX_DATA)
+            piece = self._ask(request) if ask else self._next(request)
+            if piece.op == Op.NAK:
+                assert piece.data == bytes([FtpError.END_OF_FILE])
+                return
+            self._take(piece)
+            ask = piece.burst_complete
+            self._expected = piece.sequence if ask else piece.sequence + 1
+
+    def _take(self, piece: FtpPacket) -> None:
+        hole = piece.offset - len(self._content)
+        if hole < 0:
+            return
+        if hole:
+            self._holes.append((len(self._content), hole))
+        self._content += bytes(hole) + piece.data
+
+    def _fill(self, session: int) -> None:
+        offset, missing = self._holes[0]
+        piece = self._ask(FtpPacket(0, Op.READ, session, offset=offset, size=min(MAX_DATA, missing)))
+        assert (piece.op, piece.offset) == (Op.ACK, offset)
+        self._content[offset : offset + len(piece.data)] = piece.data
+        offset, missing = offset + len(piece.data), missing - len(piece.data)
+        self._holes[:1] = [(offset, missing)] if missing else []
+
+    def _next(self, request: FtpPacket) -> FtpPacket:
+        """The next of a burst under way; asked for again where it does not come."""
+        return self._heard(request) or self._ask(request, again=True)
+
+    def _ask(self, request: FtpPacket, *, tries: int = TRIES, again: bool = False) -> FtpPacket:
+        for attempt in range(tries + 1):
+            if attempt or again:
+                self._ground.repeats += 1
+                self._expected -= 2
+            sequence = (self._expected + 1) & SEQUENCE
+            self._expected = sequence + 1
+            packet = FtpPacket(sequence, request.op, request.session, request.data, request.offset, size=request.size)
+            self._ground.send(packet.message(1, 1))
+            answer = self._heard(request)
+            if answer is not None:
+                return answer
+        raise DownloadError(f"{self._path}: no answer to {Op(request.op).name}")
+
+    def _heard(self, request: FtpPacket) -> FtpPacket | None:
+        answer = self._ground.wait(m.FileTransferProtocol, self._limit, lambda each: self._fits(request, parse(each)))
+        return None if answer is None else parse(answer)
+
+    def _fits(self, request: FtpPacket, answer: FtpPacket) -> bool:
+        if answer.asked != request.op:
+            return False
+        late = request.op == Op.BURST and answer.op == Op.ACK and answer.sequence >= self._expected
+        return late or answer.sequence == self._expected

@@ -1,0 +1,185 @@
+"""Each client over a network that loses one frame in ten, each way: all it does comes to its end, and files are whole.
+
+Where a client says a thing once and does not listen for an answer, the test does what its user does: says it again.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Capability, Command, MissionResult, Result
+from link.services import mission_files
+from link.services.mission_items import from_message
+from tests.e2e.relay import Relay
+from tests.interop import mavproxy, mavsdk_process, qgc_plans
+from tests.interop.conftest import HOME, Rover
+from tests.interop.conversation import Conversation
+from tests.interop.qgroundcontrol import QGroundControl
+from tests.interop.script import Script, mavparm, mavwp
+from vehicle.params import TABLE
+from vehicle.plan_runner import Progress
+
+pytestmark = pytest.mark.interop
+
+NORTH, EAST = (round(degrees * 1e7) for degrees in HOME)
+WAYPOINT, LONG = 16, 200
+HASTE = 3.0
+"""How much sooner than QGroundControl its stand-in asks again, so that the test takes less time."""
+
+
+def waypoint(number: int, north: int) -> m.MissionItemInt:
+    """An item, `north` of home in degrees x 1e7."""
+    return m.MissionItemInt(1, 1, number, 3, WAYPOINT, 0, 1, 0.0, 0.0, 0.0, 0.0, NORTH + north, EAST, 0.0)
+
+
+@pytest.fixture
+def long_plan(far_rover: Rover) -> bytes:
+    """A mission of 200 items, given to the vehicle over a link without loss: the file that it is served as."""
+    items = [waypoint(number, 100 * number) for number in range(LONG)]
+    with QGroundControl(far_rover.second_port, system=254) as near:
+        near.meet()
+        assert qgc_plans.write(near, 0, items) is MissionResult.ACCEPTED
+    return mission_files.write([from_message(item) for item in items])
+
+
+@pytest.fixture(autouse=True)
+def it_was_lossy(relay: Relay) -> Iterator[None]:
+    """Looks whether the network did its worst."""
+    yield
+    assert relay.up.lost >= 2
+    assert relay.down.lost >= 10
+
+
+def eventually(attempt: Callable[[], bool], within: float = 20.0) -> None:
+    """Try until it works, as a user does."""
+    deadline = time.monotonic() + within
+    while not attempt():
+        assert time.monotonic() < deadline
+
+
+def test_pymavlink(far_rover: Rover, long_plan: bytes) -> None:
+    with Script(far_rover.port) as script:
+        link = script.link
+        link.param_fetch_all()
+        script.insist(lambda: fetch_missing(link), lambda: len(link.params) == len(TABLE))
+        script.insist(lambda: set_speed(link), lambda: link.params["SPEED_MAX"] == 1.25)
+        assert script.fetch("missions/mission.waypoints") == long_plan
+        loader = mavwp.MAVWPLoader(target_system=1, target_component=1)
+        for number in range(10):
+            loader.add_latlonalt(HOME[0] + number * 1e-6, HOME[1], 0)
+        assert script.upload(loader) == MissionResult.ACCEPTED
+        assert [round((item.x - NORTH) / 10) for item in script.download()] == pytest.approx(list(range(10)), abs=4)
+        script.insist(link.arducopter_arm, link.motors_armed)
+        script.drive(500, far_rover.vehicle.turning)
+        assert far_rover.vehicle.turning()
+        script.stick(0, lambda: not far_rover.vehicle.turning())
+        assert not far_rover.vehicle.turning()
+        eventually(lambda: script.command(Command.MISSION_START) == Result.ACCEPTED)
+        far_rover.drives()
+        script.until(lambda: link.flightmode == "HOLD", within=20)
+        far_rover.stands()
+        script.insist(link.arducopter_disarm, lambda: not link.motors_armed())
+
+
+def fetch_missing(link: Any) -> None:
+    """One by one, once the run of all is over."""
+    for index, parameter in enumerate(TABLE):
+        if link.params and parameter.name not in link.params:
+            link.param_fetch_one(index)
+
+
+def set_speed(link: Any) -> None:
+    """mavparm takes any PARAM_VALUE of that name for the answer, so that its user reads the value back."""
+    mavparm.MAVParmDict().mavset(link, "SPEED_MAX", 1.25, retries=1)
+    link.param_fetch_one("SPEED_MAX")
+
+
+def test_qgroundcontrol(far_rover: Rover, long_plan: bytes) -> None:
+    with QGroundControl(far_rover.port, haste=HASTE) as ground:
+        ground.meet()
+        assert ground.request(m.AutopilotVersion).capabilities & Capability.MAVLINK2
+        assert {"MANUAL", "HOLD"} <= set(ground.modes())
+        meaning = ground.metadata()
+        assert set(ground.parameters()) == set(meaning) == {parameter.name for parameter in TABLE}
+        assert ground.download("/missions/mission.waypoints") == long_plan
+        assert [qgc_plans.count(ground, kind) for kind in (0, 1, 2)] == [LONG, 0, 0]
+        items = [waypoint(number, 100 * number) for number in range(3)]
+        eventually(lambda: written(ground, items))
+        assert list(map(from_message, qgc_plans.read(ground, 0))) == list(map(from_message, items))
+        assert ground.command(Command.COMPONENT_ARM_DISARM, 1) is Result.ACCEPTED
+        ground.joystick(0, 0, until=lambda: False, within=0.3)
+        ground.joystick(600, 0, until=far_rover.vehicle.turning, within=5)
+        assert far_rover.vehicle.turning()
+        ground.joystick(0, 0, until=lambda: not far_rover.vehicle.turning(), within=3)
+        assert not far_rover.vehicle.turning()
+        eventually(lambda: ground.command(Command.MISSION_START) is Result.ACCEPTED)
+        far_rover.drives()
+        assert ground.wait(m.MissionCurrent, 20, lambda current: current.mission_state == Progress.COMPLETE) is not None
+        far_rover.stands()
+        assert ground.command(Command.COMPONENT_ARM_DISARM, 0) is Result.ACCEPTED
+        assert ground.repeats > 0
+
+
+def written(ground: QGroundControl, items: list[m.MissionItemInt]) -> bool:
+    """One click of its user on "upload"."""
+    try:
+        return qgc_plans.write(ground, 0, items) is MissionResult.ACCEPTED
+    except qgc_plans.PlanError:
+        return False
+
+
+@mavproxy.needed
+def test_mavproxy(far_rover: Rover, long_plan: bytes, tmp_path: Path) -> None:
+    points = [HOME, (HOME[0] + 0.00002, HOME[1])]
+    (tmp_path / "mission.txt").write_text(mavproxy.plan_file(WAYPOINT, 0, points))
+    with mavproxy.started(far_rover.port, tmp_path) as program:
+        program.hear(rf"Received {len(TABLE)} parameters \(ftp\)", 30)
+        program.ask("param set SPEED_MAX 1.4\nparam fetch SPEED_MAX", r"SPEED_MAX = 1\.4", 20)
+        program.ask("ftp get /missions/mission.waypoints got.txt", r"Wrote", 40, 10)
+        assert (tmp_path / "got.txt").read_bytes() == long_plan
+        program.ask("wp load mission.txt", "TYPE_MISSION: ACCEPTED", 20, 2)
+        program.ask("wp list", "Saved 2 waypoints", 20, 3)
+        program.ask("arm throttle", "(?<!DIS)ARMED", 20)
+        eventually(lambda: pushed(program, far_rover))
+        program.say("rc 3 1500")
+        far_rover.stands()
+        program.ask("mode AUTO", "Mode AUTO", 20)
+        far_rover.drives()
+        program.hear("Mode HOLD", 20)
+        far_rover.stands()
+        program.ask("disarm", "DISARMED", 20)
+
+
+def pushed(program: Conversation, rover: Rover) -> bool:
+    """Neutral first, then ahead; MAVProxy repeats only the newest, so that the neutral one may get lost."""
+    program.say("rc 3 1500")
+    program.say("rc 3 1600")
+    return rover.soon(rover.vehicle.turning, 1.0)
+
+
+@mavsdk_process.needed
+def test_mavsdk(far_rover: Rover, long_plan: bytes, tmp_path: Path) -> None:
+    with mavsdk_process.started(far_rover.port, "lossy", tmp_path) as sdk:
+        assert sdk.good("parameters").value == len(TABLE)
+        sdk.good("set")
+        assert sdk.good("get").value == pytest.approx(1.4)
+        assert "SUCCESS" in str(sdk.good("file").value)
+        assert (tmp_path / "mission.waypoints").read_bytes() == long_plan
+        sdk.good("upload")
+        assert sdk.good("download").value is True
+        sdk.good("arm")
+        far_rover.drives()
+        sdk.say()
+        far_rover.stands()
+        sdk.say()
+        far_rover.drives()
+        sdk.good("start")
+        assert sdk.good("finished").value is True
+        far_rover.stands()
+        sdk.good("disarm")
