@@ -29,6 +29,7 @@ from groundstation.texts import MAX_LENGTH
 from groundstation.wire import MAX_PACKET, NEVER_LATE, TOO_LATE, Failure, Hello, decode_down, encode
 from link.endpoint import EndpointError, parse
 from link.link import Link, LinkError
+from link.loop import run_loop
 from link.runner import Runner, open_links
 
 log = logging.getLogger(__name__)
@@ -247,7 +248,7 @@ def _run(options: argparse.Namespace, endpoints: tuple[str, ...], links: list[Li
     gc.collect()
     gc.freeze()  # what is imported lives as long as we do; without it a full pass stops the sender for 30 ms
     try:
-        return asyncio.run(helm.run())
+        return run_loop(helm.run())
     except Exception:
         log.exception("the station broke")
         return 1

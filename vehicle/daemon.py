@@ -20,6 +20,7 @@ from typing import Any
 
 from link.endpoint import EndpointError
 from link.link import LinkError
+from link.loop import run_loop
 from link.runner import Runner, open_links
 from link.tape import Tape
 from vehicle.leaving import Leave
@@ -104,7 +105,7 @@ class SettingsError(Exception):
 def run(settings: Settings) -> int:
     """Run until asked to stop; the exit code. What goes wrong becomes one line of the log."""
     try:
-        return asyncio.run(_serve(settings))
+        return run_loop(_serve(settings))
     except (SettingsError, EndpointError, LinkError, ParamError, UnknownDriverError) as error:
         log.error("%s", error)
         return MISTAKE
