@@ -39,6 +39,7 @@ examples:
   vehicle --sim                                  simulated rover; open `groundstation` beside it
   vehicle --sim udpout:192.168.1.20:14550        ... for a ground station on another machine
   vehicle --sim --param SPEED_MAX=3 --param DRIVE_TYPE=2     ... a faster one that steers like a car
+  vehicle --sim --param DRIVE_TYPE=4             ... one with mecanum wheels (3: omni), that also moves sideways
   vehicle init                                   write rover.toml, with every setting and what it does
   vehicle check                                  is it right, and does the hardware answer? Nothing moves
   vehicle --config rover.toml                    run with it; options here win over the file

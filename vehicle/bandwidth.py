@@ -2,33 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 from link.core import LinkReport, Peer
 from link.services.pacing import DEFAULT_RATE, Pacer
 
-TELEMETRY, BULK = 0.6, 0.3
-"""Shares of a link whose capacity is known: streams, and lists, files and logs (30 to 50 % by the specification). The
-rest is for acknowledgements and texts."""
+
+class Shares(NamedTuple):
+    """Of a link whose capacity is known; the rest is for acknowledgements and texts."""
+
+    telemetry: float
+    """All streams together."""
+    bulk: float
+    """Lists, files and logs."""
+
+
+USUAL = Shares(0.6, 0.3)
+"""30 to 50 % for parameters by the specification."""
+STANDING = Shares(0.3, 0.6)
+"""While bulk flows and nothing can be driven: a log takes half the time, and who waits for it reads no speedometer."""
 
 
 class Bandwidth:
-    """Bytes/s."""
+    """Bytes/s. `armed`: can the vehicle be driven now?"""
 
-    def __init__(self) -> None:
+    def __init__(self, armed: Callable[[], bool]) -> None:
         self.telemetry: float | None = None
         """For all streams together, since they go out on every link alike: the slowest with a peer counts. None where
         nobody knows, as on a network."""
         self.pacer = Pacer(self._bulk)
         """One for every service that sends more than one answer."""
+        self._armed = armed
         self._room: dict[int, float] = {}
+        self._asked: set[int] = set()
+        """Links that bulk was sent on since the last report ..."""
+        self._busy: set[int] = set()
+        """... and before it: what bulk gains telemetry has given up by then."""
 
     def observe(self, reports: Sequence[LinkReport]) -> None:
         """Take what the links say."""
+        self._busy, self._asked = self._asked, set()
         self._room = {each.index: each.capacity * each.headroom for each in reports if each.capacity is not None}
-        heard = [self._room[each.index] for each in reports if each.peers and each.index in self._room]
-        self.telemetry = TELEMETRY * min(heard) if heard else None
+        heard = [each.index for each in reports if each.peers and each.index in self._room]
+        self.telemetry = min((self._shares(link).telemetry * self._room[link] for link in heard), default=None)
 
     def _bulk(self, peer: Peer) -> float:
+        self._asked.add(peer.link)
         room = self._room.get(peer.link)
-        return DEFAULT_RATE if room is None else BULK * room
+        return DEFAULT_RATE if room is None else self._shares(peer.link).bulk * room
+
+    def _shares(self, link: int) -> Shares:
+        return STANDING if link in self._busy and not self._armed() else USUAL

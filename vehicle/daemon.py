@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from dialects.enums import DriveType
 from link.endpoint import EndpointError
 from link.link import LinkError
 from link.loop import run_loop
@@ -26,6 +27,7 @@ from link.tape import Tape
 from vehicle.leaving import Leave
 from vehicle.lock import MotorLock
 from vehicle.machine import Machine
+from vehicle.mixer import MIXERS
 from vehicle.motor_copy import copied
 from vehicle.motors import USUAL_PARAMS, MotorError, Motors, UnknownDriverError, open_motors, stop_input
 from vehicle.motors.log import LoggedMotors, MotorLog
@@ -40,7 +42,7 @@ from vehicle.sensors import NoSensors, Sensors
 from vehicle.sensors.suite import SensorSettings, open_sensors
 from vehicle.sim.battery import Battery
 from vehicle.sim.body import Home, SimulatedBody
-from vehicle.sim.chassis import AckermannChassis, Frame, SkidChassis
+from vehicle.sim.chassis import CHASSIS, Frame
 from vehicle.sim.truth import WatchedBody
 from vehicle.telemetry import HEARD
 
@@ -57,9 +59,6 @@ STOPPED, FAULT, MISTAKE = 0, 1, 2
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Asked to stop: by the service manager, by Ctrl-C, by a terminal that was closed."""
-
-CHASSIS: dict[int, type[SkidChassis] | type[AckermannChassis]] = {1: SkidChassis, 2: AckermannChassis}
-"""DRIVE_TYPE -> how the simulated rover moves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,14 +293,12 @@ def _body(settings: Settings, opened: contextlib.ExitStack) -> tuple[Motors, Sen
 
 
 def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sensors]:
-    motors = SimulatedMotors()
+    kind = DriveType(int(params["DRIVE_TYPE"]))
+    motors = SimulatedMotors(len(MIXERS[kind].motors))
     frame = Frame(top_speed=params["SPEED_MAX"], track_width=params["TRACK_WIDTH"], wheelbase=params["WHEELBASE"])
-    chassis = CHASSIS.get(int(params["DRIVE_TYPE"]))
-    if chassis is None:
-        raise SettingsError("the simulator drives DRIVE_TYPE 1 (skid steering) and 2 (Ackermann) only")
     body = SimulatedBody(
         lambda: motors.outputs,
-        chassis=chassis(frame),
+        chassis=CHASSIS[kind](frame),
         battery=Battery(simulation.battery),
         home=simulation.home,
         seed=simulation.seed,

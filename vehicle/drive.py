@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from dialects.enums import DriveType, Limit
 from vehicle.demand import Demand
@@ -29,7 +28,8 @@ class Drive:
         self.outputs = Outputs((0.0,) * len(self.mixer.motors), enabled=False)
         self._params = params
         self._slews = [Slew() for _ in self.mixer.motors]
-        self._gate = Gate(len(self._slews), self.mixer.driven)
+        self._driven = self.mixer.driven
+        self._gate = Gate(len(self._slews), self._driven)
         self._tested: int | None = None
         """The motor that a test turns."""
         self._at = now
@@ -43,7 +43,7 @@ class Drive:
     @property
     def driving(self) -> tuple[float, ...]:
         """Of `wheels` those that move the rover."""
-        return self._gate.wheels[: self.mixer.driven]
+        return self._gate.wheels[: self._driven]
 
     @property
     def refused(self) -> int:
@@ -64,7 +64,7 @@ class Drive:
         wanted = demand if permit is Permit.DRIVE else None
         wheels = self._ramped(self._targets(wanted, limited) if trial is None else self._alone(trial), dt)
         self._note_limits()
-        motors = fitted(wheels, self.mixer, self._params)
+        motors = fitted(wheels, self._driven, self._params)
         self.outputs = self._gate.judge(wheels, motors, permit, 100 / self._params["MOT_DECEL"], now, trial)
         if self.wheels != wheels:  # refused: no ramp goes on from there
             for slew in self._slews:
@@ -82,10 +82,10 @@ class Drive:
         )
         if mixed.saturated:
             self.limits |= Limit.SATURATED
-        if self.mixer.driven < len(self.mixer.motors):
+        if self._driven < len(self._slews):
             return mixed.throttles
         share = pivot_share(throttle, steering, sideways, params["MOT_PIVOT_MAX"] / 100)
-        return tuple(share * value for value in mixed.throttles)
+        return tuple([share * value for value in mixed.throttles])
 
     def _alone(self, trial: Trial) -> tuple[float, ...]:
         """One motor, the others at rest."""
@@ -101,12 +101,13 @@ class Drive:
 
     def _ramped(self, targets: Sequence[float], dt: float) -> tuple[float, ...]:
         params = self._params
-        wheel = SlewLimits(params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100, params["MOT_REV_DELAY"])
-        servo = replace(wheel, reverse_delay=0.0)  # its gears do not mind, and the rover would go straight on meanwhile
-        limits = (wheel if index < self.mixer.driven else servo for index in range(len(targets)))
-        return tuple(
-            slew.step(target, dt, limit) for slew, target, limit in zip(self._slews, targets, limits, strict=True)
-        )
+        accel, decel = params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100
+        wheel = SlewLimits(accel, decel, params["MOT_REV_DELAY"])
+        servo = SlewLimits(
+            accel, decel
+        )  # its gears do not mind a reversal, and the rover would go straight on meanwhile
+        pairs = enumerate(zip(self._slews, targets, strict=True))
+        return tuple([slew.step(target, dt, wheel if at < self._driven else servo) for at, (slew, target) in pairs])
 
     def _note_limits(self) -> None:
         if any(slew.limited for slew in self._slews):

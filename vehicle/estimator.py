@@ -10,16 +10,19 @@ Fast sensors carry the estimate from cycle to cycle, slow ones pull it back to t
 Each pull begins as a plain mean (gain 1/n) and settles at its time constant, so that the first seconds are not lost.
 Receivers of this class wander by decimetres over half a minute: POSITION_TIME hides the wander as far as the drift of
 wheels and heading allows. Without wheels the GPS gives the speed; without compass its course gives the heading.
+A drive that can move sideways has a course that is not its heading: its wheels say by how much, or else the GPS.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from vehicle.place import Origin, Point, wrap
 from vehicle.readings import Readings
 from vehicle.reckoning import Gain, Reckoning
+from vehicle.wheels import Wheels
 
 HEADING_TIME = 3.0
 """s; a magnetometer's noise is gone by then, a gyro's bias of 1 deg/s has made 3 degrees."""
@@ -29,12 +32,6 @@ BIAS_MAX = 0.1
 """rad/s: a larger one is no bias but a broken gyro."""
 OFFSET_TIME = 60.0
 """s of straight driving until the compass's offset is learned; one course is good to 4 degrees at 0.8 m/s."""
-SCALE_TIME = 120.0
-"""s of straight driving until the scale of the wheels is learned."""
-SCALE_CREDIT = 25
-"""Courses that the wheels' own word is worth: 5 s, or the first one would change it by 7 %."""
-SCALE_MAX = 0.2
-"""Wheels that are off by more slip, or are set wrongly: SPEED_MAX is for that."""
 POSITION_TIME = 100.0
 """s; longer hides more of the wander, and shows more of what wheels and heading still have wrong."""
 COURSE_SPEED = 0.4
@@ -71,6 +68,8 @@ class Estimate(NamedTuple):
     yaw_rate: float | None = None
     speed: float | None = None
     """Along the nose, negative backwards."""
+    sideways: float = 0.0
+    """To the right, of drives that can."""
     place: Point = Point(0.0, 0.0)
     moving_place: bool = False
     """`place` follows the rover: by wheels and heading from the start, or by GPS."""
@@ -84,7 +83,13 @@ class Estimate(NamedTuple):
     @property
     def velocity(self) -> Point:
         """m/s north and east; 0 where the speed or heading is not known."""
-        return Point(0.0, 0.0).moved(self.yaw or 0.0, self.speed or 0.0)
+        yaw = self.yaw or 0.0
+        return Point(0.0, 0.0).moved(yaw, self.speed or 0.0).moved(yaw + math.pi / 2, self.sideways)
+
+    @property
+    def ground_speed(self) -> float:
+        """m/s, whichever way; 0 where it is not known."""
+        return math.hypot(self.speed or 0.0, self.sideways)
 
     @property
     def globe(self) -> tuple[float, float] | None:
@@ -95,15 +100,16 @@ class Estimate(NamedTuple):
 class Estimator:
     """The filter. `sense` each cycle."""
 
-    def __init__(self) -> None:
+    def __init__(self, aside: Sequence[int] = ()) -> None:
+        """`aside`: what a motion to the right gives to each wheel, of a drive that can (mixer.py, FOUR_WHEELS)."""
         self.estimate = Estimate()
+        self._wheels = Wheels(aside)
         self._at: float | None = None
         self._yaw: float | None = None
         self._bias = self._offset = 0.0
-        self._scale = 1.0
         self._offset_gain = Gain(OFFSET_TIME)
-        self._scale_gain = Gain(SCALE_TIME, SCALE_CREDIT)
         self._speed: float | None = None
+        self._sideways = 0.0
         self._reckoning = Reckoning()
         self._place_gain = Gain(POSITION_TIME)
         self._origin: Origin | None = None
@@ -118,9 +124,11 @@ class Estimator:
         self._at = now
         rate = _sane(readings.yaw_rate, 50.0)
         self._turn(rate, _sane(readings.yaw, 1e6), dt)
-        wheels = _sane(readings.speed, 50.0)
+        wheels, sideways = self._wheels.speed(readings), self._wheels.sideways(readings)
         if wheels is not None:
-            self._speed = wheels * self._scale
+            self._speed = wheels
+        if sideways is not None:
+            self._sideways = sideways
         self._move(dt, wheels is not None)
         fix = self._new_fix(readings, now)
         if fix is not None:
@@ -144,9 +152,11 @@ class Estimator:
     def _move(self, dt: float, wheels: bool) -> None:
         if self._yaw is None or self._speed is None:
             return
-        way = self._speed * dt
+        way, right = self._speed * dt, self._sideways * dt
         self._reckoning.step(way, self._yaw)
-        self._drift += DRIFT * abs(way) if wheels else BLIND_DRIFT * dt
+        if right:
+            self._reckoning.step(right, self._yaw + math.pi / 2)
+        self._drift += DRIFT * math.hypot(way, right) if wheels else BLIND_DRIFT * dt
 
     def _new_fix(self, readings: Readings, now: float) -> tuple[float, float] | None:
         """Latitude and longitude, once for each time that the receiver says something."""
@@ -164,6 +174,7 @@ class Estimator:
     ) -> None:
         north, east = _sane(readings.velocity_north, 50.0), _sane(readings.velocity_east, 50.0)
         if north is not None and east is not None:
+            self._take_aside(north, east, readings)
             self._take_velocity(north, east, rate, readings.yaw is not None, wheels)
         dt = min(GPS_SAME, now - self._fix_at)
         self._fix_at = now
@@ -189,6 +200,12 @@ class Estimator:
         self._outliers = 0
         return False
 
+    def _take_aside(self, north: float, east: float, readings: Readings) -> None:
+        """Where the drive can move sideways and its wheels do not say so."""
+        if self._yaw is not None and self._wheels.sideways(readings) is None:
+            across = east * math.cos(self._yaw) - north * math.sin(self._yaw)
+            self._sideways = (self._sideways + across) / 2
+
     def _take_velocity(self, north: float, east: float, rate: float | None, compass: bool, wheels: bool) -> None:
         speed = math.hypot(north, east)
         along = speed if self._yaw is None else north * math.cos(self._yaw) + east * math.sin(self._yaw)
@@ -198,7 +215,7 @@ class Estimator:
             return
         if wheels and self._yaw is not None:
             self._learn_scale(along)
-        course = math.atan2(east, north) + (math.pi if (self._speed or 0.0) < 0.0 else 0.0)
+        course = math.atan2(east, north) - math.atan2(self._sideways, self._speed or 0.0)
         if self._yaw is None:
             self._yaw = wrap(course)
             return
@@ -214,10 +231,7 @@ class Estimator:
         speed = self._speed or 0.0
         if abs(speed) < COURSE_SPEED:
             return
-        error = (along - speed) / speed * self._scale * self._scale_gain.next(FIX_PERIOD)
-        scale = max(1.0 - SCALE_MAX, min(1.0 + SCALE_MAX, self._scale + error))
-        self._reckoning.stretch(scale / self._scale)
-        self._scale = scale
+        self._reckoning.stretch(self._wheels.learn(along, speed, FIX_PERIOD))
 
     def _learn_bias(self, change: float) -> None:
         self._bias = max(-BIAS_MAX, min(BIAS_MAX, self._bias + change))
@@ -225,12 +239,13 @@ class Estimator:
     def _believed(self, rate: float | None, wheels: float | None, now: float) -> Estimate:
         since = now - self._fix_at
         if wheels is None and since > GPS_LOST:
-            self._speed = None
+            self._speed, self._sideways = None, 0.0
         accuracy = math.inf if self._origin is None else 1.0 + self._drift
         return Estimate(
             yaw=self._yaw,
             yaw_rate=None if rate is None else rate - self._bias,
             speed=self._speed,
+            sideways=self._sideways,
             place=self._reckoning.place,
             moving_place=self._origin is not None or (self._yaw is not None and wheels is not None),
             origin=self._origin,

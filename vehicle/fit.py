@@ -8,18 +8,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
-from vehicle.mixer import Mixer, clamp
+from vehicle.mixer import clamp
 from vehicle.params import MOTORS, Params
 
 NAMES = tuple(tuple(f"MOT{n}_{what}" for what in ("REVERSED", "MIN", "MAX", "TRIM")) for n in range(1, MOTORS + 1))
 """The parameters of each motor."""
 
 
-@dataclass(frozen=True, slots=True)
-class Fit:
-    """One motor's; shares of full, the first smaller than the second."""
+class Fit(NamedTuple):
+    """One motor's; shares of full, the first smaller than the second. Made in each cycle."""
 
     reversed: bool = False
     smallest: float = 0.0
@@ -54,12 +53,12 @@ def thrust(throttle: float, curve: float) -> float:
     return min(1.0, 2.0 * throttle / (1.0 - curve + root))
 
 
-def fitted(wheels: Sequence[float], mixer: Mixer, params: Params) -> tuple[float, ...]:
-    """What the motors get; as many as `wheels`, each -1..1 where its wheel's value is."""
+def fitted(wheels: Sequence[float], driven: int, params: Params) -> tuple[float, ...]:
+    """What the motors get, of which the first `driven` drive; each -1..1 where its wheel's value is."""
     curve = params["MOT_THST_EXPO"]
     outputs = []
-    for index, wheel in enumerate(wheels):
-        reversed_, smallest, largest, trim = (params[name] for name in NAMES[index])
-        fit = Fit(bool(reversed_), smallest / 100, largest / 100, trim / 100, curve)
-        outputs.append(fit.drive(wheel) if index < mixer.driven else fit.steer(wheel))
+    for index, (wheel, names) in enumerate(zip(wheels, NAMES, strict=False)):
+        reversed_, smallest, largest, trim = [params[name] for name in names]
+        fit = Fit(reversed_ != 0.0, smallest / 100, largest / 100, trim / 100, curve)
+        outputs.append(fit.drive(wheel) if index < driven else fit.steer(wheel))
     return tuple(outputs)

@@ -67,4 +67,4 @@ class Hazards:
         wheels = look.readings.wheel_speeds
         if wheels:
             return max(map(abs, wheels)) < STANDING
-        return look.estimate.speed is not None and abs(look.estimate.speed) < STANDING
+        return look.estimate.speed is not None and look.estimate.ground_speed < STANDING

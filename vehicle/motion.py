@@ -36,7 +36,7 @@ def attitude(view: View) -> m.Message | None:
 def vfr_hud(view: View) -> m.Message:
     """VFR_HUD: speed over ground, heading and throttle, also where only the throttle is known."""
     readings, driving = view.readings, view.drive.driving
-    speed = abs(view.estimate.speed or 0.0)
+    speed = view.estimate.ground_speed
     return m.VfrHud(
         airspeed=speed,
         groundspeed=speed,

@@ -50,7 +50,7 @@ def wish(motor: str, throttle: float, seconds: float, params: Params) -> Wish:
         raise RefusedError(f"time {seconds:g} s is not more than 0 and at most {LONGEST:g}")
     wheels = [0.0] * len(names)
     wheels[known[motor.lower()]] = throttle
-    return Wish(fitted(wheels, mixer, params), seconds)
+    return Wish(fitted(wheels, mixer.driven, params), seconds)
 
 
 def turn(table: Mapping[str, Any], wanted: Wish) -> signal.Signals | None:

@@ -23,6 +23,7 @@ from vehicle.guidance import Guide
 from vehicle.guided import Guided
 from vehicle.hazards import Hazards, Look
 from vehicle.homing import Done, Loiter, Retrace, Return, Trail
+from vehicle.mixer import FOUR_WHEELS, MIXERS
 from vehicle.modes import OFFERED, Need
 from vehicle.params import Params
 from vehicle.pilot import STAND, Motion, Pilot
@@ -89,7 +90,8 @@ class Navigator:
         self.beyond = 0.0
         """m beyond the fence."""
         self._params = params
-        self._estimator = Estimator()
+        aside = [side for _, _, side in FOUR_WHEELS] if MIXERS[kind].sideways else []
+        self._estimator = Estimator(aside)
         self._readings = NO_READINGS
         self._pilot = Pilot(params, kind)
         self._hazards = Hazards(params)

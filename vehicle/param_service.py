@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from typing import Protocol
 
@@ -10,7 +11,7 @@ from link.core import Outgoing, Received
 from link.services.pacing import Pacer
 from link.services.param import ParamServer
 from vehicle.control import Control
-from vehicle.params import Params
+from vehicle.params import ParamError, Params
 from vehicle.texts import Texts
 
 
@@ -52,7 +53,7 @@ class ParamService:
         self._control = control
         self._texts = texts
         self._keeper = keeper or NoKeeper()
-        self._announced: list[Outgoing] = []
+        params.untold.clear()
         self._server = ParamServer(
             params.table,
             params,
@@ -71,7 +72,8 @@ class ParamService:
 
     def tick(self, now: float) -> list[Outgoing]:
         """The next values of running lists, and those that the vehicle itself has changed."""
-        announced, self._announced = self._announced, []
+        announced = self._server.announce(sorted(self._params.untold)) if self._params.untold else []
+        self._params.untold.clear()
         return announced + self._server.tick(now)
 
     def observe(self, now: float) -> None:
@@ -87,14 +89,22 @@ class ParamService:
 
     def reset(self, now: float) -> None:
         """Defaults for all that a ground station may set; who listens is told what that changed."""
+        before = {name: self._params[name] for name in self._params}
         table = [each for each in self._params.table if not each.read_only]
-        changed = [each for each in table if self._params[each.name] != each.default]
+        for _ in range(2):  # one value may have to make room for another
+            for each in table:
+                with contextlib.suppress(ParamError):
+                    self._params.set(each.name, each.default)
+        changed = [each for each in table if self._params[each.name] != before[each.name]]
         for each in changed:
-            self._params.set(each.name, each.default)
-            self._changed(each.name, each.default)
-        self._announced += self._server.announce(each.name for each in changed)
+            self._keep(each.name, each.default)
+        self._params.untold = {each.name for each in changed}
         self._texts.say(Severity.NOTICE, f"Parameters: {len(changed)} back to their defaults", now)
 
     def _changed(self, name: str, value: float) -> None:
+        self._params.untold.discard(name)  # its answer tells everybody
+        self._keep(name, value)
+
+    def _keep(self, name: str, value: float) -> None:
         self._params.damage = None  # somebody sees to the parameters
         self._keeper.keep(name, value)

@@ -49,6 +49,9 @@ def _motor(number: int) -> tuple[Parameter, ...]:
     )  # fmt: skip
 
 
+BUTTONS = 16
+"""Bits of MANUAL_CONTROL's `buttons`."""
+
 TABLE: tuple[Parameter, ...] = (
     # Identity
     Parameter("MAV_SYSID", 1, 1, 255, "", "System id of this vehicle; after a restart", whole=True, needs_reboot=True),
@@ -66,6 +69,9 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("OPR_TIMEOUT", 10, 2, 60, "s", "Without a key or stick event for so long while moving: stop"),
     Parameter("OPR_ECHO_MAX", 0.45, 0.2, 5, "s", "A demand is refused when the driver has seen nothing newer of the "
               "vehicle than this; raise it on slow radios", safety=True),
+    *(Parameter(f"BTN{bit}_FUNCTION", 0, 0, 7, "", f"Button {bit} of MANUAL_CONTROL, as it is pressed: 0 nothing, "
+                "1 arm, 2 disarm, 3 emergency stop, 4 HOLD, 5 MANUAL, 6 AUTO, 7 RTL", safety=True, whole=True)
+      for bit in range(BUTTONS)),
     # Failsafes
     Parameter("FS_TIMEOUT", 1.5, 0.5, 10, "s", "From manual control lost to HOLD", safety=True),
     Parameter("FS_DISARM_T", 30, 5, 300, "s", "From manual control lost to disarmed", safety=True),
@@ -176,6 +182,8 @@ class Params:
         self._usual = dict(usual or {})
         self.damage: str | None = None
         """Why saved values could not be had; nobody arms before somebody has set one anew."""
+        self.untold: set[str] = set()
+        """What was put in force and ground stations were not told of (param_service.py)."""
         self._values = {parameter.name: float(parameter.default) for parameter in TABLE}
         for name, value in (values or {}).items():
             self.set(name, value)
@@ -209,6 +217,7 @@ class Params:
             raise ParamError(f"{name} must be a whole number, not {value:g}")
         self._refuse_descent({**self._values, name: value})
         self._values[name] = float(value)
+        self.untold.add(name)
 
     @staticmethod
     def _refuse_descent(values: Mapping[str, float]) -> None:

@@ -1,10 +1,14 @@
 """Which items the three plans of this vehicle may hold. What a mission does is plan_runner.py's, a fence fence.py's.
 
-To offer another mission command, add a line here and its task or effect there. Servos and relays are refused: this
-vehicle has no accessory, and its motors are nobody's servos.
+To offer another mission command, add a line here and its task or effect there. Plans made for ArduPilot move servos and
+relays: they are taken, and told and passed over when their turn comes, for this vehicle has no accessory. Its motors
+are nobody's servos: a plan that moves one is refused.
 """
 
 from __future__ import annotations
+
+from collections.abc import Collection
+from functools import partial
 
 from dialects.enums import Command, FenceItem, MissionResult, MissionType
 from link.services.mission_items import ItemRule, Items, Place, PlanRules
@@ -13,6 +17,10 @@ DAY = 86400.0
 TURNS_MAX = 1000.0
 SPEED_LOW, SPEED_HIGH = -2.0, 100.0
 """m/s; -1 and -2 are "no change" and "the usual one"."""
+SERVOS, RELAYS = 16, 16
+ACCESSORIES = (Command.DO_SET_SERVO, Command.DO_SET_RELAY)
+PULSE_LOW, PULSE_HIGH = 500.0, 2500.0
+"""us; what any servo takes."""
 CORNERS_MIN = 3
 RADIUS_MAX = 1e5
 
@@ -33,6 +41,8 @@ MISSION: dict[int, ItemRule] = {
     Command.DO_CHANGE_SPEED: ItemRule(ranges={1: (0.0, 1.0), 2: (SPEED_LOW, SPEED_HIGH)}),
     Command.DO_SET_REVERSE: ItemRule(ranges={1: (0.0, 1.0)}),
     Command.DO_FENCE_ENABLE: ItemRule(ranges={1: (0.0, 1.0)}),
+    Command.DO_SET_SERVO: ItemRule(ranges={1: (1.0, SERVOS), 2: (PULSE_LOW, PULSE_HIGH)}),
+    Command.DO_SET_RELAY: ItemRule(ranges={1: (0.0, RELAYS - 1.0), 2: (0.0, 1.0)}),
 }
 
 FENCE: dict[int, ItemRule] = {
@@ -45,9 +55,14 @@ FENCE: dict[int, ItemRule] = {
 RALLY: dict[int, ItemRule] = {FenceItem.RALLY_POINT: ItemRule(Place.NEEDED)}
 
 
-def _jumps_lead_somewhere(items: Items) -> MissionResult:
-    targets = [item.params[0] for item in items if item.command == Command.DO_JUMP]
-    sane = all(target == int(target) and target < len(items) for target in targets)
+def _mission_is_sane(items: Items, motors: Collection[int]) -> MissionResult:
+    """Jumps lead somewhere, and no servo is a motor."""
+
+    def numbers(command: Command) -> list[float]:
+        return [item.params[0] for item in items if item.command == command]
+
+    sane = all(target == int(target) and target < len(items) for target in numbers(Command.DO_JUMP))
+    sane &= all(servo == int(servo) and servo not in motors for servo in numbers(Command.DO_SET_SERVO))
     return MissionResult.ACCEPTED if sane else MissionResult.INVALID_PARAM1
 
 
@@ -67,8 +82,11 @@ def _polygons_are_whole(items: Items) -> MissionResult:
 
 POLYGONS = (FenceItem.POLYGON_INCLUSION, FenceItem.POLYGON_EXCLUSION)
 
-RULES: dict[MissionType, PlanRules] = {
-    MissionType.MISSION: PlanRules(MISSION, check=_jumps_lead_somewhere),
-    MissionType.FENCE: PlanRules(FENCE, capacity=200, check=_polygons_are_whole),
-    MissionType.RALLY: PlanRules(RALLY, capacity=20),
-}
+
+def rules(motors: Collection[int]) -> dict[MissionType, PlanRules]:
+    """The rules of each plan; `motors` are the servo outputs that motors are at."""
+    return {
+        MissionType.MISSION: PlanRules(MISSION, check=partial(_mission_is_sane, motors=motors)),
+        MissionType.FENCE: PlanRules(FENCE, capacity=200, check=_polygons_are_whole),
+        MissionType.RALLY: PlanRules(RALLY, capacity=20),
+    }

@@ -20,13 +20,14 @@ from vehicle.homing import Done
 from vehicle.params import Params
 from vehicle.pilot import Motion
 from vehicle.place import Point
+from vehicle.plan import ACCESSORIES
 from vehicle.plan_tasks import Circle, Face, Go, Task, Wait
 from vehicle.rally import Haven
 
 SEARCH_MAX = 100
 """Items looked through for the next NAV item; more is a circle of jumps."""
 CONDITIONS = (Command.CONDITION_DELAY, Command.CONDITION_DISTANCE)
-EFFECTS = (Command.DO_CHANGE_SPEED, Command.DO_SET_REVERSE, Command.DO_FENCE_ENABLE)
+EFFECTS = (Command.DO_CHANGE_SPEED, Command.DO_SET_REVERSE, Command.DO_FENCE_ENABLE, *ACCESSORIES)
 
 
 class Progress(IntEnum):
@@ -55,6 +56,8 @@ class Mission:
         self.progress = Progress.NONE
         self.reached: list[int] = []
         """Items reached and not told yet."""
+        self.passed_over: list[MissionItem] = []
+        """Items that this vehicle cannot do, passed and not told yet."""
         self._params = params
         self._guide = guide
         self._haven = haven
@@ -81,13 +84,14 @@ class Mission:
         self.items, self._damage = items, damage
         self.select(0)
 
-    def select(self, index: int) -> None:
-        """Begin or go on with this item."""
+    def select(self, index: int, *, anew: bool = True) -> None:
+        """Begin or go on with this item; `anew` forgets how often it has jumped."""
         self.current = index
         self.progress = Progress.NOT_STARTED if self.items else Progress.NONE
         self._task = self._ending = None
-        self._jumped.clear()
         self._waiting.clear()
+        if anew:
+            self._jumped.clear()
 
     def unready(self, estimate: Estimate) -> str | None:
         """Why it cannot begin."""
@@ -208,7 +212,9 @@ class Mission:
         while self._waiting and self._may_run(self._waiting[0], estimate, now):
             item = self._waiting.pop(0)
             self._held_since = None
-            if item.command in EFFECTS:
+            if item.command in ACCESSORIES:
+                self.passed_over.append(item)
+            elif item.command in EFFECTS:
                 self._effect(item)
 
     def _may_run(self, item: MissionItem, estimate: Estimate, now: float) -> bool:

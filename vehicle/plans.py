@@ -19,12 +19,11 @@ from vehicle.asking import Asking
 from vehicle.control import Control
 from vehicle.navigator import Navigator, PlanIds
 from vehicle.params import Params
-from vehicle.plan import RULES
+from vehicle.plan import ACCESSORIES, SERVOS, rules
 from vehicle.reached import Reached
 from vehicle.safety import Safety
 from vehicle.texts import Texts
 
-SERVOS = 16
 REMIND = 30.0
 """s between two texts that a kept plan is lost, as ArduPilot repeats what forbids to arm."""
 THIS_ITEM = -1
@@ -77,8 +76,10 @@ class Plans:
         self._damage: dict[MissionType, str] = {}
         self._remind_due = -math.inf
         self._outbox: list[Outgoing] = []
+        self._news: list[str] = []
+        self._rules = rules(servos)
         self._reached = Reached()
-        self._server = MissionServer(self, RULES, system=control.system, component=1, pacer=pacer)
+        self._server = MissionServer(self, self._rules, system=control.system, component=1, pacer=pacer)
         if keeper is not None:
             self._restore(keeper)
 
@@ -104,6 +105,7 @@ class Plans:
     def tick(self, now: float) -> list[Outgoing]:
         """What uploads need, and what the mission has reached."""
         self._remind(now)
+        self._tell_news(now)
         mission, outgoing = self._navigator.mission, self._server.tick(now) + self._outbox
         self._outbox.clear()
         outgoing += self._reached.tick(mission.reached, now)
@@ -125,13 +127,16 @@ class Plans:
         """Put it in force, and keep it."""
         self._damage.pop(kind, None)
         self._use(kind, items)
+        unable = [str(number) for number, item in enumerate(items) if item.command in ACCESSORIES]
+        if kind is MissionType.MISSION and unable:
+            self._news.append(f"Mission: no accessory for items {', '.join(unable)}, they will be passed over")
         if self._keeper is not None:
             self._keeper.keep(kind, items)
 
     def select(self, sequence: int, received: Received, now: float) -> None:
         """MISSION_SET_CURRENT."""
         refusal = self._control.stranger(received.system)
-        if refusal is None and not self._selected(sequence):
+        if refusal is None and not self._selected(sequence, anew=False):
             refusal = f"there is no item {sequence}"
         if refusal:
             text = f"GCS {received.system}: item {sequence} not chosen: {refusal}"
@@ -144,7 +149,7 @@ class Plans:
     # What was kept
 
     def _restore(self, keeper: PlanKeeper) -> None:
-        for kind in RULES:
+        for kind in self._rules:
             damage = keeper.damage.get(kind)
             if damage is None and self._server.load(kind, keeper.plans.get(kind, ())) is not MissionResult.ACCEPTED:
                 damage = f"saved {kind.name.lower()} is not one for this version"
@@ -154,7 +159,7 @@ class Plans:
 
     def _use(self, kind: MissionType, items: Items) -> None:
         navigator = self._navigator
-        navigator.plan_ids = PlanIds(**{each.name.lower(): self._server.plan_id(each) for each in RULES})
+        navigator.plan_ids = PlanIds(**{each.name.lower(): self._server.plan_id(each) for each in self._rules})
         if kind is MissionType.MISSION:
             self._reached.forget()
             navigator.mission.load(items, self._damage.get(kind))
@@ -175,6 +180,16 @@ class Plans:
             text = f"Plans are not saved: {self._keeper.problem}"
             self._texts.say_once(f"plans {self._keeper.problem}", Severity.WARNING, text, now)
 
+    def _tell_news(self, now: float) -> None:
+        passed_over = self._navigator.mission.passed_over
+        if passed_over:
+            names = (f"{Command(item.command).name} {item.params[0]:g}" for item in passed_over)
+            self._news += [f"Mission: passed over {name}, there is no such accessory" for name in names]
+            passed_over.clear()
+        for text in self._news:
+            self._texts.say(Severity.WARNING, text, now)
+        self._news.clear()
+
     def _in_use(self, kind: MissionType) -> str | None:
         if not self._safety.armed:
             return None
@@ -182,12 +197,12 @@ class Plans:
             return "AUTO drives by it"
         return "disarm first" if kind is MissionType.FENCE and self._navigator.fence.enabled else None
 
-    def _selected(self, index: float) -> bool:
+    def _selected(self, index: float, *, anew: bool) -> bool:
         mission = self._navigator.mission
         if not (math.isfinite(index) and index == int(index) and 0 <= index < len(mission.items)):
             return False
         self._reached.forget()
-        mission.select(int(index))
+        mission.select(int(index), anew=anew)
         return True
 
     # Commands
@@ -204,14 +219,16 @@ class Plans:
         if not (0 <= first < len(mission.items) and first == int(first)) or last not in (-1, 0, len(mission.items) - 1):
             return Result.DENIED
         if first:
-            self._selected(first)
+            self._reached.forget()
+            mission.select(int(first))
         refusal = self._safety.choose_mode(Mode.AUTO, now)
         return self._asking.refuse(request, refusal, now) if refusal else Result.ACCEPTED
 
     def _set_current(self, request: CommandRequest, now: float) -> Result:
-        """-1 is the item under way, begun anew. Everybody is told the new item, as the specification wants."""
-        index = request.params[0]
-        if not self._selected(self._navigator.mission.current if index == THIS_ITEM else index):
+        """Parameter 1: -1 is the item under way; 2: 1 forgets the jumps made. Everybody is told the item then."""
+        index, anew = request.params[:2]
+        index = self._navigator.mission.current if index == THIS_ITEM else index
+        if anew not in (0, 1) or not self._selected(index, anew=bool(anew)):
             return Result.DENIED
         self._outbox.append(Outgoing(self.current()))
         return Result.ACCEPTED

@@ -13,6 +13,7 @@ from link.services.command import CommandServer
 from vehicle import status
 from vehicle.actuator_test import ActuatorTest
 from vehicle.bandwidth import Bandwidth
+from vehicle.buttons import Buttons
 from vehicle.commands import Commands
 from vehicle.complaints import Complaints, of_sensors
 from vehicle.control import Control
@@ -84,7 +85,7 @@ class Rover:
         )
         self._watch = Watch(params, self._safety, self._control, self._texts, now)
         self._telemetry = Telemetry(now)
-        self._bandwidth = Bandwidth()
+        self._bandwidth = Bandwidth(lambda: self._safety.armed)
         self._param_service = ParamService(
             params,
             self._control,
@@ -96,6 +97,7 @@ class Rover:
         )
         self._commands = Commands(self._safety, self._control, self._texts)
         self._actuator_test = ActuatorTest(params, self._safety, self._control, self._texts, self._drive.mixer.motors)
+        self._buttons = Buttons(params, self._safety, self._control, self._texts)
         self._orders = Orders(params, self._safety, self._control, self._navigator, self._texts)
         self._plans = Plans(
             params,
@@ -287,6 +289,7 @@ class Rover:
         """What may move the rover."""
         match received.message:
             case m.ManualControl() as message:
+                self._buttons.take(received, message, now)
                 self._control.manual(received, message, now)
             case m.RcChannelsOverride(target_component=component) as message if component in (0, COMPONENT):
                 self._control.rc_override(received, message, now)

@@ -124,7 +124,7 @@ class MissionServer:
             case m.MissionCount() | m.MissionWritePartialList() as message:
                 return [self._begin(message, received, now)]
             case m.MissionItem() | m.MissionItemInt() as message:
-                return self._take(message, sender_of(received), now)
+                return self._take(message, received, now)
             case m.MissionClearAll() as message:
                 verdict = self._clear(message, received, now)
                 return [ack(sender_of(received), message.mission_type, verdict)]
@@ -173,15 +173,19 @@ class MissionServer:
         self._uploads[kind] = upload
         return upload.ask(now)
 
-    def _take(self, message: _Item, sender: Sender, now: float) -> list[Outgoing]:
-        kind = self._shelf.kind(message.mission_type)
+    def _take(self, message: _Item, received: Received, now: float) -> list[Outgoing]:
+        sender, kind = sender_of(received), self._shelf.kind(message.mission_type)
         if kind is None:
             return []
         upload = self._uploads.get(kind)
         if upload is None or upload.sender != sender:
             return self._said_again(self._ended.get(kind), message, sender, now)
         answer = upload.take(message, now)
-        return answer if isinstance(answer, list) else [self._end(upload, answer, message.seq, now)]
+        if isinstance(answer, list):
+            return answer
+        if answer is MissionResult.ACCEPTED:  # since it began, the vehicle may have set off by the old plan
+            answer = self._planner.may_write(received, kind, now)
+        return [self._end(upload, answer, message.seq, now)]
 
     def _end(self, upload: Upload, verdict: MissionResult, last: int, now: float) -> Outgoing:
         kind = upload.kind

@@ -25,6 +25,7 @@ from tests.benchmarks import (
     mission,
     receive_path,
     serial_key,
+    services,
 )
 from tests.benchmarks.figures import BenchmarkError, Options, Report
 from tests.benchmarks.tables import markdown
@@ -37,6 +38,7 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "serial_key": (serial_key.run, "the same over a serial cable at 57600 and 921600 baud"),
     "loop_lateness": (loop_lateness.run, "how late the vehicle's control cycles are, idle and on a busy machine"),
     "bridge": (bridge.run, "the bridge as a router, beside MAVProxy, pymavlink and C"),
+    "services": (services.run, "parameters, a mission and a log from a real vehicle, by UDP and at 57600 baud"),
     "mission": (mission.run, "ten minutes of AUTO in real time: how far the rover really is beside its lines"),
     "link_loss": (link_loss.run, "key to motor over a network that delays and loses"),
 }

@@ -23,12 +23,11 @@ STEP = 0.02
 class Rover:
     """The vehicle, and the ports where it looks for its ground stations; `relay` is before the first of them."""
 
-    def __init__(self, folder: Path, relay: Relay | None = None) -> None:
+    def __init__(self, folder: Path, *options: str, relay: Relay | None = None) -> None:
         self.port = relay.ground_port if relay else free_port()
         self.second_port = free_port()
-        self.vehicle = Vehicle(
-            folder, relay.vehicle_port if relay else self.port, f"udpout:127.0.0.1:{self.second_port}"
-        )
+        first = relay.vehicle_port if relay else self.port
+        self.vehicle = Vehicle(folder, first, f"udpout:127.0.0.1:{self.second_port}", *options)
 
     def soon(self, condition: Callable[[], bool], within: float) -> bool:
         """Look at the motors until `condition`; False where it does not come."""
@@ -65,10 +64,16 @@ LOSS = 0.1
 
 
 @pytest.fixture
-def rover(tmp_path: Path) -> Iterator[Rover]:
+def options() -> tuple[str, ...]:
+    """More words for the vehicle; a test file may have its own."""
+    return ()
+
+
+@pytest.fixture
+def rover(tmp_path: Path, options: tuple[str, ...]) -> Iterator[Rover]:
     """A simulated rover; ended with the test."""
     with ExitStack() as stack:
-        rover = Rover(tmp_path)
+        rover = Rover(tmp_path, *options)
         stack.callback(rover.vehicle.end)
         yield rover
 
@@ -85,6 +90,6 @@ def relay() -> Iterator[Relay]:
 def far_rover(tmp_path: Path, relay: Relay) -> Iterator[Rover]:
     """A simulated rover behind a network that loses frames; ended with the test."""
     with ExitStack() as stack:
-        rover = Rover(tmp_path, relay)
+        rover = Rover(tmp_path, relay=relay)
         stack.callback(rover.vehicle.end)
         yield rover

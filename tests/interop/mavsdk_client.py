@@ -136,6 +136,16 @@ def files(system: Any, folder: str) -> None:
     step("meaning", lambda: metadata.get_metadata(1, kinds.PARAMETER).json_metadata)
 
 
+def recordings(system: Any, folder: str) -> None:
+    """The list of logs, and each of them."""
+    logs = plugin("log_files", system)
+    entries = logs.get_entries()
+    step("logs", lambda: [[entry.id, entry.date, entry.size_bytes] for entry in entries])
+    for entry in entries:
+        path = f"{folder}/fetched-{entry.id}"
+        step(f"log {entry.id}", partial(finished, partial(logs.download_log_file_async, entry, path)))
+
+
 def lossy(system: Any, folder: str) -> None:
     """All of it, over a link that loses: what fails is tried again."""
     action, ftp, manual, param, raw, telemetry = (
@@ -158,7 +168,7 @@ def lossy(system: Any, folder: str) -> None:
     step("disarm", lambda: insist(action.disarm))
 
 
-SCENARIOS = {each.__name__: each for each in (identity, parameters, driving, guided, mission, files, lossy)}
+SCENARIOS = {each.__name__: each for each in (identity, parameters, driving, guided, mission, files, recordings, lossy)}
 
 
 def main(port: str, scenario: str, folder: str, system_id: str) -> None:

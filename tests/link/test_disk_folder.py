@@ -103,7 +103,7 @@ def test_a_file_that_goes_while_it_is_read_ends(folder: DiskFolder, tmp_path: Pa
 
 
 @pytest.mark.parametrize("name", ["link.tlog", "pipe.tlog", "folder.tlog", "gone.tlog"])
-def test_what_is_no_file_of_this_folder_is_not_there(folder: DiskFolder, tmp_path: Path, name: str) -> None:
+def test_71_what_is_no_file_of_this_folder_is_not_there(folder: DiskFolder, tmp_path: Path, name: str) -> None:
     secret = tmp_path / "secret.tlog"
     secret.write_bytes(b"root:x:0:0")
     place = tmp_path / "logs"

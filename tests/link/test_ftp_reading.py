@@ -25,7 +25,7 @@ def test_a_file_is_opened_read_and_closed() -> None:
 
 @pytest.mark.parametrize("offset", [len(LOG), len(LOG) + 1, MAX_OFFSET])
 @pytest.mark.parametrize("op", [Op.READ, Op.BURST])
-def test_behind_the_end_is_the_end(offset: int, op: Op) -> None:
+def test_72_behind_the_end_is_the_end(offset: int, op: Op) -> None:
     vehicle = Vehicle()
     vehicle.ask(Op.OPEN, b"/logs/1.bin")
     assert error(vehicle.ask(op, offset=offset, size=239)) is FtpError.END_OF_FILE

@@ -44,7 +44,7 @@ PATHS = [
 
 @pytest.mark.parametrize("path", PATHS)
 @pytest.mark.parametrize("op", [Op.OPEN, Op.CRC, Op.CREATE, Op.OPEN_TO_WRITE, Op.REMOVE, Op.TRUNCATE])
-def test_no_path_leads_out(path: bytes, op: Op) -> None:
+def test_71_no_path_leads_out(path: bytes, op: Op) -> None:
     assert error(Vehicle().ask(op, path)) in (FtpError.NOT_FOUND, FtpError.PROTECTED)
 
 
@@ -63,19 +63,19 @@ def test_only_names_that_are_served_are_found(path: bytes) -> None:
 
 @pytest.mark.parametrize("size", [240, 255])
 @pytest.mark.parametrize("op", [Op.OPEN, Op.READ, Op.BURST, Op.WRITE, Op.LIST])
-def test_a_size_that_cannot_be_is_refused(size: int, op: Op) -> None:
+def test_72_a_size_that_cannot_be_is_refused(size: int, op: Op) -> None:
     vehicle = Vehicle()
     vehicle.ask(Op.OPEN, b"/logs/1.bin")
     assert error(vehicle.ask(op, b"A" * 239, size=size)) is FtpError.INVALID_SIZE
 
 
 @pytest.mark.parametrize("op", [16, 17, 100, 127, 130, 200, 255])
-def test_unknown_questions_are_unknown(op: int) -> None:
+def test_73_unknown_questions_are_unknown(op: int) -> None:
     assert error(Vehicle().ask(op, b"/")) is FtpError.UNKNOWN_COMMAND
 
 
 @pytest.mark.parametrize("op", [Op.READ, Op.BURST, Op.WRITE])
-def test_a_session_that_is_not_open(op: Op) -> None:
+def test_72_a_session_that_is_not_open(op: Op) -> None:
     assert error(Vehicle().ask(op, session=200)) is FtpError.INVALID_SESSION
 
 

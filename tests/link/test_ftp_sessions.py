@@ -12,7 +12,7 @@ from tests.link.services_world import OTHER_PEER
 # ---- repeats ----
 
 
-def test_a_question_said_again_gets_the_stored_answer_and_has_no_second_effect() -> None:
+def test_74_a_question_said_again_gets_the_stored_answer_and_has_no_second_effect() -> None:
     vehicle = Vehicle()
     remove = FtpPacket(9, Op.REMOVE, data=b"/missions/old.plan")
     first, second = vehicle.send(remove), vehicle.send(remove)

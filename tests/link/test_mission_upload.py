@@ -59,7 +59,7 @@ def test_an_empty_plan_clears() -> None:
     assert vehicle.plan == ()
 
 
-def test_too_many_items_are_no_space() -> None:
+def test_65_too_many_items_are_no_space() -> None:
     vehicle = Vehicle()
     vehicle.upload([waypoint()])
     assert [ack.type for ack in vehicle.ask(m.MissionCount(1, 1, 65535))] == [MissionResult.NO_SPACE]
@@ -67,7 +67,7 @@ def test_too_many_items_are_no_space() -> None:
     assert vehicle.tick(100.0) == []
 
 
-def test_silence_is_asked_again_and_then_cancelled_and_the_old_plan_stays() -> None:
+def test_66_silence_is_asked_again_and_then_cancelled_and_the_old_plan_stays() -> None:
     vehicle = Vehicle()
     vehicle.upload([waypoint()])
     vehicle.ask(m.MissionCount(1, 1, 5), 10.0)
@@ -107,7 +107,7 @@ def test_unsupported_ends_an_upload_that_was_asked_for_in_integers() -> None:
     assert vehicle.give(waypoint(0), 0) == []
 
 
-def test_an_item_out_of_order_is_dropped_and_the_right_one_asked_for() -> None:
+def test_67_an_item_out_of_order_is_dropped_and_the_right_one_asked_for() -> None:
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 3), 0.0)
     vehicle.give(waypoint(0), 0, 0.1)
@@ -120,7 +120,7 @@ def test_an_item_out_of_order_is_dropped_and_the_right_one_asked_for() -> None:
     assert plain(vehicle.plan) == plain((waypoint(0), waypoint(1), waypoint(2)))
 
 
-def test_the_last_item_said_again_is_acknowledged_again() -> None:
+def test_67_the_last_item_said_again_is_acknowledged_again() -> None:
     vehicle = Vehicle()
     vehicle.upload([waypoint(0), waypoint(1)])
     assert [ack.type for ack in vehicle.give(waypoint(1), 1, 1.0)] == [MissionResult.ACCEPTED]
@@ -129,7 +129,7 @@ def test_the_last_item_said_again_is_acknowledged_again() -> None:
     assert len(vehicle.changes) == 1
 
 
-def test_items_of_another_ground_station_do_not_count() -> None:
+def test_67_items_of_another_ground_station_do_not_count() -> None:
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 1), 0.0)
     assert vehicle.give(waypoint(9), 0, 0.1, system=254) == []
@@ -146,6 +146,16 @@ def test_a_second_sender_is_denied_while_one_is_busy_and_the_first_may_begin_aga
     assert [ack.type for ack in vehicle.ask(m.MissionClearAll(1, 1, 0), 0.1, system=254)] == [MissionResult.DENIED]
     assert vehicle.ask(m.MissionCount(1, 1, 1), 0.2)[0].seq == 0
     assert vehicle.give(waypoint(), 0, 0.3)[0].type == MissionResult.ACCEPTED
+
+
+def test_what_may_not_be_changed_any_more_at_the_end_stays() -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint(9)])
+    vehicle.ask(m.MissionCount(1, 1, 2))
+    vehicle.give(waypoint(0), 0)
+    vehicle.verdict = MissionResult.DENIED
+    assert [(ack.type, ack.opaque_id) for ack in vehicle.give(waypoint(1), 1)] == [(MissionResult.DENIED, 0)]
+    assert plain(vehicle.plan) == plain((waypoint(9),))
 
 
 def test_plans_of_different_kinds_go_up_side_by_side() -> None:
@@ -196,7 +206,9 @@ def test_the_vehicle_may_refuse_to_be_changed(verdict: MissionResult) -> None:
         ({"command": DO_JUMP, "params": (9.0, 1.0, 0.0, 0.0), "frame": 2}, MissionResult.INVALID_PARAM1),
     ],
 )
-def test_an_invalid_item_ends_the_upload_and_says_which_field(changes: dict[str, Any], verdict: MissionResult) -> None:
+def test_68_an_invalid_item_ends_the_upload_and_says_which_field(
+    changes: dict[str, Any], verdict: MissionResult
+) -> None:
     vehicle = Vehicle()
     vehicle.upload([waypoint(5)])
     vehicle.ask(m.MissionCount(1, 1, 1))
@@ -207,7 +219,7 @@ def test_an_invalid_item_ends_the_upload_and_says_which_field(changes: dict[str,
 
 
 @pytest.mark.parametrize("latitude", [math.nan, math.inf, -math.inf, 1e30, 91.0])
-def test_a_latitude_in_floats_that_is_none(latitude: float) -> None:
+def test_68_a_latitude_in_floats_that_is_none(latitude: float) -> None:
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 1))
     old = m.MissionItem(1, 1, 0, 3, NAV_WAYPOINT, 0, 1, 0.0, 0.0, 0.0, 0.0, latitude, 8.5, 0.5)

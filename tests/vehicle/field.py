@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from dialects import messages as m
-from dialects.enums import Command, Result
+from dialects.enums import Command, DriveType, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import CYCLE, DRIVER, Bench
 from vehicle.estimator import Estimate
 from vehicle.place import Origin, Point
 from vehicle.sim.body import Home, SimulatedBody
-from vehicle.sim.chassis import AckermannChassis, SkidChassis
+from vehicle.sim.chassis import CHASSIS, Frame
 from vehicle.sim.noise import Noise
 
 HOME = Home(50.0, 8.0, 100.0)
@@ -25,11 +25,11 @@ class Field(Bench):
     """`truth` is where the plant is; the rover knows only what its sensors say."""
 
     def __init__(self, seed: int | None = 1, noise: Noise | None = None, **params: float) -> None:
-        chassis = AckermannChassis() if params.get("DRIVE_TYPE") == 2 else SkidChassis()
+        chassis = CHASSIS[DriveType(int(params.get("DRIVE_TYPE", 1)))](Frame())
         self.body: SimulatedBody | None = None
         self.track: list[Point] = []
-        self.blind: dict[str, None] = {}
-        """Sensors that are broken."""
+        self.blind: dict[str, object] = {}
+        """Readings of sensors that are broken, or not there."""
         super().__init__(**params)
         self.body = SimulatedBody(lambda: self.throttles, chassis=chassis, home=HOME, seed=seed, noise=noise)
         self.wait(2.0)

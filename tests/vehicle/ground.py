@@ -90,7 +90,7 @@ class Ground:
         """Send it, once the vehicle has shown where it is."""
         if self._vehicle is None:
             return
-        data = codec.frame(message.id, codec.encode_payload(message), self._sequence, 255, 190)
+        data = codec.frame(type(message).id, codec.encode_payload(message), self._sequence, 255, 190)
         self._sequence = (self._sequence + 1) % 256
         with contextlib.suppress(ConnectionRefusedError):
             self._socket.sendto(data, self._vehicle)

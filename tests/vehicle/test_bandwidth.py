@@ -9,8 +9,10 @@ import pytest
 from dialects import codec
 from dialects import messages as m
 from dialects.enums import Command, Result
-from link.core import LinkReport
+from link.core import LinkReport, Peer
+from link.services.pacing import DEFAULT_RATE
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, Bench
+from vehicle.bandwidth import Bandwidth
 from vehicle.telemetry import STREAMS
 
 SIK = 5760.0
@@ -124,3 +126,69 @@ def test_commands_are_answered_whatever_telemetry_takes() -> None:
     bench = greedy()
     streamed(bench, 5.0, report(SIK))
     assert bench.command(Command.REQUEST_MESSAGE, m.Attitude.id, system=DRIVER) is Result.ACCEPTED
+
+
+class Wire:
+    """A slow link on which bulk is sent as fast as it may, in virtual time."""
+
+    def __init__(self) -> None:
+        self.armed = False
+        self.now = 0.0
+        self.bandwidth = Bandwidth(lambda: self.armed)
+        self.bandwidth.observe([report(SIK)])
+
+    def bulk(self, seconds: float, size: int = 263) -> float:
+        """Share of the link that bulk gets while it wants all of it."""
+        sent, start = 0, self.now
+        for cycle in range(1, round(seconds * 50) + 1):
+            self.now = start + cycle * 0.02
+            while self.bandwidth.pacer.take(Peer(0, "gcs"), size, self.now):
+                sent += size
+            if cycle % 50 == 0:
+                self.bandwidth.observe([report(SIK)])
+        return sent / seconds / SIK
+
+    @property
+    def telemetry(self) -> float:
+        assert self.bandwidth.telemetry is not None
+        return self.bandwidth.telemetry / SIK
+
+
+@pytest.mark.parametrize(("size", "least"), [(37, 0.57), (263, 0.52)])
+def test_while_nobody_can_drive_bulk_gets_what_telemetry_gives_up(size: int, least: float) -> None:
+    wire = Wire()
+    assert wire.telemetry == pytest.approx(0.6)
+    wire.bulk(1.0, size)
+    assert wire.telemetry == pytest.approx(0.3)
+    assert least < wire.bulk(20.0, size) <= 0.62
+
+
+def test_bulk_gains_nothing_before_telemetry_has_given_it_up() -> None:
+    assert Wire().bulk(0.98) <= 0.35
+
+
+def test_arming_takes_it_back_in_the_same_cycle_and_telemetry_follows() -> None:
+    wire = Wire()
+    wire.bulk(5.0)
+    wire.armed = True
+    assert wire.bulk(0.9) <= 0.35
+    wire.bulk(1.0)
+    assert wire.telemetry == pytest.approx(0.6)
+    assert 0.25 < wire.bulk(20.0) <= 0.31
+
+
+def test_when_bulk_has_ended_telemetry_has_all_again() -> None:
+    wire = Wire()
+    wire.bulk(3.0)
+    for _ in range(2):
+        wire.bandwidth.observe([report(SIK)])
+    assert wire.telemetry == pytest.approx(0.6)
+
+
+def test_bulk_on_a_network_slows_no_telemetry() -> None:
+    wire = Wire()
+    for _ in range(3):
+        wire.bandwidth.pacer.take(Peer(1, "gcs"), 263, wire.now)
+        wire.bandwidth.observe([report(SIK), report(None, index=1)])
+    assert wire.telemetry == pytest.approx(0.6)
+    assert wire.bandwidth.pacer._rate(Peer(1, "gcs")) == DEFAULT_RATE

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from dialects.enums import State
-from dialects.messages import Heartbeat
+from dialects.messages import Heartbeat, LocalPositionNed, ManualControl
 from link.runner import Runner
 from tests.vehicle.ground import Ground, drive, running
 from tests.vehicle.script import driving
@@ -184,11 +184,27 @@ def test_a_bad_endpoint_or_parameter_is_the_users_mistake(caplog: pytest.LogCapt
     assert "MAN_TIMEOUT" in said(caplog)
 
 
+def moves(ground: Ground) -> bool:
+    return [message for message in ground.heard if isinstance(message, LocalPositionNed)][-1].vy > 0.5
+
+
+@pytest.mark.e2e
 @pytest.mark.parametrize("kind", [3, 4])
-def test_a_drive_that_the_simulator_lacks_is_the_users_mistake(caplog: pytest.LogCaptureFixture, kind: float) -> None:
-    settings = Settings(("udpout:127.0.0.1:9",), simulation=Simulation(), params={"DRIVE_TYPE": kind})
-    assert daemon.run(settings) == MISTAKE
-    assert said(caplog) == "the simulator drives DRIVE_TYPE 1 (skid steering) and 2 (Ackermann) only"
+def test_the_simulator_drives_four_wheels_sideways_too(tmp_path: Path, kind: int) -> None:
+    with (
+        Ground() as ground,
+        running(tmp_path, "--sim", ground.endpoint, "--param", f"DRIVE_TYPE={kind}") as vehicle,
+    ):
+        vehicle.ready()
+        drive(ground, vehicle)
+        ground.demand = None
+
+        def aside() -> bool:
+            ground.say(ManualControl(1, 0, 1000, 0, 0, 0))
+            return vehicle.outputs()[-1] == (1.0, -1.0, -1.0, 1.0)
+
+        ground.wait(aside, "all four wheels take it to the right")
+        ground.wait(lambda: aside() and moves(ground), "it moves to the right")
 
 
 def test_a_motor_log_that_cannot_be_written_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:

@@ -121,7 +121,7 @@ class TestVelocity:
 
 
 class TestPlace:
-    @pytest.mark.parametrize("kind", [1, 2])
+    @pytest.mark.parametrize("kind", [1, 2, 3, 4])
     def test_it_goes_there_and_stands(self, kind: int) -> None:
         field = Field(DRIVE_TYPE=kind)
         field.begin(Mode.GUIDED)

@@ -17,6 +17,7 @@ from vehicle.place import Point
 
 Item = tuple[int, Point | None, tuple[float, ...]]
 NAN = math.nan
+NAV_TAKEOFF = 22
 
 
 def way(north: float, east: float, hold: float = 0.0) -> Item:
@@ -158,6 +159,48 @@ class TestItems:
         assert field.mode is Mode.HOLD
         assert said(field, "jumps go in a circle")
 
+    def test_a_jump_is_made_as_often_as_it_says(self) -> None:
+        field = ready(way(4, 0), way(4, 4), do(Command.DO_JUMP, 0, 2), way(0, 4))
+        start(field)
+        finish(field, 120.0)
+        assert [each.seq for each in field.all(m.MissionItemReached)] == [0, 1, 0, 1, 0, 1, 3]
+
+    def test_loiter_for_a_time_is_to_stand_there(self) -> None:
+        field = ready((Command.NAV_LOITER_TIME, Point(4, 0), (5.0,)), way(8, 0))
+        start(field)
+        field.until(Point(4, 0), 30.0, 0.4)
+        field.beat(1.5)
+        assert field.stands_for(2.0)
+        finish(field, 40.0)
+        assert field.truth.distance(Point(8, 0)) < 0.7
+
+    def test_what_moves_accessories_is_told_and_passed_over(self) -> None:
+        field = ready(do(Command.DO_SET_SERVO, 5, 1500), do(Command.DO_SET_RELAY, 0, 1), way(5, 0))
+        field.wait(0.2)
+        assert said(field, "Mission: no accessory for items 0, 1, they will be passed over")
+        start(field)
+        finish(field, 40.0)
+        assert field.truth.distance(Point(5, 0)) < 0.7
+        assert said(field, "Mission: passed over DO_SET_SERVO 5, there is no such accessory")
+        assert said(field, "Mission: passed over DO_SET_RELAY 0, there is no such accessory")
+
+    def test_the_usual_speed_comes_back(self) -> None:
+        field = ready(
+            do(Command.DO_CHANGE_SPEED, 1, 0.3, -1), way(4, 0), do(Command.DO_CHANGE_SPEED, 1, -2, -1), way(20, 0)
+        )
+        start(field)
+        field.until(Point(2.5, 0), 40.0, 1.0)
+        assert field.speed == pytest.approx(0.3, abs=0.1)
+        field.until(Point(12, 0), 40.0, 1.0)
+        assert field.speed == pytest.approx(0.8, abs=0.1)
+
+    def test_a_mission_may_turn_the_fence_on(self) -> None:
+        field = ready(do(Command.DO_FENCE_ENABLE, 1), way(5, 0), way(30, 0), FENCE_TYPE=2, FENCE_RADIUS=8)
+        start(field)
+        finish(field, 60.0)
+        assert said(field, "beyond the fence: HOLD")
+        assert field.truth.north < 10.0
+
     def test_unlimited_means_until_somebody_ends_it(self) -> None:
         field = ready((Command.NAV_LOITER_UNLIM, Point(3, 0), ()), way(30, 0))
         start(field)
@@ -211,6 +254,20 @@ class TestProgress:
             field.wait(0.02)
             assert [each.seq for each in field.all(m.MissionCurrent)[before:]][-1:] == [seq]
         assert field.command(Command.DO_SET_MISSION_CURRENT, -2) is Result.DENIED
+        assert field.command(Command.DO_SET_MISSION_CURRENT, 1, 2) is Result.DENIED
+
+    @pytest.mark.parametrize(("anew", "again"), [(0, 0), (1, 1)])
+    def test_jumps_made_are_forgotten_only_where_somebody_says_so(self, anew: float, again: int) -> None:
+        field = ready(way(3, 0), do(Command.DO_JUMP, 0, 1), way(3, 3), way(40, 3))
+        start(field)
+        field.until(Point(3, 3), 60.0, 0.5)
+        assert [each.seq for each in field.all(m.MissionItemReached)][:2] == [0, 0]
+        before = len(field.all(m.MissionItemReached))
+        assert field.command(Command.DO_SET_MISSION_CURRENT, 0, anew) is Result.ACCEPTED
+        field.until(Point(3, 0), 60.0, 0.4)
+        field.until(Point(20, 3), 120.0, 1.0)
+        reached = [each.seq for each in field.all(m.MissionItemReached)][before:]
+        assert reached.count(0) == 1 + again
 
     def test_an_item_can_be_chosen(self) -> None:
         field = ready(way(6, 0), way(0, 6))
@@ -260,10 +317,31 @@ class TestWhoMay:
         field.beat(1.0)
         assert field.turning
 
+    def test_69_an_upload_that_ends_when_auto_has_begun_changes_nothing(self) -> None:
+        field = ready(way(30, 0))
+        field.say(m.MissionCount(1, 1, 1, MissionType.MISSION))
+        start(field)
+        field.beat(2.0)
+        latitude, longitude = GROUND.globe(Point(1, 1))
+        x, y = round(latitude * 1e7), round(longitude * 1e7)
+        field.say(m.MissionItemInt(1, 1, 0, 6, Command.NAV_WAYPOINT, 0, 1, 0, 0, 0, 0, x, y, 0, MissionType.MISSION))
+        assert field.newest(m.MissionAck).type == MissionResult.DENIED
+        assert field.newest(m.MissionCurrent).total == 1
+        field.beat(1.0)
+        assert field.turning
+        assert field.rover._navigator.goal(Mode.AUTO) == pytest.approx(Point(30, 0), abs=0.5)
+
     @pytest.mark.parametrize(
         ("item", "verdict"),
         [
-            (do(Command.DO_SET_SERVO, 5, 1500), MissionResult.UNSUPPORTED),
+            (do(NAV_TAKEOFF), MissionResult.UNSUPPORTED),
+            (do(Command.DO_SET_SERVO, 1, 1500), MissionResult.INVALID_PARAM1),  # a motor
+            (do(Command.DO_SET_SERVO, 5.5, 1500), MissionResult.INVALID_PARAM1),
+            (do(Command.DO_SET_SERVO, 17, 1500), MissionResult.INVALID_PARAM1),
+            (do(Command.DO_SET_SERVO, NAN, 1500), MissionResult.INVALID_PARAM1),
+            (do(Command.DO_SET_SERVO, 5, 1e6), MissionResult.INVALID_PARAM2),
+            (do(Command.DO_SET_RELAY, 0, 2), MissionResult.INVALID_PARAM2),
+            (do(Command.DO_SET_RELAY, -1, 1), MissionResult.INVALID_PARAM1),
             (do(Command.DO_JUMP, 7, 1), MissionResult.INVALID_PARAM1),
             (do(Command.NAV_DELAY, -1), MissionResult.INVALID_PARAM1),
             (do(Command.DO_CHANGE_SPEED, 1, NAN), MissionResult.INVALID_PARAM2),

@@ -55,7 +55,7 @@ def test_dead_zone() -> None:
     assert not bench.turning
 
 
-def test_giving_back_is_neutral_but_no_stick_at_rest() -> None:
+def test_42_giving_back_is_neutral_but_no_stick_at_rest() -> None:
     bench = armed()
     repeat(bench, 0.2, chan3=1500)
     repeat(bench, chan3=1700)
@@ -86,14 +86,14 @@ def test_a_channel_that_moves_does_not_live_on_the_other_ones_repeats() -> None:
 
 
 @pytest.mark.parametrize("pulse", [700, 799, 2201, 65534, 1])
-def test_what_is_no_pulse_is_ignored(pulse: int) -> None:
+def test_42_what_is_no_pulse_is_ignored(pulse: int) -> None:
     bench = armed()
     repeat(bench, 0.2, chan3=1500)
     repeat(bench, chan3=pulse)
     assert not bench.turning
 
 
-def test_channels_9_to_18_ignore_zero_and_give_back_65534() -> None:
+def test_42_channels_9_to_18_ignore_zero_and_give_back_65534() -> None:
     bench = armed()
     repeat(bench, 0.6, chan3=1500, chan9=1600)
     repeat(bench, 0.6, chan3=1500, chan9=0)

@@ -152,6 +152,19 @@ def test_60_an_unknown_name_is_an_error_and_said() -> None:
     assert said(bench, "No parameter NO_SUCH")
 
 
+def test_what_a_command_changes_is_told_to_everybody() -> None:
+    bench = Bench()
+    bench.heartbeat()
+    assert bench.command(Command.DO_FENCE_ENABLE, 1) is Result.ACCEPTED
+    bench.wait(0.1)
+    told = bench.all(m.ParamValue)
+    assert [(each.param_id, each.param_value) for each in told] == [("FENCE_ENABLE", 1.0)]
+    assert bench.peers[bench.sent.index(told[0])] is None
+    bench.say(m.ParamSet(1, 1, b"FENCE_ENABLE", 0, 9))
+    bench.wait(0.5)
+    assert len(bench.all(m.ParamValue)) == 2  # told once, by the answer
+
+
 def test_61_safety_settings_are_locked_while_armed() -> None:
     bench, memory = bench_with(Params())
     bench.drive()

@@ -192,6 +192,16 @@ class TestStorage:
         assert keeper.values == {"MAN_DEADBAND": 3.0}
         assert params["WP_SPEED"] == 2
 
+    def test_reset_goes_back_to_what_is_usual_for_this_car(self) -> None:
+        params = Params(usual={"MOT1_MIN": 50, "MOT1_MAX": 80})
+        params.set("MOT1_MIN", 5)
+        params.set("MOT1_MAX", 30)  # 50 does not fit below it
+        bench = Bench()
+        bench.rover = Rover(params, now=bench.now)
+        bench.wait(0.1)
+        assert bench.command(STORAGE, 2) is Result.ACCEPTED
+        assert (params["MOT1_MIN"], params["MOT1_MAX"]) == (50, 80)
+
     def test_what_is_set_is_kept_already(self) -> None:
         keeper = Kept()
         bench = Bench()

@@ -35,7 +35,7 @@ def test_overtaken_and_started_anew() -> None:
     assert heard((5000, 100.0), (4990, 100.01), (10, 100.9), (10, 101.1)) == pytest.approx([0, None, None, 0])
 
 
-def test_a_frozen_clock_grows_old() -> None:
+def test_47_a_frozen_clock_grows_old() -> None:
     ages = heard(*((7777, 100.0 + step / 10) for step in range(20)))
     assert ages[-1] == pytest.approx(1.9, abs=0.01)
 
@@ -54,7 +54,7 @@ def test_a_slow_clock_is_followed_for_days() -> None:
     assert max(age for age in ages if age is not None) < 0.1
 
 
-def test_what_a_radio_held_back_for_two_seconds_does_not_move_the_rover() -> None:
+def test_47_what_a_radio_held_back_for_two_seconds_does_not_move_the_rover() -> None:
     field = Field()
     field.begin(Mode.GUIDED)
     for step in range(20):

@@ -90,7 +90,7 @@ def test_numbers_arrive_in_their_units() -> None:
     assert (position.alt, position.relative_alt, position.hdg) == (500_000, 0, 4500)
     assert (battery.voltages[0], battery.current_battery, battery.battery_remaining) == (12_000, 100, 90)
     assert bench.newest(m.Attitude).yaw == pytest.approx(math.pi / 4)
-    assert bench.newest(m.VfrHud).groundspeed == pytest.approx(0.7)
+    assert bench.newest(m.VfrHud).groundspeed == pytest.approx(0.7, abs=1e-3)  # the wheels are trusted, not wholly
 
 
 def test_a_changed_demand_is_told_at_once_with_its_packet_number() -> None:

@@ -15,9 +15,8 @@ from typing import Annotated
 import msgspec
 from fastcrc.crc16 import xmodem
 
-from vehicle.motors import MotorError, checked
-from vehicle.motors.patience import Patience
-from vehicle.motors.port import Port
+from vehicle.motors import checked
+from vehicle.motors.wire import Wire, tenths
 
 SET_TIMEOUT, READ_TIMEOUT, READ_VERSION, DRIVE_BOTH = 14, 15, 21, 34
 ACK = 0xFF
@@ -26,8 +25,6 @@ FULL = 32767
 LONGEST = 52
 """bytes of the longest reply: a version of 48 with its end and CRC."""
 TRIES = 3
-REMIND = 1.0
-"""s between settings of the timeout while driving: a controller that lost its power for a moment has forgotten it."""
 
 
 class RoboClawSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -44,11 +41,6 @@ class RoboClawSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     reply_time: Annotated[float, msgspec.Meta(ge=0.01, le=0.05)] = 0.02
     """s that a reply may take. The controller throws half a frame away after 0.01 s, so not less."""
 
-    @property
-    def tenths(self) -> int:
-        """The timeout as the controller counts it, rounded down."""
-        return int(self.timeout * 10 + 1e-9)
-
 
 class RoboClawMotors:
     """Fits `vehicle.motors.Motors`. `set` does not wait for its reply: the next `set` looks for it."""
@@ -59,31 +51,27 @@ class RoboClawMotors:
         """Raises MotorError where no RoboClaw answers."""
         self.count = 2
         self.enabled = False
-        self.port = Port(settings.port, settings.baud)
         self._settings = settings
-        self._clock = clock
-        self._patience = Patience()
+        self._tenths = tenths(settings.timeout)
+        self._wire = Wire(f"RoboClaw 0x{settings.address:02x}", settings.port, settings.baud, clock)
+        self.port = self._wire.port
         self._unanswered = 0
-        self._reminded = 0.0
         self._tries = TRIES
-        try:
+        with contextlib.ExitStack() as opened:
+            opened.callback(self.port.close)
             self.disable()
-        except MotorError:
-            self.port.close()
-            raise
+            opened.pop_all()
 
     def enable(self) -> None:
         """Raises MotorError where the controller's timeout cannot be set and read back."""
         if self.enabled:
             return
-        wanted = self._settings.tenths
         self._tell(DRIVE_BOTH, _duties((0.0, 0.0)))
-        self._tell(SET_TIMEOUT, bytes([wanted]))
+        self._tell(SET_TIMEOUT, bytes([self._tenths]))
         found = self._ask(READ_TIMEOUT, lambda data: len(data) == 1)[0]
-        if found != wanted:
-            raise self._fault(f"its serial timeout is {found / 10:g} s and not {wanted / 10:g} s as set")
-        self._patience.worked()
-        self._reminded = self._clock()
+        if found != self._tenths:
+            raise self._wire.fault(f"its serial timeout is {found / 10:g} s and not {self._tenths / 10:g} s as set")
+        self._wire.reminded()
         self.enabled = True
 
     def disable(self) -> None:
@@ -96,15 +84,11 @@ class RoboClawMotors:
         values = checked(throttles, self.count)
         if not self.enabled:
             return
-        now = self._clock()
-        try:
+        with self._wire.patient() as now:
             self._collect(now)
             self._send(DRIVE_BOTH, _duties(values))
-            if now - self._reminded >= REMIND:
-                self._reminded = now
-                self._send(SET_TIMEOUT, bytes([self._settings.tenths]))
-        except OSError as error:
-            self._patience.failed(self._said(str(error)), now)
+            if self._wire.must_remind(now):
+                self._send(SET_TIMEOUT, bytes([self._tenths]))
 
     def version(self) -> str:
         """Model and firmware, as it calls itself. Waits for the reply: not for the control loop. Raises MotorError."""
@@ -112,19 +96,16 @@ class RoboClawMotors:
 
     def close(self) -> None:
         """As disabled, then the port is let go."""
-        if self.port.is_open:
-            with contextlib.ExitStack() as steps:
-                steps.callback(self.port.close)
-                self.disable()
+        self._wire.close(self.disable)
 
     def _collect(self, now: float) -> None:
         """Replies to what was sent before. Any reply means that it lives and takes our frames."""
         replies = self.port.read()
         if ACK in replies:
             self._unanswered = max(0, self._unanswered - replies.count(ACK))
-            self._patience.worked()
+            self._wire.patience.worked()
         elif self._unanswered:
-            self._patience.waiting(self._said("no reply"), now)
+            self._wire.patience.waiting(self._wire.said("no reply"), now)
 
     def _tell(self, command: int, data: bytes) -> None:
         """Send until it is acknowledged, together with all that was sent before. Raises MotorError."""
@@ -141,7 +122,7 @@ class RoboClawMotors:
             except OSError as error:
                 reason = str(error)
         self._tries = 1  # a controller known to be dead is asked in each cycle: that must not hold the loop up
-        raise self._fault(reason)
+        raise self._wire.fault(reason)
 
     def _ask(self, command: int, complete: Callable[[bytes], bool]) -> bytes:
         """The data of a reply, once it is `complete` and its CRC is right. Raises MotorError."""
@@ -158,7 +139,7 @@ class RoboClawMotors:
                 reason = f"a bad reply, {reply.hex(' ') or 'none'}"
             except OSError as error:
                 reason = str(error)
-        raise self._fault(reason)
+        raise self._wire.fault(reason)
 
     def _connect(self) -> None:
         if self.port.open():
@@ -190,12 +171,6 @@ class RoboClawMotors:
                 break
             reply += more
         return reply
-
-    def _fault(self, reason: str) -> MotorError:
-        return MotorError(self._said(reason))
-
-    def _said(self, reason: str) -> str:
-        return f"RoboClaw 0x{self._settings.address:02x} on {self._settings.port}: {reason}"
 
 
 def _duties(throttles: Sequence[float]) -> bytes:

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Literal
 
 import msgspec
 
-from vehicle.motors import MotorError, checked
-from vehicle.motors.patience import Patience
-from vehicle.motors.port import Port
+from vehicle.motors import checked
+from vehicle.motors.wire import Wire, tenths
 
 BAUDING = bytes([170])
 """First byte after power-up for models that measure the baud rate; others drop it."""
@@ -27,8 +26,6 @@ SET_TIMEOUT = 14
 FULL = 127
 REPEATS = 3
 """Nobody acknowledges a stop, so it is sent three times."""
-REMIND = 1.0
-"""s between settings of the timeout while driving: a controller that lost its power for a moment has forgotten it."""
 
 
 class SabertoothSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -43,11 +40,6 @@ class SabertoothSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True
     timeout_proven: bool = False
     """You have pulled the signal wire while the wheels turned in the air, and they stopped."""
 
-    @property
-    def tenths(self) -> int:
-        """The timeout as the controller counts it, rounded down."""
-        return int(self.timeout * 10 + 1e-9)
-
 
 class SabertoothMotors:
     """Fits `vehicle.motors.Motors`. It cannot know whether a Sabertooth is there."""
@@ -58,37 +50,33 @@ class SabertoothMotors:
         """Raises MotorError where the port cannot be opened."""
         self.count = 2
         self.enabled = False
-        self.port = Port(settings.port, settings.baud)
         self._settings = settings
-        self._clock = clock
-        self._patience = Patience()
-        self._reminded = 0.0
-        try:
+        self._wire = Wire(f"Sabertooth {settings.address}", settings.port, settings.baud, clock)
+        self.port = self._wire.port
+        with contextlib.ExitStack() as opened:
+            opened.callback(self.port.close)
             self.disable()
-        except MotorError:
-            self.port.close()
-            raise
+            opened.pop_all()
 
     def enable(self) -> None:
         """Raises MotorError unless the timeout was proven by hand."""
         if self.enabled:
             return
         if not self._settings.timeout_proven:
-            raise self._fault(
+            raise self._wire.fault(
                 "its timeout cannot be read back: pull its signal wire with the wheels in the air, "
                 "see them stop, then set timeout_proven = true"
             )
-        with self._certain():
+        with self._wire.certain():
             self.port.open()
             self.port.write(BAUDING + self._timeout() + self._drive((0.0, 0.0)))
-        self._patience.worked()
-        self._reminded = self._clock()
+        self._wire.reminded()
         self.enabled = True
 
     def disable(self) -> None:
         """Stop both, ahead of all that still waits to be sent. Raises MotorError where the port does not take it."""
         self.enabled = False
-        with self._certain():
+        with self._wire.certain():
             self.port.open()
             self.port.flush()
             # Two half frames at most: the one that was cut, and what follows until its end is found again.
@@ -99,29 +87,17 @@ class SabertoothMotors:
         values = checked(throttles, self.count)
         if not self.enabled:
             return
-        now = self._clock()
-        try:
-            self.port.write(self._reminder(now) + self._drive(values))
-        except OSError as error:
-            self._patience.failed(self._said(str(error)), now)
-        else:
-            self._patience.worked()
+        with self._wire.patient() as now:
+            reminder = BAUDING + self._timeout() if self._wire.must_remind(now) else b""
+            self.port.write(reminder + self._drive(values))
+            self._wire.patience.worked()
 
     def close(self) -> None:
         """As disabled, then the port is let go."""
-        if self.port.is_open:
-            with contextlib.ExitStack() as steps:
-                steps.callback(self.port.close)
-                self.disable()
-
-    def _reminder(self, now: float) -> bytes:
-        if now - self._reminded < REMIND:
-            return b""
-        self._reminded = now
-        return BAUDING + self._timeout()
+        self._wire.close(self.disable)
 
     def _timeout(self) -> bytes:
-        return self._packet(SET_TIMEOUT, self._settings.tenths)
+        return self._packet(SET_TIMEOUT, tenths(self._settings.timeout))
 
     def _drive(self, throttles: Sequence[float]) -> bytes:
         return b"".join(
@@ -132,16 +108,3 @@ class SabertoothMotors:
     def _packet(self, command: int, value: int) -> bytes:
         address = self._settings.address
         return bytes([address, command, value, (address + command + value) & 0x7F])
-
-    @contextlib.contextmanager
-    def _certain(self) -> Iterator[None]:
-        try:
-            yield
-        except OSError as error:
-            raise self._fault(str(error)) from error
-
-    def _fault(self, reason: str) -> MotorError:
-        return MotorError(self._said(reason))
-
-    def _said(self, reason: str) -> str:
-        return f"Sabertooth {self._settings.address} on {self._settings.port}: {reason}"

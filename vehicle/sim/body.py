@@ -101,7 +101,7 @@ class SimulatedBody:
         battery.step(ELECTRONICS + self._motor_current(throttles, strength), dt)
         keep = math.exp(-dt / LEAN_LAG)
         self._pitch = _lean(motion.acceleration, self._pitch, keep)
-        self._roll = _lean(-motion.speed * motion.yaw_rate, self._roll, keep)
+        self._roll = _lean(-motion.sway, self._roll, keep)
         if self._instruments is not None:
             self._instruments.step(dt)
 
@@ -115,7 +115,7 @@ class SimulatedBody:
 
     def _measure(self) -> Readings:
         motion, battery, instruments = self._chassis.motion, self._battery, self._instruments
-        true = Fix(motion.north, motion.east, motion.speed * math.cos(motion.yaw), motion.speed * math.sin(motion.yaw))
+        true = Fix(motion.north, motion.east, *motion.velocity)
         fix = true if instruments is None else instruments.gps(true)
         wheels = motion.wheel_speeds if instruments is None else instruments.wheels(motion.wheel_speeds)
         latitude, longitude = Origin(*self._home[:2]).globe(Point(fix.north, fix.east))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
+
+from dialects.enums import DriveType
 
 AT_REST = 1e-3
 """m/s; slower than this a driven-out wheel stands, as friction makes it do: else a stopped rover creeps for ever."""
@@ -42,22 +44,33 @@ class Motion:
     """0..2 pi"""
     speed: float = 0.0
     """Along the nose, negative backwards."""
+    sideways: float = 0.0
+    """To the right; only wheels with rollers can."""
     yaw_rate: float = 0.0
     acceleration: float = 0.0
     """Along the nose."""
+    sway: float = 0.0
+    """Acceleration to the right, that of a turn too."""
     wheel_speeds: tuple[float, ...] = (0.0, 0.0)
-    """Left and right, or the driven axle, m/s."""
+    """Left and right, the driven axle, or each of four wheels, m/s."""
 
-    def advance(self, speed: float, yaw_rate: float, dt: float) -> None:
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """m/s north and east."""
+        ahead, across = math.cos(self.yaw), math.sin(self.yaw)
+        return self.speed * ahead - self.sideways * across, self.speed * across + self.sideways * ahead
+
+    def advance(self, speed: float, yaw_rate: float, dt: float, sideways: float = 0.0) -> None:
         """Move for `dt` at the mean of old and new speed and turn."""
-        along = (self.speed + speed) / 2 * dt
+        along, right = (self.speed + speed) / 2 * dt, (self.sideways + sideways) / 2 * dt
         turn = (self.yaw_rate + yaw_rate) / 2 * dt
         middle = self.yaw + turn / 2
-        self.north += along * math.cos(middle)
-        self.east += along * math.sin(middle)
+        self.north += along * math.cos(middle) - right * math.sin(middle)
+        self.east += along * math.sin(middle) + right * math.cos(middle)
         self.yaw = (self.yaw + turn) % math.tau
         self.acceleration = (speed - self.speed) / dt
-        self.speed, self.yaw_rate = speed, yaw_rate
+        self.sway = speed * yaw_rate + (sideways - self.sideways) / dt
+        self.speed, self.sideways, self.yaw_rate = speed, sideways, yaw_rate
 
 
 class Chassis(Protocol):
@@ -106,6 +119,45 @@ class AckermannChassis:
         self._angle += max(-reach, min(reach, throttles[1] * frame.steering_max - self._angle))
         motion.wheel_speeds = (speed,)
         motion.advance(speed, speed * math.tan(self._angle) / frame.wheelbase, dt)
+
+
+CORNERS: tuple[tuple[int, int, int], ...] = ((1, -1, 1), (1, 1, -1), (-1, -1, -1), (-1, 1, 1))
+"""Front left, front right, rear left, rear right: ahead and right of the middle, and the side to which it pushes when
+it turns ahead. Seen from above the rollers of mecanum wheels form an X, and so do the axles of omni wheels."""
+
+
+class FourWheelChassis:
+    """Four driven corners that push ahead and aside alike: mecanum wheels, or omni wheels at 45 degrees."""
+
+    def __init__(self, frame: Frame | None = None) -> None:
+        self._frame = frame or Frame()
+        self.top_speed = self._frame.top_speed
+        self.motion = Motion(wheel_speeds=(0.0,) * len(CORNERS))
+
+    def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
+        """Each wheel follows its throttle; the rover makes the motion that fits all of them best, the rest is slip.
+
+        A wheel's m/s are those of the rover driving straight ahead, as an encoder's are that was calibrated so.
+        """
+        frame, motion = self._frame, self.motion
+        top = frame.top_speed * strength
+        pairs = zip(motion.wheel_speeds, throttles, strict=True)
+        wheels = tuple(_follow(old, throttle * top, frame.motor_lag, dt) for old, throttle in pairs)
+        corners = list(zip(wheels, CORNERS, strict=True))
+        speed = sum(wheels) / len(wheels)
+        sideways = sum(wheel * push for wheel, (_, _, push) in corners) / len(wheels)
+        round_ = sum(-wheel * right for wheel, (_, right, _) in corners) / len(wheels)
+        motion.wheel_speeds = wheels
+        motion.advance(speed, round_ / ((frame.track_width + frame.wheelbase) / 2), dt, sideways)
+
+
+CHASSIS: dict[DriveType, Callable[[Frame], Chassis]] = {
+    DriveType.SKID: SkidChassis,
+    DriveType.ACKERMANN: AckermannChassis,
+    DriveType.OMNI: FourWheelChassis,
+    DriveType.MECANUM: FourWheelChassis,
+}
+"""DRIVE_TYPE -> how the simulated rover moves."""
 
 
 def _follow(speed: float, wanted: float, lag: float, dt: float) -> float:

@@ -44,6 +44,11 @@ class Header:
     def keep(self, number: int, function: str, level: float) -> None:
         self._bytes[2 * number : 2 * number + 2] = bytes([FUNCTIONS.index(function), math.ceil(level * 255)])
 
+    def hold(self, number: int, *, high: bool) -> None:
+        """Something outside, as a button, gives an input its level."""
+        assert self.function(number) == "input"
+        self.keep(number, "input", float(high))
+
     def driven_high(self) -> set[int]:
         """Outputs that are not low, or not low all the time."""
         return {number for number in range(PINS) if self.function(number) == "output" and self.level(number) > 0.0}
@@ -59,6 +64,9 @@ class FiledPin(MockPWMPin):  # type: ignore[misc]  # gpiozero has no types
         if function is not None:
             self._function, self._state = function, self._header.level(self._number)
             self.clear_states()
+
+    def _get_state(self) -> float:
+        return self._header.level(self._number) if self._function == "input" else self._state
 
     def _set_function(self, value: str) -> None:
         super()._set_function(value)

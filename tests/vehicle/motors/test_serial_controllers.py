@@ -17,6 +17,7 @@ from tests.vehicle.motors.pty_controller import OnPty, recorded
 from vehicle.motors import MotorError, Motors, MotorSettingsError, open_motors, safe_stop
 from vehicle.motors.roboclaw import RoboClawMotors, RoboClawSettings
 from vehicle.motors.sabertooth import SabertoothMotors, SabertoothSettings
+from vehicle.motors.wire import tenths
 
 MARGIN = 0.25
 """s more than its timeout that a controller may take here: two cores, and others work on them."""
@@ -254,7 +255,7 @@ class TestRoboClaw(SerialContract):
         assert says in str(caught.value)
 
     def test_a_timeout_between_two_steps_is_rounded_to_the_safe_side(self) -> None:
-        assert [RoboClawSettings(port="", timeout=value).tenths for value in (0.1, 0.29, 0.3, 0.5)] == [1, 2, 3, 5]
+        assert [tenths(value) for value in (0.1, 0.29, 0.3, 0.5)] == [1, 2, 3, 5]
 
 
 class TestSabertooth(SerialContract):
