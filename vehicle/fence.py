@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 from dialects.enums import FenceItem
 from link.services.mission_items import Items
+from vehicle.fence_area import Area
 from vehicle.params import Params
 from vehicle.place import Origin, Point
 from vehicle.plan import POLYGONS
@@ -18,31 +18,12 @@ FAR = 100.0
 """m outside from which on nothing drives by itself any more: that far out the position itself is in doubt."""
 
 
-@dataclass(frozen=True, slots=True)
-class Area:
-    """A circle (one corner and a radius) or a polygon, to stay inside or outside of."""
-
-    corners: tuple[Point, ...]
-    radius: float
-    inside: bool
-    """It is where the rover may be."""
-
-    def breach(self, place: Point) -> float:
-        """m on the wrong side of its edge; 0 on the right one."""
-        depth = self.radius - self.corners[0].distance(place) if self.radius else _depth(self.corners, place)
-        return max(0.0, -depth if self.inside else depth)
-
-
 class Fence:
     """The fence in force. The rover must be inside every inclusion and outside every exclusion, as in ArduPilot."""
 
     def __init__(self, params: Params) -> None:
         self.damage: str | None = None
         """Why the kept fence is lost: where it was nobody knows, so that it is no fence that counts."""
-        self.breaches = 0
-        """How often the rover has gone beyond it."""
-        self.breached_at: float | None = None
-        """When it did so last."""
         self._params = params
         self._items: Items = ()
         self._areas: list[Area] = []
@@ -65,14 +46,24 @@ class Fence:
 
     def breach(self, place: Point, origin: Origin | None, home: Point | None) -> float:
         """m beyond the fence; 0 within, or where there is none."""
+        return max(0.0, -self.room(place, origin, home))
+
+    def room(self, place: Point, origin: Origin | None, home: Point | None) -> float:
+        """m to the nearest edge, negative beyond it; infinite where there is none."""
+        return min((area.room(place) for area in self._in_force(origin, home)), default=math.inf)
+
+    def ahead(self, place: Point, course: float, origin: Origin | None, home: Point | None) -> float:
+        """m to the first edge on a course; infinite where there is none."""
+        return min((area.ahead(place, course) for area in self._in_force(origin, home)), default=math.inf)
+
+    def _in_force(self, origin: Origin | None, home: Point | None) -> Iterator[Area]:
         if not self.enabled or origin is None:
-            return 0.0
-        kinds, breaches = int(self._params["FENCE_TYPE"]), [0.0]
+            return
+        kinds = int(self._params["FENCE_TYPE"])
         if kinds & CIRCLE and home is not None:
-            breaches.append(home.distance(place) - self._params["FENCE_RADIUS"])
+            yield Area((home,), self._params["FENCE_RADIUS"], inside=True)
         if kinds & AREAS:
-            breaches += [area.breach(place) for area in self._areas_on(origin)]
-        return max(breaches)
+            yield from self._areas_on(origin)
 
     def _areas_on(self, origin: Origin) -> list[Area]:
         """In metres; reckoned once for an origin."""
@@ -93,24 +84,3 @@ def _areas(items: Items, origin: Origin) -> list[Area]:
         found.append(Area(corners, radius, inside))
         index += size
     return found
-
-
-def _depth(corners: Sequence[Point], place: Point) -> float:
-    """m from the edge of a polygon; negative outside."""
-    nearest, inside = math.inf, False
-    for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
-        nearest = min(nearest, _to_segment(start, end, place))
-        if (start.east > place.east) != (end.east > place.east):
-            share = (place.east - start.east) / (end.east - start.east)
-            inside ^= place.north < start.north + share * (end.north - start.north)
-    return nearest if inside else -nearest
-
-
-def _to_segment(start: Point, end: Point, place: Point) -> float:
-    north, east = end.north - start.north, end.east - start.east
-    length = north * north + east * east
-    along = 0.0
-    if length:
-        along = ((place.north - start.north) * north + (place.east - start.east) * east) / length
-    along = max(0.0, min(1.0, along))
-    return place.distance(Point(start.north + along * north, start.east + along * east))

@@ -74,13 +74,13 @@ def nav_controller_output(view: View) -> m.Message | None:
 
 def fence_status(view: View) -> m.Message | None:
     """FENCE_STATUS, where there is a fence that counts: as in ArduPilot."""
-    fence = view.navigator.fence
-    if not fence.enabled:
+    boundary = view.navigator.boundary
+    if not boundary.fence.enabled:
         return None
-    outside, at = view.navigator.beyond > 0.0, fence.breached_at
+    outside, at = boundary.beyond > 0.0, boundary.breached_at
     return m.FenceStatus(
         breach_status=int(outside),
-        breach_count=whole(fence.breaches, UINT16),
+        breach_count=whole(boundary.breaches, UINT16),
         breach_type=BOUNDARY if outside else NO_BREACH,
         breach_time=0 if at is None else m.boot_ms(view.since_boot - (view.now - at)),
     )

@@ -15,10 +15,10 @@ from dialects import messages as m
 from dialects.enums import Command, DriveType, Failsafe
 from dialects.modes import Mode
 from link.services.mission_items import MissionItem
+from vehicle.boundary import Boundary
 from vehicle.demand import Demand
 from vehicle.drive import shape
 from vehicle.estimator import Estimate, Estimator
-from vehicle.fence import FAR, Fence
 from vehicle.guidance import Guide
 from vehicle.guided import Guided
 from vehicle.hazards import Hazards, Look
@@ -34,8 +34,6 @@ from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety import Safety
 from vehicle.setpoints import Course, Target
 
-FENCE_PERIOD = 0.1
-"""s; at 1.5 m/s a rover is 15 cm beyond by then."""
 NO_MISSION = m.UINT16_MAX
 """`total` of MISSION_CURRENT; 0 would say that nobody counts."""
 USUAL_SPEED = -2.0
@@ -83,12 +81,10 @@ class Navigator:
         """m/s that somebody asked for instead of WP_SPEED."""
         self.guide = Guide(params, kind)
         self.guided = Guided(params, self.guide)
-        self.fence = Fence(params)
-        self.havens = Havens(params, self._home_point, self.trespass)
-        self.mission = Mission(params, self.guide, self.havens.best, self._effect)
+        self.boundary = Boundary(params, self._home_point)
+        self.havens = Havens(params, self._home_point, self.boundary.trespass)
+        self.mission = Mission(params, self.guide, self.havens.best, self._effect, self.boundary.barred)
         self.plan_ids = PlanIds()
-        self.beyond = 0.0
-        """m beyond the fence."""
         self._params = params
         aside = [side for _, _, side in FOUR_WHEELS] if MIXERS[kind].sideways else []
         self._estimator = Estimator(aside)
@@ -104,7 +100,6 @@ class Navigator:
             Mode.SMART_RTL: Retrace(params, self.guide, self._trail),
         }
         self._epoch = -1
-        self._fence_due = -math.inf
 
     @property
     def estimate(self) -> Estimate:
@@ -131,18 +126,7 @@ class Navigator:
         estimate = self._estimator.sense(readings, now)
         if self.home is None and estimate.globe is not None:
             self.home = Home(*estimate.globe, readings.altitude or 0.0, *estimate.place)
-        if now >= self._fence_due:
-            self._fence_due = now + FENCE_PERIOD
-            self._watch_fence(estimate, now)
-
-    def _watch_fence(self, estimate: Estimate, now: float) -> None:
-        before, self.beyond = self.beyond, self.trespass(estimate.place) if estimate.good else 0.0
-        if self.beyond and not before:
-            self.fence.breaches, self.fence.breached_at = self.fence.breaches + 1, now
-
-    def trespass(self, place: Point) -> float:
-        """m that a place lies beyond the fence; 0 within."""
-        return self.fence.breach(place, self.estimate.origin, self._home_point())
+        self.boundary.sense(estimate, now)
 
     def offers(self, need: Need) -> bool:
         """There is a sensor for it, whether or not it is well at this moment: menus should not flicker."""
@@ -159,14 +143,8 @@ class Navigator:
         behaviour = self._behaviours.get(mode)
         if behaviour is None:
             return None
-        return self._fenced_off(mode) or behaviour.unready(estimate)
-
-    def _fenced_off(self, mode: Mode) -> str | None:
-        """Beyond the fence the vehicle by itself goes home at most, and not from far."""
         homeward = mode in (Mode.RTL, Mode.SMART_RTL)
-        if self.beyond > FAR or (self.beyond > 0.0 and not homeward and self._params["FENCE_ACTION"]):
-            return f"{self.beyond:.0f} m beyond the fence"
-        return None
+        return self.boundary.off_limits(homeward=homeward) or behaviour.unready(estimate)
 
     def mission_current(self, mode: Mode) -> m.MissionCurrent:
         """MISSION_CURRENT."""
@@ -192,7 +170,7 @@ class Navigator:
             throttles=throttles,
             needs_position=placed or bool(latched & Failsafe.POSITION),
             guided_lost=self.guided.lost_since() if guided or latched & Failsafe.GUIDED_LOSS else None,
-            outside=self.beyond > 0.0,
+            outside=self.boundary.beyond > 0.0,
         )
         return self._hazards.found(look, now)
 
@@ -204,7 +182,11 @@ class Navigator:
         self.wanted = self._motion(behaviour, now) if behaviour and safety.cleared else None
         if self.wanted is None:
             self.demand = None
+            self.boundary.rest()
             return
+        self.wanted = self.boundary.before(self.wanted, now)
+        if self.boundary.stuck(now) and self.course(safety.mode) is None:
+            self.ended = "the fence is in the way"
         throttle, steering = self._pilot.step(self.wanted, self.estimate, now)
         self.demand = Demand(throttle, steering, now, 0, 0, direct=True)
 
@@ -264,7 +246,7 @@ class Navigator:
             self.guide.reverse = bool(first)
         elif item.command == Command.DO_FENCE_ENABLE and first:
             self._params.set("FENCE_ENABLE", 1.0)
-            self.ended = self.fence.missing
+            self.ended = self.boundary.fence.missing
 
     def _home_point(self) -> Point | None:
         return None if self.home is None else Point(self.home.north, self.home.east)

@@ -112,8 +112,8 @@ class Orders:
         if isinstance(message, m.SetAttitudeTarget):
             return attitude_target(message, self._navigator.cruise())
         target = position_target(message, self._navigator.estimate)
-        beyond = self._navigator.trespass(target.point) if isinstance(target, Place) else 0.0
-        return Refusal("it lies beyond the fence") if beyond else target
+        barred = self._navigator.boundary.barred(target.point) if isinstance(target, Place) else None
+        return Refusal(barred) if barred else target
 
     # Commands
 
@@ -140,8 +140,9 @@ class Orders:
             return self._asking.refuse(request, "position is not known", now)
         if not self._safety.armed:
             return self._asking.refuse(request, "not armed", now)
-        if self._navigator.trespass(point):
-            return self._asking.refuse(request, "it lies beyond the fence", now)
+        barred = self._navigator.boundary.barred(point)
+        if barred:
+            return self._asking.refuse(request, barred, now)
         if self._safety.mode is not Mode.GUIDED and (refusal := self._safety.choose_mode(Mode.GUIDED, now)):
             return self._asking.refuse(request, refusal, now)
         self._navigator.renew(self._safety, now)  # GUIDED begins, and forgets older targets

@@ -97,6 +97,9 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("FENCE_TYPE", 6, 0, 6, "", "Sum of 2: circle around home, 4: uploaded areas", safety=True, whole=True),
     Parameter("FENCE_ACTION", 2, 0, 2, "", "Beyond the fence: 0 say so, 1 RTL, 2 HOLD", safety=True, whole=True),
     Parameter("FENCE_RADIUS", 100, 1, 10000, "m", "Of the circle around home", safety=True),
+    Parameter("FENCE_MARGIN", 1, 0, 10, "m", "What drives by itself stops so far before the fence", safety=True),
+    Parameter("AVOID_ENABLE", 1, 0, 1, "", "What drives by itself stops before the fence (FENCE_MARGIN)",
+              safety=True, whole=True),
     # Driving by itself
     Parameter("WP_SPEED", 0.8, 0.1, 30, "m/s", "Usual speed along a path; SPEED_MAX is never exceeded"),
     Parameter("WP_RADIUS", 0.5, 0.1, 20, "m", "A waypoint to drive through is reached at this distance"),

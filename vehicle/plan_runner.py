@@ -48,8 +48,10 @@ class Mission:
         guide: Guide,
         haven: Callable[[Estimate], Haven | None],
         effect: Callable[[MissionItem], None],
+        barred: Callable[[Point], str | None] = lambda place: None,
     ) -> None:
-        """`haven` is where to return to from there; `effect` does what a DO item says."""
+        """`haven` is where to return to from there; `effect` does what a DO item says; `barred` is why a place may not
+        be driven to, or None."""
         self.items: Items = ()
         self.current = 0
         """Index of the item under way, or of the one to begin with."""
@@ -62,6 +64,8 @@ class Mission:
         self._guide = guide
         self._haven = haven
         self._effect = effect
+        self._barred = barred
+        self._refused: str | None = None
         self._task: Task | None = None
         self._waiting: list[MissionItem] = []
         self._held_since: float | None = None
@@ -126,6 +130,9 @@ class Mission:
         return task.leg.end if isinstance(task, Go) else estimate.place
 
     def _end(self) -> Done:
+        if self._refused is not None:  # it is not over: somebody may change the fence or choose another item
+            why, self._refused = self._refused, None
+            return Done(why)
         self.progress, self.current = Progress.COMPLETE, 0
         return Done(self._ending or "mission complete")
 
@@ -144,9 +151,17 @@ class Mission:
             else:
                 self.current, self.progress = index, Progress.ACTIVE
                 self._guide.begin()
-                self._task = self._begun(item, index, estimate, start)
+                self._begin_task(item, index, estimate, start)
                 return
         self._ending = "its jumps go in a circle"
+
+    def _begin_task(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> None:
+        task = self._begun(item, index, estimate, start)
+        why = None if task.goal is None or self._ending else self._barred(task.goal)
+        if why is None:
+            self._task = task
+        else:
+            self._refused = f"item {index}: {why}"
 
     def _jump(self, index: int, item: MissionItem, *, count: bool) -> int:
         done, often = self._jumped.get(index, 0), item.params[1]

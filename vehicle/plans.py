@@ -164,7 +164,7 @@ class Plans:
             self._reached.forget()
             navigator.mission.load(items, self._damage.get(kind))
         elif kind is MissionType.FENCE:
-            navigator.fence.load(items, self._damage.get(kind))
+            navigator.boundary.fence.load(items, self._damage.get(kind))
         else:
             navigator.havens.load(items)
 
@@ -195,7 +195,7 @@ class Plans:
             return None
         if kind is MissionType.MISSION and self._safety.mode is Mode.AUTO:
             return "AUTO drives by it"
-        return "disarm first" if kind is MissionType.FENCE and self._navigator.fence.enabled else None
+        return "disarm first" if kind is MissionType.FENCE and self._navigator.boundary.fence.enabled else None
 
     def _selected(self, index: float, *, anew: bool) -> bool:
         mission = self._navigator.mission
@@ -240,9 +240,9 @@ class Plans:
             return Result.UNSUPPORTED
         if wish not in (0, 1):
             return Result.DENIED
-        if wish == 1 and self._navigator.fence.damage:
-            return self._asking.refuse(request, self._navigator.fence.damage, now)
-        if wish == 0 and self._safety.armed and self._navigator.fence.enabled:
+        if wish == 1 and self._navigator.boundary.fence.damage:
+            return self._asking.refuse(request, self._navigator.boundary.fence.damage, now)
+        if wish == 0 and self._safety.armed and self._navigator.boundary.fence.enabled:
             return self._asking.refuse(request, "disarm first", now)
         self._params.set("FENCE_ENABLE", wish)
         return Result.ACCEPTED

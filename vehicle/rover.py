@@ -81,7 +81,7 @@ class Rover:
             self._texts,
             now,
             self._navigator.unready,
-            unfenced=lambda: self._navigator.fence.missing,
+            unfenced=lambda: self._navigator.boundary.fence.missing,
         )
         self._watch = Watch(params, self._safety, self._control, self._texts, now)
         self._telemetry = Telemetry(now)

@@ -58,7 +58,7 @@ def sys_status(view: View) -> m.Message:
     has = {
         Sensor.MOTOR_OUTPUTS: True,
         Sensor.PREARM: True,
-        Sensor.GEOFENCE: view.navigator.fence.enabled,
+        Sensor.GEOFENCE: view.navigator.boundary.fence.enabled,
         Sensor.BATTERY: battery.present,
         Sensor.GPS: readings.gps_fix is not None or "gps" in readings.configured,
         Sensor.GYRO: readings.yaw_rate is not None,
@@ -67,7 +67,7 @@ def sys_status(view: View) -> m.Message:
     }
     ill = {
         Sensor.MOTOR_OUTPUTS: view.safety.fault is not None,
-        Sensor.GEOFENCE: view.navigator.beyond > 0.0,
+        Sensor.GEOFENCE: view.navigator.boundary.beyond > 0.0,
         Sensor.PREARM: bool(view.safety.problems(view.now)),
         Sensor.BATTERY: battery.silent(view.now) or battery.low_since(view.now) is not None,
         Sensor.GPS: (readings.gps_fix or 0) < 3,
@@ -75,7 +75,7 @@ def sys_status(view: View) -> m.Message:
     }
     present = sum(sensor for sensor, there in has.items() if there)
     # MAVProxy takes an absent fence whose health bit is 0 for a breached one.
-    absent = 0 if view.navigator.fence.enabled else Sensor.GEOFENCE
+    absent = 0 if view.navigator.boundary.fence.enabled else Sensor.GEOFENCE
     health = absent | sum(sensor for sensor, there in has.items() if there and not ill.get(sensor))
     return m.SysStatus(
         onboard_control_sensors_present=present,
@@ -138,7 +138,7 @@ def limits(view: View) -> Limit:
         Limit.DISARMED: not safety.armed,
         Limit.ESTOP: safety.state is states.State.ESTOP,
         Limit.FAILSAFE: safety.failsafes.action(view.now) >= Action.NEUTRAL or bool(safety.failsafes.latched),
-        Limit.FENCE: bool(safety.failsafes.active & Failsafe.FENCE),
+        Limit.FENCE: bool(safety.failsafes.active & Failsafe.FENCE) or view.navigator.boundary.held_back,
         Limit.BATTERY: bool(safety.failsafes.active & (Failsafe.BATTERY_LOW | Failsafe.BATTERY_CRITICAL)),
         Limit.STALE: control.stale(view.now),
         Limit.NEUTRAL_FIRST: safety.armed and not control.neutral_seen,

@@ -85,7 +85,7 @@ STREAMS: tuple[Stream, ...] = (
            change=lambda view: view.navigator.goal(view.safety.mode)),
     Stream(m.NavControllerOutput, 2, goals.nav_controller_output, DataStream.EXTENDED_STATUS),
     Stream(m.FenceStatus, 1, goals.fence_status, DataStream.EXTENDED_STATUS,
-           change=lambda view: (view.navigator.fence.enabled, view.navigator.beyond > 0.0)),
+           change=lambda view: (view.navigator.boundary.fence.enabled, view.navigator.boundary.beyond > 0.0)),
     Stream(m.ServoOutputRaw, 2, motion.servo_output_raw, DataStream.RC_CHANNELS),
     Stream(m.RcChannels, 2, motion.rc_channels, DataStream.RC_CHANNELS),
     Stream(m.HomePosition, 0.5, status.home_position, change=lambda view: view.home),
