@@ -55,6 +55,15 @@ class Conversation:
         assert match is not None
         return match
 
+    def wait_for(self, pattern: str, within: float = 5.0) -> None:
+        """Wait until it has said something that matches, since its start."""
+        deadline = time.monotonic() + within
+        with self._news:
+            while not re.search(pattern.encode(), self._heard):
+                left = deadline - time.monotonic()
+                assert left > 0, f"not within {within} s: {pattern!r}\n{self.transcript}"
+                self._news.wait(left)
+
     def ask(self, line: str, pattern: str, within: float = 5.0, period: float = 0.5) -> None:
         """Type a line again and again, until the answer matches: what it asks about takes its time."""
         deadline = time.monotonic() + within

@@ -10,13 +10,26 @@ from __future__ import annotations
 import os
 import sys
 import threading
+from collections.abc import Callable
 from functools import partial
 from importlib import import_module
 from typing import Any
 
 from mavsdk import ComponentType, Configuration, Mavsdk
 
-from tests.interop.mavsdk_tools import PATIENCE, by_hand, finished, first, insist, plugin, step, wait_until
+from tests.interop.mavsdk_tools import (
+    PATIENCE,
+    Stick,
+    accepted,
+    by_hand,
+    finished,
+    first,
+    insist,
+    plugin,
+    step,
+    wait_until,
+    watch,
+)
 
 
 def identity(system: Any, folder: str) -> None:
@@ -168,7 +181,27 @@ def lossy(system: Any, folder: str) -> None:
     step("disarm", lambda: insist(action.disarm))
 
 
-SCENARIOS = {each.__name__: each for each in (identity, parameters, driving, guided, mission, files, recordings, lossy)}
+def wheel(system: Any, folder: str) -> None:
+    """Do what the lines on stdin say, and tell what is seen meanwhile; `push` is repeated until the next one."""
+    action, direct, manual, telemetry = (
+        plugin(name, system) for name in ("action", "mavlink_direct", "manual_control", "telemetry")
+    )
+    watch(telemetry)
+    stick = Stick(manual)
+    verbs: dict[str, Callable[..., Any]] = {
+        "arm": lambda: insist(action.arm),
+        "disarm": action.disarm,
+        "push": lambda throttle: stick.hold(float(throttle)),
+        "command": lambda *words: accepted(direct, *map(float, words)),
+    }
+    for line in sys.stdin:
+        verb, *words = line.split()
+        step(line.strip(), lambda verb=verb, words=words: verbs[verb](*words))  # type: ignore[misc]
+
+
+SCENARIOS = {
+    each.__name__: each for each in (identity, parameters, driving, guided, mission, files, recordings, lossy, wheel)
+}
 
 
 def main(port: str, scenario: str, folder: str, system_id: str) -> None:

@@ -28,9 +28,10 @@ def step(name: str, run: Callable[[], Any]) -> Any:
         value, error = run(), None
     except Exception as exception:
         value, error = None, f"{type(exception).__name__}: {exception}"
-    print(
-        json.dumps({"step": name, "value": shown(value), "error": error, "took": time.monotonic() - start}), flush=True
-    )
+    took = time.monotonic() - start
+    # In one piece: callbacks come on a thread of MAVSDK's.
+    sys.stdout.write(json.dumps({"step": name, "value": shown(value), "error": error, "took": took}) + "\n")
+    sys.stdout.flush()
     return value
 
 
@@ -102,3 +103,53 @@ def by_hand(manual: Any, throttle: float) -> None:
     begun = time.monotonic()
     while not end.wait(0.05):
         manual.set_manual_control_input(0.0 if time.monotonic() - begun < 0.3 else throttle, 0.0, 0.0, 0.0)
+
+
+class Stick:
+    """A stick that a thread repeats, neutral first."""
+
+    def __init__(self, manual: Any) -> None:
+        self._manual = manual
+        self._throttle: float | None = None
+        self._neutrals = 0
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def hold(self, throttle: float) -> None:
+        """There, from now on."""
+        self._throttle, self._neutrals = throttle, 6
+
+    def _run(self) -> None:
+        pause = threading.Event()
+        while not pause.wait(0.05):
+            if self._throttle is not None:
+                self._manual.set_manual_control_input(0.0 if self._neutrals else self._throttle, 0.0, 0.0, 0.0)
+                self._neutrals = max(0, self._neutrals - 1)
+
+
+def watch(telemetry: Any) -> None:
+    """Tell what the vehicle does: each text, each change of `armed`, and once where it is and that it moves."""
+    told: dict[str, Any] = {}
+
+    def tell(name: str, value: Any) -> None:
+        if told.get(name) != value:
+            told[name] = value
+            step(name, lambda: value)
+
+    telemetry.subscribe_status_text(lambda text, *_: step("text", lambda: text.text))
+    telemetry.subscribe_armed(lambda armed, *_: tell("armed", bool(armed)))
+    telemetry.subscribe_attitude_euler(lambda *_: tell("attitude", True))
+    telemetry.subscribe_position(lambda place, *_: tell("position", abs(place.latitude_deg) > 1))
+    telemetry.subscribe_fixedwing_metrics(
+        lambda metrics, *_: tell("motion", True) if metrics.groundspeed_m_s > 0.1 else None
+    )
+
+
+def accepted(direct: Any, command: float, *params: float) -> None:
+    """A command that MAVSDK has no verb for; raises where it is not accepted."""
+    message = import_module("mavsdk.plugins.mavlink_direct.mavlink_direct").MavlinkMessage
+    fields: dict[str, float] = {"target_system": 1, "target_component": 1, "command": int(command), "confirmation": 0}
+    fields |= {f"param{number}": 0.0 for number in range(1, 8)}
+    fields |= {f"param{number}": value for number, value in enumerate(params, start=1)}
+    answer = direct.send_command(message("COMMAND_LONG", 0, 0, 1, 1, json.dumps(fields)))
+    if json.loads(answer.fields_json)["result"] != 0:
+        raise RuntimeError(f"not accepted: {answer.fields_json}")

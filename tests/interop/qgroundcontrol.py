@@ -90,6 +90,10 @@ class QGroundControl:
                     return message
         return None
 
+    def listen(self, seconds: float) -> None:
+        """Receive for a while."""
+        self.wait(m.Message, seconds, lambda message: False)
+
     def _beat(self) -> None:
         """Its HEARTBEAT: armed and active, once a second."""
         if self._vehicle is not None and time.monotonic() >= self._beat_due:

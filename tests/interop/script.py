@@ -48,6 +48,12 @@ class Script:
                 return message
         return None
 
+    def listen(self, seconds: float) -> None:
+        """Receive for a while."""
+        deadline = time.monotonic() + seconds
+        while (left := deadline - time.monotonic()) > 0:
+            self.hear(within=left)
+
     def until(self, condition: Callable[[], bool], within: float = 5.0) -> None:
         """Receive until `condition`."""
         deadline = time.monotonic() + within
