@@ -14,6 +14,7 @@ from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, said
 from tests.vehicle.field import GROUND, Field
 from vehicle.guidance import Leg
 from vehicle.place import Point
+from vehicle.reached import TIMES
 
 Item = tuple[int, Point | None, tuple[float, ...]]
 NAN = math.nan
@@ -48,6 +49,11 @@ def ready(*items: Item, **params: float) -> Field:
     assert upload(field, *items) == MissionResult.ACCEPTED
     assert field.arm() is Result.ACCEPTED
     return field
+
+
+def passed(field: Field) -> list[int]:
+    """Items in the order in which they were reached; each is said several times."""
+    return [index for index, _ in groupby(each.seq for each in field.all(m.MissionItemReached))]
 
 
 def start(field: Field) -> None:
@@ -95,8 +101,7 @@ def test_ten_minutes_stay_within_half_a_metre_of_the_lines(seed: int) -> None:
     assert field.now - began > 580.0
     assert said(field, "AUTO: mission complete: HOLD")
     assert beside(field, CORNERS) < 0.45
-    reached = [index for index, _ in groupby(each.seq for each in field.all(m.MissionItemReached))]
-    assert reached == [0, 1, 2, 3] * 4
+    assert passed(field) == [0, 1, 2, 3] * 4
 
 
 class TestItems:
@@ -163,7 +168,7 @@ class TestItems:
         field = ready(way(4, 0), way(4, 4), do(Command.DO_JUMP, 0, 2), way(0, 4))
         start(field)
         finish(field, 120.0)
-        assert [each.seq for each in field.all(m.MissionItemReached)] == [0, 1, 0, 1, 0, 1, 3]
+        assert passed(field) == [0, 1, 0, 1, 0, 1, 3]
 
     def test_loiter_for_a_time_is_to_stand_there(self) -> None:
         field = ready((Command.NAV_LOITER_TIME, Point(4, 0), (5.0,)), way(8, 0))
@@ -261,13 +266,13 @@ class TestProgress:
         field = ready(way(3, 0), do(Command.DO_JUMP, 0, 1), way(3, 3), way(40, 3))
         start(field)
         field.until(Point(3, 3), 60.0, 0.5)
-        assert [each.seq for each in field.all(m.MissionItemReached)][:2] == [0, 0]
+        assert [each.seq for each in field.all(m.MissionItemReached)].count(0) > TIMES  # reached twice
         before = len(field.all(m.MissionItemReached))
         assert field.command(Command.DO_SET_MISSION_CURRENT, 0, anew) is Result.ACCEPTED
         field.until(Point(3, 0), 60.0, 0.4)
         field.until(Point(20, 3), 120.0, 1.0)
         reached = [each.seq for each in field.all(m.MissionItemReached)][before:]
-        assert reached.count(0) == 1 + again
+        assert (reached.count(0) > TIMES) == bool(again)
 
     def test_an_item_can_be_chosen(self) -> None:
         field = ready(way(6, 0), way(0, 6))
