@@ -76,6 +76,7 @@ PositionTargetGlobalInt = rover.MAVLink_position_target_global_int_message
 PositionTargetLocalNed = rover.MAVLink_position_target_local_ned_message
 NavControllerOutput = rover.MAVLink_nav_controller_output_message
 FenceStatus = rover.MAVLink_fence_status_message
+GpsGlobalOrigin = rover.MAVLink_gps_global_origin_message
 HomePosition = rover.MAVLink_home_position_message
 OnboardComputerStatus = rover.MAVLink_onboard_computer_status_message
 ExtendedSysState = rover.MAVLink_extended_sys_state_message

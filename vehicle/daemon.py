@@ -24,6 +24,7 @@ from link.link import LinkError
 from link.loop import run_loop
 from link.runner import Runner, open_links
 from link.tape import Tape
+from vehicle.heard import HEARD
 from vehicle.leaving import Leave
 from vehicle.lock import MotorLock
 from vehicle.machine import Machine
@@ -44,7 +45,6 @@ from vehicle.sim.battery import Battery
 from vehicle.sim.body import Home, SimulatedBody
 from vehicle.sim.chassis import CHASSIS, Frame
 from vehicle.sim.truth import WatchedBody
-from vehicle.telemetry import HEARD
 
 log = logging.getLogger(__name__)
 

@@ -82,6 +82,20 @@ def global_position_int(view: View) -> m.Message | None:
     )
 
 
+def gps_global_origin(view: View) -> m.Message | None:
+    """GPS_GLOBAL_ORIGIN: where 0/0 of LOCAL_POSITION_NED is. The first fix decides it, and nobody moves it."""
+    origin = view.estimate.origin
+    if origin is None:
+        return None
+    altitude = view.home.altitude if view.home else None
+    return m.GpsGlobalOrigin(
+        latitude=whole(origin.latitude, INT32, 1e7),
+        longitude=whole(origin.longitude, INT32, 1e7),
+        altitude=whole(altitude, INT32, 1000),
+        time_usec=view.boot_us,
+    )
+
+
 def estimator_status(view: View) -> m.Message:
     """ESTIMATOR_STATUS: which parts of the estimate may be believed. Test ratios are not kept: 0."""
     estimate = view.estimate

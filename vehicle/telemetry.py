@@ -88,6 +88,7 @@ STREAMS: tuple[Stream, ...] = (
            change=lambda view: (view.navigator.boundary.fence.enabled, view.navigator.boundary.beyond > 0.0)),
     Stream(m.ServoOutputRaw, 2, motion.servo_output_raw, DataStream.RC_CHANNELS),
     Stream(m.RcChannels, 2, motion.rc_channels, DataStream.RC_CHANNELS),
+    Stream(m.GpsGlobalOrigin, 0, motion.gps_global_origin, change=lambda view: view.navigator.estimate.origin),
     Stream(m.HomePosition, 0.5, status.home_position, change=lambda view: view.home),
     Stream(m.OnboardComputerStatus, 0.5, computer.onboard_computer_status, DataStream.EXTENDED_STATUS),
     Stream(m.RoverDriveInfo, 0, status.drive_info),
@@ -96,8 +97,6 @@ STREAMS: tuple[Stream, ...] = (
 )  # fmt: skip
 """Stream by stream, the most important first. What only one asks for is in vehicle/requests.py."""
 
-HEARD = frozenset(m.MESSAGES) - {stream.message.id for stream in STREAMS if stream.message is not m.Heartbeat}
-"""What is worth decoding when it arrives: what we tell unasked ourselves, we do not listen to."""
 BY_ID: dict[int, Stream] = {stream.message.id: stream for stream in STREAMS}
 
 

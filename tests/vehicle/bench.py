@@ -11,6 +11,7 @@ from dialects.axes import Axes, manual_control
 from dialects.enums import Autopilot, Command, Result, Type
 from dialects.modes import Mode
 from link.core import Peer, Received
+from vehicle.heard import HEARD
 from vehicle.logbook import Recording
 from vehicle.params import Params
 from vehicle.plans import PlanKeeper
@@ -78,7 +79,9 @@ class Bench:
 
     def say(self, message: m.Message, system: int = DRIVER, *, introduced: bool = True, sequence: int | None = None,
             address: str = "", named: bool = False) -> None:  # fmt: skip
-        """One message of a ground station, and what the rover answers."""
+        """One message of a ground station, and what the rover answers. As on a link, the rest is not even decoded."""
+        if type(message).id not in HEARD:
+            return
         self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
         peer = Peer(0, address or f"gcs {system}")
         self._receive(Received(message, system, 190, self._sequence, peer, introduced, named))

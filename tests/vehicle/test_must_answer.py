@@ -22,29 +22,7 @@ NAN, INF = math.nan, math.inf
 NOWHERE, SOMEWHERE = (0, 0), (481_000_000, 115_000_000)
 """DO_REPOSITION: degrees x 1e7; EVERYTHING is in the second place."""
 
-REQUESTABLE = (
-    0,
-    1,
-    24,
-    30,
-    32,
-    33,
-    36,
-    65,
-    74,
-    147,
-    148,
-    242,
-    244,
-    300,
-    397,
-    435,
-    436,
-    512,
-    46001,
-    46002,
-    46004,
-)
+REQUESTABLE = (0, 1, 24, 30, 32, 33, 36, 49, 65, 74, 147, 148, 242, 244, 300, 397, 435, 436, 512, 46001, 46002, 46004)
 """Messages that everybody may ask for. ROVER_LINK_STATUS comes unasked each second, one for each link."""
 
 

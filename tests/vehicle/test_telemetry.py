@@ -15,7 +15,6 @@ from dialects.enums import Autopilot, Command, DriveType, Limit, Sensor, State, 
 from link.core import LinkReport
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench, said
 from vehicle.readings import Readings
-from vehicle.telemetry import HEARD
 
 RATES = {
     m.Heartbeat: 1, m.SysStatus: 1, m.BatteryStatus: 0.5, m.CurrentMode: 0.5, m.ControlStatus: 1, m.SystemTime: 1,
@@ -215,8 +214,12 @@ def test_no_reading_breaks_a_message(values: dict[str, float]) -> None:
     assert bench.turning
 
 
-def test_what_the_rover_obeys_is_heard_and_telemetry_of_others_is_not() -> None:
-    obeyed = (m.Heartbeat, m.ManualControl, m.RcChannelsOverride, m.RoverOperatorPresence, m.CommandLong, m.CommandInt,
-              m.SetMode, m.ParamSet, m.RadioStatus, m.Timesync, m.FileTransferProtocol)  # fmt: skip
-    assert {kind.id for kind in obeyed} <= HEARD
-    assert not {m.Attitude.id, m.GlobalPositionInt.id, m.ServoOutputRaw.id} & HEARD
+def test_the_origin_is_told_when_it_is_known() -> None:
+    bench = Bench()
+    bench.wait(1.0)
+    assert not bench.all(m.GpsGlobalOrigin)
+    bench.readings = EVERYTHING
+    bench.wait(1.0)
+    (origin,) = bench.all(m.GpsGlobalOrigin)
+    assert (origin.latitude, origin.longitude) == pytest.approx((481_000_000, 115_000_000), abs=200)
+    assert origin.altitude == 500_000
