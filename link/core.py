@@ -16,6 +16,10 @@ class Peer(NamedTuple):
     address: Hashable
 
 
+RECORDER = Peer(-1, "recorder")
+"""Who gets what is only for the log; no link leads there."""
+
+
 class Received(NamedTuple):
     """A message that was found whole, checked and counted."""
 

@@ -7,19 +7,24 @@ strand it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
 from typing import Protocol
 
+from dialects import messages as m
 from dialects.enums import Severity
-from link.core import Received
+from link.core import RECORDER, Outgoing, Received
 from link.services.ftp import FtpError
 from link.services.ftp_files import Content, Entry, Folder, MemoryFolder, Query
+from link.services.param_values import REAL32
 from vehicle.control import Control
 from vehicle.params import Params
 from vehicle.texts import Texts
 
 AFTERWARDS = 15.0
 """s of recording after disarming: what the rover did then may be why (ArduPilot's HAL_LOGGER_ARM_PERSIST)."""
+AT_ONCE = 4
+"""Parameters that are recorded in one cycle: all of them take half a second, and no cycle takes long."""
 
 
 class Recording(Protocol):
@@ -88,25 +93,35 @@ class Logbook:
         self._was_armed = False
         self._open = False
         self._until = float("-inf")
+        self._opening: Iterator[m.Message] = iter(())
 
-    def tick(self, now: float) -> None:
-        """Begin, go on or end."""
+    @property
+    def well(self) -> bool | None:
+        """Could it record, or does it? None where it shall not."""
+        if isinstance(self.recording, NoRecording) or not self._params["LOG_BACKEND_TYPE"]:
+            return None
+        return self.recording.problem is None
+
+    def tick(self, now: float) -> list[Outgoing]:
+        """Begin, go on or end. Returns what only the log is told: all parameters, in its first moments."""
         armed = self._armed()
         if self._was_armed and not armed:
             self._until = now + AFTERWARDS
-        wanted = self._params["LOG_BACKEND_TYPE"] and (armed or self._params["LOG_DISARMED"] or now < self._until)
+        wanted = self.well is not None and (armed or self._params["LOG_DISARMED"] or now < self._until)
         if wanted and (not self._open or (armed and not self._was_armed)):
             self._texts.forget(_KEY)  # each log tells anew what is wrong with it
             self.recording.begin(int(self._params["LOG_MAX_FILES"]), int(self._params["LOG_FILE_MB_FREE"]))
+            self._opening = self._values()
         elif self._open and not wanted:
             self.recording.end()
         self._open, self._was_armed = bool(wanted), armed
         self.recording.tick(now)
+        return [Outgoing(message, RECORDER) for message in islice(self._opening, AT_ONCE)]
 
     def observe(self, now: float) -> None:
         """About once a second: does it work?"""
         problem = self.recording.problem
-        if problem and self._params["LOG_BACKEND_TYPE"]:
+        if problem and self.well is not None:
             self._texts.say_once(f"{_KEY} {problem}", Severity.WARNING, f"Log: {problem}", now)
 
     def folder(self) -> Folder:
@@ -124,6 +139,11 @@ class Logbook:
             f"GCS {received.system}: logs not erased: {refusal}" if refusal else f"Logs erased by GCS {received.system}"
         )
         self._texts.say(Severity.WARNING if refusal else Severity.NOTICE, text, now)
+
+    def _values(self) -> Iterator[m.Message]:
+        count = len(self._params)
+        for index, name in enumerate(self._params):
+            yield m.ParamValue(name.encode(), self._params[name], REAL32, count, index)
 
 
 _KEY = "recording"

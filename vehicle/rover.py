@@ -168,7 +168,7 @@ class Rover:
         self._outgoing += self._param_service.tick(now)
         self._outgoing += self._services.tick(now)
         self._outgoing += self._plans.tick(now)
-        self._logbook.tick(now)
+        self._outgoing += self._logbook.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves, about once a second."""
@@ -267,6 +267,7 @@ class Rover:
             control=self._control,
             drive=self._drive,
             navigator=self._navigator,
+            logs=self._logbook.well,
         )
 
     def _link_status(self, report: LinkReport) -> m.Message:

@@ -64,6 +64,7 @@ def sys_status(view: View) -> m.Message:
         Sensor.GYRO: readings.yaw_rate is not None,
         Sensor.COMPASS: readings.yaw is not None,
         Sensor.AHRS: view.estimate.yaw is not None,
+        Sensor.LOGGING: view.logs is not None,
     }
     ill = {
         Sensor.MOTOR_OUTPUTS: view.safety.fault is not None,
@@ -72,6 +73,7 @@ def sys_status(view: View) -> m.Message:
         Sensor.BATTERY: battery.silent(view.now) or battery.low_since(view.now) is not None,
         Sensor.GPS: (readings.gps_fix or 0) < 3,
         Sensor.AHRS: readings.gps_fix is not None and not view.estimate.good,
+        Sensor.LOGGING: view.logs is False,
     }
     present = sum(sensor for sensor, there in has.items() if there)
     # MAVProxy takes an absent fence whose health bit is 0 for a breached one.

@@ -29,6 +29,8 @@ class View:
     control: Control
     drive: Drive
     navigator: Navigator
+    logs: bool | None = None
+    """Are they recorded as they should? None where none are wanted."""
 
     @property
     def estimate(self) -> Estimate:

@@ -7,12 +7,14 @@ from dataclasses import dataclass, field
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, Result
+from dialects.enums import Command, Result, Sensor
+from link.core import RECORDER
 from link.services.ftp import Op
 from link.services.ftp_files import MemoryFolder
 from tests.vehicle.bench import DRIVER, NEUTRAL, OTHER, Bench
 from tests.vehicle.test_services import ask
 from vehicle.logbook import AFTERWARDS
+from vehicle.params import TABLE
 
 
 @dataclass
@@ -138,6 +140,41 @@ def test_what_keeps_it_from_recording_is_told_once_a_drive_and_stops_nothing() -
     rover.rover.observe([], rover.now)
     rover.wait(1.0, NEUTRAL)
     assert len([text for text in rover.texts if text.startswith("Log:")]) == 2
+
+
+def test_a_log_begins_with_all_parameters_and_only_the_log_is_told() -> None:
+    rover, _ = bench(SPEED_MAX=3)
+    before = len(rover.sent)
+    rover.arm()
+    rover.wait(1.0, NEUTRAL)
+    told = [
+        message
+        for message, peer in zip(rover.sent[before:], rover.peers[before:], strict=True)
+        if isinstance(message, m.ParamValue) and peer == RECORDER
+    ]
+    assert [message.param_id for message in told] == [parameter.name for parameter in TABLE]
+    assert {message.param_id: message.param_value for message in told}["SPEED_MAX"] == 3
+    assert len(rover.all(m.ParamValue)) == len(TABLE)
+
+
+def test_nothing_is_said_to_a_log_that_is_not_there() -> None:
+    rover = Bench(LOG_DISARMED=1)
+    rover.arm()
+    rover.wait(1.0, NEUTRAL)
+    assert RECORDER not in rover.peers
+
+
+@pytest.mark.parametrize(
+    ("backend", "problem", "present", "healthy"),
+    [(1, None, True, True), (1, "gone", True, False), (0, None, False, False)],
+)
+def test_sys_status_says_whether_logging_works(backend: int, problem: str | None, present: bool, healthy: bool) -> None:
+    rover, writer = bench(LOG_BACKEND_TYPE=backend)
+    writer.problem = problem
+    rover.wait(3.0)
+    told = rover.newest(m.SysStatus)
+    assert bool(told.onboard_control_sensors_present & Sensor.LOGGING) is present
+    assert bool(told.onboard_control_sensors_health & Sensor.LOGGING) is healthy
 
 
 # ---- who may remove logs ----

@@ -8,6 +8,7 @@ import resource
 import signal
 from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +19,14 @@ from dialects import messages as m
 from dialects.axes import Axes
 from dialects.enums import Command
 from link.core import Peer, Received
+from link.frame import Frame
+from link.framer import Framer
 from link.services.ftp_client import FtpClient, FtpOutcome
-from link.tlog import read
+from link.tlog import Record, read
+from tests.e2e.relay import free_port
 from tests.vehicle.ground import Ground, drive, running
 from vehicle.log_files import number_of, time_of
+from vehicle.params import TABLE
 
 pytestmark = pytest.mark.e2e
 
@@ -150,6 +155,52 @@ def test_a_drive_is_recorded_fetched_three_ways_and_read(tmp_path: Path) -> None
     assert "Disarmed: by GCS 255" in texts
     stamps = [each.microseconds for each in read(log.read_bytes())]
     assert stamps == sorted(stamps)
+
+
+def test_what_the_vehicle_does_is_recorded_also_where_nobody_listens(tmp_path: Path) -> None:
+    folder = tmp_path / "logs"
+    words = (f"udpin:127.0.0.1:{free_port()}", "--tlog", str(folder), "--param", "LOG_DISARMED=1")
+    with Ground() as ground, running(tmp_path, "--sim", *words) as vehicle:
+        vehicle.ready()
+        ground.wait(lambda: recorded(folder)["PARAM_VALUE", 1] >= len(TABLE), "all parameters")
+        ground.wait(lambda: recorded(folder)["SERVO_OUTPUT_RAW", 1] >= 3, "outputs")
+        found = recorded(folder)
+        assert found["ATTITUDE", 1] >= 3
+        assert found["HEARTBEAT", 1] >= 1
+        assert found["UNKNOWN_46001", 0] >= 3  # ROVER_DRIVE_STATUS
+        assert not vehicle.process.poll()
+
+
+def recorded(folder: Path) -> Counter[tuple[str, int]]:
+    """What is in the log so far."""
+    return sources([message for path in logs_of(folder) for message in by_pymavlink(path)])
+
+
+def test_each_message_is_recorded_once_for_all_who_listen(tmp_path: Path) -> None:
+    folder = tmp_path / "logs"
+    with Ground() as one, Ground() as other:
+        words = (one.endpoint, other.endpoint, "--tlog", str(folder), "--param", "LOG_DISARMED=1")
+        with running(tmp_path, "--sim", *words) as vehicle:
+            vehicle.ready()
+            for ground in (one, other):
+                ground.wait(partial(told, ground), "telemetry")
+            one.wait(lambda: recorded(folder)["ATTITUDE", 1] >= 5, "a log with something in it")
+    frames = [frame for frame in map(framed, read(logs_of(folder)[0].read_bytes())) if frame.system == 1]
+    times = [frame.payload[:4] for frame in frames if frame.message_id == m.Attitude.id]
+    assert len(times) == len(set(times)) >= 5
+    numbers = [frame.sequence for frame in frames]
+    assert numbers == [number % 256 for number in range(len(numbers))]
+
+
+def told(ground: Ground) -> bool:
+    """Has it got telemetry?"""
+    return sum(isinstance(each, m.Attitude) for each in ground.heard) >= 3
+
+
+def framed(record: Record) -> Frame:
+    """The frame of a record."""
+    [frame] = Framer(stream=False, unknown=True).feed(record.raw, 0.0)
+    return frame
 
 
 def test_pymavlinks_own_client_fetches_a_log(tmp_path: Path) -> None:
