@@ -12,6 +12,7 @@ from vehicle.outputs import Clearance, Gate, Outputs, Permit, Trial
 from vehicle.params import Params
 from vehicle.slew import Slew, SlewLimits
 
+NO_LIMIT = Limit(0)
 HALF = 0.5
 """Largest throttle while a failsafe limits the speed (vehicle.md, battery low)."""
 
@@ -23,7 +24,7 @@ class Drive:
     def __init__(self, params: Params, now: float) -> None:
         self.kind = DriveType(int(params["DRIVE_TYPE"]))
         self.mixer = MIXERS[self.kind]
-        self.limits = Limit(0)
+        self.limits = NO_LIMIT
         """Why the outputs differ from the demand, as far as this side knows."""
         self.outputs = Outputs((0.0,) * len(self.mixer.motors), enabled=False)
         self._params = params
@@ -54,7 +55,7 @@ class Drive:
         """The outputs of this moment. `limited`: a failsafe asks for half speed."""
         permit = clearance.permit
         dt, self._at = max(0.0, now - self._at), now
-        self.limits = Limit(0)
+        self.limits = NO_LIMIT
         trial = clearance.trial if permit is Permit.TEST else None
         motor = None if trial is None else trial.motor
         if permit is Permit.NONE or motor != self._tested:  # no test ramps down, nor into another one or a drive
@@ -103,9 +104,7 @@ class Drive:
         params = self._params
         accel, decel = params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100
         wheel = SlewLimits(accel, decel, params["MOT_REV_DELAY"])
-        servo = SlewLimits(
-            accel, decel
-        )  # its gears do not mind a reversal, and the rover would go straight on meanwhile
+        servo = SlewLimits(accel, decel)  # its gears do not mind a reversal; the rover would go straight on meanwhile
         pairs = enumerate(zip(self._slews, targets, strict=True))
         return tuple([slew.step(target, dt, wheel if at < self._driven else servo) for at, (slew, target) in pairs])
 

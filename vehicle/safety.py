@@ -66,12 +66,14 @@ class Safety:
     @property
     def latched(self) -> Failsafe:
         """What stays until somebody does something."""
-        own = {
-            Failsafe.ESTOP: self.state is State.ESTOP,
-            Failsafe.MOTOR_DRIVER: self.fault is not None,
-            Failsafe.LOOP_OVERRUN: self.overrun,
-        }
-        return self.failsafes.latched | Failsafe(sum(cause for cause, holds in own.items() if holds))
+        latched = self.failsafes.latched
+        if self.state is State.ESTOP:
+            latched |= Failsafe.ESTOP
+        if self.fault is not None:
+            latched |= Failsafe.MOTOR_DRIVER
+        if self.overrun:
+            latched |= Failsafe.LOOP_OVERRUN
+        return latched
 
     def problems(self, now: float, *, force: bool = False) -> list[str]:
         """What forbids to arm; empty where nothing does."""

@@ -77,6 +77,9 @@ class SimulatedBody:
         self._instruments = None if seed is None else Instruments(seed, noise)
         self._time: float | None = None
         self._roll = self._pitch = 0.0
+        self._origin = Origin(self._home.latitude, self._home.longitude)
+        self._fix: tuple[Fix, tuple[float, float]] | None = None
+        """The newest, and its place on the globe: it is the same for several cycles."""
 
     @property
     def motion(self) -> Motion:
@@ -118,7 +121,9 @@ class SimulatedBody:
         true = Fix(motion.north, motion.east, *motion.velocity)
         fix = true if instruments is None else instruments.gps(true)
         wheels = motion.wheel_speeds if instruments is None else instruments.wheels(motion.wheel_speeds)
-        latitude, longitude = Origin(*self._home[:2]).globe(Point(fix.north, fix.east))
+        if self._fix is None or self._fix[0] is not fix:
+            self._fix = fix, self._origin.globe(Point(fix.north, fix.east))
+        latitude, longitude = self._fix[1]
         return Readings(
             roll=self._roll if instruments is None else instruments.angle(self._roll),
             pitch=self._pitch if instruments is None else instruments.angle(self._pitch),
