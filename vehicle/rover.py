@@ -135,6 +135,11 @@ class Rover:
         """Safety state, for the daemon's log and for tests."""
         return self._safety.state
 
+    @property
+    def commands(self) -> frozenset[int]:
+        """What is answered with more than UNSUPPORTED."""
+        return self._server.commands
+
     def leaving(self, now: float) -> Leave | None:
         """How the program is to end because a ground station asked for it, or None."""
         return self._preflight.leaving(now)

@@ -90,6 +90,13 @@ def _schema(asked: argparse.Namespace) -> int:
     return DONE
 
 
+def _dialect(asked: argparse.Namespace) -> int:
+    from vehicle.dialect import document
+
+    sys.stdout.write(document())
+    return DONE
+
+
 def _check(asked: argparse.Namespace) -> int:
     from vehicle.check import findings
 
@@ -230,6 +237,7 @@ VERBS: dict[str, Verb] = {
     "init": Verb("write a file of settings with every key and its default", _file, _init),
     "check": Verb("check that file and try the hardware, without moving anything", _check_options, _check),
     "schema": Verb("print the JSON schema of that file, for editors", _nothing, _schema),
+    "dialect": Verb("print what the vehicle speaks: messages, commands, modes, parameters", _nothing, _dialect),
     "motor-test": Verb("turn one motor, slowly and shortly", _motor_test_options, _motor_test),
     "safe-stop": Verb("stop the motors that a killed vehicle left turning", _config_option, _safe_stop),
     "systemd-unit": Verb("print the systemd unit that runs the vehicle as a service", _unit_options, _systemd_unit),

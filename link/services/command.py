@@ -71,6 +71,11 @@ class CommandServer:
         self._done: dict[tuple[int, int], tuple[CommandRequest, float, Result]] = {}
         self._jobs = Jobs()
 
+    @property
+    def commands(self) -> frozenset[int]:
+        """What has a handler."""
+        return frozenset(self._handlers)
+
     def receive(self, received: Received, now: float) -> list[Outgoing]:
         """Run or cancel a command; returns the acknowledgement, or nothing where it was not for us."""
         message = received.message

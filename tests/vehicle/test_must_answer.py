@@ -276,7 +276,7 @@ def test_the_answer(row: Row) -> None:
 
 
 def test_every_command_that_is_answered_has_a_line() -> None:
-    known = Bench().rover._server._handlers
+    known = Bench().rover.commands
     assert {C(command).name for command in known} == {C(row.command).name for row in ROWS if row.command in known}
 
 

@@ -1,0 +1,76 @@
+"""Our own messages as rover.xml defines them, for documents; the codec is generated from the same file."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from pathlib import Path
+
+FILE = Path(__file__).with_name("rover.xml")
+PRIVATE = range(46000, 46100)
+"""Ids that no public dialect uses."""
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One field of a message."""
+
+    name: str
+    type: str
+    unit: str
+    enum: str
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """One message."""
+
+    id: int
+    name: str
+    words: str
+    fields: tuple[Field, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """One value of an enum."""
+
+    number: int
+    name: str
+    words: str
+
+
+def private_messages() -> list[Definition]:
+    """Those with an id of ours, in order."""
+    found = [_definition(each) for each in _root().iter("message") if int(each.get("id", 0)) in PRIVATE]
+    return sorted(found, key=lambda each: each.id)
+
+
+def private_enums() -> dict[str, list[Value]]:
+    """Enums that rover.xml defines, by name."""
+    return {
+        each.get("name", ""): [_value(entry) for entry in each.iter("entry")]
+        for each in _root().iter("enum")
+        if each.get("name", "").startswith("ROVER_")
+    }
+
+
+def _root() -> ET.Element:
+    return ET.parse(FILE).getroot()
+
+
+def _definition(message: ET.Element) -> Definition:
+    fields = tuple(
+        Field(each.get("name", ""), each.get("type", ""), each.get("units", ""), each.get("enum", ""), _text(each))
+        for each in message.iter("field")
+    )
+    return Definition(int(message.get("id", 0)), message.get("name", ""), _text(message.find("description")), fields)
+
+
+def _value(entry: ET.Element) -> Value:
+    return Value(int(entry.get("value", "0"), 0), entry.get("name", ""), _text(entry.find("description")))
+
+
+def _text(element: ET.Element | None) -> str:
+    return " ".join((element.text or "").split()) if element is not None else ""
