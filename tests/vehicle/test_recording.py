@@ -208,8 +208,7 @@ def test_pymavlinks_own_client_fetches_a_log(tmp_path: Path) -> None:
     folder.mkdir()
     content = os.urandom(70_000)
     (folder / "00000003.tlog").write_bytes(content)
-    with Reader() as ground:
-        port = ground.endpoint.rpartition(":")[2]
+    port = free_port()
     with running(tmp_path, "--sim", f"udpout:127.0.0.1:{port}", "--tlog", str(folder)) as vehicle:
         vehicle.ready()
         master = mavutil.mavlink_connection(  # type: ignore[no-untyped-call]
