@@ -26,6 +26,7 @@ from tests.benchmarks import (
     receive_path,
     serial_key,
     services,
+    stations,
 )
 from tests.benchmarks.figures import BenchmarkError, Options, Report
 from tests.benchmarks.tables import markdown
@@ -39,6 +40,7 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "loop_lateness": (loop_lateness.run, "how late the vehicle's control cycles are, idle and on a busy machine"),
     "bridge": (bridge.run, "the bridge as a router, beside MAVProxy, pymavlink and C"),
     "services": (services.run, "parameters, a mission and a log from a real vehicle, by UDP and at 57600 baud"),
+    "stations": (stations.run, "what 1, 4 and 16 ground stations cost the vehicle"),
     "mission": (mission.run, "ten minutes of AUTO in real time: how far the rover really is beside its lines"),
     "link_loss": (link_loss.run, "key to motor over a network that delays and loses"),
 }
@@ -92,7 +94,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m tests.benchmarks",
         description="Measure both programs beside a reference in the same run.",
-        epilog=f"benchmarks:\n{names}\n\nA full run takes about 25 minutes and wants the machine for itself.",
+        epilog=f"benchmarks:\n{names}\n\nA full run takes about 45 minutes and wants the machine for itself.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
