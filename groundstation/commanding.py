@@ -107,9 +107,9 @@ class Commander:
         """Is the vehicle being armed? Then neutral demands go out although it is disarmed."""
         return self._arming is not None and self._arming.vehicle.system == system
 
-    def busy(self, command: Command) -> bool:
-        """Is a command of this kind not answered yet?"""
-        return self._client.waits(command)
+    def busy(self, command: Command, vehicle: VehicleState) -> bool:
+        """Is a command of this kind not answered yet by this vehicle?"""
+        return self._client.waits(command, vehicle.system)
 
     def quiet_outcomes(self) -> list[Outcome]:
         """How the station's own questions ended, since the last call."""
@@ -166,7 +166,7 @@ class Commander:
         elif now >= disarm.until:
             del self._disarms[vehicle.system]
             self._refuse(vehicle.system, f"disarm: {vehicle.name} still says armed", now)
-        elif now >= disarm.due and not self._client.waits(Command.COMPONENT_ARM_DISARM):
+        elif now >= disarm.due and not self.busy(Command.COMPONENT_ARM_DISARM, vehicle):
             disarm.due = now + DISARM_AGAIN
             self._send(vehicle, now, Command.COMPONENT_ARM_DISARM, 0)
 

@@ -9,6 +9,7 @@ from dialects.enums import Autopilot, Severity, Type
 from dialects.messages import Heartbeat, Message
 from groundstation.cadence import DemandStream
 from groundstation.foreign import SettingsCheck
+from groundstation.kinship import Kinship
 from groundstation.streams import StreamRequests
 from groundstation.texts import TextLog
 from groundstation.vehicle_state import VehicleState
@@ -29,9 +30,7 @@ class Contact:
     settings: SettingsCheck | None = None
     stream: DemandStream = field(default_factory=DemandStream)
     lost_at: float | None = None
-    questions: list[int] = field(default_factory=list)
-    """Message ids to ask for, one after the other."""
-    asked_info: bool = False
+    kinship: Kinship = field(default_factory=Kinship)
 
 
 class Fleet:
@@ -102,6 +101,7 @@ class Fleet:
                 self._log.add(now, "station", f"{name} is back after {now - contact.lost_at:.1f} s", Severity.NOTICE)
                 contact.lost_at = None
                 contact.streams.restart(now)
+                contact.kinship = Kinship()
 
 
 def is_vehicle(message: Message) -> bool:

@@ -35,7 +35,7 @@ class Inquiry:
 
     def tick(self, now: float) -> None:
         """Ask who is there for what is due."""
-        self._take_answers()
+        self._take_answers(now)
         for contact in self._fleet:
             if contact.lost_at is None:
                 self._ask(contact, now)
@@ -46,18 +46,21 @@ class Inquiry:
         outbox, self._outbox = self._outbox, []
         return outbox
 
-    def _take_answers(self) -> None:
+    def _take_answers(self, now: float) -> None:
         for outcome in self._commander.quiet_outcomes():
             contact = self._fleet.get(outcome.target_system)
-            if contact is not None and outcome.command == Command.SET_MESSAGE_INTERVAL:
+            if contact is None:
+                continue
+            if outcome.command == Command.SET_MESSAGE_INTERVAL:
                 contact.streams.answered(outcome)
+            else:
+                contact.kinship.answered(outcome, now)
 
     def _ask(self, contact: Contact, now: float) -> None:
-        if contact.state.speaks_ours and not contact.asked_info:
-            contact.asked_info = True
-            contact.questions += [m.RoverDriveInfo.id, m.HomePosition.id]
-        if contact.questions and not self._commander.busy(Command.REQUEST_MESSAGE):
-            self._commander.ask_for(contact.state, contact.questions.pop(0), now)
+        state = contact.state
+        asking = self._commander.busy(Command.REQUEST_MESSAGE, state)
+        if not asking and contact.kinship.asks(state.autopilot, state.tells_ours(now), now):
+            self._commander.ask_for(state, m.RoverDriveInfo.id, now)
         if contact.settings is not None:
             self._outbox += [Outgoing(message) for message in contact.settings.tick(now)]
 
@@ -67,7 +70,7 @@ class Inquiry:
             return
         capacity = self._links.capacity(contact.link)
         self._outbox += [Outgoing(message) for message in contact.streams.groups(capacity, now)]
-        if self._commander.busy(Command.SET_MESSAGE_INTERVAL):
+        if self._commander.busy(Command.SET_MESSAGE_INTERVAL, contact.state):
             return
         message = contact.streams.next(contact.state.autopilot, now)
         if message is not None:

@@ -1,4 +1,5 @@
-"""Which telemetry a foreign vehicle is asked for, how often, and how. Our own rover knows by itself what to send.
+"""Which telemetry a foreign vehicle is asked for, how often, and how. Our own rover knows by itself what to send
+to whom it knows as one of ours (kinship.py).
 
 One message after the other by SET_MESSAGE_INTERVAL; where the vehicle refuses one, the group that holds it by
 REQUEST_DATA_STREAM; where it does not know the command or does not answer, all groups.
@@ -14,7 +15,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from dialects import messages as m
-from dialects.enums import Autopilot, DataStream, Result
+from dialects.enums import DataStream, Result
+from groundstation.kinship import FOREIGN
 from link.services.command import Outcome
 
 PATIENCE = 3.0
@@ -35,9 +37,6 @@ GROUP_TRIES, GROUP_AGAIN = 3, 1.0
 
 REBOOTED = 5000
 """ms that the vehicle's clock goes back when it has started anew, at least."""
-
-FOREIGN = frozenset({Autopilot.ARDUPILOT, Autopilot.PX4})
-"""They send little until they are asked: 1 Hz, or nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +117,7 @@ class StreamRequests:
         return [m.RequestDataStream(*self._target, group, _group_rate(group, capacity), 1) for group in asked]
 
     def _missing(self, autopilot: int, now: float) -> list[int] | None:
-        if autopilot in FOREIGN:
+        if autopilot in FOREIGN:  # they send little until they are asked: 1 Hz, or nothing
             return list(WANTED)
         if now - self._since < PATIENCE:
             return None

@@ -77,6 +77,10 @@ class VehicleState:
         """It knows the private messages of our dialect."""
         return self._drive is not None or self.drive_info is not None
 
+    def tells_ours(self, now: float) -> bool:
+        """ROVER_DRIVE_STATUS comes."""
+        return self._fresh(m.RoverDriveStatus, now)
+
     @property
     def emergency_stop(self) -> bool:
         """The vehicle says that its motors are locked."""

@@ -8,6 +8,7 @@ messages (all but dialects.messages.ACKNOWLEDGED) one that was overtaken is drop
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
+from itertools import count
 
 from dialects import codec
 from dialects.messages import (
@@ -17,7 +18,6 @@ from dialects.messages import (
     CommandLong,
     Heartbeat,
     ManualControl,
-    Message,
     RadioStatus,
     RcChannelsOverride,
     RoverOperatorPresence,
@@ -32,7 +32,10 @@ from link.peer import PeerState
 from link.source import NEW, Order
 from link.tape import Tape
 
-MAX_PEERS = 8
+MAX_PEERS = 24
+"""Sixteen ground stations on one port, and room for half of them to restart: a program that comes back has a new port,
+and its old place is not free before PEER_SILENCE. More are no more expensive than they look: its tables are capped, and
+what the vehicle streams to all peers of a link has one budget (vehicle/telemetry.py)."""
 PEER_SILENCE = 10.0
 """s after which a silent peer gives up its place; twice the longest usual heartbeat timeout."""
 MISMATCH_AFTER = 3
@@ -74,6 +77,7 @@ class Channel:
         self._wanted = wanted
         self._strangers = Framer(stream=False)
         self._peers: dict[Hashable, PeerState] = {}
+        self._conversations = count()
         self._gone = Counts()
         self._bytes_received = self._bytes_sent = 0
         self._duplicates = self._late = self._rate_limited = self._refused_peers = 0
@@ -125,7 +129,11 @@ class Channel:
         return not state.systems or now - state.heard > PEER_SILENCE
 
     def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
-        return PeerState(Peer(self.index, address), Framer(stream=self._stream), now, fixed)
+        return PeerState(self._name(address), Framer(stream=self._stream), now, fixed, silent=fixed)
+
+    def _name(self, address: Hashable) -> Peer:
+        """Of a new conversation."""
+        return Peer(self.index, address, next(self._conversations))
 
     def gone(self, address: Hashable) -> None:
         """The connection to `address` has ended: half a frame is lost, and who comes next must introduce itself."""
@@ -151,7 +159,7 @@ class Channel:
             if not system or not component or sender == self.ids:
                 self._own_id |= sender == self.ids
                 continue
-            state.heard = now
+            state.heard, state.silent = now, False
             source = state.sources.get(sender)
             order = source.accept(sequence, number) if source else state.first_of(frame)
             if order is not NEW and self._is_old(order, number):
@@ -196,31 +204,48 @@ class Channel:
 
     # ---- sending ----
 
-    def send(self, outgoing: Outgoing) -> Iterator[tuple[bytes, Hashable, int]]:
+    def send(self, outgoing: Outgoing, payload: bytes | None = None) -> Iterator[tuple[bytes, Hashable, int]]:
         """The frames to put on the wire: bytes, address, packet sequence. Each peer has its own sequence, so that what
-        one of them does not get is no loss to it. Raises codec.EncodeError."""
-        message, peer = outgoing
-        payload = codec.encode_payload(message)
-        for state in self._recipients(message, peer):
+        one of them does not get is no loss to it. `payload` is the message's where it is encoded already, as for
+        another link. Raises codec.EncodeError."""
+        message = outgoing.message
+        number = type(message).id
+        payload = codec.encode_payload(message) if payload is None else payload
+        for state in self._recipients(outgoing):
             sequence = state.sequence
             state.sequence = (sequence + 1) & 0xFF
-            data = codec.frame(type(message).id, payload, sequence, *self.ids)
+            data = codec.frame(number, payload, sequence, *self.ids)
             self._bytes_sent += len(data)
             yield data, state.peer.address, sequence
 
-    def _recipients(self, message: Message, peer: Peer | None) -> list[PeerState]:
+    def _recipients(self, outgoing: Outgoing) -> list[PeerState]:
+        message, peer, among = outgoing
         if peer is not None:
-            state = self._peers.get(peer.address) if peer.link == self.index else None
-            return [state] if state else []
+            return self._known((peer,))
+        if among is not None:
+            return self._known(among)
         target = getattr(message, "target_system", getattr(message, "target", 0))
         return [state for state in self._peers.values() if state.hears(target)]
+
+    def _known(self, peers: tuple[Peer, ...]) -> list[PeerState]:
+        """Those that are on this link, in the conversation that is meant."""
+        found = []
+        for peer in peers:
+            state = self._peers.get(peer.address) if peer.link == self.index else None
+            if state is not None and state.peer == peer:
+                found.append(state)
+        return found
 
     # ---- telling ----
 
     def forget_silent(self, now: float) -> None:
-        """Drop peers that have been silent for PEER_SILENCE; the one the user named stays."""
+        """Drop peers that have been silent for PEER_SILENCE; the one the user named stays, for a new conversation."""
         for state in list(self._peers.values()):
-            if not state.fixed and now - state.heard > PEER_SILENCE:
+            if state.silent or now - state.heard <= PEER_SILENCE:
+                continue
+            if state.fixed:
+                state.peer, state.silent = self._name(state.peer.address), True
+            else:
                 self._forget(state)
 
     def report(self, down: str | None = None, *, now: float = 0.0, dropped: int = 0) -> LinkReport:
@@ -251,6 +276,7 @@ class Channel:
             headroom=self._flow.headroom(now) if self._capacity is not None else 1.0,
             dropped=dropped,
             sources=self._source_counts(),
+            audience=tuple(state.peer for state in self._peers.values() if state.hears(0)),
         )
 
     def _nothing_but_noise(self, counts: Counts) -> str | None:

@@ -10,10 +10,15 @@ from dialects.messages import Message
 
 
 class Peer(NamedTuple):
-    """The other end of a link: which link, and which address on it."""
+    """The other end of a link in one conversation: which link, which address on it, and which of its conversations.
+
+    Who was gone and comes back is another peer, so that nothing of the first sticks to the second.
+    """
 
     link: int
     address: Hashable
+    conversation: int = 0
+    """Counted over all addresses of the link."""
 
 
 RECORDER = Peer(-1, "recorder")
@@ -43,10 +48,12 @@ class Received(NamedTuple):
 
 
 class Outgoing(NamedTuple):
-    """A message to send: to one peer, or where `peer` is None to every peer that the message is meant for."""
+    """A message to send: to one peer, or to some, or where neither is named to every peer that it is meant for."""
 
     message: Message
     peer: Peer | None = None
+    among: tuple[Peer, ...] | None = None
+    """These peers, on whichever links they are; it is encoded once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +96,8 @@ class LinkReport:
     dropped: int = 0
     """Frames of ours that the link had no room for."""
     sources: dict[tuple[int, int], SourceCount] = field(default_factory=dict)
+    audience: tuple[Peer, ...] = ()
+    """Who gets what is for everybody: peers that have shown a HEARTBEAT, and the address that the user named."""
 
 
 class Core(Protocol):

@@ -28,6 +28,8 @@ class PeerState:
     heard: float
     fixed: bool = False
     """The user named this address: it is sent to before it has spoken."""
+    silent: bool = False
+    """It has not spoken yet in this conversation; only one that the user named is kept all the same."""
     sequence: int = 0
     systems: set[int] = field(default_factory=set)
     """Systems whose HEARTBEAT came from here."""

@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 from typing import Protocol, runtime_checkable
 
-from dialects.codec import EncodeError
+from dialects.codec import EncodeError, encode_payload
 from dialects.messages import Message
 from link.channel import Channel
 from link.core import Core, LinkReport, Outgoing, Received
@@ -194,8 +194,9 @@ class Runner:
                 log.exception("a message of ours could not be encoded and was not sent")
 
     def _send(self, outgoing: Outgoing) -> None:
+        payload = encode_payload(outgoing.message)
         for link in self._links:
-            for data, address, sequence in link.channel.send(outgoing):
+            for data, address, sequence in link.channel.send(outgoing, payload):
                 link.wire.send(data, address)
                 if self._sent:
                     self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())

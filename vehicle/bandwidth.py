@@ -28,9 +28,8 @@ class Bandwidth:
     """Bytes/s. `armed`: can the vehicle be driven now?"""
 
     def __init__(self, armed: Callable[[], bool]) -> None:
-        self.telemetry: float | None = None
-        """For all streams together, since they go out on every link alike: the slowest with a peer counts. None where
-        nobody knows, as on a network."""
+        self.telemetry: dict[int, float] = {}
+        """Link -> for all streams on it together; nobody knows that of a network."""
         self.pacer = Pacer(self._bulk)
         """One for every service that sends more than one answer."""
         self._armed = armed
@@ -44,8 +43,7 @@ class Bandwidth:
         """Take what the links say."""
         self._busy, self._asked = self._asked, set()
         self._room = {each.index: each.capacity * each.headroom for each in reports if each.capacity is not None}
-        heard = [each.index for each in reports if each.peers and each.index in self._room]
-        self.telemetry = min((self._shares(link).telemetry * self._room[link] for link in heard), default=None)
+        self.telemetry = {link: self._shares(link).telemetry * room for link, room in self._room.items()}
 
     def _bulk(self, peer: Peer) -> float:
         self._asked.add(peer.link)

@@ -14,11 +14,14 @@ from vehicle.modes import OFFERED, PX4_ALIASES
 from vehicle.params import TABLE, Params
 from vehicle.plan import FENCE, MISSION, RALLY
 from vehicle.rover import COMPONENT, Rover
-from vehicle.telemetry import STREAMS
+from vehicle.streams import STREAMS, Family
 
 ANY, KNOWN, DRIVER = "anybody", "introduced", "driver"
 STOPS = f"{DRIVER}; what stops: {ANY}"
 """Who may: without a word more the driver is the station in control, or any introduced one while nobody is."""
+
+TO_WHOM = {Family.COMMON: "", Family.NEWER: "who asks for newer ones", Family.ROVER: "who asks for ours"}
+"""Of streams; without a word everybody."""
 
 COMMANDS: dict[Command, tuple[str, str]] = {
     Command.COMPONENT_ARM_DISARM: (STOPS, "1: 1 arm, 0 disarm; 2: 21196 or 2989 skips soft checks"),
@@ -100,14 +103,17 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 def _streams() -> str:
     rows = [
         (stream.message.msgname, stream.message.id, f"{stream.rate:g}" if stream.rate else "on request",
-         "and on change" if stream.change else "", stream.group.name if stream.group else "")
+         "and on change" if stream.change else "", TO_WHOM[stream.family], stream.group.name if stream.group else "")
         for stream in STREAMS
     ]  # fmt: skip
     more = (
-        "Rates are those at the start: SET_MESSAGE_INTERVAL and REQUEST_DATA_STREAM change them, slow links and full\n"
-        "radios stretch them. ROVER_LINK_STATUS comes once a second for each link. The rest are answers.\n"
+        "Rates are those at the start, for each ground station apart: SET_MESSAGE_INTERVAL and REQUEST_DATA_STREAM\n"
+        "change them for who asks, slow links and full radios stretch them. Who has asked for one of the newer (or\n"
+        "for AVAILABLE_MODES, COMPONENT_METADATA, control, a standard mode) gets them all; who has asked for one of\n"
+        "ours, or sent ROVER_OPERATOR_PRESENCE, gets ours, too. Everybody else would count them as lost.\n"
+        "ROVER_LINK_STATUS comes once a second for each link to who gets ours. The rest are answers.\n"
     )
-    return f"{_table(('message', 'id', 'Hz', '', 'REQUEST_DATA_STREAM'), rows)}\n{more}"
+    return f"{_table(('message', 'id', 'Hz', '', 'to whom', 'REQUEST_DATA_STREAM'), rows)}\n{more}"
 
 
 def _heard() -> str:

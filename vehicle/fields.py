@@ -25,3 +25,10 @@ def real(value: float | None, unknown: float = 0.0) -> float:
     if value is None or not math.isfinite(value):
         return unknown
     return max(-3.4e38, min(3.4e38, value))
+
+
+def message_id(value: float) -> int | None:
+    """A message id from a command's parameter; None for what cannot be one (ids have 24 bits)."""
+    if not math.isfinite(value) or value != int(value) or not 0 <= value < 2**24:
+        return None
+    return int(value)

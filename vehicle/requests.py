@@ -14,7 +14,9 @@ from dialects.enums import Command, Result
 from link.core import Outgoing
 from link.services.command import CommandRequest, Handler, Run
 from vehicle import status
-from vehicle.telemetry import BY_ID, Telemetry
+from vehicle.fields import message_id
+from vehicle.streams import BY_ID
+from vehicle.telemetry import Telemetry
 from vehicle.view import View
 
 MICROSECONDS = 1e6
@@ -55,7 +57,7 @@ class Requests:
         return outbox
 
     def _request_message(self, request: CommandRequest, now: float) -> Result:
-        number = _message_id(request.params[0])
+        number = message_id(request.params[0])
         if number is None:
             return Result.DENIED
         if number == m.AvailableModes.id:
@@ -76,26 +78,30 @@ class Requests:
         return Result.ACCEPTED
 
     def _set_interval(self, request: CommandRequest, now: float) -> Result:
-        """Parameter 2 in us: -1 off, 0 default; too fast is made slower."""
-        number, interval = _message_id(request.params[0]), request.params[1]
+        """For the asker alone. Parameter 2 in us: -1 off, 0 default; too fast is made slower."""
+        number, interval = message_id(request.params[0]), request.params[1]
         if number not in BY_ID or not math.isfinite(interval) or (interval < 0 and interval != -1):
             return Result.DENIED
+        schedule = self._telemetry.of(request.peer)
+        if schedule is None:
+            return Result.TEMPORARILY_REJECTED
         if interval == 0:
-            self._telemetry.set_default(number, now)
+            schedule.set_default(number, now)
         else:
-            wanted = None if interval == -1 else min(SLOWEST, interval / MICROSECONDS)
-            self._telemetry.set_interval(number, wanted, now)
+            schedule.set_interval(number, None if interval == -1 else min(SLOWEST, interval / MICROSECONDS), now)
         return Result.ACCEPTED
 
     def _get_interval(self, request: CommandRequest, now: float) -> Result:
         return self._tell_interval(request, request.params[0])
 
     def _tell_interval(self, request: CommandRequest, asked: float) -> Result:
-        """MESSAGE_INTERVAL: us, -1 off, 0 for what is no stream."""
-        number = _message_id(asked)
+        """MESSAGE_INTERVAL of the asker: us, -1 off, 0 for what is no stream."""
+        number, schedule = message_id(asked), self._telemetry.of(request.peer)
         if number is None or number > m.UINT16_MAX:
             return Result.DENIED
-        interval = self._telemetry.interval(number) if number in BY_ID else 0.0
+        if schedule is None:
+            return Result.TEMPORARILY_REJECTED
+        interval = schedule.interval(number) if number in BY_ID else 0.0
         self._tell(request, m.MessageInterval(number, -1 if interval is None else round(interval * MICROSECONDS)))
         return Result.ACCEPTED
 
@@ -122,10 +128,3 @@ class Requests:
 def _to_known(run: Run) -> Run:
     """Refuse those who have shown no HEARTBEAT, at an address that nobody named; they may ask again when they have."""
     return lambda request, now: run(request, now) if request.may_ask else Result.TEMPORARILY_REJECTED
-
-
-def _message_id(value: float) -> int | None:
-    """A message id from a command's parameter; None for what cannot be one (ids have 24 bits)."""
-    if not math.isfinite(value) or value != int(value) or not 0 <= value < 2**24:
-        return None
-    return int(value)

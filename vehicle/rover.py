@@ -36,6 +36,7 @@ from vehicle.requests import Requests
 from vehicle.safety import Safety
 from vehicle.services import Services
 from vehicle.states import State
+from vehicle.streams import Family
 from vehicle.telemetry import Telemetry
 from vehicle.texts import Texts
 from vehicle.view import View
@@ -84,7 +85,9 @@ class Rover:
             unfenced=lambda: self._navigator.boundary.fence.missing,
         )
         self._watch = Watch(params, self._safety, self._control, self._texts, now)
-        self._telemetry = Telemetry(now)
+        self._telemetry = Telemetry(self._system, now, logged=recording is not None)
+        self._demanded: float | None = None
+        """When a demand came that has not been told yet."""
         self._bandwidth = Bandwidth(lambda: self._safety.armed)
         self._param_service = ParamService(
             params,
@@ -150,11 +153,16 @@ class Rover:
             return
         self._control.hear(received, now)
         self._actuator_test.hear(received, now)
+        self._telemetry.receive(received, now)
         if isinstance(received.message, m.RoverOperatorPresence):
             # It says what the demand behind it is worth and asks for nothing: the ramp's time is the demand's to use.
             self._control.operator(received, received.message, now)
-        elif self._demand(received, now) or self._order(received, now):
+        elif self._demand(received, now):
             self._move(now)
+            self._demanded = now
+        elif self._order(received, now):
+            self._move(now)
+            self._tell(now)
         else:
             self._outgoing += timesync.answer(received, now, (self._system, COMPONENT))
             self._outgoing += self._plans.receive(received, now)
@@ -169,6 +177,7 @@ class Rover:
         late = self._watch.is_late(now)
         self._cycle(now)
         self._move(now, late=late)
+        self._tell(now)
         self._outgoing += self._server.tick(now)
         self._outgoing += self._param_service.tick(now)
         self._outgoing += self._services.tick(now)
@@ -180,11 +189,12 @@ class Rover:
         if self._safety.state is State.OFF:
             return
         self._bandwidth.observe(reports)
-        self._telemetry.limit(self._bandwidth.telemetry)
+        audience = [peer for report in reports for peer in report.audience]
+        self._telemetry.attend(audience, self._bandwidth.telemetry, now)
         self._param_service.observe(now)
         self._logbook.observe(now)
         for report in reports:
-            self._outgoing.append(Outgoing(self._link_status(report)))
+            self._outgoing.append(Outgoing(self._link_status(report), among=self._telemetry.speakers(Family.ROVER)))
             for name in report.dialect_mismatch:
                 text = f"Dialect mismatch on {report.name}: {name} has another definition"
                 self._texts.say_once(f"mismatch {report.name} {name}", Severity.WARNING, text, now)
@@ -193,7 +203,10 @@ class Rover:
                 self._texts.say_once(f"own id {report.name}", Severity.WARNING, text, now)
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What to send now; empties what it returns."""
+        """What to send now; empties what it returns. A demand is told here, when it is at the motors already."""
+        if self._demanded is not None:
+            self._outgoing += self._telemetry.of_demand(self._look(self._demanded))
+            self._demanded = None
         outgoing, self._outgoing = self._outgoing, []
         return outgoing
 
@@ -230,7 +243,7 @@ class Rover:
         self._drive.step(None, self._watch.clearance(now, None, late=False), limited=False, now=now)
 
     def _move(self, now: float, *, late: bool | None = None) -> None:
-        """Outputs of this moment, and what they and the state make worth telling."""
+        """Outputs of this moment."""
         late = self._watch.is_late(now) if late is None else late
         trial = self._actuator_test.trial(now, late=late)
         clearance = self._watch.clearance(now, self._navigator.demand, late=late, trial=trial)
@@ -238,8 +251,11 @@ class Rover:
         self._drive.step(self._wanted(now), clearance, limited=limited, now=now)
         if clearance.permit is not Permit.DRIVE:
             self._navigator.rest()
-        told = [*self._telemetry.due(self._look(now)), *self._texts.due(now)]
-        self._outgoing += [Outgoing(message) for message in told]
+
+    def _tell(self, now: float) -> None:
+        """What the outputs and the state make worth telling."""
+        self._outgoing += self._telemetry.due(self._look(now))
+        self._outgoing += [Outgoing(text) for text in self._texts.due(now)]
 
     def _wanted(self, now: float) -> Demand | None:
         """Whose demand the mode drives by; whether it may is the clearance's matter."""
@@ -315,11 +331,6 @@ class Rover:
                     self._navigator.step(self._safety, now)
             case m.SetMode(target_system=self._system) as message:
                 self._commands.set_mode(received, message, now)
-            case m.RequestDataStream(target_system=self._system) as message if received.introduced:
-                rate = message.req_message_rate if message.start_stop else 0
-                self._telemetry.set_group(message.req_stream_id, rate, now)
-            case m.RadioStatus() as message:
-                self._telemetry.radio(message.txbuf)
             case _:
                 return False
         self._navigator.renew(self._safety, now)

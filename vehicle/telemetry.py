@@ -1,212 +1,150 @@
-"""Message -> rate: one table of what the vehicle tells unasked, and the clock that keeps to it."""
+"""Who is told what: a schedule for each peer, a budget for each link, and one message for all who are due for it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
+from typing import Any
 
 from dialects import messages as m
-from dialects.codec import MAX_FRAME
-from dialects.enums import DataStream
-from link.rate import TokenBucket
-from link.services.pacing import OVERHEAD
-from vehicle import computer, goals, motion, status
+from link.core import Outgoing, Peer, Received
+from vehicle.schedule import BUDGET, Schedule, Share
+from vehicle.streams import BY_ID, STREAMS, Family, Stream, shown
 from vehicle.view import View
 
-FASTEST = 0.02
-"""s: a stream cannot be faster than the control cycle."""
-CHANGE_GAP = 0.05
-"""s between two messages of a stream that tells changes at once: 20 Hz."""
-BUDGET, BURST = 200.0, 60.0
-"""Streamed messages a second, and at once: about 60 kbit/s of 40-byte frames, whatever somebody asks for."""
-PHASE = 0.02
-"""s between the first messages of neighbouring streams, so that they do not come in one burst."""
-SLOWEST = 8.0
-"""Largest factor by which a full radio stretches the intervals."""
-BYTES_BURST = 0.05
-"""s of a limit in bytes that may go at once, though always the longest message: on a slow link bursts are delays."""
-LEAST_ROOM = 0.1
-"""Share of the limit by which ordinary streams are slowed down where steady ones fill nearly all of it."""
+LINK_BUDGET = 1000.0
+"""Streamed messages/s on one link, in equal parts. 24 peers (link.channel.MAX_PEERS) get 41 each, and the usual streams
+are 36."""
+MAX_PEERS = 64
+"""Schedules kept. Who connects beyond them waits for the next report of the links."""
 
+LOG = Peer(-1, "log")
+"""The flight log, which hears all that there is, also where nobody else listens; it is on no link."""
 
-@dataclass(frozen=True, slots=True)
-class Stream:
-    """One message and when it is told."""
-
-    message: type[m.Message]
-    rate: float
-    """Hz at start; 0: only on request."""
-    build: Callable[[View], m.Message | None]
-    """None where there is nothing to tell."""
-    group: DataStream | None = None
-    """The group of REQUEST_DATA_STREAM that it belongs to."""
-    change: Callable[[View], Hashable] | None = None
-    """What it tells at once when it changes."""
-    fixed: bool = False
-    """Its rate is not for others to choose."""
-    steady: bool = False
-    """A full radio does not slow it down."""
-
-    @property
-    def size(self) -> int:
-        """Bytes on the wire, at most."""
-        return int(self.message.unpacker.size) + OVERHEAD
-
-
-STREAMS: tuple[Stream, ...] = (
-    Stream(m.Heartbeat, 1, status.heartbeat, fixed=True, steady=True,
-           change=lambda view: (view.safety.state, view.safety.mode)),
-    Stream(m.RoverDriveStatus, 5, status.drive_status, steady=True,  # the driver echoes its time (OPR_ECHO_MAX)
-           change=lambda view: (view.control.demand and (view.control.demand.throttle, view.control.demand.steering),
-                                view.control.neutral_seen, view.safety.armed)),
-    Stream(m.RoverFailsafeStatus, 1, status.failsafe_status,
-           change=lambda view: (view.safety.failsafes.active, view.safety.latched)),
-    Stream(m.ControlStatus, 1, status.control_status,
-           change=lambda view: (view.control.owner, view.control.takeover_allowed)),
-    Stream(m.CurrentMode, 0.5, status.current_mode,
-           change=lambda view: (view.safety.mode, view.safety.intended)),
-    Stream(m.MissionCurrent, 1, status.mission_current, DataStream.EXTENDED_STATUS,
-           change=lambda view: (view.navigator.mission.current, view.navigator.mission.progress, view.safety.mode,
-                                view.navigator.plan_ids)),
-    Stream(m.AvailableModesMonitor, 0.3, status.available_modes_monitor),
-    Stream(m.SystemTime, 1, status.system_time),
-    Stream(m.SysStatus, 1, status.sys_status, DataStream.EXTENDED_STATUS),
-    Stream(m.BatteryStatus, 0.5, status.battery_status, DataStream.EXTENDED_STATUS),
-    Stream(m.ExtendedSysState, 0.5, status.extended_sys_state, DataStream.EXTENDED_STATUS),
-    Stream(m.GpsRawInt, 1, motion.gps_raw_int, DataStream.EXTENDED_STATUS),
-    Stream(m.Attitude, 4, motion.attitude, DataStream.EXTRA1),
-    Stream(m.VfrHud, 4, motion.vfr_hud, DataStream.EXTRA2),
-    Stream(m.LocalPositionNed, 4, motion.local_position_ned, DataStream.POSITION),
-    Stream(m.GlobalPositionInt, 2, motion.global_position_int, DataStream.POSITION),
-    Stream(m.EstimatorStatus, 1, motion.estimator_status, DataStream.EXTENDED_STATUS),
-    Stream(m.PositionTargetGlobalInt, 1, goals.position_target_global, DataStream.POSITION,
-           change=lambda view: view.navigator.goal(view.safety.mode)),
-    Stream(m.PositionTargetLocalNed, 1, goals.position_target_local, DataStream.POSITION,
-           change=lambda view: view.navigator.goal(view.safety.mode)),
-    Stream(m.NavControllerOutput, 2, goals.nav_controller_output, DataStream.EXTENDED_STATUS),
-    Stream(m.FenceStatus, 1, goals.fence_status, DataStream.EXTENDED_STATUS,
-           change=lambda view: (view.navigator.boundary.fence.enabled, view.navigator.boundary.beyond > 0.0)),
-    Stream(m.ServoOutputRaw, 2, motion.servo_output_raw, DataStream.RC_CHANNELS),
-    Stream(m.RcChannels, 2, motion.rc_channels, DataStream.RC_CHANNELS),
-    Stream(m.GpsGlobalOrigin, 0, motion.gps_global_origin, change=lambda view: view.navigator.estimate.origin),
-    Stream(m.HomePosition, 0.5, status.home_position, change=lambda view: view.home),
-    Stream(m.OnboardComputerStatus, 0.5, computer.onboard_computer_status, DataStream.EXTENDED_STATUS),
-    Stream(m.RoverDriveInfo, 0, status.drive_info),
-    Stream(m.AutopilotVersion, 0, status.autopilot_version),
-    Stream(m.ProtocolVersion, 0, status.protocol_version),
-)  # fmt: skip
-"""Stream by stream, the most important first. What only one asks for is in vehicle/requests.py."""
-
-BY_ID: dict[int, Stream] = {stream.message.id: stream for stream in STREAMS}
-
-
-@dataclass(slots=True)
-class _Clock:
-    """When one stream is due."""
-
-    interval: float | None
-    due: float
-    sent: float = float("-inf")
-    told: Hashable = None
+_CHANGING = tuple(stream for stream in STREAMS if stream.change is not None)
+_OF_DEMAND = tuple(stream for stream in STREAMS if stream.demand)
 
 
 class Telemetry:
-    """Which streams run how fast, and what is due."""
+    """The streams of all peers. Nobody is told anything before attend() or a HEARTBEAT."""
 
-    def __init__(self, now: float) -> None:
-        self._clocks = {
-            stream.message.id: _Clock(_interval(stream.rate), now + index * PHASE)
-            for index, stream in enumerate(STREAMS)
-        }
-        self._streams = tuple((stream, self._clocks[stream.message.id]) for stream in STREAMS)
-        self._bucket = TokenBucket(BUDGET, BURST)
-        self._bytes: TokenBucket | None = None
-        self._limit: float | None = None
-        self._stretch = 1.0
-        self._narrow = 1.0
-        """Factor on the intervals for a slow link."""
+    def __init__(self, system: int, now: float, *, logged: bool = False) -> None:
+        """`system` is ours; `now` the time of boot; `logged`: a log listens, too."""
+        self._system = system
+        self._boot = now
+        self._schedules: dict[Peer, Schedule] = {}
+        if logged:
+            self._add(LOG, now)
+            self._schedules[LOG].speak(Family.ROVER, now)
+        self._rooms: Mapping[int, float] = {}
+        self._told: dict[int, Hashable] = {}
+        """Message -> what was the newest when its changes were looked at."""
 
-    def due(self, view: View) -> list[m.Message]:
+    # ---- who listens ----
+
+    def attend(self, audience: Collection[Peer], rooms: Mapping[int, float], now: float) -> None:
+        """Who listens now: who is gone takes its rates along. `rooms`: link -> bytes/s for telemetry, where known."""
+        self._rooms = rooms
+        staying = {LOG, *audience}
+        self._schedules = {peer: each for peer, each in self._schedules.items() if peer in staying}
+        for peer in audience:
+            self._add(peer, now)
+        self._share_out()
+
+    def receive(self, received: Received, now: float) -> None:
+        """What a message shows of its sender, or asks for. Commands that ask are in vehicle/requests.py."""
+        topic = _TOPICS.get(type(received.message))
+        if topic is not None:
+            topic(self, received, received.message, now)
+
+    def speakers(self, family: Family) -> tuple[Peer, ...]:
+        """Who understands it."""
+        return tuple(peer for peer, each in self._schedules.items() if family <= each.family)
+
+    def of(self, peer: Peer) -> Schedule | None:
+        """What this one is told; None for who is told nothing."""
+        return self._schedules.get(peer)
+
+    def _greet(self, received: Received, _: m.Message, now: float) -> None:
+        """Who has introduced itself is told what everybody is told, beginning now."""
+        if received.may_ask and received.peer not in self._schedules:
+            self._add(received.peer, now)
+            self._share_out()
+
+    def _command(self, received: Received, message: m.CommandLong | m.CommandInt, now: float) -> None:
+        self._greet(received, message, now)
+        self._speak(received, shown(message), now)
+
+    def _presence(self, received: Received, _: m.Message, now: float) -> None:
+        self._speak(received, Family.ROVER, now)
+
+    def _speak(self, received: Received, family: Family, now: float) -> None:
+        schedule = self._schedules.get(received.peer)
+        if schedule is not None and received.may_ask:
+            schedule.speak(family, now)
+
+    def _group(self, received: Received, message: m.RequestDataStream, now: float) -> None:
+        schedule = self._schedules.get(received.peer)
+        if schedule is not None and received.introduced and message.target_system == self._system:
+            schedule.set_group(message.req_stream_id, message.req_message_rate if message.start_stop else 0, now)
+
+    def _radio(self, received: Received, message: m.RadioStatus, now: float) -> None:
+        schedule = self._schedules.get(received.peer)
+        if schedule is not None:
+            schedule.radio(message.txbuf, now)
+
+    # ---- what is told ----
+
+    def due(self, view: View) -> list[Outgoing]:
         """The messages that are due at the time of `view`."""
-        now = view.now
-        found = [
-            self._next(stream, clock, view)
-            for stream, clock in self._streams
-            if stream.change is not None or now >= clock.due  # most are neither, in most cycles
-        ]
-        return [message for message in found if message is not None]
+        self._look_for_changes(_CHANGING, view)
+        wanted: dict[int, list[Peer]] = {}
+        for peer, schedule in self._schedules.items():
+            for stream in schedule.take(view.now):
+                wanted.setdefault(stream.message.id, []).append(peer)
+        return _built(wanted.items(), view)
 
-    def interval(self, message_id: int) -> float | None:
-        """s between two of a stream, None where it is off. Raises KeyError for a message that is no stream."""
-        return self._clocks[message_id].interval
+    def of_demand(self, view: View) -> list[Outgoing]:
+        """What a changed demand makes worth telling at once; the rest is the next tick's."""
+        self._look_for_changes(_OF_DEMAND, view)
+        numbers = [stream.message.id for stream in _OF_DEMAND]
+        wanted = [(n, [peer for peer, each in self._schedules.items() if each.take_one(n, view.now)]) for n in numbers]
+        return _built(wanted, view)
 
-    def set_interval(self, message_id: int, interval: float | None, now: float) -> None:
-        """Change a stream; None turns it off. Too fast is made slower, a fixed one stays."""
-        if BY_ID[message_id].fixed:
-            return
-        clock = self._clocks[message_id]
-        clock.interval = None if interval is None else max(FASTEST, interval)
-        clock.due = now
-        self._narrow = self._narrowed()
+    def _look_for_changes(self, streams: Iterable[Stream], view: View) -> None:
+        for stream in streams:
+            number, key = stream.message.id, stream.change(view) if stream.change else None
+            if number in self._told and key != self._told[number]:
+                for schedule in self._schedules.values():
+                    schedule.hurry(number, view.now)
+            self._told[number] = key
 
-    def set_default(self, message_id: int, now: float) -> None:
-        """Back to the table's rate."""
-        self.set_interval(message_id, _interval(BY_ID[message_id].rate), now)
+    def _add(self, peer: Peer, now: float) -> None:
+        if peer not in self._schedules and len(self._schedules) < MAX_PEERS:
+            self._schedules[peer] = Schedule(self._boot, now)
 
-    def set_group(self, group: int, rate: float, now: float) -> None:
-        """REQUEST_DATA_STREAM: all streams of a group, 0 turns them off."""
-        for stream in STREAMS:
-            if stream.group is not None and group in (DataStream.ALL, stream.group):
-                self.set_interval(stream.message.id, _interval(rate), now)
-
-    def limit(self, rate: float | None) -> None:
-        """Bytes/s that all streams together may take; None for no limit. They slow down alike, steady ones last."""
-        if rate != self._limit:
-            self._limit = rate
-            self._bytes = None if rate is None else _bytes_bucket(rate)
-            self._narrow = self._narrowed()
-
-    def radio(self, free: int) -> None:
-        """RADIO_STATUS: `free` percent of the radio's buffer. Slower when it fills, faster again when it is empty."""
-        if free < 50:
-            self._stretch = min(SLOWEST, self._stretch * 2)
-        elif free > 90:
-            self._stretch = max(1.0, self._stretch / 2)
-
-    def _next(self, stream: Stream, clock: _Clock, view: View) -> m.Message | None:
-        on_time = clock.interval is not None and view.now >= clock.due
-        key = stream.change(view) if stream.change else clock.told
-        changed = key != clock.told and view.now - clock.sent >= CHANGE_GAP
-        if not (on_time or changed) or not (stream.fixed or self._room(stream, view.now)):
-            return None
-        clock.sent, clock.told = view.now, key
-        if on_time and clock.interval is not None:
-            step = clock.interval if stream.steady else clock.interval * max(self._stretch, self._narrow)
-            # After a pause the missed ones are left out.
-            clock.due = max(clock.due + step, view.now + FASTEST)
-        return stream.build(view)
-
-    def _room(self, stream: Stream, now: float) -> bool:
-        return self._bucket.take(now) and (self._bytes is None or self._bytes.take(now, stream.size))
-
-    def _narrowed(self) -> float:
-        if self._limit is None:
-            return 1.0
-        steady = sum(self._load(stream) for stream in STREAMS if stream.steady)
-        others = sum(self._load(stream) for stream in STREAMS if not stream.steady)
-        return max(1.0, others / max(self._limit - steady, self._limit * LEAST_ROOM))
-
-    def _load(self, stream: Stream) -> float:
-        """Bytes/s of a stream at its own interval."""
-        interval = self._clocks[stream.message.id].interval
-        return 0.0 if interval is None else stream.size / interval
+    def _share_out(self) -> None:
+        """Each link in equal parts, so that what one peer asks for slows no other."""
+        peers = Counter(peer.link for peer in self._schedules)
+        for peer, schedule in self._schedules.items():
+            number, room = peers[peer.link], self._rooms.get(peer.link)
+            schedule.limit(Share(min(BUDGET, LINK_BUDGET / number), None if room is None else room / number))
 
 
-def _bytes_bucket(rate: float) -> TokenBucket:
-    """What fixed streams leave of `rate`: they do not ask."""
-    fixed = sum(stream.size * stream.rate for stream in STREAMS if stream.fixed)
-    return TokenBucket(max(0.0, rate - fixed), max(rate * BYTES_BURST, MAX_FRAME))
+_TOPICS: dict[type[m.Message], Callable[[Telemetry, Received, Any, float], None]] = {
+    m.Heartbeat: Telemetry._greet,
+    m.CommandLong: Telemetry._command,
+    m.CommandInt: Telemetry._command,
+    m.RoverOperatorPresence: Telemetry._presence,
+    m.RequestDataStream: Telemetry._group,
+    m.RadioStatus: Telemetry._radio,
+}
+"""Message -> what it changes."""
 
 
-def _interval(rate: float) -> float | None:
-    return 1.0 / rate if rate > 0 else None
+def _built(wanted: Iterable[tuple[int, list[Peer]]], view: View) -> list[Outgoing]:
+    """Each message once, for all who want it."""
+    found: list[tuple[m.Message | None, list[Peer]]] = [
+        (BY_ID[number].build(view), peers) for number, peers in wanted if peers
+    ]
+    return [Outgoing(message, among=tuple(peers)) for message, peers in found if message is not None]

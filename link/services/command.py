@@ -189,9 +189,9 @@ class CommandClient:
         """Stop repeating a command, whoever it was for."""
         self._waiting = {key: each for key, each in self._waiting.items() if each.command != command}
 
-    def waits(self, command: int) -> bool:
-        """Is a command of this kind not answered yet?"""
-        return any(each.command == command for each in self._waiting.values())
+    def waits(self, command: int, target_system: int) -> bool:
+        """Has this system not answered a command of this kind yet?"""
+        return (target_system, int(command)) in self._waiting
 
     def receive(self, received: Received, now: float) -> None:
         """Take a COMMAND_ACK; others are ignored."""

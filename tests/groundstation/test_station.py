@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, State
+from dialects.enums import Autopilot, State
 from dialects.modes import Mode
 from groundstation.intents import (
     Arm,
@@ -388,13 +388,6 @@ def test_round_trip_and_loss_are_shown() -> None:
     assert link.round_trip == pytest.approx(0.06, abs=0.011)
     assert link.loss == 0.0
     assert link.rate > 0
-
-
-def test_drive_info_and_home_are_asked_for_once() -> None:
-    cockpit = driving_cockpit()
-    cockpit.run(3.0)
-    asked = [int(command.param1) for command in cockpit.vehicle.commands(Command.REQUEST_MESSAGE)]
-    assert asked == [m.RoverDriveInfo.id, m.HomePosition.id]
 
 
 def test_ardupilot_settings_that_let_it_drive_on_are_warned_of() -> None:

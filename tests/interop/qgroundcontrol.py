@@ -106,6 +106,7 @@ class QGroundControl:
         """0: a HEARTBEAT of component 1 that is a vehicle's."""
         beat = self.wait(m.Heartbeat, 15, lambda each: each.type not in (6, 18, 26, 27))
         assert beat is not None
+        self._beat()  # whose first one may go before it knows of a vehicle, and we answer to an address
 
     def command(self, command: int, *params: float) -> Result:
         """With its repeats."""

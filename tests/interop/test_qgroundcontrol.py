@@ -61,7 +61,7 @@ def test_what_it_asks_of_other_vehicles_is_answered_too(ground: QGroundControl) 
 def test_a_second_one_drives_only_after_it_was_given_control(ground: QGroundControl, rover: Rover) -> None:
     with QGroundControl(rover.second_port, system=254) as second:
         second.meet()
-        assert second.request(m.AutopilotVersion)
+        assert second.modes()
         assert ground.command(Command.COMPONENT_ARM_DISARM, 1) is Result.ACCEPTED
         told = second.wait(m.ControlStatus, 3, lambda status: status.gcs_main == 255)
         assert told is not None

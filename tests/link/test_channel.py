@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from dialects.messages import Attitude, CommandAck, CommandLong, Heartbeat, ManualControl, Message, StatusText
 from link.channel import MAX_PEERS, PEER_SILENCE, Channel
-from link.core import Outgoing, Received
+from link.core import Outgoing, Peer, Received
 from link.framer import Framer
 from link.source import RESTART_AFTER
 from tests.link.frames import demand, frame, heartbeat
@@ -158,10 +158,74 @@ def test_a_message_with_a_field_called_id_goes_out_as_what_it_is() -> None:
     assert Framer(stream=False).feed(data, 0.0)[0].message_id == StatusText.id
 
 
+def test_a_message_for_some_goes_to_those_alone() -> None:
+    channel = vehicle()
+    here = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
+    channel.receive(heartbeat(0, system=254), THERE, 0.0)
+    third = channel.receive(heartbeat(0, system=253), ("127.0.0.1", 5003), 0.0)[0].peer
+    elsewhere = here._replace(link=1)
+    attitude = Attitude(1, 0, 0, 0, 0, 0, 0)
+    assert [address for address, _ in sent(channel, attitude, among=(third, elsewhere, here))] == [third.address, HERE]
+    assert sent(channel, attitude, among=()) == []
+
+
+# ---- conversations ----
+
+
+def audience(channel: Channel) -> tuple[Peer, ...]:
+    return channel.report().audience
+
+
+def test_the_audience_is_who_has_shown_a_heartbeat_and_whom_the_user_named() -> None:
+    channel = vehicle(target=THERE)
+    assert [peer.address for peer in audience(channel)] == [THERE]
+    channel.receive(demand(0), HERE, 0.0)
+    assert [peer.address for peer in audience(channel)] == [THERE]
+    here = channel.receive(heartbeat(1), HERE, 0.0)[0].peer
+    assert audience(channel)[1:] == (here,)
+    everybody = [address for address, _ in sent(channel, Attitude(1, 0, 0, 0, 0, 0, 0))]
+    assert everybody == [peer.address for peer in audience(channel)]
+
+
+def test_who_was_silent_for_long_and_is_back_is_another_peer() -> None:
+    channel = vehicle()
+    first = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
+    channel.forget_silent(PEER_SILENCE + 0.1)
+    assert audience(channel) == ()
+    second = channel.receive(heartbeat(1), HERE, 20.0)[0].peer
+    assert second != first
+    assert sent(channel, CommandAck(400, 0), peer=first) == [], "an answer to who is gone"
+    assert sent(channel, CommandAck(400, 0), peer=second) == [(HERE, 0)]
+
+
+def test_a_named_address_that_was_silent_for_long_is_another_peer_once() -> None:
+    channel = vehicle(target=HERE)
+    first = audience(channel)
+    channel.forget_silent(100.0)
+    assert audience(channel) == first, "nobody has spoken yet"
+    channel.receive(heartbeat(0), HERE, 100.0)
+    assert audience(channel) == first
+    channel.forget_silent(100.0 + PEER_SILENCE + 0.1)
+    second = audience(channel)
+    assert second != first
+    channel.forget_silent(200.0)
+    assert audience(channel) == second
+    assert channel.receive(demand(1), HERE, 201.0)[0].peer == second[0]
+
+
+def test_a_connection_that_ends_ends_the_conversation() -> None:
+    channel = vehicle(stream=True, target="serial")
+    channel.receive(heartbeat(0), "serial", 0.0)
+    first = audience(channel)
+    channel.gone("serial")
+    assert [peer.address for peer in audience(channel)] == ["serial"]
+    assert audience(channel) != first
+
+
 # ---- too much ----
 
 
-def test_at_most_eight_peers_and_a_real_one_keeps_its_place() -> None:
+def test_22_peers_are_limited_and_a_real_one_keeps_its_place() -> None:
     channel = vehicle()
     real = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
     for port in range(5000):

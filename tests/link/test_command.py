@@ -154,7 +154,7 @@ def test_answers_to_others_and_from_others_do_not_count() -> None:
     client.receive(received(CommandAck(400, 0, target_system=255), 2, 1), 0.1)
     client.receive(ack(176, Result.ACCEPTED), 0.1)
     assert client.outcomes() == []
-    assert client.waits(400)
+    assert client.waits(400, 1)
 
 
 def test_an_unknown_result_is_a_failure_with_its_number() -> None:

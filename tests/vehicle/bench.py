@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable
 from typing import TypeVar
 
 from dialects import codec
@@ -26,6 +27,8 @@ DRIVER, OTHER = 255, 254
 AHEAD = Axes(throttle=1.0)
 NEUTRAL = Axes()
 
+BEAT = m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, 4, 3)
+
 EVERYTHING = Readings(
     roll=0.1, pitch=0.1, yaw=math.pi / 4, yaw_rate=0.0, velocity_north=0.5, velocity_east=0.5, speed=0.7,
     latitude=48.1, longitude=11.5, altitude=500.0, gps_fix=3, gps_satellites=12, gps_hdop=0.8,
@@ -36,7 +39,10 @@ EVERYTHING = Readings(
 
 
 class Bench:
-    """`now` moves only in `wait`, a cycle of 20 ms at a time; every message the rover sends must be encodable."""
+    """`now` moves only in `wait`, a cycle of 20 ms at a time; every message the rover sends must be encodable.
+
+    A ground station that knows our dialect listens from the beginning: `station`, from where DRIVER speaks.
+    """
 
     plans: PlanKeeper | None = None
     """What keeps its plans; a class of its own may have one."""
@@ -50,9 +56,13 @@ class Bench:
         self.readings = Readings()
         self.sent: list[m.Message] = []
         self.peers: list[Peer | None] = []
+        """Who alone got it; None for what went to several or to everybody."""
         self.texts: list[str] = []
         self._sequence = 0
         self._next_cycle = now
+        self._met: set[Peer] = set()
+        self.station = Peer(0, f"gcs {DRIVER}")
+        self.meet()
         self.wait(CYCLE)
 
     @property
@@ -78,17 +88,29 @@ class Bench:
         return [message for message in self.sent if isinstance(message, kind)]
 
     def say(self, message: m.Message, system: int = DRIVER, *, introduced: bool = True, sequence: int | None = None,
-            address: str = "", named: bool = False) -> None:  # fmt: skip
+            address: Hashable = "", named: bool = False) -> None:  # fmt: skip
         """One message of a ground station, and what the rover answers. As on a link, the rest is not even decoded."""
         if type(message).id not in HEARD:
             return
         self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
         peer = Peer(0, address or f"gcs {system}")
+        if introduced:
+            self._introduce(peer, system)
         self._receive(Received(message, system, 190, self._sequence, peer, introduced, named))
         self._collect()
 
+    def _introduce(self, peer: Peer, system: int) -> None:
+        """Its first HEARTBEAT, where it has shown none yet."""
+        if peer not in self._met:
+            self._met.add(peer)
+            self.rover.receive(Received(BEAT, system, 190, 0, peer, introduced=True), self.now)
+
+    def meet(self, system: int = DRIVER) -> None:
+        """A ground station shows that it is one of ours."""
+        self.say(m.RoverOperatorPresence(1, 1, 0, 0, 0, 0, 0, 0), system)
+
     def heartbeat(self, system: int = DRIVER, *, introduced: bool = True) -> None:
-        self.say(m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, 4, 3), system, introduced=introduced)
+        self.say(BEAT, system, introduced=introduced)
 
     def command(self, command: int, *params: float, system: int = DRIVER, target: int = 1, component: int = 1,
                 introduced: bool = True) -> Result | None:  # fmt: skip

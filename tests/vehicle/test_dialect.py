@@ -12,7 +12,7 @@ from vehicle.dialect import COMMANDS, answered, document
 from vehicle.heard import TABLE as HEARD
 from vehicle.modes import OFFERED
 from vehicle.params import PARAMETERS
-from vehicle.telemetry import STREAMS
+from vehicle.streams import STREAMS
 
 FILE = Path(__file__).parents[2] / "docs" / "dialect.md"
 

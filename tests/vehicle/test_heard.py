@@ -7,7 +7,7 @@ from pathlib import Path
 
 from dialects import messages as m
 from vehicle.heard import HEARD, TABLE
-from vehicle.telemetry import STREAMS
+from vehicle.streams import STREAMS
 
 ROOT = Path(__file__).parents[2]
 HANDLERS = ("vehicle/rover.py", "vehicle/preflight.py", "link/services/param.py", "link/services/mission.py",

@@ -12,13 +12,13 @@ from dialects.modes import Mode
 from link.core import Peer
 from tests.vehicle.bench import EVERYTHING, OTHER, Bench
 from vehicle.modes import OFFERED
-from vehicle.telemetry import STREAMS, Stream
+from vehicle.streams import STREAMS, Stream
 
 REQUEST, SET, GET = Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL
 
 
-def equipped() -> Bench:
-    bench = Bench()
+def equipped(**params: float) -> Bench:
+    bench = Bench(**params)
     bench.readings = EVERYTHING
     bench.wait(0.1)
     return bench
@@ -26,10 +26,11 @@ def equipped() -> Bench:
 
 @pytest.mark.parametrize("stream", STREAMS, ids=lambda stream: stream.message.msgname)
 def test_every_stream_can_be_asked_for(stream: Stream) -> None:
-    bench = equipped()
+    bench = equipped(FENCE_ENABLE=1)
     bench.arm()
     bench.set_mode(Mode.LOITER)
-    bench.wait(0.1)
+    bench.meet(OTHER)
+    bench.wait(0.6)
     count = len(bench.all(stream.message))
     assert bench.command(REQUEST, stream.message.id, system=OTHER) is Result.ACCEPTED
     assert len(bench.all(stream.message)) == count + 1

@@ -168,15 +168,38 @@ def test_time_boot_ms_wraps_after_49_days() -> None:
     assert bench.newest(m.RoverDriveStatus).time_boot_ms < 10_000
 
 
+def radio(bench: Bench, free: int) -> None:
+    report = m.RadioStatus(0, 0, free, 0, 0, 0, 0)
+    bench.say(report, 51, introduced=False, address=bench.station.address)
+
+
+def with_radio(bench: Bench, free: int, seconds: int) -> dict[type[m.Message], float]:
+    """Its rates while the radio reports each second."""
+    total = dict.fromkeys(RATES, 0.0)
+    for _ in range(seconds):
+        radio(bench, free)
+        total = {kind: total[kind] + count / seconds for kind, count in counts(bench, 1.0).items()}
+    return total
+
+
 def test_a_full_radio_halves_the_rates_and_an_empty_one_brings_them_back() -> None:
     bench = equipped()
-    bench.say(m.RadioStatus(0, 0, 10, 0, 0, 0, 0), 51, introduced=False)
-    slow = counts(bench, 10.0)
+    radio(bench, free=10)
+    slow = with_radio(bench, 60, 10)
     assert slow[m.Attitude] == pytest.approx(2, abs=0.2)
     assert slow[m.Heartbeat] == pytest.approx(1, abs=0.11)
     assert slow[m.RoverDriveStatus] == pytest.approx(5, abs=0.2)
-    bench.say(m.RadioStatus(0, 0, 100, 0, 0, 0, 0), 51, introduced=False)
+    radio(bench, free=100)
     bench.wait(1.0)
+    assert with_radio(bench, 100, 10)[m.Attitude] == pytest.approx(4, abs=0.2)
+
+
+def test_a_radio_that_is_gone_slows_nothing_down() -> None:
+    bench = equipped()
+    for _ in range(3):
+        radio(bench, free=10)
+    assert with_radio(bench, 60, 4)[m.Attitude] < 1
+    bench.wait(6.0)
     assert counts(bench, 10.0)[m.Attitude] == pytest.approx(4, abs=0.2)
 
 
