@@ -14,7 +14,7 @@ import msgspec
 
 from link.endpoint import EndpointError, parse
 from vehicle.explain import explained, suggestion
-from vehicle.motors import DRIVERS, PROFILES, MotorError, UnknownDriverError, settings_type
+from vehicle.motors import DRIVERS, PROFILES, USUAL_PARAMS, MotorError, UnknownDriverError, settings_type
 from vehicle.motors.settings import RETIRED, Around
 from vehicle.params import PARAMETERS, ParamError, Params
 from vehicle.sensors.suite import SensorSettings
@@ -148,16 +148,7 @@ def _problem(table: Mapping[str, Any], kind: Any, also: tuple[str, ...] = ()) ->
 
 def _param_problems(table: Mapping[str, Any]) -> list[str]:
     found = ((name, _param_problem(name, value)) for name, value in table.items())
-    problems = [f"params.{name}: {problem}" for name, problem in found if problem]
-    return problems or _param_contradictions(table)
-
-
-def _param_contradictions(table: Mapping[str, Any]) -> list[str]:
-    try:
-        Params(table)
-    except ParamError as error:
-        return [f"params: {error}"]
-    return []
+    return [f"params.{name}: {problem}" for name, problem in found if problem]
 
 
 def _param_problem(name: str, value: Any) -> str | None:
@@ -175,6 +166,11 @@ def _param_problem(name: str, value: Any) -> str | None:
 def _contradictions(table: Mapping[str, Any]) -> list[str]:
     if "system" in table.get("identity", {}) and "MAV_SYSID" in table.get("params", {}):
         return ["params.MAV_SYSID: identity.system says the same thing; keep one of them"]
+    usual = USUAL_PARAMS.get(table.get("motors", {}).get("driver", ""), {})
+    try:
+        Params({**usual, **table.get("params", {})})
+    except ParamError as error:
+        return [f"params: {error}"]
     return []
 
 

@@ -106,6 +106,7 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ("[params]\nMOT1_MIN = 81", "params.MOT1_MIN: must be 0 to 80, not 81"),
         ("[params]\nMOT1_MIN = 60\nMOT1_MAX = 60", "params: MOT1_MIN 60 must be smaller than MOT1_MAX 60"),
         ("[params]\nMOT2_MAX = 30\nMOT2_MIN = 40", "params: MOT2_MIN 40 must be smaller than MOT2_MAX 30"),
+        ('[motors]\ndriver = "article-car"\n[params]\nMOT1_MIN = 70', "params: MOT1_MIN 70 must be smaller than MOT1"),
         ('[params]\nMAN_TIMEOUT = "1"', "params.MAN_TIMEOUT: must be a number"),
         ("[params]\nMAN_TIMEOUT = true", "params.MAN_TIMEOUT: must be a number"),
     ],
