@@ -25,11 +25,12 @@ LATE = 32
 class Source:
     """One system and component, as heard from one peer."""
 
-    __slots__ = ("destinations", "epoch", "heard", "key", "lost", "received", "sequence")
+    __slots__ = ("destinations", "epoch", "heard", "key", "lost", "next", "received")
 
     def __init__(self, key: Key, sequence: int, now: float) -> None:
         self.key = key
-        self.sequence = sequence
+        self.next = sequence
+        """Number of the frame that follows the newest."""
         self.heard = now
         self.received = 0
         self.lost = 0
@@ -41,11 +42,11 @@ class Source:
         """One more frame of it."""
         self.heard = now
         self.received += 1
-        ahead = (sequence - self.sequence) & 0xFF
-        if 0 < ahead <= 0xFF - LATE:
-            self.lost += ahead - 1
-            self.sequence = sequence
-        elif ahead and self.lost:
+        ahead = (sequence - self.next) & 0xFF
+        if ahead < 0xFF - LATE:
+            self.lost += ahead
+            self.next = (sequence + 1) & 0xFF
+        elif ahead != 0xFF and self.lost:
             self.lost -= 1  # it was only overtaken
 
 

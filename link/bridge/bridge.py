@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+from bisect import bisect_right
 from collections.abc import Callable, Hashable, Sequence
 from functools import partial
+from itertools import accumulate
 
 from link.bridge.status import Status, StatusMeter
 from link.link import Wire
@@ -113,14 +115,11 @@ class Bridge:
 
 def joined(frames: Sequence[bytes]) -> list[bytes]:
     """Frames as datagrams of at most DATAGRAM bytes, in order; no frame is divided."""
+    ends = list(accumulate(map(len, frames)))
     datagrams: list[bytes] = []
-    group: list[bytes] = []
-    size = 0
-    for frame in frames:
-        if group and size + len(frame) > DATAGRAM:
-            datagrams.append(b"".join(group))
-            group, size = [], 0
-        group.append(frame)
-        size += len(frame)
-    datagrams.append(b"".join(group))
+    first = before = 0
+    while first < len(frames):
+        after = max(first + 1, bisect_right(ends, before + DATAGRAM))
+        datagrams.append(b"".join(frames[first:after]))
+        first, before = after, ends[after - 1]
     return datagrams
