@@ -24,7 +24,9 @@ GLOBAL_FRAMES = (0, 3, 10, 5, 6, 11)
 POSITION, VELOCITY, ACCELERATION, FORCE, YAW, YAW_RATE = 1 | 2, 8 | 16, 64 | 128 | 256, 512, 1024, 2048
 """POSITION_TARGET_TYPEMASK: a bit that is set says "ignore"."""
 ATTITUDE_YAW_RATE, ATTITUDE_THRUST, ATTITUDE_Q = 4, 64, 128
-"""ATTITUDE_TARGET_TYPEMASK."""
+"""ATTITUDE_TARGET_TYPEMASK: "ignore" ..."""
+THRUST_BODY = 32
+"""... and "thrust_body counts, and not thrust"."""
 OLDEST = 1.0
 """s; an older setpoint is not driven by (bad input 47)."""
 REORDERED = 1.0
@@ -118,16 +120,20 @@ def position_target(message: SetPosition, estimate: Estimate) -> Target | Refusa
 
 
 def attitude_target(message: m.SetAttitudeTarget, full_speed: float) -> Target | Refusal:
-    """The target of SET_ATTITUDE_TARGET: thrust is the share of `full_speed`, as in ArduRover."""
+    """The target of SET_ATTITUDE_TARGET: thrust is the share of `full_speed`, as in ArduRover.
+
+    Thrust in the body's frame is the forward part of it: a rover has no other.
+    """
     mask = message.type_mask
-    if mask & ATTITUDE_THRUST:
+    thrust = message.thrust_body[0] if mask & THRUST_BODY else message.thrust
+    if mask & ATTITUDE_THRUST and not mask & THRUST_BODY:
         return Refusal("thrust is missing")
     if mask & ATTITUDE_YAW_RATE and mask & ATTITUDE_Q:
         return Refusal("neither attitude nor yaw rate")
-    used = [message.thrust] + ([message.body_yaw_rate] if not mask & ATTITUDE_YAW_RATE else list(message.q))
+    used = [thrust] + ([message.body_yaw_rate] if not mask & ATTITUDE_YAW_RATE else list(message.q))
     if not all(map(math.isfinite, used)):
         return Refusal("a value is no number")
-    speed = max(-1.0, min(1.0, message.thrust)) * full_speed
+    speed = max(-1.0, min(1.0, thrust)) * full_speed
     if not mask & ATTITUDE_YAW_RATE:
         return Course(speed, turn_rate=message.body_yaw_rate)
     return Course(speed, heading=_yaw(message.q))

@@ -81,6 +81,23 @@ class TestVelocity:
         assert field.speed == pytest.approx(0.4, abs=0.06)
         assert 0.3 < field.yaw < 1.2
 
+    @pytest.mark.parametrize("mask", [128 | 32, 128 | 64 | 32])
+    def test_thrust_in_the_bodys_frame_counts_where_it_is_meant(self, mask: int) -> None:
+        field = Field()
+        field.begin(Mode.GUIDED)
+        for _ in range(50):
+            field.say(m.SetAttitudeTarget(0, 1, 1, mask, [1, 0, 0, 0], 0, 0, 0.0, -1.0, [0.5, 0.9, 0.9]))
+            field.wait(0.06)
+        assert field.speed == pytest.approx(0.4, abs=0.06)
+
+    def test_thrust_in_the_bodys_frame_that_is_no_number_is_refused(self) -> None:
+        field = Field()
+        field.begin(Mode.GUIDED)
+        field.say(m.SetAttitudeTarget(0, 1, 1, 128 | 32, [1, 0, 0, 0], 0, 0, 0.0, 0.5, [math.nan, 0, 0]))
+        field.wait(0.5)
+        assert said(field, "a value is no number")
+        assert not field.turning
+
     def test_a_quaternion_is_a_heading(self) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
