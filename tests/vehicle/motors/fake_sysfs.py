@@ -27,7 +27,10 @@ class FakeSysfs:
             self._export(path.parent, value)
         else:
             self._check(path, value)
-            path.write_text(f"{value}\n")
+            # In one step, as the kernel does: a writer that is killed leaves the old value or the new one.
+            new = path.with_name(f"new {path.name}")
+            new.write_text(f"{value}\n")
+            new.replace(path)
         self.writes.append((path.name, value))
 
     def channel(self, number: int) -> Path:
@@ -35,8 +38,7 @@ class FakeSysfs:
         return self.root / "pwmchip2" / f"pwm{number}"
 
     def value(self, number: int, name: str) -> int:
-        text = (self.channel(number) / name).read_text()
-        return int(text or 0)  # a plain file is empty for a moment while another process writes it; sysfs never is
+        return int((self.channel(number) / name).read_text())
 
     def pulse(self, number: int) -> float | None:
         """s that the output is high in each period; None while it is off."""
