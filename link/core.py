@@ -22,7 +22,7 @@ class Peer(NamedTuple):
 
 
 RECORDER = Peer(-1, "recorder")
-"""Who gets what is only for the log; no link leads there."""
+"""The log, which hears all that there is, also where nobody else listens; no link leads there."""
 
 
 class Received(NamedTuple):

@@ -201,7 +201,7 @@ class Runner:
                 if self._sent:
                     self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())
         if self._tape:
-            self._tape.said(outgoing.message, asyncio.get_running_loop().time())
+            self._tape.said(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
 
 
 def _router(links: Sequence[Link]) -> Router:

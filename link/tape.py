@@ -30,9 +30,8 @@ class Tape:
         """Frames that were found whole, of anybody."""
         self._add(now, [frame.raw for frame in frames if frame.message_id != SETUP_SIGNING])
 
-    def said(self, message: m.Message, now: float) -> None:
-        """A message of ours. Raises codec.EncodeError."""
-        number = type(message).id
-        if number not in UNTOLD:
-            self._add(now, (codec.frame(number, codec.encode_payload(message), self._sequence, *self._ids),))
+    def said(self, message_id: int, payload: bytes, now: float) -> None:
+        """A message of ours."""
+        if message_id not in UNTOLD:
+            self._add(now, (codec.frame(message_id, payload, self._sequence, *self._ids),))
             self._sequence = (self._sequence + 1) & 0xFF

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
 from typing import Any
 
 from dialects import messages as m
-from link.core import Outgoing, Peer, Received
+from link.core import RECORDER, Outgoing, Peer, Received
 from vehicle.schedule import BUDGET, Schedule, Share
 from vehicle.streams import BY_ID, STREAMS, Family, Stream, shown
 from vehicle.view import View
@@ -17,9 +17,6 @@ LINK_BUDGET = 1000.0
 are 36."""
 MAX_PEERS = 64
 """Schedules kept. Who connects beyond them waits for the next report of the links."""
-
-LOG = Peer(-1, "log")
-"""The flight log, which hears all that there is, also where nobody else listens; it is on no link."""
 
 _CHANGING = tuple(stream for stream in STREAMS if stream.change is not None)
 _OF_DEMAND = tuple(stream for stream in STREAMS if stream.demand)
@@ -34,8 +31,8 @@ class Telemetry:
         self._boot = now
         self._schedules: dict[Peer, Schedule] = {}
         if logged:
-            self._add(LOG, now)
-            self._schedules[LOG].speak(Family.ROVER, now)
+            self._add(RECORDER, now)
+            self._schedules[RECORDER].speak(Family.ROVER, now)
         self._rooms: Mapping[int, float] = {}
         self._told: dict[int, Hashable] = {}
         """Message -> what was the newest when its changes were looked at."""
@@ -45,7 +42,7 @@ class Telemetry:
     def attend(self, audience: Collection[Peer], rooms: Mapping[int, float], now: float) -> None:
         """Who listens now: who is gone takes its rates along. `rooms`: link -> bytes/s for telemetry, where known."""
         self._rooms = rooms
-        staying = {LOG, *audience}
+        staying = {RECORDER, *audience}
         self._schedules = {peer: each for peer, each in self._schedules.items() if peer in staying}
         for peer in audience:
             self._add(peer, now)

@@ -10,14 +10,14 @@ from pymavlink.dialects.v20 import ardupilotmega, common
 from dialects import messages as m
 from dialects.enums import Command, Result
 from link.channel import MAX_PEERS
-from link.core import Peer
+from link.core import RECORDER, Peer
 from tests.vehicle.crowd import Crowd, weight
 from vehicle import telemetry
 from vehicle.heard import HEARD
 from vehicle.logbook import NoRecording
 from vehicle.schedule import BUDGET
 from vehicle.streams import STREAMS, Family, Stream
-from vehicle.telemetry import LINK_BUDGET, LOG
+from vehicle.telemetry import LINK_BUDGET
 
 ONE, OTHER, THIRD = Peer(0, "one"), Peer(0, "other"), Peer(0, "third")
 RADIO = Peer(1, "radio")
@@ -130,15 +130,15 @@ def test_the_log_hears_all_there_is_also_where_nobody_listens() -> None:
     crowd = Crowd(recording=NoRecording())
     crowd.wait(5.0)
     usual = {stream.message for stream in STREAMS if stream.rate}
-    assert usual - UNTOLD <= crowd.kinds(LOG)
+    assert usual - UNTOLD <= crowd.kinds(RECORDER)
     crowd.join(ONE)
     crowd.wait(2.0)
-    assert m.RoverLinkStatus in crowd.kinds(LOG) - crowd.kinds(ONE)
+    assert m.RoverLinkStatus in crowd.kinds(RECORDER) - crowd.kinds(ONE)
     crowd.leave(ONE)
     crowd.wait(2.0)
     crowd.forget()
     crowd.wait(5.0)
-    assert len(crowd.all(LOG, m.RoverDriveStatus)) == 25
+    assert len(crowd.all(RECORDER, m.RoverDriveStatus)) == 25
     assert not crowd.told[ONE]
     silent = Crowd()
     silent.wait(5.0)
