@@ -47,7 +47,7 @@ class Fit(NamedTuple):
 
 def thrust(throttle: float, curve: float) -> float:
     """Throttle 0..1 that gives this share of the thrust: ArduRover's MOT_THST_EXPO, its formula without its 0/0."""
-    if curve == 0.0 or throttle == 0.0:
+    if curve == 0.0 or throttle == 0.0 or math.isnan(throttle):  # what is no number stays none, for the last gate
         return throttle
     root = math.sqrt(max(0.0, (1.0 - curve) ** 2 + 4.0 * curve * throttle))
     return min(1.0, 2.0 * throttle / (1.0 - curve + root))

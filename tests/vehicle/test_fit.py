@@ -112,3 +112,8 @@ def test_each_motor_has_its_own() -> None:
 
 def test_there_are_parameters_for_every_motor() -> None:
     assert max(len(mixer.motors) for mixer in MIXERS.values()) == MOTORS
+
+
+@pytest.mark.parametrize("curve", [-1.0, -0.5, 0.0, 0.5, 1.0])
+def test_what_is_no_number_stays_none(curve: float) -> None:
+    assert math.isnan(thrust(math.nan, curve))
