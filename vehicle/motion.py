@@ -57,7 +57,7 @@ def local_position_ned(view: View) -> m.Message | None:
         time_boot_ms=view.boot_ms,
         x=estimate.place.north,
         y=estimate.place.east,
-        z=-real(_above_home(view)),
+        z=-real(above_home(view)),
         vx=velocity.north,
         vy=velocity.east,
         vz=0.0,
@@ -74,7 +74,7 @@ def global_position_int(view: View) -> m.Message | None:
         lat=whole(globe[0], INT32, 1e7),
         lon=whole(globe[1], INT32, 1e7),
         alt=whole(view.readings.altitude, INT32, 1000),
-        relative_alt=whole(_above_home(view), INT32, 1000),
+        relative_alt=whole(above_home(view), INT32, 1000),
         vx=whole(velocity.north, INT16, 100),
         vy=whole(velocity.east, INT16, 100),
         vz=0,
@@ -155,7 +155,8 @@ def rc_channels(view: View) -> m.Message:
     return m.RcChannels(time_boot_ms=view.boot_ms, chancount=Override.COUNT, rssi=RSSI_UNKNOWN, **channels)
 
 
-def _above_home(view: View) -> float:
+def above_home(view: View) -> float:
+    """m; 0 where one of both is not known."""
     return real(view.readings.altitude) - (view.home.altitude if view.home else real(view.readings.altitude))
 
 

@@ -62,6 +62,7 @@ def sys_status(view: View) -> m.Message:
         Sensor.BATTERY: battery.present,
         Sensor.GPS: readings.gps_fix is not None or "gps" in readings.configured,
         Sensor.GYRO: readings.yaw_rate is not None,
+        Sensor.ACCELEROMETER: readings.roll is not None,  # by what else would it know level
         Sensor.COMPASS: readings.yaw is not None,
         Sensor.AHRS: view.estimate.yaw is not None,
         Sensor.LOGGING: view.logs is not None,

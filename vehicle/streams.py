@@ -13,7 +13,7 @@ from enum import IntEnum
 from dialects import messages as m
 from dialects.enums import Command, DataStream
 from link.services.pacing import OVERHEAD
-from vehicle import computer, goals, motion, status
+from vehicle import computer, goals, motion, pose, status
 from vehicle.fields import message_id
 from vehicle.view import View
 
@@ -98,6 +98,10 @@ STREAMS: tuple[Stream, ...] = (
     Stream(m.GpsGlobalOrigin, COMMON, 0, motion.gps_global_origin, change=lambda view: view.navigator.estimate.origin),
     Stream(m.HomePosition, COMMON, 0.5, status.home_position, change=lambda view: view.home),
     Stream(m.OnboardComputerStatus, COMMON, 0.5, computer.onboard_computer_status, DataStream.EXTENDED_STATUS),
+    Stream(m.AttitudeQuaternion, COMMON, 0, pose.attitude_quaternion),
+    Stream(m.HighresImu, COMMON, 0, pose.highres_imu),
+    Stream(m.Odometry, COMMON, 0, pose.odometry),
+    Stream(m.Altitude, COMMON, 0, pose.altitude),
     Stream(m.RoverDriveInfo, ROVER, 0, status.drive_info),
     Stream(m.AutopilotVersion, COMMON, 0, status.autopilot_version),
     Stream(m.ProtocolVersion, NEWER, 0, status.protocol_version),
