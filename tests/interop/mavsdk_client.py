@@ -17,6 +17,7 @@ from typing import Any
 
 from mavsdk import ComponentType, Configuration, Mavsdk
 
+from tests.interop import mavsdk_streams
 from tests.interop.mavsdk_tools import (
     PATIENCE,
     Stick,
@@ -24,9 +25,11 @@ from tests.interop.mavsdk_tools import (
     by_hand,
     finished,
     first,
+    following,
     insist,
     plugin,
     step,
+    twenty,
     wait_until,
     watch,
 )
@@ -36,19 +39,16 @@ def identity(system: Any, folder: str) -> None:
     """Who is it, and what does it tell?"""
     info, telemetry = plugin("info", system), plugin("telemetry", system)
     step("version", lambda: info.get_version().flight_sw_major)
-    streams = {
-        "position": lambda value: abs(value.latitude_deg) > 1,
-        "home": lambda value: abs(value.latitude_deg) > 1,
-        "attitude_euler": lambda value: True,
-        "velocity_ned": lambda value: True,
-        "gps_info": lambda value: value.num_satellites > 5,
-        "battery": lambda value: value.voltage_v > 5,
-        "heading": lambda value: True,
-        "landed_state": lambda value: True,
-        "health": lambda value: value.is_home_position_ok and value.is_global_position_ok,
+    for name in mavsdk_streams.ASKED:
+        step(f"rate of {name}", partial(getattr(telemetry, f"set_rate_{name}"), 10.0))
+    waits = {
+        name: following(getattr(telemetry, f"subscribe_{name}"), good)
+        for name, good in {**mavsdk_streams.UNASKED, **mavsdk_streams.ASKED}.items()
     }
-    for name, good in streams.items():
-        step(name, partial(first, getattr(telemetry, f"subscribe_{name}"), good))
+    for name, wait in waits.items():
+        step(name, wait)
+    step("faster", lambda: telemetry.set_rate_attitude_euler(20.0))
+    step("20 at 20 Hz", lambda: twenty(telemetry.subscribe_attitude_euler))
 
 
 def parameters(system: Any, folder: str) -> None:
@@ -74,14 +74,19 @@ def driving(system: Any, folder: str) -> None:
 
 
 def guided(system: Any, folder: str) -> None:
-    """Go somewhere, come back, and drive by velocity; each until a line comes on stdin."""
+    """Go somewhere at a speed, come back, drive by velocity; each until a line comes on stdin."""
     action, offboard, telemetry = (plugin(name, system) for name in ("action", "offboard", "telemetry"))
     velocity = import_module("mavsdk.plugins.offboard.offboard").VelocityBodyYawspeed
-    here = first(telemetry.subscribe_position, lambda value: abs(value.latitude_deg) > 1)
-    first(telemetry.subscribe_health, lambda value: value.is_global_position_ok)
+    north, east = here(telemetry)
+    fastest: list[float] = []
+    telemetry.subscribe_fixedwing_metrics(lambda metrics, *_: fastest.append(metrics.groundspeed_m_s))
     step("arm", action.arm)
-    step("goto", lambda: action.goto_location(here.latitude_deg + 0.0001, here.longitude_deg, 0.0, 0.0))
+    step("speed", lambda: action.set_current_speed(0.5))
+    step("goto", lambda: action.goto_location((north + AWAY) / 1e7, east / 1e7, 0.0, 0.0))
     sys.stdin.readline()
+    step("gone", lambda: first(telemetry.subscribe_position, lambda place: True).latitude_deg * 1e7 - north)
+    step("fastest", lambda: max(fastest))
+    step("usual speed", lambda: action.set_current_speed(0.8))
     step("return", action.return_to_launch)
     sys.stdin.readline()
     step("hold", action.hold)
@@ -90,6 +95,10 @@ def guided(system: Any, folder: str) -> None:
     sys.stdin.readline()
     step("stop", offboard.stop)
     step("disarm", action.disarm)
+
+
+AWAY = 110
+"""Degrees x 1e7 to the north: 1.2 m."""
 
 
 def here(telemetry: Any) -> tuple[int, int]:

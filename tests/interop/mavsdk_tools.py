@@ -11,6 +11,7 @@ from enum import Enum
 from importlib import import_module
 from typing import Any
 
+Subscribe = Callable[[Callable[..., None]], Any]
 PATIENCE = 10.0
 """s for an answer that MAVSDK brings by a callback."""
 
@@ -42,8 +43,13 @@ def shown(value: Any) -> Any:
     return value if isinstance(value, int | float | str | list | None) else str(value)
 
 
-def first(subscribe: Callable[[Callable[..., None]], Any], good: Callable[[Any], bool]) -> Any:
+def first(subscribe: Subscribe, good: Callable[[Any], bool]) -> Any:
     """The first value of a stream that is `good`."""
+    return following(subscribe, good)()
+
+
+def following(subscribe: Subscribe, good: Callable[[Any], bool]) -> Callable[[], Any]:
+    """Listen for a value of a stream that is `good`, from now on; what is returned waits for it."""
     came, found = threading.Event(), []
 
     def take(value: Any, *_: Any) -> None:
@@ -51,10 +57,22 @@ def first(subscribe: Callable[[Callable[..., None]], Any], good: Callable[[Any],
             found.append(value)
             came.set()
 
+    def wait() -> Any:
+        if not came.wait(PATIENCE):
+            raise TimeoutError("nothing came")
+        return found[0]
+
     subscribe(take)
-    if not came.wait(PATIENCE):
-        raise TimeoutError("nothing came")
-    return found[0]
+    return wait
+
+
+def twenty(subscribe: Subscribe) -> None:
+    """Wait for the next 20 values of a stream."""
+    came = threading.Semaphore(0)
+    subscribe(lambda *_: came.release())
+    for _ in range(20):
+        if not came.acquire(timeout=PATIENCE):
+            raise TimeoutError("nothing came")
 
 
 def finished(start: Callable[[Callable[..., None]], Any]) -> str:

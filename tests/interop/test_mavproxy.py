@@ -17,6 +17,9 @@ from vehicle.params import TABLE
 
 pytestmark = [pytest.mark.interop, mavproxy_program.needed]
 
+WAYPOINT, RALLY_POINT, POLYGON_CORNER = 16, 5100, 5001
+"""MAV_CMD"""
+
 
 @pytest.fixture
 def mavproxy(rover: Rover, tmp_path: Path) -> Iterator[Conversation]:
@@ -34,16 +37,31 @@ def test_it_connects_reads_all_parameters_and_sets_one(mavproxy: Conversation) -
     mavproxy.ask("param fetch SPEED_MAX", r"SPEED_MAX = 1\.4")
     mavproxy.say("param set SPEED_MAX 5000")
     mavproxy.hear("SPEED_MAX not changed")
-    assert not re.search("fail|error|traceback|unknown", mavproxy.transcript, re.IGNORECASE), mavproxy.transcript
+    assert_no_error(mavproxy)
 
 
-def test_it_arms_changes_modes_and_drives(mavproxy: Conversation, rover: Rover) -> None:
+def test_a_session_without_an_error_line(mavproxy: Conversation, rover: Rover, tmp_path: Path) -> None:
+    """Lists, plans, each mode, the stick, and the way back."""
+    (tmp_path / "mission.txt").write_text(plan_file(WAYPOINT, 0, [HOME, (HOME[0] + 0.00003, HOME[1])]))
+    (tmp_path / "rally.txt").write_text(plan_file(RALLY_POINT, 0, [HOME, (HOME[0] + 0.00001, HOME[1])]))
     mavproxy.hear("Received .* parameters", 15)
-    mavproxy.say("mode HOLD")
-    mavproxy.hear("DO_SET_MODE: ACCEPTED")
-    mavproxy.hear("Mode HOLD")
-    mavproxy.say("mode MANUAL")
-    mavproxy.hear("DO_SET_MODE: ACCEPTED")
+    for line, answer in (
+        ("param show SPEED_MAX", r"SPEED_MAX +1\.5"),
+        ("param fetch SPEED_MAX", r"SPEED_MAX = 1\.5"),
+        ("ftp list", r"D logs[^$]*parameter\.json\.xz"),
+        ("log list", "No logs|Log "),
+        ("wp list", "Requesting 0 waypoints"),
+        ("wp load mission.txt", "TYPE_MISSION: ACCEPTED"),
+        ("rally load rally.txt", "TYPE_RALLY: ACCEPTED"),
+        ("rally list", "Saved 2 rally items"),
+        ("fence list", "Requesting 0 fence items"),
+        ("ping", "ping response"),
+    ):
+        mavproxy.say(line)
+        mavproxy.hear(answer)
+    mavproxy.ask("status ESTIMATOR_STATUS", r"flags : \d\d", 10)  # knows where it is, as some modes want
+    for mode in ("ACRO", "LOITER", "AUTO", "RTL", "GUIDED", "HOLD", "MANUAL"):
+        choose(mavproxy, mode)
     mavproxy.say("arm throttle")
     mavproxy.hear("COMPONENT_ARM_DISARM: ACCEPTED")
     mavproxy.hear("ARMED")
@@ -54,21 +72,25 @@ def test_it_arms_changes_modes_and_drives(mavproxy: Conversation, rover: Rover) 
     assert left == right > 0
     mavproxy.say("rc 3 1500")
     rover.stands()
+    choose(mavproxy, "SMART_RTL")
+    choose(mavproxy, "HOLD")
     mavproxy.say("disarm")
     mavproxy.hear("DISARMED")
+    assert_no_error(mavproxy)
 
 
-def test_it_lists_files_logs_and_plans(mavproxy: Conversation) -> None:
-    mavproxy.hear("Received .* parameters", 15)
-    mavproxy.say("ftp list")
-    mavproxy.hear("D logs")
-    mavproxy.hear("parameter.json.xz")
-    mavproxy.say("log list")
-    mavproxy.hear("No logs|Log ")
-    mavproxy.say("wp list")
-    mavproxy.hear("Requesting 0 waypoints")
-    mavproxy.say("ping")
-    mavproxy.hear("ping response")
+def choose(mavproxy: Conversation, mode: str) -> None:
+    """Change the mode, and see that it did."""
+    mavproxy.say(f"mode {mode}")
+    mavproxy.hear("DO_SET_MODE: ACCEPTED")
+    mavproxy.hear(f"Mode {mode}|{mode}>")
+
+
+def assert_no_error(mavproxy: Conversation) -> None:
+    """Nothing that it has said since its start is one."""
+    assert not re.search("fail|error|traceback|unknown|refused", mavproxy.transcript, re.IGNORECASE), (
+        mavproxy.transcript
+    )
 
 
 def test_link_shows_no_loss(mavproxy: Conversation) -> None:
@@ -93,8 +115,8 @@ def test_link_shows_no_loss(mavproxy: Conversation) -> None:
 def test_a_mission_inside_a_fence(mavproxy: Conversation, rover: Rover, tmp_path: Path) -> None:
     points = [(HOME[0], HOME[1]), (HOME[0] + 0.00003, HOME[1])]
     corners = [(HOME[0] + north, HOME[1] + east) for north, east in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    (tmp_path / "mission.txt").write_text(plan_file(16, 0, points))
-    (tmp_path / "fence.txt").write_text(plan_file(5001, 4, corners))
+    (tmp_path / "mission.txt").write_text(plan_file(WAYPOINT, 0, points))
+    (tmp_path / "fence.txt").write_text(plan_file(POLYGON_CORNER, 4, corners))
     mavproxy.hear("Received .* parameters", 15)
     mavproxy.say("wp load mission.txt")
     mavproxy.hear("TYPE_MISSION: ACCEPTED")
@@ -108,10 +130,13 @@ def test_a_mission_inside_a_fence(mavproxy: Conversation, rover: Rover, tmp_path
     mavproxy.hear("DO_FENCE_ENABLE: ACCEPTED")
     mavproxy.say("arm throttle")
     mavproxy.hear("COMPONENT_ARM_DISARM: ACCEPTED")
-    mavproxy.say("mode AUTO")
-    mavproxy.hear("DO_SET_MODE: ACCEPTED")
+    mavproxy.say("wp set 0")
+    mavproxy.hear("DO_SET_MISSION_CURRENT: ACCEPTED")
+    mavproxy.say("long MISSION_START 0 0")
+    mavproxy.hear("MISSION_START: ACCEPTED")
     rover.drives()
     mavproxy.hear("mission complete", 20)
     rover.stands()
     mavproxy.say("disarm")
     mavproxy.hear("DISARMED")
+    assert_no_error(mavproxy)

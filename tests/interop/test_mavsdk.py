@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.interop import mavsdk_process
+from tests.interop import mavsdk_process, mavsdk_streams
 from tests.interop.conftest import Rover
 from tests.interop.mavsdk_process import Client
 from vehicle.params import TABLE
@@ -38,10 +38,12 @@ def test_what_it_is_and_where(client: Callable[[str], Client], rover: Rover) -> 
     rover.speaks()
     sdk = next(each for each in map(client, ["identity"] * 3) if each.discovery < 1.5)  # the machine may be busy
     sdk.good("version")
-    for stream in ("position", "home", "attitude_euler", "velocity_ned", "gps_info", "battery", "heading"):
+    for stream in mavsdk_streams.ASKED:
+        sdk.good(f"rate of {stream}")
+    for stream in mavsdk_streams.UNASKED | mavsdk_streams.ASKED:
         sdk.good(stream)
-    assert "ON_GROUND" in str(sdk.good("landed_state").value)
-    sdk.good("health")
+    sdk.good("faster")
+    assert sdk.good("20 at 20 Hz").took < 4.0  # 5 s at the usual 4 Hz
 
 
 def test_parameters(client: Callable[[str], Client]) -> None:
@@ -68,10 +70,20 @@ def test_it_drives_by_hand(client: Callable[[str], Client], rover: Rover) -> Non
 
 def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> None:
     sdk = client("guided")
-    for order in ("goto", "return", "offboard"):
-        sdk.good(order)
-        rover.drives()
-        sdk.say()
+    sdk.good("speed")
+    sdk.good("goto")
+    rover.drives()
+    rover.stands(within=15)
+    sdk.say()
+    assert sdk.good("gone").value == pytest.approx(110, abs=60)  # 1.2 m, within 0.7 m
+    assert 0.3 < float(str(sdk.good("fastest").value)) < 0.7  # usually 0.8
+    sdk.good("return")
+    rover.drives()
+    sdk.say()
+    sdk.good("hold")
+    sdk.good("offboard")
+    rover.drives()
+    sdk.say()
     sdk.good("stop")
     rover.stands()
     sdk.good("disarm")
