@@ -14,7 +14,7 @@ from vehicle.view import View
 
 LINK_BUDGET = 1000.0
 """Streamed messages/s on one link, in equal parts. 24 peers (link.channel.MAX_PEERS) get 41 each, and the usual streams
-are 36."""
+are 39."""
 MAX_PEERS = 64
 """Schedules kept. Who connects beyond them waits for the next report of the links."""
 

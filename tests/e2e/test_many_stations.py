@@ -1,0 +1,103 @@
+"""Sixteen ground stations on one port of a real vehicle: each is told everything, and nothing of it is lost."""
+
+from __future__ import annotations
+
+import select
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from dialects import codec
+from dialects import messages as m
+from dialects.enums import Autopilot, Command, Type
+from link.framer import Framer
+from link.source import Source
+from tests.vehicle.ground import running
+
+pytestmark = [pytest.mark.e2e]
+
+STATIONS = 16
+
+
+class Listener:
+    """The least of a ground station: a HEARTBEAT a second, and what it hears."""
+
+    def __init__(self, port: int, system: int) -> None:
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.connect(("127.0.0.1", port))
+        self.socket.setblocking(False)
+        self._framer = Framer(stream=False)
+        self._system = system
+        self._sequence = 0
+        self._beat_due = 0.0
+        self.source: Source | None = None
+        self.heard: dict[int, int] = {}
+
+    def close(self) -> None:
+        self.socket.close()
+
+    def send(self, message: m.Message) -> None:
+        data = codec.frame(type(message).id, codec.encode_payload(message), self._sequence, self._system, 190)
+        self._sequence = (self._sequence + 1) & 0xFF
+        try:
+            self.socket.send(data)
+        except ConnectionRefusedError:  # it has not opened its port yet
+            self._beat_due = 0.0
+
+    def listen(self) -> None:
+        now = time.monotonic()
+        if now >= self._beat_due:
+            self._beat_due = now + (1.0 if self.source else 0.1)
+            self.send(m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, 4, 3))
+        while True:
+            try:
+                data = self.socket.recv(2048)
+            except (BlockingIOError, ConnectionRefusedError):
+                return
+            for frame in self._framer.feed(data, now):
+                if self.source is None:
+                    self.source = Source(frame.sequence, frame.message_id)
+                else:
+                    self.source.accept(frame.sequence, frame.message_id)
+                self.heard[frame.message_id] = self.heard.get(frame.message_id, 0) + 1
+
+
+@pytest.fixture
+def stations(tmp_path: Path) -> Iterator[list[Listener]]:
+    """All of them, with a vehicle that answers them."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    with ExitStack() as stack:
+        stack.enter_context(running(tmp_path, "--sim", f"udpin:127.0.0.1:{port}"))
+        found = [Listener(port, 200 + number) for number in range(STATIONS)]
+        for each in found:
+            stack.callback(each.close)
+        yield found
+
+
+def wait(stations: list[Listener], enough: int, within: float = 20.0) -> None:
+    """Until each has heard so many ATTITUDE."""
+    deadline = time.monotonic() + within
+    while any(each.heard.get(m.Attitude.id, 0) < enough for each in stations):
+        assert time.monotonic() < deadline, [each.heard.get(m.Attitude.id, 0) for each in stations]
+        for each in stations:
+            each.listen()
+        select.select([each.socket for each in stations], [], [], 0.05)
+
+
+def test_sixteen_are_told_everything_and_one_that_wants_more_slows_nobody(stations: list[Listener]) -> None:
+    wait(stations, 4)
+    greedy = stations[0]
+    for message in (m.Attitude, m.VfrHud, m.ServoOutputRaw):
+        greedy.send(m.CommandLong(1, 1, Command.SET_MESSAGE_INTERVAL, 0, message.id, 20_000, 0, 0, 0, 0, 0))
+    before = greedy.heard[m.Attitude.id]
+    wait(stations, 12)
+    assert greedy.heard[m.Attitude.id] - before > 2 * 8, "it asked for 50 Hz and the others have 4"
+    assert [each.source.lost for each in stations if each.source] == [0] * STATIONS
+    assert all({m.Heartbeat.id, m.SysStatus.id, m.GpsRawInt.id} <= each.heard.keys() for each in stations)
+    assert not any(number > 46000 for each in stations for number in each.heard), "nobody asked for ours"
