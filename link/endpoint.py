@@ -42,9 +42,14 @@ def _host_port(scheme: str, rest: str) -> Endpoint:
     host = host.removeprefix("[").removesuffix("]")
     if not colon or not host:
         raise EndpointError(f"endpoint {text!r}: write {SCHEMES[scheme].form}, for example {scheme}:127.0.0.1:14550")
-    if not (port.isascii() and port.isdigit() and 1 <= int(port) <= 65535):
+    if not _within(port, 1, 65535):
         raise EndpointError(f"endpoint {text!r}: port {port!r} is not a number from 1 to 65535")
     return Endpoint(text, scheme, host, int(port))
+
+
+def _within(digits: str, low: int, high: int) -> bool:
+    """Python's int takes other digits than 0 to 9 too, and raises for some thousands of them."""
+    return digits.isascii() and digits.isdigit() and len(digits) < 20 and low <= int(digits) <= high
 
 
 def _path_baud(scheme: str, rest: str) -> Endpoint:
@@ -54,7 +59,7 @@ def _path_baud(scheme: str, rest: str) -> Endpoint:
         raise EndpointError(f"endpoint {text!r}: write {SCHEMES[scheme].form}, for example {scheme}:/dev/ttyAMA0:57600")
     if not path.startswith("/"):
         raise EndpointError(f"endpoint {text!r}: {path!r} is no path; write {scheme}:/dev/{path}:{baud}")
-    if not (baud.isascii() and baud.isdigit() and SLOWEST_BAUD <= int(baud) <= FASTEST_BAUD):
+    if not _within(baud, SLOWEST_BAUD, FASTEST_BAUD):
         raise EndpointError(
             f"endpoint {text!r}: baud rate {baud!r} is not a number from {SLOWEST_BAUD} to {FASTEST_BAUD}"
         )

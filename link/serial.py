@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import errno
 import fcntl
 import os
 import stat
@@ -19,6 +18,7 @@ from link.backoff import Backoff
 from link.endpoint import Endpoint
 from link.link import Arrived, Gone, LinkError
 from link.outlet import Outlet
+from link.serial_faults import ABSENT, in_words
 from link.transmit import Pacer, TransmitQueue
 
 BITS_PER_BYTE = 10
@@ -28,9 +28,6 @@ BULK_WAIT = 0.25
 BULK_LEAST = 600
 """Bytes, for slow ports: two of the longest frames."""
 READ = 4096
-
-_ABSENT = (errno.ENOENT, errno.ENOTDIR, errno.ENODEV, errno.ENXIO, errno.EIO)
-_BUSY = (errno.EAGAIN, errno.EBUSY)
 
 
 class SerialWire:
@@ -160,9 +157,9 @@ def _open(endpoint: Endpoint) -> serial.Serial | None:
             raise LinkError(f"{endpoint.text}: {endpoint.path} is no serial port but a file or folder")
         port = serial.Serial(endpoint.path, endpoint.baud, timeout=0, exclusive=True)
     except OSError as error:  # SerialException is one
-        if error.errno in _ABSENT:
+        if error.errno in ABSENT:
             return None
-        raise LinkError(_reason(endpoint, error)) from error
+        raise LinkError(f"{endpoint.text}: {in_words(endpoint.path, error)}") from error
     except (ValueError, OverflowError) as error:
         raise LinkError(f"{endpoint.text}: the port does not take {endpoint.baud} baud; try 57600") from error
     _configure(port)
@@ -179,18 +176,6 @@ def _configure(port: serial.Serial) -> None:
     termios.tcsetattr(descriptor, termios.TCSANOW, settings)
     with contextlib.suppress(ValueError, OSError, AttributeError):
         port.set_low_latency_mode(True)  # FTDI: 1 ms instead of 16; drivers without it refuse
-
-
-def _reason(endpoint: Endpoint, error: OSError) -> str:
-    if error.errno in _BUSY:
-        return f"{endpoint.text}: another program uses {endpoint.path} (`fuser {endpoint.path}` says which); stop it"
-    if error.errno in (errno.EACCES, errno.EPERM):
-        return (
-            f"{endpoint.text}: not allowed; add yourself to its group: sudo usermod -a -G dialout $USER, log in again"
-        )
-    if error.errno is None or error.errno == errno.ENOTTY:
-        return f"{endpoint.text}: {endpoint.path} is no serial port"
-    return f"{endpoint.text}: {error.strerror or error}"
 
 
 def _in_driver(descriptor: int) -> int:

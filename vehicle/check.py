@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 from dialects.enums import DriveType
 from link.link import LinkError
@@ -56,6 +58,13 @@ def findings(path: str, state: str | None = None) -> Iterator[Finding]:
         yield _tried("motors", lambda: _motors(config, known.params))
     else:
         yield Finding("motors", False, 'none; add [motors] and driver = "NAME"', mistake=True)
+    yield from _sensors(config)
+    for name, log in (("log.file", config.log.file), ("log.motors", config.log.motors)):
+        if log is not None:
+            yield _tried(name, lambda log=Path(log): _log_file(log))  # type: ignore[misc]
+
+
+def _sensors(config: Config) -> Iterator[Finding]:
     sensors = config.sensors
     if sensors.battery is not None:
         battery = PowerMonitor(sensors.battery)
@@ -95,6 +104,14 @@ def _link(endpoint: str) -> str:
     if problem:
         raise _AbsentError(problem)
     return "opens"
+
+
+def _log_file(path: Path) -> str:
+    if path.is_dir() or not path.parent.is_dir():
+        raise _AbsentError(f"{path} is a folder" if path.is_dir() else f"there is no folder {path.parent}; make it")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise _AbsentError(f"{path} may not be written by this user")
+    return f"{path} can be written"
 
 
 def _parameters(config: Config, known: Settled) -> Finding:

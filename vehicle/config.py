@@ -5,7 +5,6 @@ To add a key: a field here, with a docstring, which is its help in the sample (s
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, get_type_hints
@@ -13,11 +12,13 @@ from typing import Annotated, Any, get_type_hints
 import msgspec
 
 from link.endpoint import EndpointError, parse
+from vehicle.clashes import clashes
 from vehicle.explain import explained, suggestion
 from vehicle.motors import DRIVERS, PROFILES, USUAL_PARAMS, MotorError, UnknownDriverError, settings_type
 from vehicle.motors.settings import RETIRED, Around
 from vehicle.params import PARAMETERS, ParamError, Params
 from vehicle.sensors.suite import SensorSettings
+from vehicle.toml_file import TomlError, read_toml, tables, unusable
 
 DEFAULT_FILE = "rover.toml"
 
@@ -68,21 +69,22 @@ class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def load(path: str | Path) -> Config:
     """The settings of a file. Raises ConfigError."""
     try:
-        text = Path(path).read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise ConfigError(f"{path}: no such file; `vehicle init {path}` writes one to begin with") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: {getattr(error, 'strerror', None) or error}") from error
-    return parsed(text, str(path))
+        return _understood(read_toml(path), str(path))
+    except TomlError as error:
+        hint = "" if Path(path).exists() else f"; `vehicle init {path}` writes one to begin with"
+        raise ConfigError(f"{error}{hint}") from error
 
 
 def parsed(text: str, name: str) -> Config:
     """The settings of a file's text. Raises ConfigError."""
     try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{name}: {error}") from error
-    problems = [f"{name}: {problem}" for problem in _problems(table)]
+        return _understood(tables(text, name), name)
+    except TomlError as error:
+        raise ConfigError(str(error)) from error
+
+
+def _understood(table: Mapping[str, Any], name: str) -> Config:
+    problems = [f"{name}: {problem}" for problem in list(unusable(table)) or _problems(table)]
     if problems:
         raise ConfigError(*problems)
     return msgspec.convert(table, Config)
@@ -171,7 +173,7 @@ def _contradictions(table: Mapping[str, Any]) -> list[str]:
         Params({**usual, **table.get("params", {})})
     except ParamError as error:
         return [f"params: {error}"]
-    return []
+    return clashes(table)
 
 
 _CHECKS: dict[str, Callable[[Any], list[str]]] = {

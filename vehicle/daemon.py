@@ -109,7 +109,7 @@ def run(settings: Settings) -> int:
         log.error("%s", error)
         return MISTAKE
     except MotorError as error:
-        log.error("motor driver: %s", error)
+        log.error("motor driver: %s", error, exc_info=True)
         return FAULT
     except Exception as error:
         log.critical("%s (--log-file keeps the details)", _told(error), exc_info=True)

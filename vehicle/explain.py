@@ -26,7 +26,11 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     """What may have been meant."""
     known = list(known)
     near = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
-    return f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(known)}"
+    return (
+        f"did you mean {' or '.join(near)}?"
+        if near
+        else f"there {'is only' if len(known) == 1 else 'are'} {', '.join(known)}"
+    )
 
 
 def explained(error: msgspec.ValidationError, kind: Any, at: str, also: Iterable[str] = ()) -> str:

@@ -37,7 +37,14 @@ def open_bus(number: int) -> Bus:
         from smbus2 import SMBus
     except ImportError as error:
         raise ImportError(f"{error}; install it: pip install 'mavhelm[pi]'") from error
-    bus = SMBus(number)
+    try:
+        bus = SMBus(number)
+    except FileNotFoundError as error:
+        hint = "no such bus; dtparam=i2c_arm=on in config.txt makes bus 1"
+        raise OSError(error.errno, f"{error.strerror}: {hint}", error.filename) from error
+    except PermissionError as error:
+        hint = "add yourself to its group: sudo usermod -aG i2c $USER, log in again"
+        raise OSError(error.errno, f"{error.strerror}: {hint}", error.filename) from error
     with contextlib.suppress(OSError):  # an adapter that cannot set it keeps its own
         fcntl.ioctl(bus.fd or -1, I2C_TIMEOUT, PATIENCE)
     return bus

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import sys
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
+
+from vehicle.toml_file import TomlError, read_toml
 
 DONE, FAULT, MISTAKE = 0, 1, 2
 """Exit codes: it did what was asked; the hardware did not; the user's mistake."""
@@ -144,11 +145,9 @@ def _stop(motors: Mapping[str, Any]) -> None:
 def _tables(path: str) -> dict[str, Any]:
     """A file as it stands there. Raises VerbError."""
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise VerbError(f"{path}: {error.strerror}") from error
-    except ValueError as error:  # of TOML, or of UTF-8
-        raise VerbError(f"{path}: {error}") from error
+        return read_toml(path)
+    except TomlError as error:
+        raise VerbError(str(error)) from error
 
 
 def _motor_table(path: str) -> dict[str, Any]:

@@ -49,6 +49,8 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
         ("udpin:127.0.0.1:65536", "port '65536'"),
         ("udpin:127.0.0.1:-1", "port '-1'"),
         ("udpin:127.0.0.1:\u0661", "is not a number"),
+        ("udpin:127.0.0.1:" + "1" * 5000, "is not a number from 1 to 65535"),
+        ("serial:/dev/ttyAMA0:" + "1" * 5000, "is not a number from 300"),
         ("serial:/dev/ttyAMA0", "for example serial:/dev/ttyAMA0:57600"),
         ("serial:/dev/ttyAMA0:", "for example serial:/dev/ttyAMA0:57600"),
         ("serial:ttyAMA0:57600", "write serial:/dev/ttyAMA0:57600"),

@@ -107,6 +107,19 @@ def test_hardware_that_is_not_there_is_a_fault_and_the_rest_is_tried(tmp_path: P
     assert "sensors.battery: ina219 at 0x40 on I2C bus 99" in lines[4]
 
 
+def test_a_log_that_cannot_be_written_is_found_before_the_vehicle_starts(tmp_path: Path) -> None:
+    log = f'{FREE}{QUIET}[motors]\ndriver = "simulated"\n[log]\n'
+    text = f'{log}file = "{tmp_path}/none/log"\nmotors = "{tmp_path}/motors"\n'
+    code, lines = checked(tmp_path, text)
+    assert (code, lines[-2:]) == (1, [
+        "FAIL  log.file: there is no folder FOLDER/none; make it",
+        "ok    log.motors: FOLDER/motors can be written",
+    ])  # fmt: skip
+    assert not (tmp_path / "motors").exists()
+    code, lines = checked(tmp_path, f'{log}file = "{tmp_path}"\n')
+    assert (code, lines[-1]) == (1, "FAIL  log.file: FOLDER is a folder")
+
+
 def test_a_port_in_use_and_the_wrong_number_of_motors(tmp_path: Path) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))

@@ -82,7 +82,7 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ('[motors]\ndriver = "robclaw"', "motors.driver: unknown motor driver 'robclaw'; did you mean 'roboclaw'?"),
         ('[motors]\ndriver = "no_such:Car"', "motors.driver: motor driver 'no_such:Car' cannot be loaded"),
         ('[motors]\ndriver = "roboclaw"', "motors.port: missing; add it"),
-        ('[motors]\ndriver = "simulated"\nx = 1', "motors.x: unknown key; there are safety"),
+        ('[motors]\ndriver = "simulated"\nx = 1', "motors.x: unknown key; there is only safety"),
         (ROBOCLAW + "buad = 38400", "motors.buad: unknown key; did you mean baud?"),
         (ROBOCLAW + "baud = 3", "motors.baud: must be at least 2400"),
         (ROBOCLAW + 'baud = "fast"', 'motors.baud: must be a whole number, not text in "quotes"'),
@@ -107,6 +107,12 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ("[params]\nMOT1_MIN = 60\nMOT1_MAX = 60", "params: MOT1_MIN 60 must be smaller than MOT1_MAX 60"),
         ("[params]\nMOT2_MAX = 30\nMOT2_MIN = 40", "params: MOT2_MIN 40 must be smaller than MOT2_MAX 30"),
         ('[motors]\ndriver = "article-car"\n[params]\nMOT1_MIN = 70', "params: MOT1_MIN 70 must be smaller than MOT1"),
+        (f"[params]\nMAN_TIMEOUT = {10**400}", "params.MAN_TIMEOUT: a number too large to be meant"),
+        (f"[params]\nMAN_TIMEOUT = {'1' * 5000}", "a number of thousands of digits, which nothing takes"),
+        ("x = " + "[" * 5000 + "]" * 5000, "brackets in brackets, too deep to read"),
+        ('[log]\nfile = "a\\u0000b"', "log.file: holds the character NUL; leave it out"),
+        ('endpoints = ["udpin:0.0.0.0:1", "serial:/dev/\\u0000:9600"]', "endpoints[1]: holds the character NUL"),
+        ("[sensors.encoders]\nwheels = [{ a = 5, b = 6 }]\ndiameter = inf", "sensors.encoders.diameter: must be at "),
         ('[params]\nMAN_TIMEOUT = "1"', "params.MAN_TIMEOUT: must be a number"),
         ("[params]\nMAN_TIMEOUT = true", "params.MAN_TIMEOUT: must be a number"),
     ],
@@ -127,13 +133,18 @@ def test_several_mistakes_are_all_found() -> None:
 
 
 def test_a_file_that_is_not_there_teaches(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"no such file; `vehicle init .*rover.toml` writes one"):
+    with pytest.raises(ConfigError, match=r"No such file or directory; `vehicle init .*rover.toml` writes one"):
         load(tmp_path / "rover.toml")
-    with pytest.raises(ConfigError, match="Is a directory"):
+    with pytest.raises(ConfigError, match="is a folder; name a file in it"):
         load(tmp_path)
     (tmp_path / "noise").write_bytes(b"\xff\xfe")
-    with pytest.raises(ConfigError, match="can't decode byte"):
+    with pytest.raises(ConfigError, match="byte 1 is no text in UTF-8; save the file as UTF-8, or name another one"):
         load(tmp_path / "noise")
+
+
+def test_the_mark_of_a_windows_editor_is_no_mistake(tmp_path: Path) -> None:
+    (tmp_path / "rover.toml").write_bytes(b"\xef\xbb\xbfstate = '/srv'\r\n")
+    assert load(tmp_path / "rover.toml").state == "/srv"
 
 
 @given(st.text())

@@ -134,7 +134,7 @@ def open_motors(name: str, settings: Mapping[str, Any] | None = None) -> Motors:
         guard = around.guard()  # first: its enable pin takes the power away before the driver touches anything
         if guard is not None:
             opened.callback(guard.close)
-        motors = _fitting(name, driver() if own is None else driver(own))
+        motors = _fitting(name, _made(name, driver, own))
         opened.callback(motors.close)
         wrapped: Motors = around.wrap(motors, guard)
         opened.pop_all()
@@ -188,6 +188,16 @@ def _understood(name: str, settings: Mapping[str, Any] | None) -> tuple[Any, Any
     return driver, None, around
 
 
+def _made(name: str, driver: Any, own: Any) -> Any:
+    """The motors of a class, which may be anybody's, with any fault in it. Raises MotorError."""
+    try:
+        return driver() if own is None else driver(own)
+    except MotorError:
+        raise
+    except Exception as error:
+        raise MotorError(f"motor driver {name!r} does not start: {_line(error)}") from error
+
+
 def _fitting(name: str, motors: Any) -> Motors:
     missing = [verb for verb in ("count", "enable", "disable", "set", "close") if not hasattr(motors, verb)]
     if missing:
@@ -201,12 +211,22 @@ def _driver_class(name: str) -> Any:
     module_name, colon, class_name = target.partition(":")
     if not (colon and module_name and class_name):
         raise UnknownDriverError(_unknown(name))
+    found = getattr(_module(name, module_name), class_name, None)
+    if found is None:
+        raise UnknownDriverError(f"motor driver {name!r}: module {module_name} has no {class_name!r}")
+    return found
+
+
+def _module(name: str, module: str) -> Any:
+    """The module of the driver `name`, which may be somebody's own, with any fault in it. Raises UnknownDriverError."""
     try:
-        return getattr(import_module(module_name), class_name)
-    except ImportError as error:
-        raise UnknownDriverError(f"motor driver {name!r} cannot be loaded: {error}") from error
-    except AttributeError as error:
-        raise UnknownDriverError(f"motor driver {name!r}: module {module_name} has no {class_name!r}") from error
+        return import_module(module)
+    except MotorError:  # it is ours, and its library is missing
+        raise
+    except Exception as error:
+        absent = isinstance(error, ModuleNotFoundError) and error.name == module.partition(".")[0]
+        hint = "; install it beside vehicle, or name its folder in PYTHONPATH" if absent else ""
+        raise UnknownDriverError(f"motor driver {name!r} cannot be loaded: {_line(error)}{hint}") from error
 
 
 def _unknown(name: str) -> str:

@@ -16,7 +16,7 @@ import msgspec
 
 from vehicle.motors import checked
 from vehicle.motors.pins import Motor, PhaseEnableMotor, translated
-from vehicle.motors.settings import Pin, refuse_doubles
+from vehicle.motors.settings import Pin, pin_name, refuse_doubles
 
 
 class TwoInputs(
@@ -56,8 +56,18 @@ class GpioSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     frequency: Annotated[float, msgspec.Meta(ge=10, le=10_000)] = 500.0
     """Hz. Higher is quieter and costs the processor more; above 10 kHz lgpio refuses."""
 
+    @property
+    def pins(self) -> list[int]:
+        """Of all bridges."""
+        return [pin for bridge in self.bridges for pin in bridge.pins]
+
     def __post_init__(self) -> None:
-        refuse_doubles([pin for bridge in self.bridges for pin in bridge.pins])
+        refuse_doubles(self.pins)
+
+    @property
+    def taken(self) -> list[str]:
+        """Pins."""
+        return [pin_name(pin) for pin in self.pins]
 
 
 class GpioMotors:

@@ -18,7 +18,7 @@ from vehicle.i2c import Bus, open_bus
 from vehicle.motors import MotorError, checked
 from vehicle.motors.patience import Patience
 from vehicle.motors.pulses import Idle, Pulse
-from vehicle.motors.settings import refuse_doubles
+from vehicle.motors.settings import chip_name, refuse_doubles
 
 MODE1, MODE2, LED0_ON_L, PRE_SCALE = 0x00, 0x01, 0x06, 0xFE
 RESTART, AUTO_INCREMENT, SLEEP = 0x80, 0x20, 0x10
@@ -60,6 +60,11 @@ class Pca9685Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         refuse_doubles([channel.channel for channel in self.channels])
         for channel in self.channels:
             channel.pulse.must_fit(self.frequency)
+
+    @property
+    def taken(self) -> list[str]:
+        """The board."""
+        return [chip_name(self.bus, self.address)]
 
     @property
     def prescale(self) -> int:

@@ -46,10 +46,22 @@ FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, ImportError, 
 __all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMotor", "RotaryEncoder", "translated"]
 
 
+HINTS = {
+    "unable to locate Pi revision": "is this a Raspberry Pi? Elsewhere simulated pins do (docs/pi.md, Without a Pi)",
+    "can not open gpiochip": "add yourself to its group: sudo usermod -aG gpio $USER, log in again",
+}
+"""What gpiozero and lgpio say -> what to do."""
+
+
+def _in_words(error: BaseException) -> str:
+    words = " ".join(str(error).split()) or type(error).__name__
+    return "; ".join([words, *(hint for start, hint in HINTS.items() if words.startswith(start))])
+
+
 @contextlib.contextmanager
 def translated(doing: str) -> Iterator[None]:
     """Whatever a pin raises meanwhile is a MotorError. `doing` begins its text."""
     try:
         yield
     except FAULTS as error:
-        raise MotorError(f"{doing}: {' '.join(str(error).split()) or type(error).__name__}") from error
+        raise MotorError(f"{doing}: {_in_words(error)}") from error

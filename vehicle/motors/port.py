@@ -10,6 +10,8 @@ from typing import Any
 
 import serial
 
+from link.serial_faults import in_words
+
 QUEUE = 64
 """Bytes that may wait in the kernel: about eight frames. More are old demands, and the newest must not stand behind."""
 
@@ -32,7 +34,10 @@ class Port:
         if self._serial is not None:
             return False
         # exclusive: two writers would mix their frames. No flow control, and no time in which pyserial may wait.
-        self._serial = serial.Serial(self.path, self._baud, timeout=0, write_timeout=0, exclusive=True)
+        try:
+            self._serial = serial.Serial(self.path, self._baud, timeout=0, write_timeout=0, exclusive=True)
+        except OSError as error:
+            raise OSError(in_words(self.path, error)) from error
         self.drain()
         return True
 

@@ -16,6 +16,7 @@ import msgspec
 from fastcrc.crc16 import xmodem
 
 from vehicle.motors import checked
+from vehicle.motors.settings import port_name
 from vehicle.motors.wire import Wire, tenths
 
 SET_TIMEOUT, READ_TIMEOUT, READ_VERSION, DRIVE_BOTH = 14, 15, 21, 34
@@ -40,6 +41,11 @@ class RoboClawSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     half a second, in which a metre is driven."""
     reply_time: Annotated[float, msgspec.Meta(ge=0.01, le=0.05)] = 0.02
     """s that a reply may take. The controller throws half a frame away after 0.01 s, so not less."""
+
+    @property
+    def taken(self) -> list[str]:
+        """The port."""
+        return [port_name(self.port)]
 
 
 class RoboClawMotors:

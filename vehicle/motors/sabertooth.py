@@ -16,6 +16,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from vehicle.motors import checked
+from vehicle.motors.settings import port_name
 from vehicle.motors.wire import Wire, tenths
 
 BAUDING = bytes([170])
@@ -39,6 +40,11 @@ class SabertoothSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True
     """s of silence until the controller stops; steps of 0.1."""
     timeout_proven: bool = False
     """You have pulled the signal wire while the wheels turned in the air, and they stopped."""
+
+    @property
+    def taken(self) -> list[str]:
+        """The port."""
+        return [port_name(self.port)]
 
 
 class SabertoothMotors:

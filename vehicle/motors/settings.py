@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
@@ -17,6 +18,21 @@ Pin = Annotated[int, msgspec.Meta(ge=0, le=27, description="BCM number of a pin 
 T = TypeVar("T")
 
 
+def pin_name(number: int) -> str:
+    """As vehicle/clashes.py knows a pin."""
+    return f"GPIO {number}"
+
+
+def chip_name(bus: int, address: int) -> str:
+    """As vehicle/clashes.py knows a chip."""
+    return f"address 0x{address:02x} on I2C bus {bus}"
+
+
+def port_name(path: str) -> str:
+    """As vehicle/clashes.py knows a serial port: /dev/serial0 is another name of one."""
+    return os.path.realpath(path)
+
+
 class Safety(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Pins beside the motors: an emergency stop, a power switch and a sign of life (vehicle/motors/safety_pins.py)."""
 
@@ -29,9 +45,18 @@ class Safety(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     heartbeat_pin: Pin | None = None
     """Changes with each write to enabled motors; a retriggerable timer cuts the power when it stands still."""
 
+    @property
+    def pins(self) -> list[int]:
+        """Those that are used."""
+        return [pin for pin in (self.estop_pin, self.enable_pin, self.heartbeat_pin) if pin is not None]
+
     def __post_init__(self) -> None:
-        pins = [pin for pin in (self.estop_pin, self.enable_pin, self.heartbeat_pin) if pin is not None]
-        refuse_doubles(pins)
+        refuse_doubles(self.pins)
+
+    @property
+    def taken(self) -> list[str]:
+        """Pins."""
+        return [pin_name(pin) for pin in self.pins]
 
 
 class Around(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

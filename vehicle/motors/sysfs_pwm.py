@@ -16,7 +16,7 @@ import msgspec
 from vehicle.motors import MotorError, checked, pwm_channel
 from vehicle.motors.pulses import Idle, Pulse
 from vehicle.motors.pwm_channel import Channel, exported
-from vehicle.motors.settings import Pin, refuse_doubles
+from vehicle.motors.settings import Pin, pin_name, refuse_doubles
 
 Number = Annotated[int, msgspec.Meta(ge=0, le=7)]
 
@@ -59,7 +59,17 @@ class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         names = [(output.device, output.channel) for output in self.outputs]
         if len(set(names)) < len(names):
             raise ValueError("a channel is used twice")
-        refuse_doubles([output.direction for output in self.outputs if isinstance(output, BridgePwm)])
+        refuse_doubles(self.pins)
+
+    @property
+    def pins(self) -> list[int]:
+        """Directions of bridges."""
+        return [output.direction for output in self.outputs if isinstance(output, BridgePwm)]
+
+    @property
+    def taken(self) -> list[str]:
+        """Pins."""
+        return [pin_name(pin) for pin in self.pins]
 
 
 class Bridge:

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import msgspec
 
-from vehicle.motors.settings import Pin, refuse_doubles
+from vehicle.motors.settings import Pin, pin_name, refuse_doubles
 
 WINDOW = 0.2
 """s over which a speed is the mean: ten control cycles, so that a slow disc still gives some counts in it."""
@@ -31,11 +31,21 @@ class EncoderSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     wheels: Annotated[tuple[Wheel, ...], msgspec.Meta(min_length=1, max_length=4)]
     lines: Annotated[int, msgspec.Meta(ge=1)] = 20
     """Counts in a turn of the wheel."""
-    diameter: Annotated[float, msgspec.Meta(gt=0)] = 0.065
+    diameter: Annotated[float, msgspec.Meta(gt=0, le=10)] = 0.065
     """m"""
 
     def __post_init__(self) -> None:
-        refuse_doubles([pin for wheel in self.wheels for pin in (wheel.a, wheel.b)])
+        refuse_doubles(self.pins)
+
+    @property
+    def pins(self) -> list[int]:
+        """Of all wheels."""
+        return [pin for wheel in self.wheels for pin in (wheel.a, wheel.b)]
+
+    @property
+    def taken(self) -> list[str]:
+        """Pins."""
+        return [pin_name(pin) for pin in self.pins]
 
     @property
     def metres(self) -> float:

@@ -13,6 +13,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from vehicle.i2c import Bus, open_bus
+from vehicle.motors.settings import chip_name
 
 PERIOD, MAX_AGE = 0.2, 2.0
 """s between readings, and how long one counts: shorter than the 5 s after which the battery sensor counts as silent."""
@@ -34,6 +35,11 @@ class PowerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     address: Annotated[int, msgspec.Meta(ge=0x40, le=0x4F)] = 0x40
     shunt: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.1
     """ohm, of an INA219: 0.1 on most boards, which measures up to 3.2 A. An INA260 has its own inside."""
+
+    @property
+    def taken(self) -> list[str]:
+        """The chip."""
+        return [chip_name(self.bus, self.address)]
 
 
 @dataclass(frozen=True, slots=True)

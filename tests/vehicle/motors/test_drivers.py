@@ -1,6 +1,8 @@
 from __future__ import annotations
 
+import sys
 from importlib import import_module
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -103,7 +105,8 @@ def test_a_driver_of_your_own_is_named_by_module_and_class() -> None:
         ("simulatd", "did you mean 'simulated'"),
         ("", "known: simulated"),
         ("zebra", "or your own as module:Class"),
-        ("no_such_module:Car", "No module named 'no_such_module'"),
+        ("no_such_module:Car", "No module named 'no_such_module'; install it beside vehicle, or name its folder in "),
+        ("..up:Car", "cannot be loaded: TypeError: the 'package' argument is required"),
         ("vehicle.motors.simulated:Car", "module vehicle.motors.simulated has no 'Car'"),
         ("vehicle.motors.simulated:", "unknown motor driver"),
         (":Car", "unknown motor driver"),
@@ -115,6 +118,38 @@ def test_a_name_that_leads_nowhere_is_said_in_one_line(name: str, says: str) -> 
         open_motors(name)
     assert says in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("source", "says"),
+    [
+        ("def (", "cannot be loaded: SyntaxError: invalid syntax"),
+        ("raise RuntimeError('no\\nluck')", "cannot be loaded: RuntimeError: no luck"),
+        ("import no_such_library", "cannot be loaded: ModuleNotFoundError: No module named 'no_such_library'"),
+    ],
+)
+def test_a_fault_in_a_module_of_your_own_is_said_in_one_line(
+    source: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "faulty_car.py").write_text(source)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "faulty_car", raising=False)
+    with pytest.raises(UnknownDriverError) as caught:
+        open_motors("faulty_car:Car")
+    assert str(caught.value).startswith(f"motor driver 'faulty_car:Car' {says}")
+    assert "\n" not in str(caught.value)
+    assert "PYTHONPATH" not in str(caught.value)
+
+
+class Broken:
+    def __init__(self) -> None:
+        raise ValueError("no\nhardware")
+
+
+def test_a_driver_of_your_own_that_does_not_start_is_said_in_one_line() -> None:
+    with pytest.raises(MotorError) as caught:
+        open_motors(f"{__name__}:Broken")
+    assert str(caught.value) == f"motor driver '{__name__}:Broken' does not start: ValueError: no hardware"
 
 
 def test_checked_gives_what_it_was_given() -> None:

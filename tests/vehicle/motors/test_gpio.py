@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from gpiozero import Device
+from gpiozero.exc import PinUnknownPi
 from gpiozero.pins.mock import MockFactory, MockPWMPin
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
@@ -20,6 +21,7 @@ from vehicle.motors import (
     safe_stop,
 )
 from vehicle.motors.gpio import GpioMotors, GpioSettings, PhaseEnable, TwoInputs
+from vehicle.motors.pins import translated
 from vehicle.outputs import Clearance
 from vehicle.params import in_force
 
@@ -90,6 +92,18 @@ def test_without_a_raspberry_pi_it_says_so(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setenv("GPIOZERO_PIN_FACTORY", "nothing")
     with pytest.raises(MotorError, match="motor pins: Unable to find pin factory"):
         GpioMotors(TWO_INPUTS)
+
+
+@pytest.mark.parametrize(
+    ("error", "says"),
+    [
+        (PinUnknownPi("unable to locate Pi revision in /proc/device-tree or /proc/cpuinfo"), "is this a Raspberry Pi"),
+        (OSError("can not open gpiochip"), "sudo usermod -aG gpio"),
+    ],
+)
+def test_what_to_do_is_said_where_it_is_known(error: Exception, says: str) -> None:
+    with pytest.raises(MotorError, match=f"^motor pins: {error}; .*{says}"), translated("motor pins"):
+        raise error
 
 
 def article_car() -> Motors:

@@ -95,7 +95,7 @@ class SerialContract(MotorsContract):
         self.drive(bench)
 
     def test_a_second_process_cannot_have_the_port(self, bench: Bench, line: OnPty) -> None:
-        with pytest.raises(MotorError, match="exclusively lock"):
+        with pytest.raises(MotorError, match="another program uses /dev/"):
             open_motors(self.kind, {"port": line.path, **KINDS[self.kind][1]})
 
     def test_a_line_that_nobody_reads_never_blocks(self, bench: Bench, line: OnPty) -> None:
@@ -320,6 +320,9 @@ class TestSabertooth(SerialContract):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_port_that_is_not_there_is_said_in_one_line(kind: str) -> None:
-    with pytest.raises(MotorError, match="/dev/nowhere") as caught:
+    with pytest.raises(MotorError, match="/dev/nowhere is not there; is it plugged in") as caught:
         open_motors(kind, {"port": "/dev/nowhere"})
     assert "\n" not in str(caught.value)
+    for path in ("/tmp", "/dev/null"):
+        with pytest.raises(MotorError, match=f"{path} is no serial port"):
+            open_motors(kind, {"port": path})

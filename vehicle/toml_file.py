@@ -1,0 +1,55 @@
+"""A TOML file as it stands there, whatever is in it: what cannot be read is one line. What it means is config.py's."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+LARGEST = 2**63 - 1
+"""TOML's own bound for whole numbers, which Python does not keep."""
+
+
+class TomlError(Exception):
+    """The file cannot be read. The text is one line: file, what is wrong, what to do."""
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """The tables of a file. Raises TomlError."""
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
+    except IsADirectoryError:
+        raise TomlError(f"{path}: is a folder; name a file in it") from None
+    except OSError as error:
+        raise TomlError(f"{path}: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        what = f"byte {error.start + 1} is no text in UTF-8"
+        raise TomlError(f"{path}: {what}; save the file as UTF-8, or name another one") from error
+    return tables(text, str(path))
+
+
+def tables(text: str, name: str) -> dict[str, Any]:
+    """The tables of a file's text. Raises TomlError."""
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise TomlError(f"{name}: brackets in brackets, too deep to read") from None
+    except tomllib.TOMLDecodeError as error:
+        raise TomlError(f"{name}: {error}") from error
+    except ValueError:  # of int()
+        raise TomlError(f"{name}: a number of thousands of digits, which nothing takes") from None
+
+
+def unusable(value: Any, at: str = "") -> Iterator[str]:
+    """What TOML can say and nothing takes: numbers of more than 64 bits, and NUL in a text. A line each."""
+    if isinstance(value, dict):
+        for key, inside in value.items():
+            yield from unusable(inside, f"{at}.{key}" if at else key)
+    elif isinstance(value, list):
+        for index, inside in enumerate(value):
+            yield from unusable(inside, f"{at}[{index}]")
+    elif isinstance(value, str) and "\0" in value:
+        yield f"{at}: holds the character NUL; leave it out"
+    elif isinstance(value, int) and abs(value) > LARGEST:
+        yield f"{at}: a number too large to be meant"
