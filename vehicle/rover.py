@@ -88,6 +88,8 @@ class Rover:
         self._telemetry = Telemetry(self._system, now, logged=recording is not None)
         self._demanded: float | None = None
         """When a demand came that has not been told yet."""
+        self._ticked: float | None = None
+        """The cycle that has been driven, and whose messages are still to be made."""
         self._bandwidth = Bandwidth(lambda: self._safety.armed)
         self._param_service = ParamService(
             params,
@@ -171,18 +173,13 @@ class Rover:
             self._preflight.receive(received, now)
 
     def tick(self, now: float) -> None:
-        """Let time pass: act on silence, send what is due."""
+        """Let time pass: act on silence. What is due is said by `messages_to_send`."""
         if self._safety.state is State.OFF:
             return
         late = self._watch.is_late(now)
         self._cycle(now)
         self._move(now, late=late)
-        self._tell(now)
-        self._outgoing += self._server.tick(now)
-        self._outgoing += self._param_service.tick(now)
-        self._outgoing += self._services.tick(now)
-        self._outgoing += self._plans.tick(now)
-        self._outgoing += self._logbook.tick(now)
+        self._ticked = now
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves, about once a second."""
@@ -203,12 +200,25 @@ class Rover:
                 self._texts.say_once(f"own id {report.name}", Severity.WARNING, text, now)
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What to send now; empties what it returns. A demand is told here, when it is at the motors already."""
+        """What to send now; empties what it returns. What a demand or a cycle gives to say is made here, when the
+        motors have what was decided already."""
         if self._demanded is not None:
             self._outgoing += self._telemetry.of_demand(self._look(self._demanded))
             self._demanded = None
+        if self._ticked is not None and self._safety.state is not State.OFF:
+            self._go_on(self._ticked)
+        self._ticked = None
         outgoing, self._outgoing = self._outgoing, []
         return outgoing
+
+    def _go_on(self, now: float) -> None:
+        """What is due in this cycle besides driving."""
+        self._tell(now)
+        self._outgoing += self._server.tick(now)
+        self._outgoing += self._param_service.tick(now)
+        self._outgoing += self._services.tick(now)
+        self._outgoing += self._plans.tick(now)
+        self._outgoing += self._logbook.tick(now)
 
     def sense(self, readings: Readings, now: float) -> None:
         """Take the newest readings."""
