@@ -56,11 +56,9 @@ class _Clock:
     due: float = math.inf
     sent: float = -math.inf
 
-    def next(self, step: float | None, now: float) -> float:
-        """The next of the times `origin` + n x `step`, or never. They are the same for all peers with this step, so
-        that one message serves them all; what was missed in a pause is left out."""
-        if step is None:
-            return math.inf
+    def next(self, step: float, now: float) -> float:
+        """The next of the times `origin` + n x `step`. They are the same for all peers with this step, so that one
+        message serves them all; what was missed in a pause is left out."""
         number = math.floor((now + 2 * EARLY - self.origin) / step) + 1
         return self.origin + number * step - EARLY
 
@@ -96,9 +94,13 @@ class Schedule:
         return self._clocks[message_id].interval
 
     def set_interval(self, message_id: int, interval: float | None, now: float) -> None:
-        """Change a stream; None turns it off. Too fast is made slower, a fixed one stays."""
-        if not BY_ID[message_id].fixed:
-            on, interval = interval is not None, interval and max(FASTEST, interval)
+        """Change a stream; None turns it off. Too fast is made slower, a fixed one stays.
+
+        Who asks again for what it has, as MAVProxy does all the time, gets no message for that.
+        """
+        clock = self._clocks[message_id]
+        on, interval = interval is not None, interval and max(FASTEST, interval)
+        if not clock.stream.fixed and (on, interval) != (clock.on, clock.interval):
             self._set(message_id, on, interval, now)
             self._narrow = self._narrowed()
 
@@ -162,16 +164,17 @@ class Schedule:
         stream = clock.stream
         if not (stream.fixed or self._room(stream, now)):
             return False
-        clock.sent, clock.due = now, clock.next(self._step(clock, now), now)
+        clock.sent, clock.due = now, self._next_due(clock, now)
         return True
 
-    def _step(self, clock: _Clock, now: float) -> float | None:
-        """s until it is due again, as the link allows."""
+    def _next_due(self, clock: _Clock, now: float) -> float:
+        """When it is due again, as the link allows; a steady one may just have told a change."""
         if clock.interval is None:
-            return None
+            return math.inf
         if clock.stream.steady:
-            return max(clock.interval, self._least(clock.stream))
-        return clock.interval * max(self._stretched(now), self._narrow)
+            least = self._least(clock.stream)
+            return max(clock.next(max(clock.interval, least), now), now + least - EARLY)
+        return clock.next(clock.interval * max(self._stretched(now), self._narrow), now)
 
     def _least(self, stream: Stream) -> float:
         """s between two of a steady stream, or of a changing one, that leave room for the others."""

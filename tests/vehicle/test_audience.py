@@ -181,6 +181,17 @@ def test_groups_belong_to_who_asked_for_them() -> None:
     assert (crowd.interval(ONE, m.Attitude), crowd.interval(OTHER, m.Attitude)) == (100_000, -1)
 
 
+def test_who_asks_again_for_what_it_has_gets_no_more() -> None:
+    crowd = Crowd(ONE)
+    crowd.wait(2.0)
+    crowd.forget()
+    for _ in range(50):
+        crowd.say(ONE, m.RequestDataStream(1, 1, 0, 4, 1))
+        crowd.wait(0.2)
+    assert len(crowd.all(ONE, m.Attitude)) == pytest.approx(40, abs=1)
+    assert len(crowd.all(ONE, m.SysStatus)) == pytest.approx(40, abs=2)
+
+
 def test_what_is_off_is_off_when_it_changes_too() -> None:
     crowd = Crowd(ONE)
     crowd.command(ONE, Command.SET_MESSAGE_INTERVAL, m.CurrentMode.id, -1)
