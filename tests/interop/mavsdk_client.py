@@ -123,7 +123,7 @@ def mission(system: Any, folder: str) -> None:
     """Upload, download, be refused, drive it to its end, clear."""
     action, raw, telemetry = (plugin(name, system) for name in ("action", "mission_raw", "telemetry"))
     north, east = here(telemetry)
-    plan = [item(n, 16, 0, north + 300 * n, east) for n in range(2)]
+    plan = [item(n, 16, 0, north + 100 * (n + 1), east) for n in range(2)]
     step("upload", lambda: raw.upload_mission(plan))
     step("download", lambda: shape(raw.download_mission()) == shape(plan))
     step("refused", lambda: raw.upload_mission([item(0, 22, 0, north, east)]))
@@ -179,7 +179,7 @@ def lossy(system: Any, folder: str) -> None:
     path = "/missions/mission.waypoints"
     step("file", lambda: finished(lambda take: ftp.download_async(path, folder, True, take)))
     north, east = here(telemetry)
-    plan = [item(n, 16, 0, north + 200 + 100 * n, east) for n in range(2)]
+    plan = [item(n, 16, 0, north + 100 * (n + 1), east) for n in range(2)]
     step("upload", lambda: insist(lambda: raw.upload_mission(plan)))
     step("download", lambda: shape(insist(raw.download_mission)) == shape(plan))
     step("arm", lambda: insist(action.arm))

@@ -36,8 +36,11 @@ def test_the_connect_sequence_comes_to_its_end(ground: QGroundControl) -> None:
     assert set(values) == set(meaning)
     assert (meaning["SPEED_MAX"]["units"], meaning["SPEED_MAX"]["max"]) == ("m/s", 30)
     assert [qgc_plans.count(ground, kind) for kind in (0, 1, 2)] == [0, 0, 0]
-    assert ground.repeats == 0
     assert time.monotonic() - begun < 5
+    for message in (m.ProtocolVersion.id, 395, 259):  # older versions' questions: each has an answer, none a time limit
+        assert ground.command(Command.REQUEST_MESSAGE, message) in (Result.ACCEPTED, Result.UNSUPPORTED)
+    assert ground.command(9999) is Result.UNSUPPORTED
+    assert ground.repeats == 0
 
 
 def test_its_joystick_drives(ground: QGroundControl, rover: Rover) -> None:
@@ -48,14 +51,6 @@ def test_its_joystick_drives(ground: QGroundControl, rover: Rover) -> None:
     ground.joystick(0, 0, until=lambda: not rover.vehicle.turning(), within=3)
     assert not rover.vehicle.turning()
     assert ground.command(Command.COMPONENT_ARM_DISARM, 0) is Result.ACCEPTED
-
-
-def test_what_it_asks_of_other_vehicles_is_answered_too(ground: QGroundControl) -> None:
-    """Its older versions' questions: each has an answer, none a time limit."""
-    for message in (m.ProtocolVersion.id, 395, 259):
-        assert ground.command(Command.REQUEST_MESSAGE, message) in (Result.ACCEPTED, Result.UNSUPPORTED)
-    assert ground.command(9999) is Result.UNSUPPORTED
-    assert ground.repeats == 0
 
 
 def test_a_second_one_drives_only_after_it_was_given_control(ground: QGroundControl, rover: Rover) -> None:
