@@ -78,14 +78,19 @@ class Framer:
         self._doubt: _Doubt | None = None
 
     def feed(self, data: bytes, now: float) -> list[Frame]:
-        """All frames that are whole now. `now` in s, monotonic."""
-        if not self._stream:
-            whole = self._single(data)
-            return self._scan(data, final=True)[0] if whole is None else whole
-        frames = self.expire(now)
-        self._buffer += data
-        frames += self._take(now)
-        return frames
+        """All frames that are whole now. `now` in s, monotonic.
+
+        The usual case first, found fast: a datagram that is one unsigned MAVLink 2 frame and nothing else.
+        """
+        if self._stream:
+            return self._feed_stream(data, now)
+        known = _KNOWN.get(data[7:10])
+        if known is None or data[0] != MAGIC_V2 or data[2] or len(data) != data[1] + _SHORTEST:
+            return self._feed_unusual(data)
+        if mcrf4xx(data[1:-2] + known[1]) != data[-2] | data[-1] << 8:
+            return self._feed_unusual(data)
+        self.counts.frames += 1
+        return [_new_frame(Frame, (known[0], data[5], data[6], data[4], data))]
 
     def expire(self, now: float) -> list[Frame]:
         """Give up a partial frame that is overdue and look behind its first byte; call it when nothing arrives, too."""
@@ -98,20 +103,19 @@ class Framer:
                 self._waiting_since = now - PARTIAL_DEADLINE  # what follows has waited as long
         return frames
 
-    def _single(self, datagram: bytes) -> list[Frame] | None:
-        """The usual case, found fast: a datagram that is one unsigned MAVLink 2 frame and nothing else, else None."""
-        if len(datagram) < _SHORTEST or datagram[0] != MAGIC_V2 or datagram[2] or len(datagram) != datagram[1] + 12:
-            return None
-        known = _KNOWN.get(datagram[7:10])
-        if known is None:
-            if self._unknown:
-                return None
+    def _feed_stream(self, data: bytes, now: float) -> list[Frame]:
+        frames = self.expire(now)
+        self._buffer += data
+        frames += self._take(now)
+        return frames
+
+    def _feed_unusual(self, datagram: bytes) -> list[Frame]:
+        """Any datagram; one that by its borders is one frame of an id that nobody here knows is not looked into."""
+        whole = len(datagram) >= _SHORTEST and len(datagram) == datagram[1] + _SHORTEST
+        if whole and datagram[0] == MAGIC_V2 and not datagram[2] and datagram[7:10] not in _KNOWN and not self._unknown:
             self.counts.unknown += 1
             return []
-        if mcrf4xx(datagram[1:-2] + known[1]) != datagram[-2] | datagram[-1] << 8:
-            return None
-        self.counts.frames += 1
-        return [_new_frame(Frame, (known[0], datagram[5], datagram[6], datagram[4], datagram))]
+        return self._scan(datagram, final=True)[0]
 
     def _skip_first_byte(self) -> None:
         self._buffer = self._buffer[1:]
