@@ -13,7 +13,7 @@ from groundstation.commanding import Commander
 from groundstation.driving import Driving, drives_itself
 from groundstation.fleet import Contact, Fleet
 from groundstation.inquiry import Inquiry
-from groundstation.links import LinkBook, Troubles
+from groundstation.links import LinkBook
 from groundstation.operator import Operator
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.style import Style
@@ -22,6 +22,7 @@ from groundstation.traffic import Traffic
 from groundstation.vehicle_state import VehicleState
 from link.core import LinkReport, Outgoing, Peer, Received
 from link.services.timesync import TimesyncClient, answer
+from link.troubles import Troubles
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""

@@ -85,4 +85,4 @@ def noise_hint(name: str, received: int, frames: int) -> str | None:
     """What to tell of a wire that has brought `received` bytes, when none of them made a frame."""
     if received < NOISE_ENOUGH or frames:
         return None
-    return f"{name}: {received} bytes and no MAVLink frame among them; wrong baud rate?"
+    return f"{name}: bytes and no MAVLink frame among them; wrong baud rate?"

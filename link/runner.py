@@ -9,6 +9,7 @@ from functools import partial
 from typing import Protocol, runtime_checkable
 
 from dialects.codec import EncodeError, encode_payload
+from dialects.enums import Severity
 from dialects.messages import Message
 from link.channel import Channel
 from link.core import Core, LinkReport, Outgoing, Received
@@ -16,6 +17,7 @@ from link.link import Link
 from link.openers import open_wires
 from link.router import Delivery, Router
 from link.tape import Tape
+from link.troubles import Troubles
 
 log = logging.getLogger(__name__)
 
@@ -82,6 +84,7 @@ class Runner:
         self._sent = core.sent if isinstance(core, HearsOfSending) else None
         self._ended: asyncio.Future[None] | None = None
         self._report_due = 0.0
+        self._troubles = Troubles()
         self._tick_due = 0.0
         self._timer: asyncio.TimerHandle | None = None
         self._tape = tape
@@ -180,7 +183,12 @@ class Runner:
     def _observe(self, now: float) -> None:
         for link in self._links:
             link.channel.forget_silent(now)
-        self._core.observe([self._report(link, now) for link in self._links], now)
+        reports = [self._report(link, now) for link in self._links]
+        for report in reports:
+            if news := self._troubles.news(report):
+                level = logging.WARNING if news.severity <= Severity.ERROR else logging.INFO
+                log.log(level, "%s: %s", report.name, news.text)
+        self._core.observe(reports, now)
 
     @staticmethod
     def _report(link: Link, now: float) -> LinkReport:

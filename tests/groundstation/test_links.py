@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 
-from dialects.enums import Severity
-from groundstation.links import LinkBook, News, Troubles
+from groundstation.links import LinkBook
 from link.core import LinkReport, SourceCount
 
 
@@ -82,24 +81,3 @@ def test_problems_in_words(changes: dict[str, Any], words: str) -> None:
     problem = book.views(None)[0].problem
     assert problem is not None
     assert words in problem
-
-
-def test_a_link_that_goes_down_comes_back_and_goes_down_again_is_told_each_time() -> None:
-    troubles = Troubles()
-    gone = report(0, down="udpin:127.0.0.1:14550: lost the port (hung up); waiting for it")
-    told = [troubles.news(each) for each in (report(0), gone, gone, report(1), report(2), gone)]
-    lost = News("lost the port (hung up); waiting for it", Severity.ERROR)
-    assert told == [None, lost, None, News("it is back", Severity.NOTICE), None, lost]
-
-
-def test_a_new_reason_is_told_too() -> None:
-    troubles = Troubles()
-    told = [troubles.news(report(0, down=why)) for why in ("lost", "not there", "not there")]
-    assert [each and each.text for each in told] == ["lost", "not there", None]
-
-
-def test_a_wrong_dialect_is_told_once() -> None:
-    troubles = Troubles()
-    wrong = report(0, dialect_mismatch=("HEARTBEAT",))
-    told = [troubles.news(each) for each in (wrong, report(1), wrong)]
-    assert [each is not None for each in told] == [True, False, False]

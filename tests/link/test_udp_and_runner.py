@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import socket
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 
 import pytest
 
@@ -14,6 +16,7 @@ from link.core import LinkReport, Outgoing, Received
 from link.link import LinkError
 from link.runner import Runner, open_links
 from tests.link.frames import demand, heartbeat
+from tests.link.ports import Cable
 
 
 class Recorder:
@@ -122,6 +125,28 @@ async def test_the_core_ticks_and_hears_of_its_links_while_flooded(ground: socke
     core = await run(f"udpin:127.0.0.1:{port}", flood)
     assert len(core.ticks) > 50
     assert core.reports[0][0].name == f"udpin:127.0.0.1:{port}"
+
+
+async def test_a_port_that_is_away_is_told_to_the_log_and_its_return_too(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A vehicle without a screen has no other way to say that its port is missing."""
+    caplog.set_level(logging.INFO, "link.runner")
+    path = tmp_path / "ttyUSB0"
+    cables: list[Cable] = []
+
+    def plug_in_when_it_is_missed(core: Recorder) -> bool:
+        if core.reports and not cables:
+            assert core.reports[0][0].down
+            cables.append(Cable(path))
+        return "it is back" in caplog.text
+
+    await run(f"serial:{path}:57600", plug_in_when_it_is_missed)
+    cables[0].unplug()
+    assert [(record.levelname, record.message) for record in caplog.records if record.name == "link.runner"] == [
+        ("WARNING", f"serial:{path}:57600: waiting for {path}, it is not there; is it plugged in?"),
+        ("INFO", f"serial:{path}:57600: it is back"),
+    ]
 
 
 async def test_what_the_core_raises_ends_the_run_and_frees_the_port() -> None:
