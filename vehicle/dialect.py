@@ -7,13 +7,14 @@ from collections.abc import Iterable, Sequence
 from dialects import messages as m
 from dialects.definition import Definition, private_enums, private_messages
 from dialects.enums import Command, FenceItem
+from vehicle.answers import COMPONENT
 from vehicle.buttons import FUNCTIONS
 from vehicle.heard import TABLE as HEARD_TABLE
 from vehicle.heard import Who
 from vehicle.modes import OFFERED, PX4_ALIASES
 from vehicle.params import TABLE, Params
 from vehicle.plan import FENCE, MISSION, RALLY
-from vehicle.rover import COMPONENT, Rover
+from vehicle.rover import Rover
 from vehicle.streams import STREAMS, Family
 
 ANY, KNOWN, DRIVER = "anybody", "introduced", "driver"

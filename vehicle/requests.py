@@ -15,6 +15,7 @@ from link.core import Outgoing
 from link.services.command import CommandRequest, Handler, Run
 from vehicle import status
 from vehicle.fields import message_id
+from vehicle.links import Links
 from vehicle.streams import BY_ID
 from vehicle.telemetry import Telemetry
 from vehicle.view import View
@@ -32,10 +33,12 @@ class Requests:
         telemetry: Telemetry,
         look: Callable[[float], View],
         more: Mapping[int, Callable[[View], m.Message]],
+        links: Links,
     ) -> None:
         """`more`: messages that are no stream, by id."""
         self._telemetry = telemetry
         self._look = look
+        self._links = links
         self._builders = {**{number: stream.build for number, stream in BY_ID.items()}, **more}
         self._outbox: list[Outgoing] = []
 
@@ -64,6 +67,8 @@ class Requests:
             return self._available_modes(request, now)
         if number == m.MessageInterval.id:
             return self._tell_interval(request, request.params[1])
+        if number == m.RoverLinkStatus.id:
+            return self._tell(request, self._links.status(request.peer.link))
         if number not in self._builders:
             return Result.UNSUPPORTED
         return self._tell(request, self._builders[number](self._look(now)))

@@ -5,46 +5,35 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dialects import messages as m
-from dialects.enums import Severity
 from dialects.modes import Mode
 from link.core import LinkReport, Outgoing, Received
-from link.services import timesync
-from link.services.command import CommandServer
 from vehicle import status
 from vehicle.actuator_test import ActuatorTest
+from vehicle.answers import COMPONENT, Answers, Keepers
 from vehicle.bandwidth import Bandwidth
 from vehicle.buttons import Buttons
-from vehicle.commands import Commands
 from vehicle.complaints import Complaints, of_sensors
 from vehicle.control import Control
 from vehicle.demand import Demand
 from vehicle.drive import Drive
 from vehicle.failsafe import Action
-from vehicle.fields import UINT8, UINT32, whole
 from vehicle.leaving import Leave
-from vehicle.logbook import Logbook, Recording
+from vehicle.links import Links
+from vehicle.logbook import Recording
 from vehicle.modes import OFFERED
 from vehicle.navigator import Navigator
-from vehicle.orders import Orders
 from vehicle.outputs import Outputs, Permit
-from vehicle.param_service import Keeper, ParamService
+from vehicle.param_service import Keeper
 from vehicle.params import Params
-from vehicle.plans import PlanKeeper, Plans
-from vehicle.preflight import Preflight
+from vehicle.plans import PlanKeeper
 from vehicle.readings import NO_READINGS, Readings
-from vehicle.requests import Requests
 from vehicle.safety import Safety
-from vehicle.services import Services
 from vehicle.states import State
 from vehicle.streams import Family
 from vehicle.telemetry import Telemetry
 from vehicle.texts import Texts
 from vehicle.view import View
 from vehicle.watch import Watch
-
-COMPONENT = 1
-"""MAV_COMP_ID_AUTOPILOT1: QGroundControl makes a vehicle only of this one."""
-ROUND_TRIP_UNKNOWN = m.UINT16_MAX
 
 
 class Rover:
@@ -91,44 +80,23 @@ class Rover:
         self._ticked: float | None = None
         """The cycle that has been driven, and whose messages are still to be made."""
         self._bandwidth = Bandwidth(lambda: self._safety.armed)
-        self._param_service = ParamService(
-            params,
-            self._control,
-            self._texts,
-            ids=(self._system, COMPONENT),
-            pacer=self._bandwidth.pacer,
-            armed=lambda: self._safety.armed,
-            keeper=keeper,
-        )
-        self._commands = Commands(self._safety, self._control, self._texts)
         self._actuator_test = ActuatorTest(params, self._safety, self._control, self._texts, self._drive.mixer.motors)
         self._buttons = Buttons(params, self._safety, self._control, self._texts)
-        self._orders = Orders(params, self._safety, self._control, self._navigator, self._texts)
-        self._plans = Plans(
+        self._links = Links(self._control, self._texts, (self._system, COMPONENT))
+        self._answers = Answers(
             params,
             self._safety,
             self._control,
             self._navigator,
+            self._drive,
             self._texts,
-            self._drive.mixer.servos,
-            pacer=self._bandwidth.pacer,
-            keeper=plan_keeper,
+            telemetry=self._telemetry,
+            bandwidth=self._bandwidth,
+            links=self._links,
+            trials=self._actuator_test,
+            keepers=Keepers(keeper, plan_keeper, recording),
+            look=self._look,
         )
-        self._logbook = Logbook(params, self._control, self._texts, lambda: self._safety.armed, recording)
-        self._services = Services(
-            params,
-            self._control,
-            self._logbook,
-            missions=self._plans.folder(),
-            ids=(self._system, COMPONENT),
-            pacer=self._bandwidth.pacer,
-        )
-        self._preflight = Preflight(params, self._safety, self._control, self._param_service, self._texts)
-        self._requests = Requests(self._telemetry, self._look, self._services.messages())
-        handlers = self._commands.handlers() | self._requests.handlers()
-        handlers |= self._orders.handlers() | self._plans.handlers() | self._actuator_test.handlers()
-        handlers |= self._preflight.handlers()
-        self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
 
     @property
     def outputs(self) -> Outputs:
@@ -143,11 +111,11 @@ class Rover:
     @property
     def commands(self) -> frozenset[int]:
         """What is answered with more than UNSUPPORTED."""
-        return self._server.commands
+        return self._answers.commands
 
     def leaving(self, now: float) -> Leave | None:
         """How the program is to end because a ground station asked for it, or None."""
-        return self._preflight.leaving(now)
+        return self._answers.leaving(now)
 
     def receive(self, received: Received, now: float) -> None:
         """Take one message; a fresh demand is in `outputs` when this returns."""
@@ -162,15 +130,12 @@ class Rover:
         elif self._demand(received, now):
             self._move(now)
             self._demanded = now
-        elif self._order(received, now):
+        elif (answers := self._answers.order(received, now)) is not None:
+            self._outgoing += answers
             self._move(now)
             self._tell(now)
         else:
-            self._outgoing += timesync.answer(received, now, (self._system, COMPONENT))
-            self._outgoing += self._plans.receive(received, now)
-            self._outgoing += self._param_service.receive(received, now)
-            self._outgoing += self._services.receive(received, now)
-            self._preflight.receive(received, now)
+            self._outgoing += self._answers.receive(received, now)
 
     def tick(self, now: float) -> None:
         """Let time pass: act on silence. What is due is said by `messages_to_send`."""
@@ -188,16 +153,9 @@ class Rover:
         self._bandwidth.observe(reports)
         audience = [peer for report in reports for peer in report.audience]
         self._telemetry.attend(audience, self._bandwidth.telemetry, now)
-        self._param_service.observe(now)
-        self._logbook.observe(now)
-        for report in reports:
-            self._outgoing.append(Outgoing(self._link_status(report), among=self._telemetry.speakers(Family.ROVER)))
-            for name in report.dialect_mismatch:
-                text = f"Dialect mismatch on {report.name}: {name} has another definition"
-                self._texts.say_once(f"mismatch {report.name} {name}", Severity.WARNING, text, now)
-            if report.own_id:
-                text = f"Somebody on {report.name} uses our own ids {self._system}/{COMPONENT}"
-                self._texts.say_once(f"own id {report.name}", Severity.WARNING, text, now)
+        self._answers.observe(now)
+        among = self._telemetry.speakers(Family.ROVER)
+        self._outgoing += [Outgoing(status, among=among) for status in self._links.observe(reports, now)]
 
     def messages_to_send(self) -> list[Outgoing]:
         """What to send now; empties what it returns. What a demand or a cycle gives to say is made here, when the
@@ -214,11 +172,7 @@ class Rover:
     def _go_on(self, now: float) -> None:
         """What is due in this cycle besides driving."""
         self._tell(now)
-        self._outgoing += self._server.tick(now)
-        self._outgoing += self._param_service.tick(now)
-        self._outgoing += self._services.tick(now)
-        self._outgoing += self._plans.tick(now)
-        self._outgoing += self._logbook.tick(now)
+        self._outgoing += self._answers.tick(now)
 
     def sense(self, readings: Readings, now: float) -> None:
         """Take the newest readings."""
@@ -298,23 +252,7 @@ class Rover:
             control=self._control,
             drive=self._drive,
             navigator=self._navigator,
-            logs=self._logbook.well,
-        )
-
-    def _link_status(self, report: LinkReport) -> m.Message:
-        return m.RoverLinkStatus(
-            frames_ok=whole(report.frames, UINT32),
-            crc_errors=whole(report.crc_errors, UINT32),
-            resync_bytes=whole(report.resync_bytes, UINT32),
-            bad_signature=0,
-            replayed=whole(report.duplicates + report.late, UINT32),
-            unsigned_rejected=0,
-            not_in_control=whole(self._control.not_in_control, UINT32),
-            rate_limited=whole(report.rate_limited, UINT32),
-            rtt_ms=ROUND_TRIP_UNKNOWN,
-            jitter_ms=ROUND_TRIP_UNKNOWN,
-            link_id=whole(report.index, UINT8),
-            peers=whole(report.peers, UINT8),
+            logs=self._answers.logbook.well,
         )
 
     def _demand(self, received: Received, now: float) -> bool:
@@ -328,26 +266,3 @@ class Rover:
             case _:
                 return False
         return True
-
-    def _order(self, received: Received, now: float) -> bool:
-        """What changes the rover or what it tells."""
-        match received.message:
-            case m.CommandLong() | m.CommandInt() as message:
-                self._command(message, received, now)
-            case m.CommandCancel():
-                self._outgoing += self._server.receive(received, now)
-            case m.SetPositionTargetLocalNed() | m.SetPositionTargetGlobalInt() | m.SetAttitudeTarget() as message:
-                if self._orders.setpoint(received, message, now):
-                    self._navigator.step(self._safety, now)
-            case m.SetMode(target_system=self._system) as message:
-                self._commands.set_mode(received, message, now)
-            case _:
-                return False
-        self._navigator.renew(self._safety, now)
-        return True
-
-    def _command(self, message: m.CommandLong | m.CommandInt, received: Received, now: float) -> None:
-        if message.target_system == 0 and not self._commands.for_everybody(message):
-            return
-        self._outgoing += self._server.receive(received, now)
-        self._outgoing += self._commands.messages_to_send() + self._requests.messages_to_send()

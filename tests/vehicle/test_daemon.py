@@ -10,7 +10,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -108,13 +107,10 @@ def test_a_closed_stderr_is_no_fault() -> None:
 
 
 @pytest.mark.e2e
-def test_is_ready_soon(tmp_path: Path) -> None:
-    """0.5 s on an idle machine (benchmarks measure that); here other tests run beside it."""
-    with Ground() as ground:
-        start = time.monotonic()
-        with running(tmp_path, "--sim", ground.endpoint) as vehicle:
-            assert "ready" in vehicle.ready()
-            assert time.monotonic() - start < 3.0
+def test_gets_ready_and_says_where_it_listens(tmp_path: Path) -> None:
+    """How soon is a matter of benchmarks."""
+    with Ground() as ground, running(tmp_path, "--sim", ground.endpoint) as vehicle:
+        assert vehicle.ready() == f"vehicle: ready, system 1, {ground.endpoint}"
 
 
 # ---- ends from outside the cores ----

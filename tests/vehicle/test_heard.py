@@ -10,8 +10,9 @@ from vehicle.heard import HEARD, TABLE
 from vehicle.streams import STREAMS
 
 ROOT = Path(__file__).parents[2]
-HANDLERS = ("vehicle/rover.py", "vehicle/preflight.py", "link/services/param.py", "link/services/mission.py",
-            "link/services/mission_download.py", "link/services/log.py", "link/services/ftp_server.py")  # fmt: skip
+HANDLERS = ("vehicle/rover.py", "vehicle/answers.py", "vehicle/preflight.py", "link/services/param.py",
+            "link/services/mission.py", "link/services/mission_download.py", "link/services/log.py",
+            "link/services/ftp_server.py")  # fmt: skip
 
 
 def handled() -> set[str]:

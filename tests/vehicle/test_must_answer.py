@@ -15,6 +15,7 @@ from dialects import codec
 from dialects import messages as m
 from dialects.enums import Command, MissionType, Result
 from dialects.modes import Mode
+from link.core import LinkReport
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench
 
 C, R = Command, Result
@@ -22,8 +23,35 @@ NAN, INF = math.nan, math.inf
 NOWHERE, SOMEWHERE = (0, 0), (481_000_000, 115_000_000)
 """DO_REPOSITION: degrees x 1e7; EVERYTHING is in the second place."""
 
-REQUESTABLE = (0, 1, 24, 30, 32, 33, 36, 49, 65, 74, 147, 148, 242, 244, 300, 397, 435, 436, 512, 46001, 46002, 46004)
-"""Messages that everybody may ask for. ROVER_LINK_STATUS comes unasked each second, one for each link."""
+REQUESTABLE = (
+    0,
+    1,
+    24,
+    30,
+    32,
+    33,
+    36,
+    49,
+    65,
+    74,
+    147,
+    148,
+    242,
+    244,
+    300,
+    397,
+    435,
+    436,
+    512,
+    46001,
+    46002,
+    46003,
+    46004,
+)
+"""Messages that everybody may ask for and that there is something to tell of."""
+NEEDS_A_SENSOR = (24, 30, 32, 33, 49, 147)
+NOTHING_TO_TELL = (62, 162)
+"""... and those that tell of a mode that drives by itself, and of a fence that counts."""
 
 
 def free() -> Bench:
@@ -68,11 +96,17 @@ def broken() -> Bench:
     return bench
 
 
+def unreported() -> Bench:
+    """Just begun: no link has said anything of itself."""
+    return Bench()
+
+
 def placed() -> Bench:
     """Disarmed, with every sensor and a mission of two places."""
     bench = owned()
     bench.readings = EVERYTHING
     bench.wait(3.0)
+    bench.rover.observe([LinkReport("udpin:127.0.0.1:14550", audience=(bench.station,))], bench.now)
     for message in (
         m.MissionCount(1, 1, 2, MissionType.MISSION),
         *(m.MissionItemInt(1, 1, index, 6, C.NAV_WAYPOINT, 0, 1, 0, 0, 0, NAN, *SOMEWHERE, 0, 0) for index in (0, 1)),
@@ -93,6 +127,13 @@ def ready() -> Bench:
 def guided() -> Bench:
     bench = ready()
     assert bench.set_mode(Mode.GUIDED) is R.ACCEPTED
+    return bench
+
+
+def guarded() -> Bench:
+    """... with a fence that counts."""
+    bench = guided()
+    assert bench.command(C.DO_FENCE_ENABLE, 1) is R.ACCEPTED
     return bench
 
 
@@ -243,9 +284,13 @@ ROWS: tuple[Row, ...] = (
     Row(C.REQUEST_OPERATOR_CONTROL, (NAN,), R.DENIED),
     # Questions: of everybody who has shown a HEARTBEAT
     *(other(C.REQUEST_MESSAGE, (number,), R.ACCEPTED, placed) for number in REQUESTABLE),
+    *(other(C.REQUEST_MESSAGE, (number,), R.FAILED, placed) for number in NOTHING_TO_TELL),
+    *(Row(C.REQUEST_MESSAGE, (number,), R.FAILED) for number in NEEDS_A_SENSOR),
+    *(other(C.REQUEST_MESSAGE, (number,), R.ACCEPTED, guarded) for number in NOTHING_TO_TELL),
     Row(C.REQUEST_MESSAGE, (9999,), R.UNSUPPORTED), Row(C.REQUEST_MESSAGE, (NAN,), R.DENIED),
     Row(C.REQUEST_MESSAGE, (-1,), R.DENIED), Row(C.REQUEST_MESSAGE, (4294967040.0,), R.DENIED),
-    Row(C.REQUEST_MESSAGE, (242,), R.FAILED), everybody(C.REQUEST_MESSAGE, (148,), R.ACCEPTED),
+    Row(C.REQUEST_MESSAGE, (242,), R.FAILED),
+    Row(C.REQUEST_MESSAGE, (46003,), R.FAILED, unreported), everybody(C.REQUEST_MESSAGE, (148,), R.ACCEPTED),
     stranger(C.REQUEST_MESSAGE, (148,), R.TEMPORARILY_REJECTED),
     other(C.SET_MESSAGE_INTERVAL, (30, 1), R.ACCEPTED), Row(C.SET_MESSAGE_INTERVAL, (30, -1), R.ACCEPTED),
     Row(C.SET_MESSAGE_INTERVAL, (30, 0), R.ACCEPTED), Row(C.SET_MESSAGE_INTERVAL, (9999, 1), R.DENIED),

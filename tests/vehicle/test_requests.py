@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from dialects import messages as m
 from dialects.enums import Command, Result
 from dialects.modes import Mode
-from link.core import Peer
+from link.core import LinkReport, Peer
 from tests.vehicle.bench import EVERYTHING, OTHER, Bench
 from vehicle.modes import OFFERED
 from vehicle.streams import STREAMS, Stream
@@ -174,3 +175,17 @@ def test_request_data_stream_sets_a_group() -> None:
     assert interval(bench, m.RoverDriveStatus) == 200_000  # in no group
     bench.say(m.RequestDataStream(2, 1, 0, 4, 1))
     assert interval(bench, m.VfrHud) == -1
+
+
+def test_the_state_of_a_link_is_that_of_the_askers_own() -> None:
+    bench = Bench()
+    assert bench.command(REQUEST, m.RoverLinkStatus.id) is Result.FAILED  # nothing has been reported yet
+    other, own = LinkReport("udpin:[::]:1", index=3, frames=7), LinkReport("serial:/dev/ttyAMA0:57600", frames=40)
+    bench.rover.observe([other, own], bench.now)
+    bench.rover.observe([other, replace(own, frames=41, crc_errors=2)], bench.now)
+    bench.rover.messages_to_send()
+    assert bench.command(REQUEST, m.RoverLinkStatus.id) is Result.ACCEPTED
+    told = bench.newest(m.RoverLinkStatus)
+    assert (told.link_id, told.frames_ok, told.crc_errors) == (0, 41, 2)
+    bench.rover.observe([other], bench.now)
+    assert bench.command(REQUEST, m.RoverLinkStatus.id) is Result.FAILED  # this link is gone

@@ -1,0 +1,147 @@
+"""What the rover answers: commands, setpoints, parameters, plans, files, logs, time. Demands are vehicle/rover.py's.
+
+It joins those who know, each with a file of its own, and decides nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from dialects import messages as m
+from link.core import Outgoing, Received
+from link.services import timesync
+from link.services.command import CommandServer
+from vehicle.actuator_test import ActuatorTest
+from vehicle.bandwidth import Bandwidth
+from vehicle.commands import Commands
+from vehicle.control import Control
+from vehicle.drive import Drive
+from vehicle.leaving import Leave
+from vehicle.links import Links
+from vehicle.logbook import Logbook, Recording
+from vehicle.navigator import Navigator
+from vehicle.orders import Orders
+from vehicle.param_service import Keeper, ParamService
+from vehicle.params import Params
+from vehicle.plans import PlanKeeper, Plans
+from vehicle.preflight import Preflight
+from vehicle.requests import Requests
+from vehicle.safety import Safety
+from vehicle.services import Services
+from vehicle.telemetry import Telemetry
+from vehicle.texts import Texts
+from vehicle.view import View
+
+COMPONENT = 1
+"""MAV_COMP_ID_AUTOPILOT1: QGroundControl makes a vehicle only of this one."""
+
+
+class Keepers(NamedTuple):
+    """What outlives the program; without them it ends with it."""
+
+    params: Keeper | None = None
+    plans: PlanKeeper | None = None
+    logs: Recording | None = None
+
+
+class Answers:
+    """`order` for what may move the rover, `receive` for the rest, `tick` for what is under way."""
+
+    def __init__(
+        self,
+        params: Params,
+        safety: Safety,
+        control: Control,
+        navigator: Navigator,
+        drive: Drive,
+        texts: Texts,
+        *,
+        telemetry: Telemetry,
+        bandwidth: Bandwidth,
+        links: Links,
+        trials: ActuatorTest,
+        keepers: Keepers,
+        look: Callable[[float], View],
+    ) -> None:
+        """`look` is the rover at a moment."""
+        self._safety = safety
+        self._navigator = navigator
+        self._system = control.system
+        self._ids = (control.system, COMPONENT)
+        pacer = bandwidth.pacer
+        self._params = ParamService(
+            params, control, texts, ids=self._ids, pacer=pacer, armed=lambda: safety.armed, keeper=keepers.params
+        )
+        self._commands = Commands(safety, control, texts)
+        self._orders = Orders(params, safety, control, navigator, texts)
+        self._plans = Plans(
+            params, safety, control, navigator, texts, drive.mixer.servos, pacer=pacer, keeper=keepers.plans
+        )
+        self.logbook = Logbook(params, control, texts, lambda: safety.armed, keepers.logs)
+        self._services = Services(
+            params, control, self.logbook, missions=self._plans.folder(), ids=self._ids, pacer=pacer
+        )
+        self._preflight = Preflight(params, safety, control, self._params, texts)
+        self._requests = Requests(telemetry, look, self._services.messages(), links)
+        tables = (self._commands, self._requests, self._orders, self._plans, trials, self._preflight)
+        handlers = {command: handler for each in tables for command, handler in each.handlers().items()}
+        self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
+
+    @property
+    def commands(self) -> frozenset[int]:
+        """What is answered with more than UNSUPPORTED."""
+        return self._server.commands
+
+    def leaving(self, now: float) -> Leave | None:
+        """How the program is to end because a ground station asked for it, or None."""
+        return self._preflight.leaving(now)
+
+    def order(self, received: Received, now: float) -> list[Outgoing] | None:
+        """Take what changes the rover or what it tells, and answer it; None where it is nothing of the kind."""
+        answers: list[Outgoing] = []
+        match received.message:
+            case m.CommandLong() | m.CommandInt() as message:
+                answers = self._command(message, received, now)
+            case m.CommandCancel():
+                answers = self._server.receive(received, now)
+            case m.SetPositionTargetLocalNed() | m.SetPositionTargetGlobalInt() | m.SetAttitudeTarget() as message:
+                if self._orders.setpoint(received, message, now):
+                    self._navigator.step(self._safety, now)
+            case m.SetMode(target_system=self._system) as message:
+                self._commands.set_mode(received, message, now)
+            case _:
+                return None
+        self._navigator.renew(self._safety, now)
+        return answers
+
+    def receive(self, received: Received, now: float) -> list[Outgoing]:
+        """Answer what moves nothing."""
+        self._preflight.receive(received, now)
+        return [
+            *timesync.answer(received, now, self._ids),
+            *self._plans.receive(received, now),
+            *self._params.receive(received, now),
+            *self._services.receive(received, now),
+        ]
+
+    def tick(self, now: float) -> list[Outgoing]:
+        """The next of what is under way."""
+        return [
+            *self._server.tick(now),
+            *self._params.tick(now),
+            *self._services.tick(now),
+            *self._plans.tick(now),
+            *self.logbook.tick(now),
+        ]
+
+    def observe(self, now: float) -> None:
+        """The links have reported."""
+        self._params.observe(now)
+        self.logbook.observe(now)
+
+    def _command(self, message: m.CommandLong | m.CommandInt, received: Received, now: float) -> list[Outgoing]:
+        if message.target_system == 0 and not self._commands.for_everybody(message):
+            return []
+        answers = self._server.receive(received, now)
+        return answers + self._commands.messages_to_send() + self._requests.messages_to_send()
