@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from dialects.enums import DriveType, Limit
 from vehicle.demand import Demand
-from vehicle.fit import fitted
+from vehicle.fit import fits_of, fitted
 from vehicle.mixer import MIXERS, AtLimit, clamp, deadband, expo, pivot_share
 from vehicle.outputs import Clearance, Gate, Outputs, Permit, Trial
 from vehicle.params import Params
@@ -31,6 +31,7 @@ class Drive:
         self._slews = [Slew() for _ in self.mixer.motors]
         self._driven = self.mixer.driven
         self._gate = Gate(len(self._slews), self._driven)
+        self._tune()
         self._tested: int | None = None
         """The motor that a test turns."""
         self._at = now
@@ -56,6 +57,8 @@ class Drive:
         permit = clearance.permit
         dt, self._at = max(0.0, now - self._at), now
         self.limits = NO_LIMIT
+        if self._tuned != self._params.changes:
+            self._tune()
         trial = clearance.trial if permit is Permit.TEST else None
         motor = None if trial is None else trial.motor
         if permit is Permit.NONE or motor != self._tested:  # no test ramps down, nor into another one or a drive
@@ -65,7 +68,7 @@ class Drive:
         wanted = demand if permit is Permit.DRIVE else None
         wheels = self._ramped(self._targets(wanted, limited) if trial is None else self._alone(trial), dt)
         self._note_limits()
-        motors = fitted(wheels, self._driven, self._params)
+        motors = fitted(wheels, self._driven, self._fits)
         self.outputs = self._gate.judge(wheels, motors, permit, 100 / self._params["MOT_DECEL"], now, trial)
         if self.wheels != wheels:  # refused: no ramp goes on from there
             for slew in self._slews:
@@ -101,12 +104,17 @@ class Drive:
         return clamp(throttle, largest)
 
     def _ramped(self, targets: Sequence[float], dt: float) -> tuple[float, ...]:
-        params = self._params
+        pairs = zip(self._slews, targets, self._rates, strict=True)
+        return tuple([slew.step(target, dt, rates) for slew, target, rates in pairs])
+
+    def _tune(self) -> None:
+        """What follows from parameters, as long as they do not change."""
+        params, self._tuned = self._params, self._params.changes
+        self._fits = fits_of(params)
         accel, decel = params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100
         wheel = SlewLimits(accel, decel, params["MOT_REV_DELAY"])
         servo = SlewLimits(accel, decel)  # its gears do not mind a reversal; the rover would go straight on meanwhile
-        pairs = enumerate(zip(self._slews, targets, strict=True))
-        return tuple([slew.step(target, dt, wheel if at < self._driven else servo) for at, (slew, target) in pairs])
+        self._rates = [wheel if at < self._driven else servo for at in range(len(self._slews))]
 
     def _note_limits(self) -> None:
         if any(slew.limited for slew in self._slews):

@@ -53,12 +53,16 @@ def thrust(throttle: float, curve: float) -> float:
     return min(1.0, 2.0 * throttle / (1.0 - curve + root))
 
 
-def fitted(wheels: Sequence[float], driven: int, params: Params) -> tuple[float, ...]:
-    """What the motors get, of which the first `driven` drive; each -1..1 where its wheel's value is."""
-    curve = params["MOT_THST_EXPO"]
-    outputs = []
-    for index, (wheel, names) in enumerate(zip(wheels, NAMES, strict=False)):
+def fits_of(params: Params) -> list[Fit]:
+    """Of every motor that there may be."""
+    curve, found = params["MOT_THST_EXPO"], []
+    for names in NAMES:
         reversed_, smallest, largest, trim = [params[name] for name in names]
-        fit = Fit(reversed_ != 0.0, smallest / 100, largest / 100, trim / 100, curve)
-        outputs.append(fit.drive(wheel) if index < driven else fit.steer(wheel))
-    return tuple(outputs)
+        found.append(Fit(reversed_ != 0.0, smallest / 100, largest / 100, trim / 100, curve))
+    return found
+
+
+def fitted(wheels: Sequence[float], driven: int, each: Sequence[Fit]) -> tuple[float, ...]:
+    """What the motors get, of which the first `driven` drive; each -1..1 where its wheel's value is."""
+    pairs = enumerate(zip(wheels, each, strict=False))
+    return tuple([fit.drive(wheel) if at < driven else fit.steer(wheel) for at, (wheel, fit) in pairs])

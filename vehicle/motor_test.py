@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dialects.enums import DriveType
-from vehicle.fit import fitted
+from vehicle.fit import fits_of, fitted
 from vehicle.lock import MotorLock
 from vehicle.mixer import MIXERS
 from vehicle.motors import open_motors
@@ -50,7 +50,7 @@ def wish(motor: str, throttle: float, seconds: float, params: Params) -> Wish:
         raise RefusedError(f"time {seconds:g} s is not more than 0 and at most {LONGEST:g}")
     wheels = [0.0] * len(names)
     wheels[known[motor.lower()]] = throttle
-    return Wish(fitted(wheels, mixer.driven, params), seconds)
+    return Wish(fitted(wheels, mixer.driven, fits_of(params)), seconds)
 
 
 def turn(table: Mapping[str, Any], wanted: Wish) -> signal.Signals | None:

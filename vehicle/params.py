@@ -183,6 +183,8 @@ class Params:
         """
         self.pinned = frozenset(pinned)
         self._usual = dict(usual or {})
+        self.changes = 0
+        """Grows with each value that is put in force: what was derived from values may be kept until then."""
         self.damage: str | None = None
         """Why saved values could not be had; nobody arms before somebody has set one anew."""
         self.untold: set[str] = set()
@@ -220,6 +222,7 @@ class Params:
             raise ParamError(f"{name} must be a whole number, not {value:g}")
         self._refuse_descent({**self._values, name: value})
         self._values[name] = float(value)
+        self.changes += 1
         self.untold.add(name)
 
     @staticmethod

@@ -89,3 +89,13 @@ def test_time_that_stands_still_changes_nothing() -> None:
     before = run(drive, demand(0.5), cycles=5).throttles
     assert drive.step(demand(1.0), CLEARED, limited=False, now=0.1).throttles == before
     assert drive.step(demand(1.0), CLEARED, limited=False, now=0.05).throttles == before
+
+
+def test_a_parameter_that_is_set_while_driving_counts_from_the_next_cycle() -> None:
+    params = Params()
+    drive = Drive(params, 0.0)
+    assert run(drive, demand(1.0)).throttles == (1.0, 1.0)
+    params.set("MOT1_MAX", 60)
+    assert drive.step(demand(1.0), CLEARED, limited=False, now=2.02).throttles == (0.6, 1.0)
+    params.set("MOT_DECEL", 1000)
+    assert drive.step(demand(0.0), CLEARED, limited=False, now=2.04).throttles[1] == pytest.approx(0.8)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle.fit import NAMES, Fit, fitted, thrust
+from vehicle.fit import NAMES, Fit, fits_of, fitted, thrust
 from vehicle.mixer import MIXERS
 from vehicle.params import MOTORS, PARAMETERS, Params
 
@@ -105,9 +105,9 @@ def test_the_curve_is_ardurovers(throttle: float, curve: float) -> None:
 
 def test_each_motor_has_its_own() -> None:
     params = Params({"MOT1_REVERSED": 1, "MOT2_MIN": 20, "MOT3_MAX": 50, "MOT4_TRIM": -10})
-    assert fitted((0.5,) * 4, 4, params) == pytest.approx((-0.5, 0.6, 0.25, 0.4))
+    assert fitted((0.5,) * 4, 4, fits_of(params)) == pytest.approx((-0.5, 0.6, 0.25, 0.4))
     params = Params({"MOT1_TRIM": 10, "MOT2_TRIM": 10, "MOT2_MIN": 50})
-    assert fitted((0.0, 0.0), 1, params) == pytest.approx((0.0, 0.1))
+    assert fitted((0.0, 0.0), 1, fits_of(params)) == pytest.approx((0.0, 0.1))
 
 
 def test_there_are_parameters_for_every_motor() -> None:
