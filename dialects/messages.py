@@ -29,6 +29,7 @@ SetPositionTargetLocalNed = rover.MAVLink_set_position_target_local_ned_message
 SetPositionTargetGlobalInt = rover.MAVLink_set_position_target_global_int_message
 SetAttitudeTarget = rover.MAVLink_set_attitude_target_message
 SetMode = rover.MAVLink_set_mode_message
+SetGpsGlobalOrigin = rover.MAVLink_set_gps_global_origin_message
 RoverOperatorPresence = rover.MAVLink_rover_operator_presence_message
 
 # Parameters, missions, files, logs

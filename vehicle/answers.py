@@ -22,6 +22,7 @@ from vehicle.links import Links
 from vehicle.logbook import Logbook, Recording
 from vehicle.navigator import Navigator
 from vehicle.orders import Orders
+from vehicle.origin import OriginSetting
 from vehicle.param_service import Keeper, ParamService
 from vehicle.params import Params
 from vehicle.plans import PlanKeeper, Plans
@@ -75,6 +76,7 @@ class Answers:
         )
         self._commands = Commands(safety, control, texts)
         self._orders = Orders(params, safety, control, navigator, texts)
+        self._origin = OriginSetting(safety, control, navigator, texts, look)
         self._plans = Plans(
             params, safety, control, navigator, texts, drive.mixer.servos, pacer=pacer, keeper=keepers.plans
         )
@@ -84,7 +86,7 @@ class Answers:
         )
         self._preflight = Preflight(params, safety, control, self._params, texts)
         self._requests = Requests(telemetry, look, self._services.messages(), links)
-        tables = (self._commands, self._requests, self._orders, self._plans, trials, self._preflight)
+        tables = (self._commands, self._requests, self._orders, self._origin, self._plans, trials, self._preflight)
         handlers = {command: handler for each in tables for command, handler in each.handlers().items()}
         self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
 
@@ -108,6 +110,8 @@ class Answers:
             case m.SetPositionTargetLocalNed() | m.SetPositionTargetGlobalInt() | m.SetAttitudeTarget() as message:
                 if self._orders.setpoint(received, message, now):
                     self._navigator.step(self._safety, now)
+            case m.SetGpsGlobalOrigin(target_system=self._system) as message:
+                answers = self._origin.receive(received, message, now)
             case m.SetMode(target_system=self._system) as message:
                 self._commands.set_mode(received, message, now)
             case _:
@@ -144,4 +148,6 @@ class Answers:
         if message.target_system == 0 and not self._commands.for_everybody(message):
             return []
         answers = self._server.receive(received, now)
-        return answers + self._commands.messages_to_send() + self._requests.messages_to_send()
+        for each in (self._commands, self._requests, self._origin):
+            answers += each.messages_to_send()
+        return answers

@@ -8,6 +8,9 @@ from link.services.command_jobs import Job
 from vehicle.control import Control
 from vehicle.texts import Texts
 
+GLOBAL_FRAMES = (0, 3, 5, 6)
+"""MAV_FRAME_GLOBAL, _RELATIVE_ALT and their _INT: frames that a place on the globe may have."""
+
 
 class Asking:
     """Knows who is in control, and what to say to the others."""
@@ -34,3 +37,17 @@ class Asking:
         name = Command(request.command).name
         self._texts.say(Severity.WARNING, f"GCS {request.system}: {name} refused: {why}", now)
         return Result.FAILED
+
+
+def asked_place(request: CommandRequest) -> tuple[float, float] | Result:
+    """Latitude and longitude, degrees x 1e7, of parameters 5 and 6; or the answer where they are none."""
+    if request.is_int and request.frame not in GLOBAL_FRAMES:
+        return Result.UNSUPPORTED_FRAME
+    scale = 1.0 if request.is_int else 1e7
+    latitude, longitude = request.params[4] * scale, request.params[5] * scale
+    return Result.DENIED if nowhere(latitude, longitude) else (latitude, longitude)
+
+
+def nowhere(latitude: float, longitude: float) -> bool:
+    """0/0, INT32_MAX, NaN and what is beyond the poles, in degrees x 1e7."""
+    return not (abs(latitude) <= 90e7 and abs(longitude) <= 180e7) or (latitude, longitude) == (0, 0)

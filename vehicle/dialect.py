@@ -36,6 +36,7 @@ COMMANDS: dict[Command, tuple[str, str]] = {
     Command.DO_CHANGE_SPEED: (DRIVER, "1: 0 or 1; 2: m/s, -1 no change, -2 as usual"),
     Command.DO_SET_REVERSE: (DRIVER, "1: 1 backwards along the path, 0 forwards"),
     Command.DO_SET_HOME: (DRIVER, "1: 1 here; 0: the place in 5 to 7"),
+    Command.DO_SET_GLOBAL_ORIGIN: (DRIVER, "disarmed; 5, 6: place that local positions count from"),
     Command.NAV_RETURN_TO_LAUNCH: (DRIVER, "RTL"),
     Command.DO_PAUSE_CONTINUE: (STOPS, "1: 0 stand, 1 go on"),
     Command.MISSION_START: (DRIVER, "1: first item"),

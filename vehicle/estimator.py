@@ -136,6 +136,13 @@ class Estimator:
         self.estimate = self._believed(rate, wheels, now)
         return self.estimate
 
+    def rebase(self, origin: Origin) -> None:
+        """`origin` is 0/0 from now on, and the rover where it is on the globe. Nothing before the first fix."""
+        if self._origin is not None:
+            self._reckoning.put(origin.point(*self._origin.globe(self._reckoning.place)))
+            self._origin = origin
+            self.estimate = self.estimate._replace(place=self._reckoning.place, origin=origin)
+
     def _turn(self, rate: float | None, compass: float | None, dt: float) -> None:
         if self._yaw is None:
             self._yaw = compass

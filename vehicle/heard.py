@@ -47,6 +47,8 @@ TABLE: tuple[Heard, ...] = (
     Heard(m.CommandCancel, Who.ANYBODY, "ends a command that takes a while, of the same sender",
           "link/services/command_jobs.py"),
     Heard(m.SetMode, Who.NOBODY_ELSE, "as DO_SET_MODE, without an answer; HOLD is everybody's", "vehicle/commands.py"),
+    Heard(m.SetGpsGlobalOrigin, Who.NOBODY_ELSE, "as DO_SET_GLOBAL_ORIGIN; answered by GPS_GLOBAL_ORIGIN",
+          "vehicle/origin.py"),
     Heard(m.RequestDataStream, Who.INTRODUCED, "rates of a group of streams", "vehicle/telemetry.py"),
     Heard(m.SetupSigning, Who.ANYBODY, "is told that signing is not offered; its key is not kept",
           "vehicle/preflight.py"),

@@ -83,7 +83,7 @@ def global_position_int(view: View) -> m.Message | None:
 
 
 def gps_global_origin(view: View) -> m.Message | None:
-    """GPS_GLOBAL_ORIGIN: where 0/0 of LOCAL_POSITION_NED is. The first fix decides it, and nobody moves it."""
+    """GPS_GLOBAL_ORIGIN: where 0/0 of LOCAL_POSITION_NED is. The first fix decides it, until somebody sets it."""
     origin = view.estimate.origin
     if origin is None:
         return None

@@ -27,7 +27,7 @@ from vehicle.mixer import FOUR_WHEELS, MIXERS
 from vehicle.modes import OFFERED, Need
 from vehicle.params import Params
 from vehicle.pilot import STAND, Motion, Pilot
-from vehicle.place import Home, Point
+from vehicle.place import Home, Origin, Point
 from vehicle.plan_runner import Mission, Progress
 from vehicle.rally import Havens
 from vehicle.readings import NO_READINGS, Readings
@@ -127,6 +127,19 @@ class Navigator:
         if self.home is None and estimate.globe is not None:
             self.home = Home(*estimate.globe, readings.altitude or 0.0, *estimate.place)
         self.boundary.sense(estimate, now)
+
+    def rebase(self, origin: Origin, safety: Safety, now: float) -> None:
+        """Count metres from another place on the globe. Only while disarmed: then no way is kept but the mode's."""
+        self.renew(safety, now)
+        self._estimator.rebase(origin)
+        if self.home is not None:
+            point = origin.point(self.home.latitude, self.home.longitude)
+            self.home = self.home._replace(north=point.north, east=point.east)
+        self.guide.begin()
+        behaviour = self._behaviours.get(safety.mode)
+        if behaviour:
+            behaviour.begin(self.estimate, now)
+        self.boundary.sense(self.estimate, now)
 
     def offers(self, need: Need) -> bool:
         """There is a sensor for it, whether or not it is well at this moment: menus should not flicker."""

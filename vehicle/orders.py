@@ -12,7 +12,7 @@ from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from link.core import Received
 from link.services.command import CommandRequest, Handler, Run
-from vehicle.asking import Asking
+from vehicle.asking import GLOBAL_FRAMES, Asking, asked_place, nowhere
 from vehicle.control import Control
 from vehicle.modes import OFFERED
 from vehicle.navigator import USUAL_SPEED, Navigator
@@ -32,8 +32,6 @@ from vehicle.setpoints import (
 )
 from vehicle.texts import Texts
 
-GLOBAL_FRAMES = (0, 3, 5, 6)
-"""MAV_FRAME_GLOBAL, _RELATIVE_ALT and their _INT: what DO_REPOSITION and DO_SET_HOME may use."""
 CHANGE_MODE = 1
 """MAV_DO_REPOSITION_FLAGS_CHANGE_MODE"""
 AIRSPEED, GROUNDSPEED = 0, 1
@@ -128,7 +126,7 @@ class Orders:
             return Result.DENIED
         if not (speed == KEEP_SPEED or math.isnan(speed) or 0.0 < speed <= 1e3):
             return Result.DENIED
-        if _nowhere(request.x, request.y):
+        if nowhere(request.x, request.y):
             return Result.DENIED
         return self._go(request, speed if speed > 0.0 else None, now)
 
@@ -191,11 +189,11 @@ class Orders:
 
     @staticmethod
     def _home_at(request: CommandRequest, navigator: Navigator) -> Result:
-        if request.is_int and request.frame not in GLOBAL_FRAMES:
-            return Result.UNSUPPORTED_FRAME
-        scale = 1.0 if request.is_int else 1e7
-        latitude, longitude, altitude = request.params[4] * scale, request.params[5] * scale, request.params[6]
-        point = None if _nowhere(latitude, longitude) else globe_point(latitude, longitude, navigator.estimate)
+        place, altitude = asked_place(request), request.params[6]
+        if isinstance(place, Result):
+            return place
+        latitude, longitude = place
+        point = globe_point(latitude, longitude, navigator.estimate)
         if point is None or not abs(altitude) < 1e5:
             return Result.DENIED
         navigator.home = Home(latitude / 1e7, longitude / 1e7, altitude, *point)
@@ -222,8 +220,3 @@ class Orders:
                 return self._asking.refuse(request, refusal, now)
         self._navigator.paused = wish == 0
         return Result.ACCEPTED
-
-
-def _nowhere(latitude: float, longitude: float) -> bool:
-    """0/0, INT32_MAX, NaN and what is beyond the poles, in degrees x 1e7."""
-    return not (abs(latitude) <= 90e7 and abs(longitude) <= 180e7) or (latitude, longitude) == (0, 0)

@@ -182,8 +182,10 @@ def reposition(params: tuple[float, ...], result: Result, place: tuple[int, int]
 ARM, MODE, STANDARD, SWITCH = (
     C.COMPONENT_ARM_DISARM, C.DO_SET_MODE, C.DO_SET_STANDARD_MODE, C.DO_SET_SAFETY_SWITCH_STATE)  # fmt: skip
 
+ORIGIN, HERE = C.DO_SET_GLOBAL_ORIGIN, (0, 0, 0, 0, 48.1, 11.5, 500)
+
 ROWS: tuple[Row, ...] = (
-    Row(65535, (), R.UNSUPPORTED), Row(521, (1,), R.UNSUPPORTED), Row(611, (), R.UNSUPPORTED),
+    Row(65535, (), R.UNSUPPORTED), Row(521, (1,), R.UNSUPPORTED),
     other(65535, (), R.UNSUPPORTED), stranger(65535, (), R.UNSUPPORTED), everybody(65535, (), None),
     # Arming: of the driver; disarming: of everybody
     Row(ARM, (1,), R.ACCEPTED), Row(ARM, (1,), R.ACCEPTED, free), Row(ARM, (1,), R.ACCEPTED, armed),
@@ -244,6 +246,12 @@ ROWS: tuple[Row, ...] = (
     Row(C.DO_SET_HOME, (0, 0, 0, 0, NAN, 11.5, 500), R.DENIED, placed), Row(C.DO_SET_HOME, (2,), R.DENIED),
     Row(C.DO_SET_HOME, (0,), R.UNSUPPORTED_FRAME, placed, place=SOMEWHERE, frame=1),
     other(C.DO_SET_HOME, (1,), R.FAILED, placed),
+    Row(ORIGIN, HERE, R.ACCEPTED, placed), Row(ORIGIN, (), R.ACCEPTED, placed, place=SOMEWHERE),
+    Row(ORIGIN, HERE, R.TEMPORARILY_REJECTED, ready), Row(ORIGIN, HERE, R.FAILED),
+    other(ORIGIN, HERE, R.FAILED, placed), stranger(ORIGIN, HERE, R.FAILED), Row(ORIGIN, (), R.DENIED, placed),
+    Row(ORIGIN, (*HERE[:4], NAN, 11), R.DENIED), Row(ORIGIN, (*HERE[:4], 48, 11.5), R.FAILED, placed),
+    Row(ORIGIN, (), R.DENIED, placed, place=(2**31 - 1, 2**31 - 1)),
+    Row(ORIGIN, (), R.UNSUPPORTED_FRAME, placed, place=SOMEWHERE, frame=1),
     Row(C.NAV_RETURN_TO_LAUNCH, (), R.ACCEPTED, ready), Row(C.NAV_RETURN_TO_LAUNCH, (), R.FAILED, armed),
     other(C.NAV_RETURN_TO_LAUNCH, (), R.FAILED, ready),
     Row(C.DO_SET_REVERSE, (1,), R.ACCEPTED), Row(C.DO_SET_REVERSE, (0,), R.ACCEPTED),
