@@ -156,7 +156,7 @@ class Channel:
         for frame in frames:
             number, system, component, sequence, _ = frame
             sender = (system, component)
-            if not system or not component or sender == self.ids:
+            if not system or sender == self.ids:  # component 0 is what pymavlink sends unless told otherwise
                 self._own_id |= sender == self.ids
                 continue
             state.heard, state.silent = now, False

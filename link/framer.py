@@ -195,7 +195,7 @@ class Framer:
     def _unknown_at(self, data: bytes, start: int, size: int) -> Frame | _Missing:
         """The frame of an id outside the dialect at `start`, as far as its borders can tell."""
         header = read_header(data, start)
-        if header is None or header.message_id in CRC_EXTRA or not (header.system and header.component):
+        if header is None or header.message_id in CRC_EXTRA or not header.system:
             return _Missing.FRAME
         end = start + header.size
         if end > size:

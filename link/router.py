@@ -137,7 +137,7 @@ class Router:
     def _learn(self, peer: RoutedPeer, frame: Frame, now: float) -> Source | None:
         """The entry of a source that is new here; None for frames that go nowhere."""
         key = (frame.system, frame.component)
-        if not frame.system or not frame.component or key == self._own:
+        if not frame.system or key == self._own:  # component 0 is what pymavlink sends unless told otherwise
             return None
         source = Source(key, frame.sequence, now)
         if frame.message_id not in CRC_EXTRA or not self.table.learn(peer, source):

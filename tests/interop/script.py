@@ -24,9 +24,11 @@ STICK = 0.05
 class Script:
     """One connection, which says its HEARTBEAT once a second while it receives."""
 
-    def __init__(self, port: int, system: int = 255) -> None:
+    def __init__(self, port: int, system: int = 255, component: int = 190) -> None:
         mavutil.set_dialect("common")
-        self.link = mavutil.mavlink_connection(f"udpin:127.0.0.1:{port}", source_system=system, source_component=190)
+        self.link = mavutil.mavlink_connection(
+            f"udpin:127.0.0.1:{port}", source_system=system, source_component=component
+        )
         self._beat_due = 0.0
         assert self.link.wait_heartbeat(timeout=15) is not None
         self._beat()

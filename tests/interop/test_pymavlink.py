@@ -18,8 +18,8 @@ ROVER_MODES = {"HOLD": 4, "MANUAL": 0}
 
 @pytest.fixture
 def script(rover: Rover) -> Iterator[Script]:
-    """mavutil, connected, with its own HEARTBEAT said."""
-    with Script(rover.port) as script:
+    """mavutil with the ids that it has unless told otherwise, connected, with its own HEARTBEAT said."""
+    with Script(rover.port, 255, 0) as script:
         yield script
 
 

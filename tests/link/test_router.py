@@ -201,9 +201,16 @@ def test_unknown_frames_teach_no_routes() -> None:
     assert [route.system for route in rig.router.table.routes(1.0)] == [1, 255]
 
 
-@pytest.mark.parametrize("ids", [(0, 1), (1, 0)])
-def test_zero_ids_go_nowhere(ids: tuple[int, int]) -> None:
+@pytest.mark.parametrize("ids", [(0, 1), (0, 0)])
+def test_system_0_goes_nowhere(ids: tuple[int, int]) -> None:
     assert Rig().send(SERIAL, heartbeat(1, *ids)) == {}
+
+
+def test_component_0_of_a_pymavlink_script_is_a_source_like_others() -> None:
+    rig = Rig()
+    assert set(rig.send(UDP, heartbeat(0, 254, 0))) == set(rig.send(UDP, heartbeat(0, 253, 190))) != set()
+    assert (254, 0) in [(route.system, route.component) for route in rig.router.table.routes(1.0)]
+    assert set(rig.send(SERIAL, frame(CommandLong(254, 0, 400, 0, 1, 0, 0, 0, 0, 0, 0), 1, 1, 1))) == {(UDP, GCS)}
 
 
 # ---- redundant links ----
