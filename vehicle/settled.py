@@ -32,7 +32,7 @@ class Settled:
 
 
 def settled(config: Config, folder: str | None = None) -> Settled:
-    """As vehicle/daemon.py does it: defaults, a known car's, kept ones, the file's. `folder` wins over the file's."""
+    """As vehicle/assembly.py does it: defaults, a known car's, kept ones, the file's. `folder` wins over the file's."""
     where = state_of(folder or config.state)
     store = ParamStore(where)
     usual = USUAL_PARAMS.get(config.motors.get("driver", ""), {})

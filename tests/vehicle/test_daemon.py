@@ -20,8 +20,10 @@ from link.runner import Runner
 from tests.vehicle.ground import Ground, drive, running
 from tests.vehicle.script import driving
 from vehicle import daemon
-from vehicle.daemon import FAULT, MISTAKE, Ending, Settings, Simulation
+from vehicle.daemon import FAULT, MISTAKE
+from vehicle.ending import Ending
 from vehicle.motors import MotorError
+from vehicle.run_settings import Settings, Simulation
 
 BREAKING = "tests.vehicle.motors.breaking"
 

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from vehicle import daemon
-from vehicle.__main__ import GROUND_STATION, main
-from vehicle.daemon import Settings
+from vehicle.__main__ import main
+from vehicle.command_line import GROUND_STATION
+from vehicle.run_settings import Settings, Simulation
 from vehicle.sensors.gps import GpsSettings
 from vehicle.sensors.suite import SensorSettings
 
@@ -31,7 +32,7 @@ def settings_of(monkeypatch: pytest.MonkeyPatch, *words: str) -> Settings:
 def test_the_simulator_needs_one_word(monkeypatch: pytest.MonkeyPatch) -> None:
     settings = settings_of(monkeypatch, "--sim")
     assert settings.endpoints == (GROUND_STATION,)
-    assert settings.simulation == daemon.Simulation()
+    assert settings.simulation == Simulation()
     assert settings.params == {"FS_LOOP_TIMEOUT": 1.0}
 
 

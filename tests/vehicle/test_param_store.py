@@ -15,11 +15,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle import daemon, settled
-from vehicle.daemon import Settings, Simulation
+from vehicle import settled
+from vehicle.assembly import params_of
 from vehicle.param_file import dump, parsed
 from vehicle.param_store import ParamStore
 from vehicle.params import PARAMETERS
+from vehicle.run_settings import Settings, Simulation
 from vehicle.sealed import DamagedError
 
 VALUES = {"MAN_TIMEOUT": 0.4, "SPEED_MAX": 2.0}
@@ -170,7 +171,7 @@ def test_what_wins(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     """Kept over defaults, the file of settings over kept, this run over all."""
     kept(tmp_path, SPEED_MAX=2.0, TRACK_WIDTH=1.0, WHEELBASE=1.0, GONE=1.0, MAN_TIMEOUT=99.0)
     settings = Settings((), pinned={"TRACK_WIDTH": 2.0}, params={"WHEELBASE": 3.0})
-    params = daemon._params(settings, ParamStore(tmp_path))
+    params = params_of(settings, ParamStore(tmp_path))
     assert [params[name] for name in ("SPEED_MAX", "TRACK_WIDTH", "WHEELBASE", "MAN_TIMEOUT")] == [2.0, 2.0, 3.0, 0.45]
     assert params.pinned == {"TRACK_WIDTH"}
     assert [record.levelname for record in caplog.records] == ["WARNING", "WARNING"]
@@ -180,9 +181,9 @@ def test_what_wins(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
 def test_a_known_cars_parameters_are_its_defaults(tmp_path: Path) -> None:
     kept(tmp_path, MOT2_MAX=80.0)
     settings = Settings((), motors={"driver": "article-car"}, pinned={"MOT_PIVOT_MAX": 50.0})
-    params = daemon._params(settings, ParamStore(tmp_path))
+    params = params_of(settings, ParamStore(tmp_path))
     assert [params[name] for name in ("MOT1_MAX", "MOT2_MAX", "MOT_PIVOT_MAX")] == [60.0, 80.0, 50.0]
-    simulated = daemon._params(replace(settings, simulation=Simulation()), None)
+    simulated = params_of(replace(settings, simulation=Simulation()), None)
     assert simulated["MOT1_MAX"] == 100.0
 
 
@@ -200,5 +201,5 @@ def test_where_the_programs_beside_a_vehicle_look(tmp_path: Path, monkeypatch: p
 
 def test_damage_reaches_the_arming_checks(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "parameters").write_text("half")
-    assert daemon._params(Settings(()), ParamStore(tmp_path)).damage == "parameter file damaged"
+    assert params_of(Settings(()), ParamStore(tmp_path)).damage == "parameter file damaged"
     assert "nobody can arm" in caplog.text

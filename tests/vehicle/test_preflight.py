@@ -13,7 +13,7 @@ from dialects.enums import Command, Result
 from link.tlog import read, record
 from tests.vehicle.bench import AHEAD, DRIVER, OTHER, Bench, said
 from tests.vehicle.ground import Ground, drive, running
-from vehicle.daemon import Ending
+from vehicle.ending import Ending
 from vehicle.leaving import Leave
 from vehicle.params import Params
 from vehicle.rover import Rover

@@ -195,7 +195,7 @@ def _made(name: str, driver: Any, own: Any) -> Any:
     except MotorError:
         raise
     except Exception as error:
-        raise MotorError(f"motor driver {name!r} does not start: {_line(error)}") from error
+        raise MotorError(f"driver {name!r} does not start: {_line(error)}") from error
 
 
 def _fitting(name: str, motors: Any) -> Motors:

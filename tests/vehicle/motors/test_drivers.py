@@ -149,7 +149,7 @@ class Broken:
 def test_a_driver_of_your_own_that_does_not_start_is_said_in_one_line() -> None:
     with pytest.raises(MotorError) as caught:
         open_motors(f"{__name__}:Broken")
-    assert str(caught.value) == f"motor driver '{__name__}:Broken' does not start: ValueError: no hardware"
+    assert str(caught.value) == f"driver '{__name__}:Broken' does not start: ValueError: no hardware"
 
 
 def test_checked_gives_what_it_was_given() -> None:
