@@ -35,6 +35,7 @@ class Control:
         self.presence = Presence()
         self.override = Override()
         self._params = params
+        self._sideways = MIXERS[DriveType(int(params["DRIVE_TYPE"]))].sideways
         self._texts = texts
         self.system = system
         self._boot = boot
@@ -98,9 +99,9 @@ class Control:
             return False
         if self.demand and self.demand.sequence == received.sequence:
             return False  # the same packet again: a replay
-        sideways = MIXERS[DriveType(int(self._params["DRIVE_TYPE"]))].sideways
-        demand = from_manual_control(message, received.system, received.sequence, now, sideways=sideways)
-        self.invalid_axes += sum(abs(axis) > 1000 and axis != INVALID_AXIS for axis in (message.x, message.r))
+        demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
+        for axis in (message.x, message.r):
+            self.invalid_axes += abs(axis) > 1000 and axis != INVALID_AXIS
         if demand is None:
             return False
         if not self._echo_is_stale():

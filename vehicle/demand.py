@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from dialects import axes
 from dialects.messages import ManualControl, RcChannelsOverride
@@ -16,8 +17,7 @@ PULSE_MIN, PULSE_MAX = 800, 2200
 """us: anything else is no pulse of a radio."""
 
 
-@dataclass(frozen=True, slots=True)
-class Demand:
+class Demand(NamedTuple):
     """What a driver asks for. None on an axis is "no demand there": neutral, but no proof of a stick at rest."""
 
     throttle: float | None
@@ -34,12 +34,14 @@ class Demand:
 
     def neutral(self, band: float) -> bool:
         """All sticks are at rest."""
-        sideways = self.sideways or 0.0
-        return all(axis is not None and abs(axis) <= band for axis in (self.throttle, self.steering, sideways))
+        throttle, steering = self.throttle, self.steering
+        if throttle is None or steering is None:
+            return False
+        return abs(throttle) <= band and abs(steering) <= band and abs(self.sideways or 0.0) <= band
 
     def moving(self, band: float) -> bool:
         """Any stick asks for motion."""
-        return any(axis is not None and abs(axis) > band for axis in (self.throttle, self.steering, self.sideways))
+        return abs(self.throttle or 0.0) > band or abs(self.steering or 0.0) > band or abs(self.sideways or 0.0) > band
 
 
 def from_manual_control(

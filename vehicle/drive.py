@@ -12,7 +12,10 @@ from vehicle.outputs import Clearance, Gate, Outputs, Permit, Trial
 from vehicle.params import Params
 from vehicle.slew import Slew, SlewLimits
 
-NO_LIMIT = Limit(0)
+SATURATED, SPEED, SLEW, REVERSE_DELAY = (
+    each.value for each in (Limit.SATURATED, Limit.SPEED, Limit.SLEW, Limit.REVERSE_DELAY)
+)
+"""Bits as plain numbers: sums of flags cost a microsecond each, and a demand is to be at the motors within 30."""
 HALF = 0.5
 """Largest throttle while a failsafe limits the speed (vehicle.md, battery low)."""
 
@@ -24,8 +27,7 @@ class Drive:
     def __init__(self, params: Params, now: float) -> None:
         self.kind = DriveType(int(params["DRIVE_TYPE"]))
         self.mixer = MIXERS[self.kind]
-        self.limits = NO_LIMIT
-        """Why the outputs differ from the demand, as far as this side knows."""
+        self._limits = 0
         self.outputs = Outputs((0.0,) * len(self.mixer.motors), enabled=False)
         self._params = params
         self._slews = [Slew() for _ in self.mixer.motors]
@@ -35,6 +37,11 @@ class Drive:
         self._tested: int | None = None
         """The motor that a test turns."""
         self._at = now
+
+    @property
+    def limits(self) -> Limit:
+        """Why the outputs differ from the demand, as far as this side knows."""
+        return Limit(self._limits)
 
     @property
     def wheels(self) -> tuple[float, ...]:
@@ -56,7 +63,7 @@ class Drive:
         """The outputs of this moment. `limited`: a failsafe asks for half speed."""
         permit = clearance.permit
         dt, self._at = max(0.0, now - self._at), now
-        self.limits = NO_LIMIT
+        self._limits = 0
         if self._tuned != self._params.changes:
             self._tune()
         trial = clearance.trial if permit is Permit.TEST else None
@@ -80,15 +87,12 @@ class Drive:
             return (0.0,) * len(self._slews)
         throttle, steering, sideways = shape(demand, self._params)
         throttle, sideways = self._cap(throttle, limited), self._cap(sideways, limited)
-        params = self._params
-        mixed = self.mixer.mix(
-            throttle, steering, sideways, AtLimit(params["MOT_STR_THR_MIX"], params["MOT_THST_ASYM"])
-        )
+        mixed = self.mixer.mix(throttle, steering, sideways, self._at_limit)
         if mixed.saturated:
-            self.limits |= Limit.SATURATED
+            self._limits |= SATURATED
         if self._driven < len(self._slews):
             return mixed.throttles
-        share = pivot_share(throttle, steering, sideways, params["MOT_PIVOT_MAX"] / 100)
+        share = pivot_share(throttle, steering, sideways, self._params["MOT_PIVOT_MAX"] / 100)
         return tuple([share * value for value in mixed.throttles])
 
     def _alone(self, trial: Trial) -> tuple[float, ...]:
@@ -100,7 +104,7 @@ class Drive:
         if limited:
             largest = min(largest, HALF)
         if abs(throttle) > largest:
-            self.limits |= Limit.SPEED
+            self._limits |= SPEED
         return clamp(throttle, largest)
 
     def _ramped(self, targets: Sequence[float], dt: float) -> tuple[float, ...]:
@@ -111,16 +115,18 @@ class Drive:
         """What follows from parameters, as long as they do not change."""
         params, self._tuned = self._params, self._params.changes
         self._fits = fits_of(params)
+        self._at_limit = AtLimit(params["MOT_STR_THR_MIX"], params["MOT_THST_ASYM"])
         accel, decel = params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100
         wheel = SlewLimits(accel, decel, params["MOT_REV_DELAY"])
         servo = SlewLimits(accel, decel)  # its gears do not mind a reversal; the rover would go straight on meanwhile
         self._rates = [wheel if at < self._driven else servo for at in range(len(self._slews))]
 
     def _note_limits(self) -> None:
-        if any(slew.limited for slew in self._slews):
-            self.limits |= Limit.SLEW
-        if any(slew.waiting for slew in self._slews):
-            self.limits |= Limit.REVERSE_DELAY
+        for slew in self._slews:
+            if slew.limited:
+                self._limits |= SLEW
+            if slew.waiting:
+                self._limits |= REVERSE_DELAY
 
 
 def shape(demand: Demand, params: Params) -> tuple[float, float, float]:

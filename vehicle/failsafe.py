@@ -140,6 +140,8 @@ class Failsafes:
 
     def action(self, now: float) -> Action:
         """The worst up to NEUTRAL that holds now: a HOLD or DISARM is carried by the mode and the state."""
+        if not self._since:  # nearly always
+            return Action.WARN
         lasting = [self._lasting(cause, now) for cause in self._since]
         return max(lasting, default=Action.WARN)
 

@@ -8,20 +8,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from dialects.enums import DriveType
 
 
-@dataclass(frozen=True, slots=True)
-class Mixed:
+class Mixed(NamedTuple):
     """Motor values -1..1 in motor order, and whether the demand had to be cut to fit."""
 
     throttles: tuple[float, ...]
     saturated: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class AtLimit:
+class AtLimit(NamedTuple):
     """What a mixer goes by where not all fits (MOT_STR_THR_MIX, MOT_THST_ASYM)."""
 
     mix: float = 0.5

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple, Protocol
 
 from dialects import messages as m
@@ -213,7 +212,7 @@ class Navigator:
         else:
             rate = steering * math.radians(self._params["ACRO_TURN_RATE"])
             steering = self._pilot.turn(rate, self.estimate, now)
-        return replace(demand, throttle=throttle, steering=steering, sideways=sideways, direct=True)
+        return demand._replace(throttle=throttle, steering=steering, sideways=sideways, direct=True)
 
     def rest(self) -> None:
         """The motors may not follow: ramps and integrals begin anew."""

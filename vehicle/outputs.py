@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 SLACK = 0.05
 """s that a deceleration may take longer than its ramp: two cycles of 20 ms and a little, because it begins in one."""
@@ -18,10 +19,9 @@ TRIAL_LARGEST, TRIAL_LONGEST = 0.3, 3.0
 What the motor gets of it follows its parameters, as when driving."""
 
 
-@dataclass(frozen=True, slots=True)
-class Outputs:
-    """What the motors must get now. `throttles` are -1..1 in motor order: left, right or throttle, steering. Each is as
-    its motor is wired (vehicle/fit.py), and all are zero where not enabled."""
+class Outputs(NamedTuple):
+    """What the motors must get now; made with each demand. `throttles` are -1..1 in motor order: left, right or
+    throttle, steering. Each is as its motor is wired (vehicle/fit.py), and all are zero where not enabled."""
 
     throttles: tuple[float, ...]
     enabled: bool
@@ -52,9 +52,8 @@ class Trial:
     throttle: float
 
 
-@dataclass(frozen=True, slots=True)
-class Clearance:
-    """The facts that decide about motion."""
+class Clearance(NamedTuple):
+    """The facts that decide about motion; made with each demand."""
 
     armed: bool = False
     late: bool = False
@@ -113,8 +112,11 @@ class Gate:
     def _sound(self, wheels: Sequence[float], motors: Sequence[float]) -> bool:
         # NaN fails every comparison, so that it is refused here too.
         count = len(self._still)
-        sound = len(wheels) == len(motors) == count and all(-1.0 <= value <= 1.0 for value in (*wheels, *motors))
-        sound = sound and not any(motors[each] for each in range(self._driven) if not wheels[each])
+        sound = len(wheels) == len(motors) == count
+        for value in (*wheels, *motors):
+            sound = sound and -1.0 <= value <= 1.0
+        for each in range(self._driven if sound else 0):
+            sound = sound and bool(wheels[each] or not motors[each])
         self.refused = 0 if sound else self.refused + 1
         return sound
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 ROUNDING = 1e-9
 """Steps that add up to the whole way may miss it by a rounding error; nobody waits a cycle for that."""
 
 
-@dataclass(frozen=True, slots=True)
-class SlewLimits:
+class SlewLimits(NamedTuple):
     """Rates in 1/s (1 is from zero to full in a second), delay in s."""
 
     accel: float
