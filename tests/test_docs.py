@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import ast
 import re
+import shlex
 from pathlib import Path
 
 import pytest
 
+from groundstation import __main__ as station_main
+from link.bridge import __main__ as bridge_main
+from vehicle import command_line, verbs
 from vehicle.params import PARAMETERS
 
 ROOT = Path(__file__).parents[1]
@@ -52,6 +56,36 @@ def test_parameters_in_the_safety_document_have_their_defaults() -> None:
     assert len(named) >= 6
     for name, value in named:
         assert PARAMETERS[name].default == float(value), name
+
+
+COMMANDS = re.compile(r"(?:^|\s|bin/)(vehicle|bridge|groundstation)((?: [^#|&;]*)?)(?:[#|&;]|$)")
+"""A command of ours in a line of a shell block, and its words."""
+
+
+def commands(text: str) -> list[tuple[str, list[str]]]:
+    """Commands of ours in the shell blocks of a document."""
+    lines = [line for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL) for line in block.splitlines()]
+    found = [match for line in lines if (match := COMMANDS.search(line.partition(" #")[0]))]
+    return [(match[1], shlex.split(match[2].replace("$word", "reboot"))) for match in found]
+
+
+SHOWN = [(doc.name, program, words) for doc in DOCS for program, words in commands(doc.read_text())]
+
+
+@pytest.mark.parametrize(("doc", "program", "words"), SHOWN, ids=lambda value: str(value))
+def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, words: list[str]) -> None:
+    if program == "vehicle" and words[0] in verbs.VERBS:
+        verbs.parser_of(words[0]).parse_args(words[1:])
+    elif program == "vehicle":
+        command_line.new_parser().parse_intermixed_args(command_line.joined(words))
+    else:
+        {"bridge": bridge_main, "groundstation": station_main}[program]._parser().parse_args(words)
+
+
+def test_commands_are_found_in_the_documents() -> None:
+    found = {(doc, program) for doc, program, _ in SHOWN}
+    assert {("pi.md", "vehicle"), ("bridge.md", "bridge"), ("README.md", "groundstation")} <= found
+    assert {words[0] for doc, _, words in SHOWN if doc == "pi.md"} >= {"init", "check", "motor-test", "systemd-unit"}
 
 
 def test_ci_runs_the_test_command_of_the_readme() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle import verbs
-from vehicle.command_line import GROUND_STATION, USAGE, Parser, joined, new_parser
+from vehicle.command_line import GROUND_STATION, USAGE, Parser, joined, new_parser, unknown_option
 
 if TYPE_CHECKING:
     from vehicle.config import Config
@@ -33,6 +33,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return verbs.run(words)
     try:
         parser = new_parser()
+        if unknown := unknown_option(words):
+            parser.error(unknown)
         return _run(parser.parse_intermixed_args(joined(words)), parser)
     except KeyboardInterrupt:  # before the daemon takes signals; no motor is open yet
         return 0

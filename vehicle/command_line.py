@@ -6,6 +6,7 @@ import argparse
 import difflib
 import math
 import sys
+from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from link.endpoint import EndpointError, endpoint_help, parse
@@ -81,6 +82,17 @@ def new_parser() -> Parser:
     for name, options in OPTIONS.items():
         parser.add_argument(name, **options)
     return parser
+
+
+def unknown_option(words: Sequence[str]) -> str | None:
+    """Words on the first option that there is not; argparse would take its value for an endpoint and name that."""
+    known = [*OPTIONS, "--help"]
+    for word in words:
+        name = word.partition("=")[0]
+        if name.startswith("--") and name not in known:
+            near = difflib.get_close_matches(name, known, n=1)
+            return f"unknown option {name}" + (f"; did you mean {near[0]}?" if near else "")
+    return None
 
 
 def joined(words: list[str]) -> list[str]:

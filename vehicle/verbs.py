@@ -38,14 +38,20 @@ class Verb:
 
 def run(words: Sequence[str]) -> int:
     """Do what the first of `words` says; the exit code."""
-    verb = VERBS[words[0]]
-    parser = _Parser(prog=f"vehicle {words[0]}", description=f"{verb.help[0].upper()}{verb.help[1:]}.")
-    verb.options(parser)
+    parser = parser_of(words[0])
     asked = parser.parse_args(words[1:])
     try:
-        return verb.run(asked)
+        return VERBS[words[0]].run(asked)
     except VerbError as error:
         parser.exit(MISTAKE, f"{parser.prog}: {error}\n")
+
+
+def parser_of(word: str) -> argparse.ArgumentParser:
+    """What reads the rest of the command line after this word."""
+    verb = VERBS[word]
+    parser = _Parser(prog=f"vehicle {word}", description=f"{verb.help[0].upper()}{verb.help[1:]}.")
+    verb.options(parser)
+    return parser
 
 
 def help_lines() -> str:

@@ -146,7 +146,9 @@ def test_a_mistake_in_the_file_is_one_line_and_code_2(capsys: pytest.CaptureFixt
         ("--sim --sim-battery 2", "'2' is not a charge from 0 to 1"),
         ("--sim --sim-seed x", "invalid int value: 'x'"),
         ("--sim --log-file /no/such/folder/log", "log file /no/such/folder/log: No such file or directory"),
-        ("--simm", "unrecognized arguments: --simm"),
+        ("--simm", "unknown option --simm; did you mean --sim?"),
+        ("--sim --parm SPEED_MAX=3", "unknown option --parm; did you mean --param?"),
+        ("--sim --zebra=3", "unknown option --zebra ("),
         ("--sim --home", "expected one argument"),
     ],
 )

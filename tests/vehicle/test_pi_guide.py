@@ -9,18 +9,25 @@ from typing import Any
 
 import pytest
 
+from vehicle.config import Config, parsed
 from vehicle.motors import DRIVERS, check_settings
 from vehicle.params import Params
 from vehicle.sensors.suite import sensor_settings
 
 GUIDE = (Path(__file__).parents[2] / "docs" / "pi.md").read_text()
-TABLES = [tomllib.loads(text) for text in re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)]
+TEXTS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)
+TABLES = [tomllib.loads(text) for text in TEXTS]
 MOTORS = [table["motors"] for table in TABLES if "motors" in table]
 
 
 @pytest.mark.parametrize("table", MOTORS, ids=lambda table: table["driver"])
 def test_a_motor_table_is_right(table: dict[str, Any]) -> None:
     check_settings(table["driver"], {key: value for key, value in table.items() if key != "driver"})
+
+
+@pytest.mark.parametrize("text", TEXTS, ids=lambda text: text.split("\n")[1])
+def test_a_file_of_nothing_but_a_table_of_the_guide_is_right(text: str) -> None:
+    assert isinstance(parsed(text, "rover.toml"), Config)
 
 
 def test_a_table_of_parameters_is_right() -> None:
