@@ -84,7 +84,7 @@ class Answers:
         self._services = Services(
             params, control, self.logbook, missions=self._plans.folder(), ids=self._ids, pacer=pacer
         )
-        self._preflight = Preflight(params, safety, control, self._params, texts)
+        self._preflight = Preflight(params, safety, control, navigator, self._params, texts)
         self._requests = Requests(telemetry, look, self._services.messages(), links)
         tables = (self._commands, self._requests, self._orders, self._origin, self._plans, trials, self._preflight)
         handlers = {command: handler for each in tables for command, handler in each.handlers().items()}

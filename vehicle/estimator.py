@@ -122,7 +122,7 @@ class Estimator:
         """Take the readings of this cycle; numbers that cannot be are taken for missing ones."""
         dt = 0.0 if self._at is None else max(0.0, min(LONGEST_STEP, now - self._at))
         self._at = now
-        rate = _sane(readings.yaw_rate, 50.0)
+        rate = sane_rate(readings)
         self._turn(rate, _sane(readings.yaw, 1e6), dt)
         wheels, sideways = self._wheels.speed(readings), self._wheels.sideways(readings)
         if wheels is not None:
@@ -142,6 +142,13 @@ class Estimator:
             self._reckoning.put(origin.point(*self._origin.globe(self._reckoning.place)))
             self._origin = origin
             self.estimate = self.estimate._replace(place=self._reckoning.place, origin=origin)
+
+    def set_bias(self, bias: float) -> bool:
+        """What the gyro says at rest, rad/s; False where that is no bias."""
+        fits = abs(bias) <= BIAS_MAX
+        if fits:
+            self._bias = bias
+        return fits
 
     def _turn(self, rate: float | None, compass: float | None, dt: float) -> None:
         if self._yaw is None:
@@ -259,6 +266,11 @@ class Estimator:
             accuracy=accuracy,
             good=self._yaw is not None and since <= GPS_LOST and accuracy <= ACCURACY_MAX,
         )
+
+
+def sane_rate(readings: Readings) -> float | None:
+    """rad/s as the gyro says it, where that is a number that can be."""
+    return _sane(readings.yaw_rate, 50.0)
 
 
 def _sane(value: float | None, largest: float) -> float | None:

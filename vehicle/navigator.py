@@ -17,7 +17,7 @@ from link.services.mission_items import MissionItem
 from vehicle.boundary import Boundary
 from vehicle.demand import Demand
 from vehicle.drive import shape
-from vehicle.estimator import Estimate, Estimator
+from vehicle.estimator import Estimate, Estimator, sane_rate
 from vehicle.guidance import Guide
 from vehicle.guided import Guided
 from vehicle.hazards import Hazards, Look
@@ -104,6 +104,15 @@ class Navigator:
     def estimate(self) -> Estimate:
         """Where it is."""
         return self._estimator.estimate
+
+    @property
+    def turn_rate(self) -> float | None:
+        """rad/s as the gyro says it, its bias included; None without a gyro."""
+        return sane_rate(self._readings)
+
+    def set_gyro_bias(self, bias: float) -> bool:
+        """It was measured, rad/s; False where it is none."""
+        return self._estimator.set_bias(bias)
 
     def cruise(self) -> float:
         """m/s to drive at."""

@@ -9,8 +9,10 @@ from dialects.messages import SetupSigning
 from link.core import Received
 from link.services.command import CommandRequest, Handler
 from vehicle.asking import Asking
+from vehicle.calibration import Calibration
 from vehicle.control import Control
 from vehicle.leaving import DELAY, Leave
+from vehicle.navigator import Navigator
 from vehicle.param_service import ParamService
 from vehicle.params import Params
 from vehicle.safety import Safety
@@ -35,7 +37,13 @@ class Preflight:
     """Answers them."""
 
     def __init__(
-        self, params: Params, safety: Safety, control: Control, param_service: ParamService, texts: Texts
+        self,
+        params: Params,
+        safety: Safety,
+        control: Control,
+        navigator: Navigator,
+        param_service: ParamService,
+        texts: Texts,
     ) -> None:
         self._params = params
         self._safety = safety
@@ -43,12 +51,13 @@ class Preflight:
         self._param_service = param_service
         self._texts = texts
         self._asking = Asking(control, texts)
+        self._calibration = Calibration(safety, navigator, self._asking, texts)
         self._leave: tuple[Leave, float] | None = None
 
     def handlers(self) -> dict[int, Handler]:
         """The table for link.services.command.CommandServer."""
         return {
-            Command.PREFLIGHT_CALIBRATION: self._asking.of_owner(self._calibrate),
+            Command.PREFLIGHT_CALIBRATION: self._asking.of_owner(self._calibration.run),
             Command.PREFLIGHT_STORAGE: self._asking.of_owner(self._store),
             Command.PREFLIGHT_REBOOT_SHUTDOWN: self._asking.of_owner(self._reboot),
             Command.DO_SEND_BANNER: Handler(self._banner),
@@ -68,9 +77,6 @@ class Preflight:
             self._leave = None
             self._texts.say(Severity.WARNING, "Armed: no restart", now)
         return self._leave[0] if self._leave else None
-
-    def _calibrate(self, request: CommandRequest, now: float) -> Result:
-        return Result.TEMPORARILY_REJECTED if self._safety.armed else Result.UNSUPPORTED
 
     def _store(self, request: CommandRequest, now: float) -> Result:
         """Parameter 1: what happens to parameters. What is set is kept at once, so that there is nothing to read."""

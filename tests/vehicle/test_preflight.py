@@ -1,4 +1,4 @@
-"""Stored parameters, calibration, restart, banner: bad input 57, and the exit codes of a real process."""
+"""Stored parameters, restart, banner: bad input 57, and the exit codes of a real process."""
 
 from __future__ import annotations
 
@@ -233,13 +233,6 @@ class TestStorage:
         bench.command(Command.COMPONENT_ARM_DISARM, 0)
         assert bench.command(STORAGE, 2, system=OTHER) is Result.FAILED
         assert bench.rover._params["MAN_DEADBAND"] == 10
-
-
-def test_calibration_is_not_offered() -> None:
-    bench = Bench()
-    assert bench.command(Command.PREFLIGHT_CALIBRATION, 1) is Result.UNSUPPORTED
-    bench.arm()
-    assert bench.command(Command.PREFLIGHT_CALIBRATION, 1) is Result.TEMPORARILY_REJECTED
 
 
 def test_the_banner() -> None:
