@@ -28,7 +28,7 @@ class Settled:
     left_out: tuple[str, ...]
     """Kept ones that do not fit any more, a line each."""
     damage: str | None
-    """Why the kept ones could not be read."""
+    """Why the kept ones could not be read, and what to do."""
 
 
 def settled(config: Config, folder: str | None = None) -> Settled:
@@ -38,7 +38,8 @@ def settled(config: Config, folder: str | None = None) -> Settled:
     usual = USUAL_PARAMS.get(config.motors.get("driver", ""), {})
     params, left_out = in_force(config.params, kept=store.values, usual=usual)
     count = len(store.values.keys() - config.params.keys()) - len(left_out)
-    return Settled(params, where, count, tuple(left_out), store.damage)
+    damage = store.damage and f"{store.damage}; start the vehicle and set one from a ground station, which ends this"
+    return Settled(params, where, count, tuple(left_out), damage)
 
 
 def state_of(configured: str | None) -> Path:

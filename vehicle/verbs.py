@@ -160,7 +160,7 @@ def _motor_table(path: str) -> dict[str, Any]:
     """[motors] of a file, as it stands there. Raises VerbError."""
     table = _tables(path).get("motors")
     if not isinstance(table, dict) or "driver" not in table:
-        raise VerbError(f"{path}: no [motors] driver, so there is nothing to stop")
+        raise VerbError(f"{path}: no driver in [motors]; `vehicle check {path}` says more")
     return table
 
 

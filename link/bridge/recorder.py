@@ -19,6 +19,8 @@ def record_to(folder: Path) -> tuple[Path, Recorder]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         path, file = _new_file(folder, stamp)
+    except (FileExistsError, NotADirectoryError):
+        raise RecorderError(f"--tlog {folder}: there is a file of that name; name a folder") from None
     except OSError as error:
         raise RecorderError(f"--tlog {folder}: {error.strerror}") from error
     recorder = Recorder()

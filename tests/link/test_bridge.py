@@ -257,7 +257,11 @@ def test_it_records_what_passes_and_the_file_is_whole_after_a_signal(
         (("udpin:127.0.0.1:14999", "serial:ttyAMA0:57600"), "write serial:/dev/ttyAMA0:57600"),
         (("udpin:127.0.0.1:0", "serial:/dev/ttyX:57600", "--json", "--quiet"), "port '0'"),
         (("serial:/dev/null:57600", "udpout:127.0.0.1:14999"), "/dev/null is no serial port"),
-        (("udpout:127.0.0.1:1", "udpout:127.0.0.1:2", "--tlog", "/dev/null/x"), "--tlog /dev/null/x"),
+        (("udpout:127.0.0.1:1", "udpout:127.0.0.1:2", "--tlog", "/dev/null/x"), "--tlog /dev/null/x: there is a file"),
+        (
+            ("udpout:127.0.0.1:1", "udpout:127.0.0.1:2", "--tlog", "/dev/null"),
+            "/dev/null: there is a file of that name",
+        ),
     ],
 )
 def test_a_mistake_is_one_line_and_exit_code_2(words: tuple[str, ...], told: str) -> None:

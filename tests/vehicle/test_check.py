@@ -188,7 +188,8 @@ def test_kept_parameters_that_are_damaged_are_a_fault(tmp_path: Path) -> None:
     text = f'{FREE}state = "{tmp_path}"\n[motors]\ndriver = "simulated"\n{QUIET}'
     code, lines = all_checked(tmp_path, text)
     assert code == 1
-    assert lines[1] == "FAIL  parameters: 0 from the file, 0 kept in FOLDER: parameter file damaged"
+    damaged = "parameter file damaged; start the vehicle and set one from a ground station, which ends this"
+    assert lines[1] == f"FAIL  parameters: 0 from the file, 0 kept in FOLDER: {damaged}"
     assert all_checked(tmp_path, text, "--state", "/nowhere")[1][1].endswith("0 kept in /nowhere")
 
 

@@ -23,7 +23,7 @@ MARGIN = 0.25
 """s more than its timeout that a controller may take here: two cores, and others work on them."""
 
 KINDS: dict[str, tuple[Callable[[], Any], dict[str, Any], float]] = {
-    "roboclaw": (RoboClaw, {"timeout": 0.5}, 1 / 32767),
+    "roboclaw": (RoboClaw, {"timeout": 0.5, "reply_time": 0.05}, 1 / 32767),
     "sabertooth": (Sabertooth, {"timeout": 0.5, "timeout_proven": True}, 1 / 127),
 }
 """Driver -> controller, settings beside the port, how coarse it is."""
