@@ -67,7 +67,7 @@ def driving(system: Any, folder: str) -> None:
     """Arm, drive by hand until a line comes on stdin, hold, disarm."""
     action, manual, telemetry = (plugin(name, system) for name in ("action", "manual_control", "telemetry"))
     first(telemetry.subscribe_health, lambda value: value.is_global_position_ok)
-    step("arm", action.arm)
+    step("arm", lambda: insist(action.arm))
     by_hand(manual, 0.5)
     step("hold", action.hold)
     step("disarm", action.disarm)
@@ -80,7 +80,7 @@ def guided(system: Any, folder: str) -> None:
     north, east = here(telemetry)
     fastest: list[float] = []
     telemetry.subscribe_fixedwing_metrics(lambda metrics, *_: fastest.append(metrics.groundspeed_m_s))
-    step("arm", action.arm)
+    step("arm", lambda: insist(action.arm))
     step("speed", lambda: action.set_current_speed(0.5))
     step("goto", lambda: action.goto_location((north + AWAY) / 1e7, east / 1e7, 0.0, 0.0))
     sys.stdin.readline()
@@ -130,7 +130,7 @@ def mission(system: Any, folder: str) -> None:
     fence = [item(n, 5001, 3, north + (n == 1) * 90000, east + (n == 2) * 90000, kind=1) for n in range(3)]
     step("fence", lambda: raw.upload_geofence(fence))
     step("fence back", lambda: len(raw.download_geofence()))
-    step("arm", action.arm)
+    step("arm", lambda: insist(action.arm))
     step("start", raw.start_mission)
     step("progress", lambda: first(raw.subscribe_mission_progress, lambda value: value.current >= 1))
     step("finished", lambda: wait_until(lambda: raw.is_mission_finished()))

@@ -99,14 +99,18 @@ def wait_until(condition: Callable[[], bool]) -> bool:
 
 
 def insist(attempt: Callable[[], Any]) -> Any:
-    """Try until it works, as an operator does on a lossy link; MAVSDK's own repeats come to nothing now and then."""
-    deadline = time.monotonic() + 2 * PATIENCE
+    """Try until it works, as an operator does on a lossy link; MAVSDK's own repeats come to nothing now and then.
+
+    Its first HEARTBEAT may come later than its first command, which the vehicle then refuses: so arming insists, too.
+    """
+    deadline, pause = time.monotonic() + 2 * PATIENCE, threading.Event()
     while True:
         try:
             return attempt()
         except Exception:
             if time.monotonic() > deadline:
                 raise
+        pause.wait(0.2)
 
 
 def by_hand(manual: Any, throttle: float) -> None:
