@@ -2,7 +2,7 @@
 
 It takes a few seconds, is told as progress, and COMMAND_CANCEL ends it (link/services/command_jobs.py). The estimator
 goes on to learn from there, and nothing is kept over a restart: the bias of a cheap gyro changes with its temperature.
-"[cal]" and the words after it are PX4's, for which MAVSDK waits.
+MAVProxy's `gyrocal` asks for it; MAVSDK's Calibration asks nobody but PX4.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ SECONDS = 3.0
 """Of standing still: with 0.005 rad/s of noise the mean of 150 readings is good to 0.0004."""
 SPREAD_MAX = 0.1
 """rad/s between the largest and the smallest reading of a rover that stands."""
-GYRO = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-"""Parameter 1 is the gyro's: 1 calibrates it."""
+GYRO = 1
+"""Parameter 1, which is the gyro's; the others are those of other sensors: 0, or NaN for none."""
 
 
 class Calibration:
@@ -39,11 +39,12 @@ class Calibration:
         """A job where it can be done."""
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
-        if request.params != GYRO:
+        gyro, *others = request.params
+        if gyro != GYRO or any(value and not math.isnan(value) for value in others):
             return Result.UNSUPPORTED
         if self._navigator.turn_rate is None:
             return self._asking.refuse(request, "there is no gyro", now)
-        self._say("[cal] calibration started: 2 gyro", now)
+        self._say(f"Gyro calibration: {SECONDS:g} s without moving", now)
         return GyroCalibration(self._safety, self._navigator, self._say, now)
 
     def _say(self, text: str, now: float) -> None:
@@ -83,14 +84,15 @@ class GyroCalibration:
 
     def cancel(self, now: float) -> None:
         """The bias stays what it was."""
-        self._say("[cal] calibration cancelled", now)
+        self._say("Gyro calibration cancelled", now)
 
     def _finish(self, now: float) -> Result:
-        if not self._navigator.set_gyro_bias(self._sum / self._count):
+        bias = self._sum / self._count
+        if not self._navigator.set_gyro_bias(bias):
             return self._fail("it turns, or the gyro is broken", now)
-        self._say("[cal] calibration done: gyro", now)
+        self._say(f"Gyro calibrated: it is off by {math.degrees(bias):.2f} deg/s", now)
         return Result.ACCEPTED
 
     def _fail(self, why: str, now: float) -> Result:
-        self._say(f"[cal] calibration failed: {why}", now)
+        self._say(f"Gyro calibration failed: {why}", now)
         return Result.FAILED

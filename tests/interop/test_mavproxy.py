@@ -60,6 +60,12 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
         mavproxy.say(line)
         mavproxy.hear(answer)
     mavproxy.ask("status ESTIMATOR_STATUS", r"flags : \d\d", 10)  # knows where it is, as some modes want
+    mavproxy.say("module load calibration")
+    mavproxy.hear("Loaded module calibration")
+    mavproxy.say("gyrocal")
+    mavproxy.hear("PREFLIGHT_CALIBRATION: IN_PROGRESS")
+    mavproxy.hear("PREFLIGHT_CALIBRATION: ACCEPTED")
+    mavproxy.hear("Gyro calibrated")
     for mode in ("ACRO", "LOITER", "AUTO", "RTL", "GUIDED", "HOLD", "MANUAL"):
         choose(mavproxy, mode)
     mavproxy.say("arm throttle")

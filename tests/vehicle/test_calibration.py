@@ -49,8 +49,8 @@ def test_the_bias_is_gone_and_the_way_there_is_told() -> None:
     assert percents[-1] < 100
     assert verdict.result == Result.ACCEPTED
     assert turn_rate(bench) == pytest.approx(0.0, abs=1e-6)
-    assert said(bench, "[cal] calibration started: 2 gyro")
-    assert said(bench, "[cal] calibration done: gyro")
+    assert said(bench, "Gyro calibration: 3 s without moving")
+    assert said(bench, "Gyro calibrated: it is off by 1.72 deg/s")
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_what_comes_between_ends_it_and_changes_nothing(change: dict[str, float 
     bench.readings = replace(rest, **change)  # type: ignore[arg-type]
     bench.wait(0.1)
     assert verdicts(bench)[-1].result == Result.FAILED
-    assert said(bench, f"[cal] calibration failed: {words}")
+    assert said(bench, f"Gyro calibration failed: {words}")
     bench.readings = rest
     bench.wait(SECONDS)
     assert turn_rate(bench) == pytest.approx(BIAS)
