@@ -41,6 +41,14 @@ class Boundary:
         self._room = math.inf
         self._stands_since: float | None = None
 
+    @property
+    def unfenced(self) -> str | None:
+        """Why a fence that counts would stop nobody, or None: it is lost, or the rover does not know where it is."""
+        lost = self.fence.missing
+        if lost is None and self.fence.drawn and not self._estimate.good:
+            return "position is not known, and the fence needs it; wait, or set FENCE_ENABLE 0"
+        return lost
+
     def sense(self, estimate: Estimate, now: float) -> None:
         """Where the rover is now."""
         self._estimate = estimate

@@ -39,6 +39,12 @@ class Fence:
         """Why nobody may drive inside it, though it counts."""
         return f"{self.damage}, upload it again or set FENCE_ENABLE 0" if self.enabled and self.damage else None
 
+    @property
+    def drawn(self) -> bool:
+        """There is a line that nobody may cross."""
+        kinds = int(self._params["FENCE_TYPE"])
+        return self.enabled and bool(kinds & CIRCLE or (kinds & AREAS and self._items))
+
     def load(self, items: Items, damage: str | None = None) -> None:
         """Another plan; it has passed the rules of plan.py. `damage`: why the kept one is lost."""
         self._items, self.damage = items, damage

@@ -71,7 +71,7 @@ class Rover:
             self._texts,
             now,
             self._navigator.unready,
-            unfenced=lambda: self._navigator.boundary.fence.missing,
+            unfenced=lambda: self._navigator.boundary.unfenced,
         )
         self._watch = Watch(params, self._safety, self._control, self._texts, now)
         self._telemetry = Telemetry(self._system, now, logged=recording is not None)
