@@ -12,6 +12,7 @@ from __future__ import annotations
 import contextlib
 import io
 import py_compile
+import runpy
 import shutil
 import sys
 import tempfile
@@ -47,7 +48,8 @@ def generate(target: Path = MODULE) -> Path:
         with _quiet():
             _mavgen(xml, module)
             messages = _messages(Path(scratch))
-        code = "\n".join([module.read_text("utf-8"), *_codec(messages)]) + "\n"
+        made_from = runpy.run_path(str(HERE / "fingerprint.py"))["line"]()
+        code = "\n".join([module.read_text("utf-8"), *_codec(messages), made_from]) + "\n"
     whole = target.with_suffix(".new")
     whole.write_text(code, "utf-8")
     whole.replace(target)  # a program that starts meanwhile finds the old module or the new one, never half of it

@@ -26,6 +26,8 @@ MAX_NAME = 100
 """Characters: several lines of a listing fit into one message."""
 MAX_ASKED = 32
 """Questions to the disk at once: one each for all clients of files (16) and logs (8)."""
+MAX_SIZE = 2**32 - 1
+"""Bytes: FTP and the log protocol say no more. A longer file, which is none of ours, is not served."""
 FRESH = 1.0
 """s in which an answer of the disk must be fetched; a client that no longer waits left it."""
 CLOSING = 1.0
@@ -124,7 +126,8 @@ class DiskFolder:
             status = os.stat(self._path / name, follow_symlinks=False)
         except OSError:
             return None
-        return _DiskContent(self, name, status.st_size) if stat.S_ISREG(status.st_mode) else None
+        served = stat.S_ISREG(status.st_mode) and status.st_size <= MAX_SIZE
+        return _DiskContent(self, name, status.st_size) if served else None
 
     def _read(self, name: str, offset: int, size: int) -> bytes:
         try:
@@ -197,4 +200,6 @@ class _DiskContent:
             self._piece = _Piece(offset, size, data)
             self._coming = False
 
-        self._coming = self._folder.fetch(self._name, offset, size, take)
+        self._coming = True  # before the thread hears of it: it may be done before fetch() returns
+        if not self._folder.fetch(self._name, offset, size, take):
+            self._coming = False

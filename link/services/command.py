@@ -7,6 +7,7 @@ must not run twice only once. A command for somebody else is never acknowledged.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
@@ -120,6 +121,12 @@ class CommandServer:
         return result
 
 
+def _comparable(param: float) -> float:
+    """Every NaN as the same object, which tuples find equal: MAVSDK leaves NaN where it says nothing, and what is said
+    again must be known again."""
+    return math.nan if param != param else param
+
+
 def _request(message: CommandLong | CommandInt, received: Received) -> CommandRequest:
     if isinstance(message, CommandInt):
         last: tuple[float, float, float] = (message.x, message.y, message.z)
@@ -127,9 +134,12 @@ def _request(message: CommandLong | CommandInt, received: Received) -> CommandRe
     else:
         last = (message.param5, message.param6, message.param7)
         frame, x, y = None, 0, 0
+    one, two, three, four, five, six, seven = map(
+        _comparable, (message.param1, message.param2, message.param3, message.param4, *last)
+    )
     return CommandRequest(
         command=message.command,
-        params=(message.param1, message.param2, message.param3, message.param4, *last),
+        params=(one, two, three, four, five, six, seven),
         frame=frame,
         x=x,
         y=y,

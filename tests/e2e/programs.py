@@ -165,8 +165,10 @@ class GroundStation:
         self._terminal = -1
 
     def end(self) -> None:
-        """End it, whatever state it is in."""
-        _end(self.process)
+        """End it and the processes that it started, whatever state they are in."""
+        if self.process.returncode is None:  # its number, and so its group's, is still its own
+            os.killpg(self.process.pid, signal.SIGKILL)  # a frozen one that only loses its parent stays for ever
+            self.process.wait(10)
         if self._terminal >= 0:
             os.close(self._terminal)
 

@@ -93,6 +93,15 @@ def test_ten_times_the_same_is_ten_answers_and_one_effect() -> None:
     assert len(vehicle.ran) == 2
 
 
+def test_a_repeat_with_nan_parameters_is_still_a_repeat() -> None:
+    vehicle = Vehicle()
+    command = Command.PREFLIGHT_REBOOT_SHUTDOWN
+    for _ in range(2):  # each decodes to a NaN of its own
+        nan = float("nan")
+        vehicle.ask(CommandLong(1, 1, command, 0, 1.0, nan, nan, nan, nan, nan, nan))
+    assert len(vehicle.ran) == 1
+
+
 def test_a_wish_that_failed_may_be_tried_again_at_once() -> None:
     vehicle = Vehicle(Result.FAILED)
     vehicle.ask(long(400, 1.0), 0.0)

@@ -12,7 +12,7 @@ from typing import TypeVar
 import pytest
 
 from link import disk_folder
-from link.disk_folder import MAX_ASKED, MAX_ENTRIES, PIECE, DiskFolder
+from link.disk_folder import MAX_ASKED, MAX_ENTRIES, MAX_SIZE, PIECE, DiskFolder
 from link.services.ftp import FtpError, FtpPacket, Op, parse
 from link.services.ftp_files import Content, Entry, MadeFiles, NotYetError, Tree
 from link.services.ftp_server import FtpServer
@@ -266,3 +266,30 @@ def test_a_checksum_of_a_file_that_is_cut_meanwhile_is_a_failure(folder: DiskFol
 
     folder.fetch = cut  # type: ignore[method-assign]
     assert Vehicle(folder).ask(Op.CRC, b"/logs/1.tlog").data == bytes([FtpError.FAIL])
+
+
+def test_a_disk_that_answers_at_once_does_not_hold_up_what_is_read_next(
+    folder: DiskFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content = opened(folder, "1.tlog")
+    assert content is not None
+
+    def at_once(name: str, offset: int, size: int, take: Callable[[bytes], None]) -> bool:
+        take(DATA[offset : offset + size])
+        return True
+
+    monkeypatch.setattr(folder, "fetch", at_once)
+    for offset in (0, PIECE, 2 * PIECE):
+        assert content.read(offset, 100) is None
+        assert content.read(offset, 100) == DATA[offset : offset + 100]
+
+
+def test_a_file_that_is_longer_than_the_protocols_can_say_is_not_served(folder: DiskFolder, tmp_path: Path) -> None:
+    for name, size in (("3.tlog", MAX_SIZE), ("4.tlog", MAX_SIZE + 1)):
+        (tmp_path / "logs" / name).touch()
+        os.truncate(tmp_path / "logs" / name, size)  # holes: they take no room
+    assert [(each.name, each.size) for each in soon(folder.entries)][2:] == [("3.tlog", MAX_SIZE)]
+    content = opened(folder, "3.tlog")
+    assert content is not None
+    assert content.size.to_bytes(4, "little")
+    assert opened(folder, "4.tlog") is None
