@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.fence import FAR, Fence
 from vehicle.params import Params
 from vehicle.pilot import Motion

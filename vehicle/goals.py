@@ -8,12 +8,17 @@ from __future__ import annotations
 import math
 
 from dialects import messages as m
+from dialects.modes import Mode
 from vehicle.fields import INT16, INT32, UINT16, real, whole
 from vehicle.modes import OFFERED
+from vehicle.navigator import Navigator
 from vehicle.place import Point, wrap
+from vehicle.plan_runner import Progress
 from vehicle.setpoints import BODY_NED, LOCAL_NED
 from vehicle.view import View
 
+NO_MISSION = m.UINT16_MAX
+"""`total` of MISSION_CURRENT; 0 would say that nobody counts."""
 ABSOLUTE = 0
 """MAV_FRAME_GLOBAL"""
 ONLY_POSITION = 0xDF8
@@ -70,6 +75,20 @@ def nav_controller_output(view: View) -> m.Message | None:
         aspd_error=wanted - real(estimate.speed),
         xtrack_error=0.0 if leg is None or goal is None else leg.beside(estimate.place)[1],
     )
+
+
+def mission_current(view: View) -> m.MissionCurrent:
+    """MISSION_CURRENT: which item, of how many, and whether it is under way."""
+    return mission_state(view.navigator, view.safety.mode)
+
+
+def mission_state(navigator: Navigator, mode: Mode) -> m.MissionCurrent:
+    """The same, for who has no view."""
+    mission = navigator.mission
+    paused = mission.progress is Progress.ACTIVE and (navigator.paused or mode is not Mode.AUTO)
+    state = m.MISSION_PAUSED if paused else mission.progress
+    total = len(mission.items) or NO_MISSION
+    return m.MissionCurrent(mission.current, total, state, 1 if mode is Mode.AUTO else 2, *navigator.plan_ids)
 
 
 def fence_status(view: View) -> m.Message | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.guidance import STOPPED_SHORT, Guide, Leg, arrived
 from vehicle.mixer import clamp
 from vehicle.params import Params

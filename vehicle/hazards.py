@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from dialects.enums import Failsafe
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.params import Params
 from vehicle.readings import Readings
 

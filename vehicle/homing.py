@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.guidance import STOPPED_SHORT, Guide, Leg, arrived
 from vehicle.params import Params
 from vehicle.pilot import STAND, Motion

@@ -10,7 +10,7 @@ import math
 from dialects import messages as m
 from dialects.enums import Estimated
 from vehicle.demand import STEERING_CHANNEL, THROTTLE_CHANNEL, Override, pulse
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.fields import INT16, INT32, UINT8, UINT16, real, whole
 from vehicle.view import View
 

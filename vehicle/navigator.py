@@ -10,14 +10,14 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
-from dialects import messages as m
 from dialects.enums import Command, DriveType, Failsafe
 from dialects.modes import Mode
 from link.services.mission_items import MissionItem
 from vehicle.boundary import Boundary
 from vehicle.demand import Demand
 from vehicle.drive import shape
-from vehicle.estimator import Estimate, Estimator, sane_rate
+from vehicle.estimate import Estimate
+from vehicle.estimator import Estimator, sane_rate
 from vehicle.guidance import Guide
 from vehicle.guided import Guided
 from vehicle.hazards import Hazards, Look
@@ -27,14 +27,12 @@ from vehicle.modes import OFFERED, Need
 from vehicle.params import Params
 from vehicle.pilot import STAND, Motion, Pilot
 from vehicle.place import Home, Origin, Point
-from vehicle.plan_runner import Mission, Progress
+from vehicle.plan_runner import Mission
 from vehicle.rally import Havens
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety import Safety
 from vehicle.setpoints import Course, Target
 
-NO_MISSION = m.UINT16_MAX
-"""`total` of MISSION_CURRENT; 0 would say that nobody counts."""
 USUAL_SPEED = -2.0
 """Speed of DO_CHANGE_SPEED that means the usual one."""
 
@@ -166,14 +164,6 @@ class Navigator:
             return None
         homeward = mode in (Mode.RTL, Mode.SMART_RTL)
         return self.boundary.off_limits(homeward=homeward) or behaviour.unready(estimate)
-
-    def mission_current(self, mode: Mode) -> m.MissionCurrent:
-        """MISSION_CURRENT."""
-        mission = self.mission
-        paused = mission.progress is Progress.ACTIVE and (self.paused or mode is not Mode.AUTO)
-        state = m.MISSION_PAUSED if paused else mission.progress
-        total = len(mission.items) or NO_MISSION
-        return m.MissionCurrent(mission.current, total, state, 1 if mode is Mode.AUTO else 2, *self.plan_ids)
 
     def take(self, target: Target, now: float) -> None:
         """A setpoint for GUIDED."""

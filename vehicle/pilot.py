@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from dialects.enums import DriveType
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.mixer import clamp
 from vehicle.params import Params
 

@@ -14,7 +14,7 @@ from enum import IntEnum
 
 from dialects.enums import Command
 from link.services.mission_items import Items, MissionItem
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.guidance import STOPPED_SHORT, Guide, Leg
 from vehicle.homing import Done
 from vehicle.params import Params

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.guidance import Guide, Leg, arrived
 from vehicle.pilot import STAND, Motion
 from vehicle.place import Point, wrap

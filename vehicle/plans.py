@@ -17,6 +17,7 @@ from link.services.mission_items import Items
 from link.services.pacing import Pacer
 from vehicle.asking import Asking
 from vehicle.control import Control
+from vehicle.goals import mission_state
 from vehicle.navigator import Navigator, PlanIds
 from vehicle.params import Params
 from vehicle.plan import ACCESSORIES, SERVOS, rules
@@ -144,7 +145,7 @@ class Plans:
 
     def current(self) -> m.MissionCurrent:
         """MISSION_CURRENT."""
-        return self._navigator.mission_current(self._safety.mode)
+        return mission_state(self._navigator, self._safety.mode)
 
     # What was kept
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from link.services.mission_items import Items
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.params import Params
 from vehicle.place import Point
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from dialects import messages as m
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.place import Point, wrap
 
 LOCAL_NED, LOCAL_OFFSET_NED, BODY_NED, BODY_OFFSET_NED, BODY_FRD = 1, 7, 8, 9, 12

@@ -237,11 +237,6 @@ def protocol_version(view: View) -> m.Message:
     return m.ProtocolVersion(200, 100, 200, spec_version_hash=[0] * 8, library_version_hash=[0] * 8)
 
 
-def mission_current(view: View) -> m.Message:
-    """MISSION_CURRENT: which item, of how many, and whether it is under way."""
-    return view.navigator.mission_current(view.safety.mode)
-
-
 def available_modes(view: View) -> list[m.Message]:
     """AVAILABLE_MODES, one message a mode. What a sensor is missing for cannot be selected now."""
     return [

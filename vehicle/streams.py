@@ -72,7 +72,7 @@ STREAMS: tuple[Stream, ...] = (
            change=lambda view: (view.control.owner, view.control.takeover_allowed)),
     Stream(m.CurrentMode, NEWER, 0.5, status.current_mode,
            change=lambda view: (view.safety.mode, view.safety.intended)),
-    Stream(m.MissionCurrent, COMMON, 1, status.mission_current, DataStream.EXTENDED_STATUS,
+    Stream(m.MissionCurrent, COMMON, 1, goals.mission_current, DataStream.EXTENDED_STATUS,
            change=lambda view: (view.navigator.mission.current, view.navigator.mission.progress, view.safety.mode,
                                 view.navigator.plan_ids)),
     Stream(m.AvailableModesMonitor, NEWER, 0.3, status.available_modes_monitor),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from dialects.messages import boot_ms
 from vehicle.control import Control
 from vehicle.drive import Drive
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.navigator import Navigator
 from vehicle.params import Params
 from vehicle.place import Home

@@ -8,7 +8,7 @@ from dialects import messages as m
 from dialects.enums import Command, DriveType, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import CYCLE, DRIVER, Bench
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.place import Origin, Point
 from vehicle.sim.body import Home, SimulatedBody
 from vehicle.sim.chassis import CHASSIS, Frame

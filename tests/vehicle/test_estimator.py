@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from dialects import messages as m
 from dialects.enums import Estimated
 from tests.vehicle.bench import EVERYTHING, Bench
-from vehicle.estimator import GPS_LOST, Estimate, Estimator
+from vehicle.estimate import Estimate
+from vehicle.estimator import GPS_LOST, Estimator
 from vehicle.place import Origin, Point, wrap
 from vehicle.readings import Readings
 from vehicle.sim.body import Home, SimulatedBody

@@ -9,7 +9,7 @@ import pytest
 from dialects.enums import DriveType
 from dialects.modes import Mode
 from tests.vehicle.field import Field
-from vehicle.estimator import Estimate
+from vehicle.estimate import Estimate
 from vehicle.guidance import GRAVITY, Guide
 from vehicle.params import Params
 from vehicle.place import Point
