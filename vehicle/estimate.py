@@ -24,6 +24,8 @@ class Estimate(NamedTuple):
     """Where 0/0 is; None before the first 3D fix."""
     accuracy: float = math.inf
     """m; of the place on the globe."""
+    resets: int = 0
+    """How often `place` has jumped: another origin, or a GPS that was right though it was far off."""
     good: bool = False
     """The place is good enough to drive by: a fix lately, a heading, and accuracy."""
 

@@ -79,7 +79,7 @@ class Estimator:
         self._origin: Origin | None = None
         self._fix: tuple[float | None, ...] = ()
         self._fix_at = -math.inf
-        self._outliers = 0
+        self._outliers = self._resets = 0
         self._drift = 0.0
 
     def sense(self, readings: Readings, now: float) -> Estimate:
@@ -105,7 +105,8 @@ class Estimator:
         if self._origin is not None:
             self._reckoning.put(origin.point(*self._origin.globe(self._reckoning.place)))
             self._origin = origin
-            self.estimate = self.estimate._replace(place=self._reckoning.place, origin=origin)
+            self._resets += 1
+            self.estimate = self.estimate._replace(place=self._reckoning.place, origin=origin, resets=self._resets)
 
     def set_bias(self, bias: float) -> bool:
         """What the gyro says at rest, rad/s; False where that is no bias."""
@@ -176,6 +177,7 @@ class Estimator:
             return True
         self._place_gain = Gain(POSITION_TIME)  # begins with a gain of 1: the fix is believed
         self._outliers = 0
+        self._resets += 1
         return False
 
     def _take_aside(self, north: float, east: float, readings: Readings) -> None:
@@ -228,6 +230,7 @@ class Estimator:
             moving_place=self._origin is not None or (self._yaw is not None and wheels is not None),
             origin=self._origin,
             accuracy=accuracy,
+            resets=self._resets,
             good=self._yaw is not None and since <= GPS_LOST and accuracy <= ACCURACY_MAX,
         )
 

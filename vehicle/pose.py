@@ -67,7 +67,7 @@ def odometry(view: View) -> m.Message | None:
         vx=real(estimate.speed), vy=estimate.sideways, vz=0.0,
         rollspeed=0.0, pitchspeed=0.0, yawspeed=real(estimate.yaw_rate),
         pose_covariance=UNKNOWN_COVARIANCE, velocity_covariance=UNKNOWN_COVARIANCE,
-        estimator_type=ESTIMATOR_AUTOPILOT,
+        reset_counter=estimate.resets % 256, estimator_type=ESTIMATOR_AUTOPILOT,
     )  # fmt: skip
 
 

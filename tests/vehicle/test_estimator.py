@@ -160,9 +160,11 @@ def test_one_wild_fix_is_left_out_and_many_are_believed() -> None:
     wild = Readings(yaw=0.0, speed=0.0, latitude=50.001, longitude=8.0, gps_fix=3)
     estimator.sense(wild, 10.0)
     assert estimator.estimate.place.distance(Point(0.0, 0.0)) < 0.01
+    assert estimator.estimate.resets == 0
     for cycle in range(600):
         estimator.sense(wild, 10.02 + cycle / 50)
     assert estimator.estimate.place.north == pytest.approx(111.3, abs=0.2)
+    assert estimator.estimate.resets == 1
 
 
 BAD = st.sampled_from([math.nan, math.inf, -math.inf, 1e308, -1e308, 0.0, 1.0, -1.0, 89.9, None])

@@ -107,6 +107,17 @@ def test_the_same_origin_again_is_told_again_to_who_asked() -> None:
         assert Peer(0, f"gcs {DRIVER}") in told
 
 
+def test_odometry_says_that_it_has_jumped() -> None:
+    field = away()
+    assert field.command(Command.REQUEST_MESSAGE, m.Odometry.id) is Result.ACCEPTED
+    assert field.newest(m.Odometry).reset_counter == 0
+    for number in (1, 2):
+        assert move(field, Point(number, 0)) is Result.ACCEPTED
+        field.wait(0.1)
+        assert field.command(Command.REQUEST_MESSAGE, m.Odometry.id) is Result.ACCEPTED
+        assert field.newest(m.Odometry).reset_counter == number
+
+
 def test_far_away_is_refused_and_nothing_changes() -> None:
     field = away()
     before = field.estimate.origin
