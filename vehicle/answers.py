@@ -77,9 +77,7 @@ class Answers:
         self._commands = Commands(safety, control, texts)
         self._orders = Orders(params, safety, control, navigator, texts)
         self._origin = OriginSetting(safety, control, navigator, texts, look)
-        self._plans = Plans(
-            params, safety, control, navigator, texts, drive.mixer.servos, pacer=pacer, keeper=keepers.plans
-        )
+        self._plans = Plans(safety, control, navigator, texts, drive.mixer.servos, pacer=pacer, keeper=keepers.plans)
         self.logbook = Logbook(params, control, texts, lambda: safety.armed, keepers.logs)
         self._services = Services(
             params, control, self.logbook, missions=self._plans.folder(), ids=self._ids, pacer=pacer

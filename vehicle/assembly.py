@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 
 from dialects.enums import DriveType
+from vehicle.answers import COMPONENT
 from vehicle.lock import MotorLock
 from vehicle.machine import Machine
 from vehicle.mixer import MIXERS
@@ -28,9 +29,6 @@ from vehicle.sim.chassis import CHASSIS, Frame
 from vehicle.sim.truth import WatchedBody
 
 log = logging.getLogger(__name__)
-
-COMPONENT = 1
-"""MAV_COMP_ID_AUTOPILOT1: ground stations take only this one for a vehicle."""
 
 
 def params_of(settings: Settings, keeper: ParamStore | None) -> Params:
@@ -105,18 +103,16 @@ def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sen
 
 
 def _watched(body: SimulatedBody, path: str | None) -> Sensors:
-    if path is None:
-        return body
-    try:
-        return WatchedBody(body, MotorLog(path).write, time.monotonic_ns)
-    except OSError as error:
-        raise SettingsError(f"truth log {path}: {error.strerror}") from error
+    return body if path is None else WatchedBody(body, _lines("truth", path), time.monotonic_ns)
 
 
 def _logged(motors: Motors, path: str | None) -> Motors:
-    if path is None:
-        return motors
+    return motors if path is None else LoggedMotors(motors, _lines("motor", path), time.monotonic_ns)
+
+
+def _lines(what: str, path: str) -> Callable[[str], None]:
+    """What appends lines to a file."""
     try:
-        return LoggedMotors(motors, MotorLog(path).write, time.monotonic_ns)
+        return MotorLog(path).write
     except OSError as error:
-        raise SettingsError(f"motor log {path}: {error.strerror}") from error
+        raise SettingsError(f"{what} log {path}: {error.strerror}") from error

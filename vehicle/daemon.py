@@ -19,7 +19,8 @@ from link.link import LinkError
 from link.loop import run_loop
 from link.runner import Runner, open_links
 from link.tape import Tape
-from vehicle.assembly import COMPONENT, build, params_of, recorder_of
+from vehicle.answers import COMPONENT
+from vehicle.assembly import build, params_of, recorder_of
 from vehicle.ending import Cycles, Ending
 from vehicle.heard import HEARD
 from vehicle.machine import Machine

@@ -41,7 +41,7 @@ COMMANDS: dict[Command, tuple[str, str]] = {
     Command.DO_PAUSE_CONTINUE: (STOPS, "1: 0 stand, 1 go on"),
     Command.MISSION_START: (DRIVER, "1: first item"),
     Command.DO_SET_MISSION_CURRENT: (DRIVER, "1: item, -1 the one under way; 2: 1 forgets the jumps made"),
-    Command.DO_FENCE_ENABLE: (DRIVER, "1: 1 on, 0 off; not off while armed"),
+    Command.DO_FENCE_ENABLE: (DRIVER, "1: 1 on, 0 off; not off while armed, nor against the file of settings"),
     Command.DO_SET_SERVO: (DRIVER, "1: output, 2: us; outputs of motors are denied"),
     Command.DO_SET_RELAY: (DRIVER, "1: relay, 2: 0 or 1"),
     Command.DO_MOTOR_TEST: (DRIVER, "disarmed; 1: motor from 1, 2: 0 (percent), 3: percent, 4: s up to 3"),

@@ -45,14 +45,17 @@ class Fence:
         kinds = int(self._params["FENCE_TYPE"])
         return self.enabled and bool(kinds & CIRCLE or (kinds & AREAS and self._items))
 
+    def enable(self, wish: bool) -> str | None:
+        """Let it count, or not. Returns why that stays as it is: the file of settings says it."""
+        if wish != self.enabled and "FENCE_ENABLE" in self._params.pinned:
+            return f"the file of settings has FENCE_ENABLE {int(self.enabled)}"
+        self._params.set("FENCE_ENABLE", float(wish))
+        return None
+
     def load(self, items: Items, damage: str | None = None) -> None:
         """Another plan; it has passed the rules of plan.py. `damage`: why the kept one is lost."""
         self._items, self.damage = items, damage
         self._origin = None
-
-    def breach(self, place: Point, origin: Origin | None, home: Point | None) -> float:
-        """m beyond the fence; 0 within, or where there is none."""
-        return max(0.0, -self.room(place, origin, home))
 
     def room(self, place: Point, origin: Origin | None, home: Point | None) -> float:
         """m to the nearest edge, negative beyond it; infinite where there is none."""

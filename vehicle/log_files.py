@@ -146,9 +146,9 @@ class NumberedLog:
             self._file.close()
 
     def _begin_next(self) -> None:
-        self._file.close()
         self._files.make_room(self._limits)
-        self._file, self._size = self._files.next_file(), 0
+        full, self._file, self._size = self._file, self._files.next_file(), 0
+        full.close()  # last: where there is no next one, close() is still to come, and twice would close another's file
 
     def _check(self) -> None:
         self._synced = time.monotonic()

@@ -256,8 +256,7 @@ class Navigator:
         elif item.command == Command.DO_SET_REVERSE:
             self.guide.reverse = bool(first)
         elif item.command == Command.DO_FENCE_ENABLE and first:
-            self._params.set("FENCE_ENABLE", 1.0)
-            self.ended = self.boundary.fence.missing
+            self.ended = self.boundary.fence.enable(True) or self.boundary.fence.missing
 
     def _home_point(self) -> Point | None:
         return None if self.home is None else Point(self.home.north, self.home.east)

@@ -19,7 +19,6 @@ from vehicle.asking import Asking
 from vehicle.control import Control
 from vehicle.goals import mission_state
 from vehicle.navigator import Navigator, PlanIds
-from vehicle.params import Params
 from vehicle.plan import ACCESSORIES, SERVOS, rules
 from vehicle.reached import Reached
 from vehicle.safety import Safety
@@ -52,7 +51,6 @@ class Plans:
 
     def __init__(
         self,
-        params: Params,
         safety: Safety,
         control: Control,
         navigator: Navigator,
@@ -66,7 +64,6 @@ class Plans:
 
         Without a `keeper` they end with the program.
         """
-        self._params = params
         self._safety = safety
         self._control = control
         self._asking = Asking(control, texts)
@@ -245,8 +242,8 @@ class Plans:
             return self._asking.refuse(request, self._navigator.boundary.fence.damage, now)
         if wish == 0 and self._safety.armed and self._navigator.boundary.fence.enabled:
             return self._asking.refuse(request, "disarm first", now)
-        self._params.set("FENCE_ENABLE", wish)
-        return Result.ACCEPTED
+        refusal = self._navigator.boundary.fence.enable(bool(wish))
+        return self._asking.refuse(request, refusal, now) if refusal else Result.ACCEPTED
 
     def _accessory(self, request: CommandRequest, now: float) -> Result:
         """DO_SET_SERVO, DO_SET_RELAY: motors are not for them, and there is nothing else at the outputs."""

@@ -20,7 +20,6 @@ CLOSING = 2.0
 """s that the end of the program waits for the last write; a disk that takes longer is broken."""
 
 T = TypeVar("T")
-_Wish = tuple[str, Callable[[], bytes]]
 
 
 def read(path: Path, parse: Callable[[bytes], T]) -> T | None:
@@ -51,12 +50,19 @@ class Scribe:
         self.problem: str | None = None
         """Why the last file was not written; the one before is still there."""
         self._folder = folder
-        self._wishes: queue.SimpleQueue[_Wish | None] = queue.SimpleQueue()
+        self._lock = threading.Lock()
+        self._newest: dict[str, Callable[[], bytes]] = {}
+        """What waits to be written: of each file what was wanted last, however slow the disk is."""
+        self._names: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._thread: threading.Thread | None = None
 
     def write(self, name: str, make: Callable[[], bytes]) -> None:
-        """Have a file written. Returns at once; `make` gives its bytes, in the thread."""
-        self._wishes.put((name, make))
+        """Have a file written. Returns at once; `make` gives its bytes, in the thread, unless a newer wish for the same
+        file comes before its turn."""
+        with self._lock:
+            if name not in self._newest:
+                self._names.put(name)
+            self._newest[name] = make
         if self._thread is None:
             self._thread = threading.Thread(target=self._write_on, name="scribe", daemon=True)
             self._thread.start()
@@ -64,12 +70,13 @@ class Scribe:
     def close(self) -> None:
         """Wait for what is being written."""
         if self._thread is not None:
-            self._wishes.put(None)
+            self._names.put(None)
             self._thread.join(CLOSING)
 
     def _write_on(self) -> None:
-        while (wish := self._wishes.get()) is not None:
-            name, make = wish
+        while (name := self._names.get()) is not None:
+            with self._lock:
+                make = self._newest.pop(name)
             try:
                 self._write(self._folder / name, make())
                 self.problem = None

@@ -127,6 +127,26 @@ def test_a_disk_that_fills_up_ends_the_log(tmp_path: Path, monkeypatch: pytest.M
     assert (tmp_path / names(tmp_path)[0]).read_bytes() == b"data"
 
 
+def test_a_disk_without_room_for_the_next_file_ends_the_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(log_files, "WHOLE_FILE", 10)
+    closed: list[int] = []
+    close = os.close
+
+    def noted(descriptor: int) -> None:
+        closed.append(descriptor)
+        close(descriptor)
+
+    monkeypatch.setattr(os, "close", noted)
+    free = iter([PLENTY, PLENTY, 5])
+    log = LogFiles(tmp_path, clock=lambda: NOW, free=lambda path: next(free)).open(MANY)
+    log.write(b"data")
+    with pytest.raises(OSError, match="No space"):
+        log.write(b"too much")
+    log.close()
+    assert len(closed) == 1, "a number closed twice may be another's file by then"
+    assert (tmp_path / names(tmp_path)[0]).read_bytes() == b"data"
+
+
 def test_a_file_that_somebody_removed_ends_the_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(log_files, "SYNC", 0.0)
     log = files(tmp_path).open(MANY)

@@ -195,6 +195,17 @@ def test_what_the_file_of_settings_says_stays() -> None:
     assert memory.kept == {}
 
 
+@pytest.mark.parametrize("fence", [0, 1])
+def test_no_command_puts_in_force_what_the_file_denies(fence: int) -> None:
+    params = Params({"FENCE_ENABLE": fence}, pinned={"FENCE_ENABLE"})
+    bench, _ = bench_with(params)
+    bench.heartbeat()
+    assert bench.command(Command.DO_FENCE_ENABLE, 1 - fence) is Result.FAILED
+    assert said(bench, f"DO_FENCE_ENABLE refused: the file of settings has FENCE_ENABLE {fence}")
+    assert bench.command(Command.DO_FENCE_ENABLE, fence) is Result.ACCEPTED
+    assert params["FENCE_ENABLE"] == fence
+
+
 def test_64_after_damage_nobody_arms_until_somebody_sees_to_it() -> None:
     params = Params()
     params.damage = "parameter file damaged"

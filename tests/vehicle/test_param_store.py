@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,7 @@ from vehicle.param_store import ParamStore
 from vehicle.params import PARAMETERS
 from vehicle.run_settings import Settings, Simulation
 from vehicle.sealed import DamagedError
+from vehicle.state_folder import Scribe
 
 VALUES = {"MAN_TIMEOUT": 0.4, "SPEED_MAX": 2.0}
 
@@ -132,6 +134,31 @@ def test_to_keep_does_not_wait_for_the_disk(tmp_path: Path, monkeypatch: pytest.
     released.set()
     store.close()
     assert ParamStore(tmp_path).values == {"SPEED_MAX": 3.0}
+
+
+def test_a_slow_disk_gets_the_newest_of_many_wishes(tmp_path: Path) -> None:
+    released, writing = threading.Event(), threading.Event()
+    made: list[str] = []
+
+    def slow() -> bytes:
+        writing.set()
+        assert released.wait(10)
+        return b"first"
+
+    def made_of(word: str) -> bytes:
+        made.append(word)
+        return word.encode()
+
+    scribe = Scribe(tmp_path)
+    scribe.write("parameters", slow)
+    assert writing.wait(10)
+    for number in range(1000):
+        scribe.write("parameters", partial(made_of, f"{number}"))
+    scribe.write("fence", partial(made_of, "fence"))
+    released.set()
+    scribe.close()
+    assert made == ["999", "fence"]
+    assert [(tmp_path / name).read_bytes() for name in ("parameters", "fence")] == [b"999", b"fence"]
 
 
 KILLED_WHILE_WRITING = """
