@@ -128,5 +128,5 @@ def test_without_a_vehicle_it_just_ends() -> None:
     with Screen() as screen:
         screen.client.send(Lease(), Gate(open=True), Arm(), ExactKeys(), Push(key="i", throttle=1, steering=0))
         screen.client.send(SetStyle(style=ORDER + "tick"))
-        until(lambda: not running(screen.client.pid), within=2.0)
+        until(lambda: not running(screen.client.pid))
         assert screen.client.close() == 1

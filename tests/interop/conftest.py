@@ -50,11 +50,11 @@ class Rover:
             ear.settimeout(within)
             ear.recv(65536)
 
-    def drives(self, within: float = 5.0) -> None:
+    def drives(self, within: float = 15.0) -> None:
         """Wait until the wheels turn."""
         self.wait(self.vehicle.turning, within, "the wheels turn")
 
-    def stands(self, within: float = 3.0) -> None:
+    def stands(self, within: float = 10.0) -> None:
         """Wait until they do not."""
         self.wait(lambda: not self.vehicle.turning(), within, "the wheels stop")
 

@@ -10,6 +10,9 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+PATIENCE = 15.0
+"""s for an answer: the machine is shared."""
+
 
 class Conversation:
     """A running program. Its output is read by a thread, so that it never waits for us."""
@@ -42,7 +45,7 @@ class Conversation:
         self._process.stdin.write(line.encode() + b"\n")
         self._process.stdin.flush()
 
-    def hear(self, pattern: str, within: float = 5.0) -> re.Match[str]:
+    def hear(self, pattern: str, within: float = PATIENCE) -> re.Match[str]:
         """Wait until it has said something that matches, since the last `say` or `hear`."""
         deadline = time.monotonic() + within
         with self._news:
@@ -55,7 +58,7 @@ class Conversation:
         assert match is not None
         return match
 
-    def wait_for(self, pattern: str, within: float = 5.0) -> None:
+    def wait_for(self, pattern: str, within: float = PATIENCE) -> None:
         """Wait until it has said something that matches, since its start."""
         deadline = time.monotonic() + within
         with self._news:
@@ -64,7 +67,7 @@ class Conversation:
                 assert left > 0, f"not within {within} s: {pattern!r}\n{self.transcript}"
                 self._news.wait(left)
 
-    def ask(self, line: str, pattern: str, within: float = 5.0, period: float = 0.5) -> None:
+    def ask(self, line: str, pattern: str, within: float = PATIENCE, period: float = 0.5) -> None:
         """Type a line again and again, until the answer matches: what it asks about takes its time."""
         deadline = time.monotonic() + within
         while True:

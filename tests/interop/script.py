@@ -56,7 +56,7 @@ class Script:
         while (left := deadline - time.monotonic()) > 0:
             self.hear(within=left)
 
-    def until(self, condition: Callable[[], bool], within: float = 5.0) -> None:
+    def until(self, condition: Callable[[], bool], within: float = 15.0) -> None:
         """Receive until `condition`."""
         deadline = time.monotonic() + within
         while not condition():

@@ -31,8 +31,8 @@ def mavproxy(rover: Rover, tmp_path: Path) -> Iterator[Conversation]:
 def test_it_connects_reads_all_parameters_and_sets_one(mavproxy: Conversation) -> None:
     mavproxy.hear("Detected vehicle 1:1", 15)
     connected = time.monotonic()
-    mavproxy.hear(rf"Received {len(TABLE)} parameters \(ftp\)", 5)
-    assert time.monotonic() - connected < 3
+    mavproxy.hear(rf"Received {len(TABLE)} parameters \(ftp\)")
+    assert time.monotonic() - connected < 10  # 3 s where the machine has nothing else to do
     mavproxy.say("param set SPEED_MAX 1.4")
     mavproxy.ask("param fetch SPEED_MAX", r"SPEED_MAX = 1\.4")
     mavproxy.say("param set SPEED_MAX 5000")

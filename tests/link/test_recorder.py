@@ -81,6 +81,7 @@ def test_frames_are_in_the_file_soon_also_without_an_end() -> None:
     recorder.tick(1.0 + PERIOD)
     seen(recorder)
     assert file.frames == [demand(1)]
+    recorder.close()
 
 
 def test_times_are_unix_time_and_in_order_whatever_happens_to_the_clock() -> None:
@@ -212,17 +213,24 @@ def test_a_job_that_fails_is_told_and_the_next_is_done(caplog: pytest.LogCapture
 
 
 def test_the_end_does_not_wait_for_a_disk_that_hangs() -> None:
-    worker, awake = Worker("test", 1), threading.Event()
-    assert worker.put(lambda: _ignore(awake.wait(PATIENCE)))
+    worker, awake, slept = Worker("test", 1), threading.Event(), threading.Event()
+
+    def sleeping() -> None:
+        awake.wait(PATIENCE)
+        slept.set()
+
+    assert worker.put(sleeping)
     while worker.put(lambda: None):  # until it is full
         pass
     worker.close(0.01)
+    assert not slept.is_set()
     awake.set()
+    worker.close(PATIENCE)
+    assert slept.is_set()
+
+
+def test_a_worker_that_never_worked_ends_at_once() -> None:
     Worker("idle", 1).close(PATIENCE)
-
-
-def _ignore(value: object) -> None:
-    del value
 
 
 # ---- what is recorded ----

@@ -46,7 +46,7 @@ class Ground:
     def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
         self._socket.close()
 
-    def wait(self, condition: Callable[[], bool], what: str, within: float = 10.0) -> None:
+    def wait(self, condition: Callable[[], bool], what: str, within: float = 20.0) -> None:
         """Keep talking and listening until `condition`."""
         deadline = time.monotonic() + within
         while not condition():

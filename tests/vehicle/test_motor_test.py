@@ -205,7 +205,7 @@ def test_killed_the_controllers_own_timeout_ends_it(line: OnPty, tmp_path: Path)
     line.until(lambda: line.controller.outputs[1] > 0.1)
     process.kill()
     process.wait(10)
-    line.until(lambda: not any(line.controller.outputs), within=2.0)
+    line.until(lambda: not any(line.controller.outputs))
 
 
 @pytest.mark.parametrize("where", ["file", "kept", "neither"])

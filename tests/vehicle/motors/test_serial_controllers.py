@@ -103,7 +103,7 @@ class SerialContract(MotorsContract):
         line.deaf.set()
         slowest = Slowest(bench.motors)
         assert fault_of(slowest, calls=100_000)
-        assert slowest.call < 0.1
+        assert slowest.call < 0.5  # one that blocks does so for ever; the machine is shared
 
 
 def bench_neutral(line: OnPty) -> Callable[[], bool]:
@@ -214,12 +214,17 @@ class TestRoboClaw(SerialContract):
         line.controller.mute = True
         with pytest.raises(MotorError):
             motors.disable()
+        assert min(self.refused_in(motors) for _ in range(10)) < 0.06  # the best of them: the machine is shared
+        line.controller.mute = False
+        motors.disable()
+
+    @staticmethod
+    def refused_in(motors: RoboClawMotors) -> float:
+        """s until `disable` gives up."""
         began = time.monotonic()
         with pytest.raises(MotorError):
             motors.disable()
-        assert time.monotonic() - began < 0.06
-        line.controller.mute = False
-        motors.disable()
+        return time.monotonic() - began
 
     def test_a_controller_that_lost_its_power_gets_its_timeout_again(self, line: OnPty) -> None:
         times = iter([0.0, 0.02, 1.1, 1.2])
