@@ -6,12 +6,12 @@ TEMPORARILY_REJECTED; a cancelled one ends with CANCELLED, and a cancel that fin
 To make a command one of these, let its handler's `run` (link/services/command.py) return a Job instead of a Result
 once the work has begun, and a Result where it is refused. The server does the rest:
 
-    class MotorTest:                                        # fits Job
+    class Survey:                                           # fits Job
         percent = None                                      # or 0..100
         def step(self, now): return Result.ACCEPTED if now >= self._end else None
-        def cancel(self, now): self._motors.stop()
+        def cancel(self, now): self._readings.clear()
 
-    Handler(lambda request, now: MotorTest(...) if allowed else Result.DENIED)
+    Handler(lambda request, now: Survey(...) if allowed else Result.DENIED)
 """
 
 from __future__ import annotations

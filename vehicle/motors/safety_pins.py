@@ -43,7 +43,9 @@ class SafetyPins:
 
     def pressed(self) -> bool:
         """The stop is open, or was since the last call. Raises MotorError where it cannot be read."""
-        noticed, self._noticed = self._noticed, False
+        noticed = self._noticed
+        if noticed:  # and only then, or an edge in gpiozero's thread between the two lines would be forgotten
+            self._noticed = False
         return self._open() or noticed
 
     def check(self) -> None:
