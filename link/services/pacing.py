@@ -13,8 +13,6 @@ from link.rate import TokenBucket
 
 DEFAULT_RATE = 400_000.0
 """bytes/s to a peer on a network: 1600 file frames a second, two thirds of what link/channel.py takes from a peer."""
-SHARE = 0.4
-"""Part of a slow link that bulk answers may fill: the specification says 30 to 50 % for parameters."""
 BURST_TIME = 0.05
 """s of the rate that may go at once: two and a half control cycles, so that a late cycle loses nothing."""
 MAX_PEERS = 32
@@ -38,8 +36,3 @@ class Pacer:
             if len(self._buckets) > MAX_PEERS:
                 del self._buckets[next(iter(self._buckets))]
         return known[1].take(now, size)
-
-
-def share(baud: float | None) -> float:
-    """bytes/s for bulk answers on a serial line of `baud` (10 bits a byte), or on a network (None)."""
-    return DEFAULT_RATE if baud is None else min(DEFAULT_RATE, baud / 10 * SHARE)

@@ -145,6 +145,15 @@ class Loop:
         self._running = False
         self._thread.join(15)
 
+    def arm(self) -> None:
+        self.command(Command.COMPONENT_ARM_DISARM, 1)
+
+    def disarm(self) -> None:
+        self.command(Command.COMPONENT_ARM_DISARM, 0)
+
+    def command(self, command: int, *params: float) -> None:
+        raise NotImplementedError
+
     def push(self, throttle: float) -> None:
         self._neutrals, self._throttle = NEUTRALS, round(throttle * 1000)
 
@@ -211,12 +220,6 @@ class ScriptDriver(Loop):
             system,
         )
 
-    def arm(self) -> None:
-        self.command(Command.COMPONENT_ARM_DISARM, 1)
-
-    def disarm(self) -> None:
-        self.command(Command.COMPONENT_ARM_DISARM, 0)
-
     def command(self, command: int, *params: float) -> None:
         self.call(lambda: self._script.command(command, *params) == Result.ACCEPTED, str(command))
 
@@ -236,12 +239,6 @@ class GroundDriver(Loop):
             lambda throttle: ground.send(m.ManualControl(target=1, x=throttle, y=0, z=0, r=0, buttons=0)),
             system,
         )
-
-    def arm(self) -> None:
-        self.command(Command.COMPONENT_ARM_DISARM, 1)
-
-    def disarm(self) -> None:
-        self.command(Command.COMPONENT_ARM_DISARM, 0)
 
     def command(self, command: int, *params: float) -> None:
         self.call(lambda: self._ground.command(command, *params) is Result.ACCEPTED, str(command))

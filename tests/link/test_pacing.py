@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from link.core import Peer
-from link.services.pacing import DEFAULT_RATE, MAX_PEERS, Pacer, share
+from link.services.pacing import MAX_PEERS, Pacer
 
 SLOW, FAST = Peer(0, "radio"), Peer(1, "network")
 
@@ -49,9 +49,3 @@ def test_many_addresses_do_not_fill_the_memory() -> None:
     for number in range(1000):
         pacer.take(Peer(0, number), 10, 0.0)
     assert len(pacer._buckets) == MAX_PEERS
-
-
-def test_a_serial_line_gives_a_share_of_itself() -> None:
-    assert share(57600) == pytest.approx(2304.0)
-    assert share(None) == DEFAULT_RATE
-    assert share(100_000_000) == DEFAULT_RATE
