@@ -1,8 +1,9 @@
 """The command protocol, both halves: COMMAND_LONG and COMMAND_INT, answered by COMMAND_ACK, never by silence.
 
 Rules (mavlink.io/en/services/command.html): the client repeats with a rising `confirmation` until acknowledged; the
-server acknowledges every command meant for it, UNSUPPORTED when it does not know it, and runs a repeated command that
-must not run twice only once. A command for somebody else is never acknowledged. What takes time: command_jobs.py.
+server acknowledges every command meant for it, UNSUPPORTED when it does not know it. A command for somebody else is
+never acknowledged. What takes time: command_jobs.py. Repeats are run: a handler does no more at the second time, or
+knows a repeat itself, as vehicle/actuator_test.py.
 """
 
 from __future__ import annotations
@@ -56,8 +57,6 @@ class Handler:
     """What a server does with one command."""
 
     run: Run
-    idempotent: bool = True
-    """Running it twice does no more than once. Others are run once and repeats get the stored answer."""
     broadcast: bool = False
     """Obeyed and acknowledged when sent to system 0. Only for what can do no harm: stops and questions."""
 
@@ -69,7 +68,6 @@ class CommandServer:
         self._handlers = handlers
         self._system = system
         self._component = component
-        self._done: dict[tuple[int, int], tuple[CommandRequest, float, Result]] = {}
         self._jobs = Jobs()
 
     @property
@@ -105,20 +103,8 @@ class CommandServer:
         under_way = self._jobs.answer(request, now)
         if under_way is not None:
             return under_way
-        result = self._result(handler, request, now)
-        return ack(request, result) if isinstance(result, Result) else self._jobs.begin(request, result, now)
-
-    def _result(self, handler: Handler, request: CommandRequest, now: float) -> Result | Job:
-        if handler.idempotent:
-            return handler.run(request, now)
-        source = (request.system, request.component)
-        before = self._done.get(source)
-        if before and before[0] == request and now - before[1] < SAME_WITHIN:
-            return before[2]
         result = handler.run(request, now)
-        if isinstance(result, Result):
-            self._done[source] = (request, now, result)
-        return result
+        return ack(request, result) if isinstance(result, Result) else self._jobs.begin(request, result, now)
 
 
 def _comparable(param: float) -> float:
