@@ -22,7 +22,7 @@ class Facts:
     mode: str | None = None
     """Why the mode cannot work now."""
     fence: str | None = None
-    """Why the fence, which counts, is none."""
+    """Why the fence, which counts, would stop nobody."""
     battery_low: bool = False
     battery_critical: bool = False
     battery_silent: bool = False

@@ -42,10 +42,15 @@ class Boundary:
         self._stands_since: float | None = None
 
     @property
+    def blind(self) -> bool:
+        """There is a line that nobody may cross, and the rover does not know where it is."""
+        return self.fence.drawn and not self._estimate.good
+
+    @property
     def unfenced(self) -> str | None:
         """Why a fence that counts would stop nobody, or None: it is lost, or the rover does not know where it is."""
         lost = self.fence.missing
-        if lost is None and self.fence.drawn and not self._estimate.good:
+        if lost is None and self.blind:
             return "position is not known, and the fence needs it; wait, or set FENCE_ENABLE 0"
         return lost
 

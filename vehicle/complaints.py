@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from dialects.enums import Severity
+from vehicle.boundary import Boundary
 from vehicle.readings import Readings
 from vehicle.texts import Texts
 
@@ -37,3 +38,8 @@ class Complaints:
 def of_sensors(readings: Readings) -> dict[str, str]:
     """What sensors that give nothing say of it."""
     return {f"{fault.sensor} sensor": f"{fault.sensor} sensor: {fault.reason}" for fault in readings.faults}
+
+
+def of_fence(boundary: Boundary) -> dict[str, str]:
+    """That it would stop nobody: a driver in MANUAL needs no position, and goes on."""
+    return {"Fence": "Fence: position is not known, it stops nobody"} if boundary.blind else {}

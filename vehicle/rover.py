@@ -12,7 +12,7 @@ from vehicle.actuator_test import ActuatorTest
 from vehicle.answers import COMPONENT, Answers, Keepers
 from vehicle.bandwidth import Bandwidth
 from vehicle.buttons import Buttons
-from vehicle.complaints import Complaints, of_sensors
+from vehicle.complaints import Complaints, of_fence, of_sensors
 from vehicle.control import Control
 from vehicle.demand import Demand
 from vehicle.drive import Drive
@@ -180,7 +180,7 @@ class Rover:
         self._navigator.sense(readings, now)
         self._safety.battery.sense(readings.battery_voltage, now, expected="battery" in readings.configured)
         self._safety.computer.sense(readings.computer, now)
-        self._complaints.update(of_sensors(readings), now)
+        self._complaints.update(of_sensors(readings) | of_fence(self._navigator.boundary), now)
 
     def stop_input(self, reason: str | None, now: float) -> None:
         """The emergency stop's own input, each cycle: why it stops the rover, or None while it is closed."""

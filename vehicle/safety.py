@@ -32,7 +32,7 @@ class Safety:
         unready: Callable[[Mode], str | None] = lambda mode: None,
         unfenced: Callable[[], str | None] = lambda: None,
     ) -> None:
-        """`unready` says why a mode cannot work now, or None; `unfenced`, why a fence that counts is none."""
+        """`unready` says why a mode cannot work now, or None; `unfenced`, why a fence that counts would stop nobody."""
         self.state = State.BOOT
         self.mode = self.intended = first_mode(params["INITIAL_MODE"])
         self.terminated = False

@@ -9,7 +9,7 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result, Sensor
 from dialects.modes import Mode
-from tests.vehicle.bench import EVERYTHING, Bench, said
+from tests.vehicle.bench import AHEAD, EVERYTHING, NEUTRAL, Bench, said
 from tests.vehicle.field import Field
 from tests.vehicle.test_mission import upload
 from vehicle.estimator import GPS_LOST
@@ -86,3 +86,18 @@ def test_uploaded_areas_need_one() -> None:
     assert said(field, "PreArm: position is not known, and the fence needs it")
     assert field.command(Command.DO_FENCE_ENABLE, 0) is Result.ACCEPTED
     assert field.arm() is Result.ACCEPTED
+
+
+def test_a_driver_whose_fence_goes_blind_is_told() -> None:
+    field = Field(FENCE_ENABLE=1, FENCE_TYPE=2)
+    field.wait(6.0)
+    assert field.arm() is Result.ACCEPTED
+    field.texts.clear()
+    field.wait(0.2, NEUTRAL)
+    field.blind = {"gps_fix": 0, "latitude": None, "longitude": None}
+    field.wait(GPS_LOST + 1.0, AHEAD)
+    assert field.turning
+    assert said(field, "Fence: position is not known, it stops nobody")
+    field.blind = {}
+    field.wait(6.0, AHEAD)
+    assert said(field, "Fence is well again")
