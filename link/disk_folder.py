@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from link.services.ftp import FtpError
-from link.services.ftp_files import Content, Entry, NotYetError, Query
+from link.services.ftp_files import Content, Entry, NotYetError, Query, ReadOnly
 from link.worker import Worker
 
 PIECE = 64 * 1024
@@ -33,7 +33,7 @@ FRESH = 1.0
 CLOSING = 1.0
 
 
-class DiskFolder:
+class DiskFolder(ReadOnly):
     """Files of `path` whose names end in `suffix`. Fits `ftp_files.Folder`; see `NotYetError` for how it never waits.
 
     `removable` says in the thread whether a file may be removed now; who may ask for it at all is not decided here.
@@ -59,15 +59,6 @@ class DiskFolder:
             return None
         content: Content | None = self._ask(("open", name), lambda: self._found(name))
         return content
-
-    @property
-    def writable(self) -> bool:
-        """Never."""
-        return False
-
-    def store(self, name: str, data: bytes) -> FtpError | None:
-        """Never."""
-        return FtpError.PROTECTED
 
     def remove(self, name: str) -> FtpError | None:
         """Remove a file. Raises NotYetError."""

@@ -15,7 +15,7 @@ from dialects import messages as m
 from dialects.enums import Severity
 from link.core import RECORDER, Outgoing, Received
 from link.services.ftp import FtpError
-from link.services.ftp_files import Content, Entry, Folder, MemoryFolder, Query
+from link.services.ftp_files import Content, Entry, Folder, MemoryFolder, Query, ReadOnly
 from link.services.param_values import REAL32
 from vehicle.control import Control
 from vehicle.params import Params
@@ -149,7 +149,7 @@ class Logbook:
 _KEY = "recording"
 
 
-class _Logs:
+class _Logs(ReadOnly):
     """Fits `ftp_files.Folder`: only read, and removed from while disarmed."""
 
     def __init__(self, logs: Folder, armed: Callable[[], bool]) -> None:
@@ -161,13 +161,6 @@ class _Logs:
 
     def open(self, name: str, query: Query) -> Content | None:
         return self._logs.open(name, query)
-
-    @property
-    def writable(self) -> bool:
-        return False
-
-    def store(self, name: str, data: bytes) -> FtpError | None:
-        return FtpError.PROTECTED
 
     def remove(self, name: str) -> FtpError | None:
         return FtpError.PROTECTED if self._armed() else self._logs.remove(name)

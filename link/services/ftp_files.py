@@ -76,8 +76,25 @@ class Bytes:
         return self.data[offset : offset + size]
 
 
-class MadeFiles:
-    """Files that are made when somebody opens them, e.g. `param.pck`. Only read."""
+class ReadOnly:
+    """The half of a Folder that writes, for one that does not."""
+
+    @property
+    def writable(self) -> bool:
+        """Never."""
+        return False
+
+    def store(self, name: str, data: bytes) -> FtpError | None:
+        """Never."""
+        return FtpError.PROTECTED
+
+    def remove(self, name: str) -> FtpError | None:
+        """Never."""
+        return FtpError.PROTECTED
+
+
+class MadeFiles(ReadOnly):
+    """Files that are made when somebody opens them, e.g. `param.pck`."""
 
     def __init__(self, makers: Mapping[str, Callable[[Query], bytes | None]]) -> None:
         self._makers = makers
@@ -92,19 +109,6 @@ class MadeFiles:
         make = self._makers.get(name)
         data = make(query) if make else None
         return None if data is None else Bytes(data)
-
-    @property
-    def writable(self) -> bool:
-        """Never."""
-        return False
-
-    def store(self, name: str, data: bytes) -> FtpError | None:
-        """Never."""
-        return FtpError.PROTECTED
-
-    def remove(self, name: str) -> FtpError | None:
-        """Never."""
-        return FtpError.PROTECTED
 
 
 @dataclass(slots=True)
