@@ -16,7 +16,7 @@ class Worker:
     """Runs jobs one after the other. The thread begins with the first job and does not keep the program from ending."""
 
     def __init__(self, name: str, limit: int) -> None:
-        """`limit`: jobs that may wait."""
+        """`limit`: jobs that may wait; 0: any number, where the caller bounds them."""
         self._name = name
         self._jobs: queue.Queue[Job | None] = queue.Queue(limit)
         self._thread: threading.Thread | None = None

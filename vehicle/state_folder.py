@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import contextlib
 import os
-import queue
 import threading
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
+from link.worker import Worker
 from vehicle.sealed import DamagedError
 
 CLOSING = 2.0
@@ -53,35 +54,28 @@ class Scribe:
         self._lock = threading.Lock()
         self._newest: dict[str, Callable[[], bytes]] = {}
         """What waits to be written: of each file what was wanted last, however slow the disk is."""
-        self._names: queue.SimpleQueue[str | None] = queue.SimpleQueue()
-        self._thread: threading.Thread | None = None
+        self._worker = Worker("scribe", limit=0)  # a file waits once, so that there are no more jobs than files
 
     def write(self, name: str, make: Callable[[], bytes]) -> None:
         """Have a file written. Returns at once; `make` gives its bytes, in the thread, unless a newer wish for the same
         file comes before its turn."""
         with self._lock:
             if name not in self._newest:
-                self._names.put(name)
+                self._worker.put(partial(self._write_newest, name))
             self._newest[name] = make
-        if self._thread is None:
-            self._thread = threading.Thread(target=self._write_on, name="scribe", daemon=True)
-            self._thread.start()
 
     def close(self) -> None:
         """Wait for what is being written."""
-        if self._thread is not None:
-            self._names.put(None)
-            self._thread.join(CLOSING)
+        self._worker.close(CLOSING)
 
-    def _write_on(self) -> None:
-        while (name := self._names.get()) is not None:
-            with self._lock:
-                make = self._newest.pop(name)
-            try:
-                self._write(self._folder / name, make())
-                self.problem = None
-            except OSError as error:
-                self.problem = str(error.strerror)
+    def _write_newest(self, name: str) -> None:
+        with self._lock:
+            make = self._newest.pop(name)
+        try:
+            self._write(self._folder / name, make())
+            self.problem = None
+        except OSError as error:
+            self.problem = str(error.strerror)
 
     def _write(self, path: Path, data: bytes) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
