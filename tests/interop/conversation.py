@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 PATIENCE = 15.0
 """s for an answer: the machine is shared."""
@@ -81,12 +82,7 @@ class Conversation:
 
     def end(self) -> None:
         """End it, whatever state it is in."""
-        self._process.kill()
-        self._process.wait(10)
-        self._thread.join(5)
-        for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                pipe.close()
+        end(self._process, self._thread)
 
     def _listen(self) -> None:
         assert self._process.stdout is not None
@@ -94,3 +90,13 @@ class Conversation:
             with self._news:
                 self._heard += data
                 self._news.notify_all()
+
+
+def end(process: subprocess.Popen[Any], listener: threading.Thread) -> None:
+    """End a program in any state, and the thread that reads what it says."""
+    process.kill()
+    process.wait(10)
+    listener.join(5)
+    for pipe in (process.stdin, process.stdout):
+        if pipe is not None:
+            pipe.close()

@@ -17,6 +17,8 @@ from typing import NamedTuple
 
 import pytest
 
+from tests.interop.conversation import end
+
 ROOT = Path(__file__).parents[2]
 PATIENCE = 40.0
 """s for a step: longer than MAVSDK's own limits."""
@@ -85,12 +87,7 @@ class Client:
 
     def end(self) -> None:
         """End it, whatever state it is in."""
-        self._process.kill()
-        self._process.wait(10)
-        self._thread.join(5)
-        for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                pipe.close()
+        end(self._process, self._thread)
 
     def _find(self, name: str, value: str) -> Step | None:
         return next((each for each in self._steps if each.name == name and re.search(value, str(each.value))), None)
