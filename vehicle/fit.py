@@ -18,7 +18,7 @@ NAMES = tuple(tuple(f"MOT{n}_{what}" for what in ("REVERSED", "MIN", "MAX", "TRI
 
 
 class Fit(NamedTuple):
-    """One motor's; shares of full, the first smaller than the second. Made in each cycle."""
+    """One motor's; shares of full, the first smaller than the second. Made when a parameter changes."""
 
     reversed: bool = False
     smallest: float = 0.0
