@@ -17,6 +17,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from dialects.modes import Mode
 from tests.e2e.relay import Relay
 
 REPEAT = 0.033
@@ -194,11 +195,19 @@ def _armed(station: GroundStation, relay: Relay) -> bool:
     return relay.armed()
 
 
+def _keys_drive(station: GroundStation, relay: Relay) -> bool:
+    """Does the screen say that keys drive? MANUAL once more, where a bad link has led to HOLD after arming."""
+    if relay.mode() != Mode.MANUAL:
+        station.type("1")
+        station.look(1.0)
+    return relay.mode() == Mode.MANUAL and b"hold i to drive" in station.screen
+
+
 def drive(station: GroundStation, vehicle: Vehicle, relay: Relay, key: str = "i") -> None:
     """Arm through the keys and hold one until the wheels turn: every stop test starts from here."""
     station.wait_for(lambda: relay.mode() is not None, 20, "the vehicle is heard")
     station.wait_for(lambda: b"arms" in station.screen, 20, "the drive screen says how to arm")
     station.wait_for(lambda: _armed(station, relay), 30, "armed")
-    station.wait_for(lambda: b"hold i to drive" in station.screen, 5, "the drive screen says that keys drive")
+    station.wait_for(lambda: _keys_drive(station, relay), 30, "the drive screen says that keys drive")
     station.hold(key, vehicle.at_full)
     assert vehicle.turning()

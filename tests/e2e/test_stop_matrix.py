@@ -14,6 +14,7 @@ from collections.abc import Callable
 
 import pytest
 
+from dialects.modes import Mode
 from tests.e2e.conftest import Rig
 from tests.e2e.programs import REPEAT, drive
 
@@ -141,7 +142,7 @@ def test_link_cut_and_back_with_the_key_held_all_along(rig: Build) -> None:
     assert not world.vehicle.moved_since(cut + NEUTRAL_WITHIN + NOISE)
     world.station.look(1.0)  # the key is let go
     world.station.type("1")  # MANUAL, because the vehicle went to HOLD
-    world.station.wait_for(lambda: world.relay.mode() == 0, 5, "MANUAL again")
+    world.station.wait_for(lambda: world.relay.mode() == Mode.MANUAL, 5, "MANUAL again")
     world.station.hold("i", world.vehicle.at_full)
 
 
@@ -153,7 +154,7 @@ def test_a_lossy_minute(rig: Build, loss: float, keeps_driving: bool) -> None:
     start = time.monotonic()
     drove = 0
     while time.monotonic() < start + 60:
-        if world.relay.mode() != 0:
+        if world.relay.mode() != Mode.MANUAL:
             world.station.type("1")
         pressed = time.monotonic()
         world.station.hold("i", lambda pressed=pressed: time.monotonic() > pressed + 5.0)  # type: ignore[misc]
