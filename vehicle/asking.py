@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from dialects.enums import Command, Result, Severity
 from link.services.command import CommandRequest, Handler, Run
 from link.services.command_jobs import Job
@@ -10,6 +12,13 @@ from vehicle.texts import Texts
 
 GLOBAL_FRAMES = (0, 3, 5, 6)
 """MAV_FRAME_GLOBAL, _RELATIVE_ALT and their _INT: frames that a place on the globe may have."""
+RELATIVE_FRAMES = (3, 6)
+"""... and those whose height is above home. A place of COMMAND_LONG is in MAV_FRAME_GLOBAL, as ArduPilot's home is."""
+
+
+def given(value: float, otherwise: float = 0.0) -> float:
+    """A parameter that may be left out: COMMAND_LONG always has seven, and MAVSDK puts NaN where it says nothing."""
+    return otherwise if math.isnan(value) else value
 
 
 class Asking:

@@ -14,6 +14,7 @@ from dialects.messages import CommandInt, CommandLong, SetMode
 from dialects.modes import Mode
 from link.core import Outgoing, Received
 from link.services.command import CommandRequest, Handler
+from vehicle.asking import given
 from vehicle.control import Control
 from vehicle.modes import asked_mode, standard_mode
 from vehicle.safety import Safety
@@ -136,7 +137,7 @@ class Commands:
 
     def _operator_control(self, request: CommandRequest, now: float) -> Result:
         """REQUEST_OPERATOR_CONTROL: 1 request, 0 release; parameter 2: others may take over without asking."""
-        action, takeover, _, gcs = request.params[:4]
+        action, takeover, gcs = request.params[0], given(request.params[1]), given(request.params[3])
         if action not in (0, 1) or takeover not in (0, 1) or gcs not in (0, request.system):
             return Result.DENIED
         if not request.introduced:
@@ -165,7 +166,7 @@ class Commands:
         if not self._control.owner or (system == request.system and now - at < ASK_AGAIN):
             return
         self._asked = (request.system, now)
-        params = (*request.params[:3], float(request.system), 0.0, 0.0, 0.0)
+        params = (*map(given, request.params[:3]), float(request.system), 0.0, 0.0, 0.0)
         self._outbox.append(Outgoing(CommandLong(self._control.owner, 0, request.command, 0, *params)))
 
     def _stranger(self, system: int, introduced: bool) -> str | None:

@@ -48,7 +48,10 @@ COMMANDS: dict[Command, tuple[str, str]] = {
     Command.ACTUATOR_TEST: (DRIVER, "disarmed; 1: -1..1, NaN stops, 2: s up to 3, 0 stops, 5: motor from 1"),
     Command.PREFLIGHT_STORAGE: (DRIVER, "disarmed; 1: 2 or 4 puts parameters back to their defaults"),
     Command.PREFLIGHT_CALIBRATION: (DRIVER, "disarmed; 1: 1 the gyro, at rest for 3 s, told as progress"),
-    Command.PREFLIGHT_REBOOT_SHUTDOWN: (DRIVER, "disarmed, REBOOT_ENABLE; 1: 1 this program; 2: 1 reboot, 2 shut down"),
+    Command.PREFLIGHT_REBOOT_SHUTDOWN: (
+        DRIVER,
+        "disarmed, REBOOT_ENABLE; 1: 1 this program, 2 shut down; 2: 1 reboot, 2 shut down",
+    ),
     Command.REQUEST_MESSAGE: (KNOWN, "1: message id; 2: index"),
     Command.SET_MESSAGE_INTERVAL: (KNOWN, "1: message id; 2: us, -1 off, 0 as at the start"),
     Command.GET_MESSAGE_INTERVAL: (KNOWN, "1: message id"),

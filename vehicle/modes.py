@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from dialects.modes import Mode
+from vehicle.asking import given
 
 
 class Need(Enum):
@@ -73,6 +74,7 @@ CUSTOM_MODE_ENABLED = 1
 
 def asked_mode(base: float, main: float, sub: float = 0.0) -> Mode | None:
     """The offered mode that DO_SET_MODE's parameters 1..3 name; None for anything else."""
+    sub = given(sub)
     if not all(math.isfinite(value) and value == int(value) for value in (base, main, sub)):
         return None
     if not int(base) & CUSTOM_MODE_ENABLED:

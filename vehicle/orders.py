@@ -12,7 +12,7 @@ from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from link.core import Received
 from link.services.command import CommandRequest, Handler, Run
-from vehicle.asking import GLOBAL_FRAMES, Asking, asked_place, nowhere
+from vehicle.asking import GLOBAL_FRAMES, RELATIVE_FRAMES, Asking, asked_place, given, nowhere
 from vehicle.control import Control
 from vehicle.modes import OFFERED
 from vehicle.navigator import USUAL_SPEED, Navigator
@@ -120,11 +120,11 @@ class Orders:
             return Result.INT_ONLY
         if request.frame not in GLOBAL_FRAMES:
             return Result.UNSUPPORTED_FRAME
-        speed, flags = request.params[:2]
+        speed, flags = given(request.params[0], KEEP_SPEED), given(request.params[1])
         changes = flags == CHANGE_MODE
         if flags not in (0, CHANGE_MODE) or not (changes or self._safety.mode is Mode.GUIDED):
             return Result.DENIED
-        if not (speed == KEEP_SPEED or math.isnan(speed) or 0.0 < speed <= 1e3):
+        if not (speed == KEEP_SPEED or 0.0 < speed <= 1e3):
             return Result.DENIED
         if nowhere(request.x, request.y):
             return Result.DENIED
@@ -189,9 +189,11 @@ class Orders:
 
     @staticmethod
     def _home_at(request: CommandRequest, navigator: Navigator) -> Result:
-        place, altitude = asked_place(request), request.params[6]
+        place = asked_place(request)
         if isinstance(place, Result):
             return place
+        before = navigator.home.altitude if navigator.home else 0.0
+        altitude = given(request.params[6] + (before if request.frame in RELATIVE_FRAMES else 0.0), before)
         latitude, longitude = place
         point = globe_point(latitude, longitude, navigator.estimate)
         if point is None or not abs(altitude) < 1e5:

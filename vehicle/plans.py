@@ -15,7 +15,7 @@ from link.services.mission import MissionServer
 from link.services.mission_files import PlanFolder
 from link.services.mission_items import Items
 from link.services.pacing import Pacer
-from vehicle.asking import Asking
+from vehicle.asking import Asking, given
 from vehicle.control import Control
 from vehicle.goals import mission_state
 from vehicle.navigator import Navigator, PlanIds
@@ -213,7 +213,7 @@ class Plans:
             return self._asking.refuse(request, mission.missing, now)
         if not self._safety.armed:
             return self._asking.refuse(request, "not armed", now)
-        last = request.params[1]
+        last = given(request.params[1])
         if not (0 <= first < len(mission.items) and first == int(first)) or last not in (-1, 0, len(mission.items) - 1):
             return Result.DENIED
         if first:
@@ -224,7 +224,7 @@ class Plans:
 
     def _set_current(self, request: CommandRequest, now: float) -> Result:
         """Parameter 1: -1 is the item under way; 2: 1 forgets the jumps made. Everybody is told the item then."""
-        index, anew = request.params[:2]
+        index, anew = request.params[0], given(request.params[1])
         index = self._navigator.mission.current if index == THIS_ITEM else index
         if anew not in (0, 1) or not self._selected(index, anew=bool(anew)):
             return Result.DENIED

@@ -11,7 +11,7 @@ from link.services.command import CommandRequest, Handler
 from vehicle.asking import Asking
 from vehicle.calibration import Calibration
 from vehicle.control import Control
-from vehicle.leaving import DELAY, Leave
+from vehicle.leaving import DELAY, Leave, asked_leave
 from vehicle.navigator import Navigator
 from vehicle.param_service import ParamService
 from vehicle.params import Params
@@ -23,14 +23,6 @@ READ, WRITE, RESET, RESET_ALL = 0, 1, 2, 4
 """PREFLIGHT_STORAGE_PARAMETER_ACTION; 3 would reset the calibration of sensors, and there is none."""
 PLANS_STAY = (0, -1)
 """Parameter 2 of PREFLIGHT_STORAGE: plans are read and written by nobody's order."""
-LEAVES: dict[tuple[float, float], Leave] = {
-    (1, 0): Leave.RESTART,
-    (0, 1): Leave.REBOOT,
-    (1, 1): Leave.REBOOT,
-    (0, 2): Leave.POWER_OFF,
-    (1, 2): Leave.POWER_OFF,
-}
-"""REBOOT_SHUTDOWN_ACTION for the autopilot, for the computer on board -> what happens. The rest is not offered."""
 
 
 class Preflight:
@@ -92,11 +84,14 @@ class Preflight:
         return self._asking.refuse(request, problem, now) if problem and action == WRITE else Result.ACCEPTED
 
     def _reboot(self, request: CommandRequest, now: float) -> Result:
-        """Parameter 1: this program; 2: the computer; 3: other components, which there are none of."""
+        """Parameter 1: this program; 2: the computer; 3 and 4: a component, which may be this one or all."""
         if self._safety.armed:
             return self._asking.refuse(request, "armed", now)
-        leave = LEAVES.get((request.params[0], request.params[1])) if request.params[2] == 0 else None
-        if leave is None or self._params["REBOOT_ENABLE"] < (1 if leave is Leave.RESTART else 2):
+        leave = asked_leave(request.params)
+        if leave is None:
+            return Result.DENIED
+        if self._params["REBOOT_ENABLE"] < (1 if leave is Leave.RESTART else 2):
+            self._asking.refuse(request, f"REBOOT_ENABLE is {self._params['REBOOT_ENABLE']:g}", now)
             return Result.DENIED
         self._leave = self._leave or (leave, now + DELAY)  # a repeat does not put it off
         self._texts.say(Severity.WARNING, f"GCS {request.system}: {leave.words}", now)

@@ -14,6 +14,7 @@ from dialects.enums import Command, Result
 from link.core import Outgoing
 from link.services.command import CommandRequest, Handler, Run
 from vehicle import status
+from vehicle.asking import given
 from vehicle.fields import message_id
 from vehicle.links import Links
 from vehicle.streams import BY_ID
@@ -75,7 +76,7 @@ class Requests:
 
     def _available_modes(self, request: CommandRequest, now: float) -> Result:
         """Parameter 2: 0 all, else the index from 1."""
-        modes, index = status.available_modes(self._look(now)), request.params[1]
+        modes, index = status.available_modes(self._look(now)), given(request.params[1])
         if not (math.isfinite(index) and index == int(index) and 0 <= index <= len(modes)):
             return Result.DENIED
         for mode in [modes[int(index) - 1]] if index else modes:

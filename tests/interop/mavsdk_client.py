@@ -73,6 +73,13 @@ def driving(system: Any, folder: str) -> None:
     step("disarm", action.disarm)
 
 
+def leaving(system: Any, folder: str) -> None:
+    """Have it start again, or turned off: each with a line on stdin, in a run of its own."""
+    action = plugin("action", system)
+    for line in sys.stdin:
+        step(line.strip(), partial(insist, getattr(action, line.strip())))
+
+
 def guided(system: Any, folder: str) -> None:
     """Go somewhere at a speed, come back, drive by velocity; each until a line comes on stdin."""
     action, offboard, telemetry = (plugin(name, system) for name in ("action", "offboard", "telemetry"))
@@ -209,7 +216,19 @@ def wheel(system: Any, folder: str) -> None:
 
 
 SCENARIOS = {
-    each.__name__: each for each in (identity, parameters, driving, guided, mission, files, recordings, lossy, wheel)
+    each.__name__: each
+    for each in (
+        identity,
+        parameters,
+        driving,
+        leaving,
+        guided,
+        mission,
+        files,
+        recordings,
+        lossy,
+        wheel,
+    )
 }
 
 

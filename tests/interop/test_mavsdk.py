@@ -11,6 +11,7 @@ import pytest
 from tests.interop import mavsdk_process, mavsdk_streams
 from tests.interop.conftest import Rover
 from tests.interop.mavsdk_process import Client
+from vehicle.leaving import Leave
 from vehicle.params import TABLE
 
 pytestmark = [pytest.mark.interop, mavsdk_process.needed]
@@ -66,6 +67,17 @@ def test_it_drives_by_hand(client: Callable[[str], Client], rover: Rover) -> Non
     sdk.good("hold")
     rover.stands()
     sdk.good("disarm")
+
+
+@pytest.mark.parametrize("options", [("--param", "REBOOT_ENABLE=2")])
+@pytest.mark.parametrize(("word", "code"), [("reboot", Leave.RESTART), ("shutdown", Leave.POWER_OFF)])
+def test_it_starts_again_and_is_turned_off(
+    client: Callable[[str], Client], rover: Rover, word: str, code: Leave, options: tuple[str, ...]
+) -> None:
+    sdk = client("leaving")
+    sdk.say(word)
+    sdk.good(word)
+    assert rover.vehicle.process.wait(30) == code
 
 
 def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> None:

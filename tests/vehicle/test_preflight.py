@@ -48,9 +48,16 @@ class TestReboot:
             ((1, 1), Leave.REBOOT),
             ((0, 2), Leave.POWER_OFF),
             ((1, 2), Leave.POWER_OFF),
+            ((1, *(NAN,) * 6), Leave.RESTART),  # MAVSDK 4
+            ((2, *(NAN,) * 6), Leave.POWER_OFF),
+            ((1, 1, 1, 1), Leave.REBOOT),  # MAVSDK before
+            ((2, 2, 2, 2), Leave.POWER_OFF),
+            ((0, 0, 1, 0), Leave.RESTART),  # all components
+            ((0, 0, 2, 1), Leave.POWER_OFF),  # this one
+            ((1, 0, 1, 100), Leave.RESTART),  # a camera that we have not
         ],
     )
-    def test_first_the_answer_then_the_end(self, wish: tuple[float, float], leave: Leave) -> None:
+    def test_first_the_answer_then_the_end(self, wish: tuple[float, ...], leave: Leave) -> None:
         bench = Bench(REBOOT_ENABLE=2)
         assert bench.command(REBOOT, *wish) is Result.ACCEPTED
         assert bench.rover.leaving(bench.now) is None
@@ -62,7 +69,21 @@ class TestReboot:
 
     @pytest.mark.parametrize(
         "wish",
-        [(0, 0), (2, 0), (3, 0), (1, 3), (NAN, 0), (1, NAN), (0.5, 0), (-1, 0), (0, 0, 1), (1, 0, 1), (1, 0, NAN)],
+        [
+            (0, 0),
+            (3, 0),
+            (1, 3),
+            (2, 1),
+            (NAN, 0),
+            (NAN,) * 7,
+            (0.5, 0),
+            (-1, 0),
+            (math.inf, 0),
+            (0, 0, 1, 100),
+            (0, 0, 3, 0),
+            (1, 0, 2, 1),
+            (2, 0, 1, 0),
+        ],
     )
     def test_what_is_not_offered_is_denied(self, wish: tuple[float, ...]) -> None:
         bench = Bench(REBOOT_ENABLE=2)
@@ -73,6 +94,8 @@ class TestReboot:
     def test_the_setting_may_allow_the_program_only(self) -> None:
         bench = Bench(REBOOT_ENABLE=1)
         assert bench.command(REBOOT, 0, 1) is Result.DENIED
+        assert bench.command(REBOOT, 2) is Result.DENIED
+        assert said(bench, "PREFLIGHT_REBOOT_SHUTDOWN refused: REBOOT_ENABLE is 1")
         assert bench.command(REBOOT, 1, 0) is Result.ACCEPTED
 
     def test_who_arms_in_time_keeps_it(self) -> None:

@@ -51,7 +51,9 @@ def test_modes_one_by_one_and_all_at_once() -> None:
     assert all(mode.number_modes == len(OFFERED) for mode in modes)
     assert bench.command(REQUEST, m.AvailableModes.id, 3) is Result.ACCEPTED
     assert bench.newest(m.AvailableModes).custom_mode == Mode.HOLD
-    for index in (len(OFFERED) + 1, -1, 0.5, math.nan):
+    assert bench.command(REQUEST, m.AvailableModes.id, math.nan) is Result.ACCEPTED  # left out: all
+    assert bench.newest(m.AvailableModes).mode_index == len(OFFERED)
+    for index in (len(OFFERED) + 1, -1, 0.5, math.inf):
         assert bench.command(REQUEST, m.AvailableModes.id, index) is Result.DENIED
 
 

@@ -1,0 +1,61 @@
+"""DO_SET_HOME: where, how high, and what is left out."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Command, Result
+from tests.vehicle.bench import EVERYTHING, Bench
+
+HERE = (481_000_000, 115_000_000, 500_000)
+THERE = (481_010_000, 115_020_000)
+
+
+def placed() -> Bench:
+    bench = Bench()
+    bench.readings = EVERYTHING
+    bench.heartbeat()
+    bench.wait(3.0)
+    return bench
+
+
+def home(bench: Bench) -> tuple[int, int, int]:
+    """Degrees x 1e7 and mm, as it is told at once."""
+    bench.wait(0.1)
+    told = bench.newest(m.HomePosition)
+    return told.latitude, told.longitude, told.altitude
+
+
+def set_home(bench: Bench, frame: int, altitude: float) -> int:
+    bench.say(m.CommandInt(1, 1, frame, Command.DO_SET_HOME, 0, 0, 0, 0, 0, 0, *THERE, altitude))
+    return int(bench.newest(m.CommandAck).result)
+
+
+@pytest.mark.parametrize(
+    ("frame", "altitude", "expected"),
+    [(0, 520, 520_000), (5, 520, 520_000), (3, 20, 520_000), (6, -20, 480_000), (0, math.nan, 500_000)],
+)
+def test_a_place_its_height_in_its_frame_and_a_height_that_is_left_out(
+    frame: int, altitude: float, expected: int
+) -> None:
+    bench = placed()
+    assert home(bench) == HERE
+    assert set_home(bench, frame, altitude) == Result.ACCEPTED
+    assert home(bench) == (*THERE, expected)
+
+
+@pytest.mark.parametrize("altitude", [math.inf, -math.inf, 1e6])
+def test_a_height_that_is_none(altitude: float) -> None:
+    bench = placed()
+    assert set_home(bench, 0, altitude) == Result.DENIED
+    assert home(bench) == HERE
+
+
+def test_here_again() -> None:
+    bench = placed()
+    set_home(bench, 0, 520)
+    assert bench.command(Command.DO_SET_HOME, 1) is Result.ACCEPTED
+    assert home(bench) == pytest.approx((*HERE[:2], 520_000), abs=1000)  # it drifts
