@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One setting. `safety` settings are never changed while armed."""
+    """One setting. What a failsafe, an interlock or a limit goes by is `safety`: never changed while armed."""
 
     name: str
     default: float
@@ -62,11 +62,12 @@ TABLE: tuple[Parameter, ...] = (
     # Manual driving
     Parameter("MAN_TIMEOUT", 0.45, 0.2, 2, "s", "A demand older than this is neutral. 9 frames of 20 Hz; less than "
               "0.5 s, so that the wheels begin to slow by then", safety=True),
-    Parameter("MAN_DEADBAND", 3, 0, 20, "%", "Demands smaller than this are neutral"),
+    Parameter("MAN_DEADBAND", 3, 0, 20, "%", "Demands smaller than this are neutral", safety=True),
     Parameter("MANUAL_EXPO", 0, 0, 0.9, "", "Softness of throttle, also sideways, near neutral; 0 is linear"),
     Parameter("MANUAL_STR_EXPO", 0, 0, 0.9, "", "Softness of steering near neutral; 0 is linear"),
     Parameter("INITIAL_MODE", 0, 0, 4, "", "Mode after start: 0 MANUAL, 4 HOLD", whole=True),
-    Parameter("OPR_TIMEOUT", 10, 2, 60, "s", "Without a key or stick event for so long while moving: stop"),
+    Parameter("OPR_TIMEOUT", 10, 2, 60, "s", "Without a key or stick event for so long while moving: stop",
+              safety=True),
     Parameter("OPR_ECHO_MAX", 0.45, 0.2, 5, "s", "A demand is refused when the driver has seen nothing newer of the "
               "vehicle than this; raise it on slow radios", safety=True),
     *(Parameter(f"BTN{bit}_FUNCTION", 0, 0, 7, "", f"Button {bit} of MANUAL_CONTROL, as it is pressed: 0 nothing, "
@@ -80,15 +81,18 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("FS_GCS_TIMEOUT", 5, 2, 120, "s", "Silence after which the ground station in control is lost",
               safety=True),
     Parameter("FS_LOOP_TIMEOUT", 0.2, 0.1, 2, "s", "A control cycle later than this disarms", safety=True),
-    Parameter("FS_LOW_ACT", 2, 0, 2, "", "Battery low: 0 slow down only, 2 HOLD as well", whole=True),
-    Parameter("BATT_LOW_VOLT", 10.5, 0, 100, "V", "Battery low below this; 0: off"),
-    Parameter("BATT_CRT_VOLT", 10.0, 0, 100, "V", "Battery critical below this; 0: off"),
-    Parameter("BATT_LOW_TIMER", 10, 1, 120, "s", "The voltage must be low for so long; motors pull it down"),
+    Parameter("FS_LOW_ACT", 2, 0, 2, "", "Battery low: 0 slow down only, 2 HOLD as well", safety=True, whole=True),
+    Parameter("BATT_LOW_VOLT", 10.5, 0, 100, "V", "Battery low below this; 0: off", safety=True),
+    Parameter("BATT_CRT_VOLT", 10.0, 0, 100, "V", "Battery critical below this; 0: off", safety=True),
+    Parameter("BATT_LOW_TIMER", 10, 1, 120, "s", "The voltage must be low for so long; motors pull it down",
+              safety=True),
     Parameter("FS_PI_ACT", 2, 0, 2, "", "Pi too hot or its supply too weak: 0 say so, 1 slow down, 2 HOLD as well",
-              whole=True),
-    Parameter("FS_PI_TEMP", 85, 0, 110, "degC", "The Pi is too hot above this; a Pi slows itself down at 85; 0: off"),
-    Parameter("FS_PI_TIMER", 10, 1, 120, "s", "From slow to HOLD, while the Pi stays too hot or its supply too weak"),
-    Parameter("DISARM_DELAY", 300, 0, 3600, "s", "Disarm after so long without a demand; 0: never"),
+              safety=True, whole=True),
+    Parameter("FS_PI_TEMP", 85, 0, 110, "degC", "The Pi is too hot above this; a Pi slows itself down at 85; 0: off",
+              safety=True),
+    Parameter("FS_PI_TIMER", 10, 1, 120, "s", "From slow to HOLD, while the Pi stays too hot or its supply too weak",
+              safety=True),
+    Parameter("DISARM_DELAY", 300, 0, 3600, "s", "Disarm after so long without a demand; 0: never", safety=True),
     Parameter("GUIDED_TIMEOUT", 1, 0.2, 5, "s", "A velocity setpoint of GUIDED older than this stops", safety=True),
     Parameter("CRASH_ANGLE", 45, 0, 80, "deg", "Tilted more than this for 0.5 s: disarm; 0: off", safety=True),
     Parameter("FS_CRASH_CHECK", 1, 0, 2, "", "Pushing for 2 s without moving: 0 nothing, 1 HOLD, 2 disarm",
@@ -114,14 +118,14 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("CRUISE_SPEED", 0.75, 0.05, 30, "m/s", "Speed at CRUISE_THROTTLE"),
     Parameter("CRUISE_THROTTLE", 50, 5, 100, "%", "Throttle that gives CRUISE_SPEED"),
     Parameter("ATC_ACCEL_MAX", 1, 0.1, 10, "m/s/s", "Acceleration along a path"),
-    Parameter("ATC_DECEL_MAX", 1, 0.1, 10, "m/s/s", "Braking along a path"),
-    Parameter("ATC_STOP_SPEED", 0.1, 0.01, 1, "m/s", "Slower than this it stands"),
+    Parameter("ATC_DECEL_MAX", 1, 0.1, 10, "m/s/s", "Braking along a path", safety=True),
+    Parameter("ATC_STOP_SPEED", 0.1, 0.01, 1, "m/s", "Slower than this it stands", safety=True),
     Parameter("ATC_SPEED_P", 0.2, 0, 2, "", "Throttle for each m/s that is missing"),
     Parameter("ATC_SPEED_I", 0.2, 0, 2, "", "... and for each m that was missed"),
     Parameter("ATC_STR_ANG_P", 2, 0.5, 10, "", "rad/s for each rad off the course"),
-    Parameter("ATC_STR_RAT_MAX", 120, 10, 720, "deg/s", "Largest turn rate while driving by itself"),
+    Parameter("ATC_STR_RAT_MAX", 120, 10, 720, "deg/s", "Largest turn rate while driving by itself", safety=True),
     Parameter("ATC_TURN_MAX_G", 0.6, 0.1, 10, "g", "Largest sideways acceleration while driving by itself; "
-              "rovers that may tip need less"),
+              "rovers that may tip need less", safety=True),
     Parameter("ATC_STR_RAT_P", 0.1, 0, 2, "", "Steering for each rad/s that is missing"),
     Parameter("ATC_STR_RAT_I", 0.2, 0, 2, "", "... and for each rad that was missed"),
     Parameter("ATC_STR_RAT_FF", 0.23, 0, 3, "", "Steering for each rad/s that is wanted"),
@@ -133,7 +137,8 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("MOT_DECEL", 250, 250, 10000, "%/s", "Deceleration of each motor; 250 is from full to zero in 0.4 s",
               safety=True),
     Parameter("MOT_THR_MAX", 100, 30, 100, "%", "Largest throttle", safety=True),
-    Parameter("MOT_STR_THR_MIX", 0.5, 0.2, 1, "", "Skid steering at its limit: more keeps steering, less throttle"),
+    Parameter("MOT_STR_THR_MIX", 0.5, 0.2, 1, "", "Skid steering at its limit: more keeps steering, less throttle",
+              safety=True),
     Parameter("MOT_TEST_MAX", 30, 0, 30, "%", "Largest throttle of DO_MOTOR_TEST and ACTUATOR_TEST; 0: no tests over "
               "the air", safety=True),
     Parameter("MOT_REV_DELAY", 0, 0, 1, "s", "Pause at zero before a motor reverses", safety=True),
@@ -151,7 +156,7 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("LOG_FILE_MB_FREE", 500, 10, 1000, "MB", "Less than this is free: the oldest logs are removed",
               whole=True),
     # Shape
-    Parameter("SPEED_MAX", 1.5, 0.1, 30, "m/s", "Top speed"),
+    Parameter("SPEED_MAX", 1.5, 0.1, 30, "m/s", "Top speed", safety=True),
     Parameter("TRACK_WIDTH", 0.35, 0.05, 5, "m", "Distance between left and right wheels"),
     Parameter("WHEELBASE", 0.3, 0.05, 5, "m", "Distance between front and rear axles"),
 )  # fmt: skip

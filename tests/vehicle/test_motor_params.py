@@ -130,7 +130,7 @@ def test_less_for_turning_on_the_spot(axes: Axes, wheels: tuple[float, float]) -
     assert bench.throttles == pytest.approx(wheels, abs=1e-3)
 
 
-@pytest.mark.parametrize("name", [name for name in MOTOR_PARAMS if PARAMETERS[name].safety])
+@pytest.mark.parametrize("name", MOTOR_PARAMS)
 def test_none_of_them_changes_while_armed(name: str) -> None:
     bench = Bench()
     parameter = PARAMETERS[name]
@@ -140,10 +140,6 @@ def test_none_of_them_changes_while_armed(name: str) -> None:
     assert bench.newest(m.ParamError).error == ParamFault.PERMISSION_DENIED
     bench.command(Command.COMPONENT_ARM_DISARM, 0)
     assert set_(bench, name, other) == pytest.approx(other)
-
-
-def test_every_parameter_of_one_motor_is_a_safety_setting() -> None:
-    assert [name for name in MOTOR_PARAMS if not PARAMETERS[name].safety] == ["MOT_STR_THR_MIX"]
 
 
 def test_values_that_do_not_fit_each_other_are_refused_over_the_link() -> None:

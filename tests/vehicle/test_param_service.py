@@ -172,10 +172,20 @@ def test_61_safety_settings_are_locked_while_armed() -> None:
     assert set_(bench, "MOT_THR_MAX", 30) == 100
     assert bench.newest(m.ParamError).error == ParamFault.PERMISSION_DENIED
     assert memory.kept == {}
-    assert set_(bench, "MAN_DEADBAND", 5) == 5
+    assert set_(bench, "MANUAL_EXPO", 0.5) == 0.5
     bench.command(Command.COMPONENT_ARM_DISARM, 0)
     assert set_(bench, "MAN_TIMEOUT", 1.0) == 1.0
-    assert memory.kept == {"MAN_DEADBAND": 5, "MAN_TIMEOUT": 1.0}
+    assert memory.kept == {"MANUAL_EXPO": 0.5, "MAN_TIMEOUT": 1.0}
+
+
+def test_61_every_one_of_them_is() -> None:
+    bench, memory = bench_with(Params())
+    bench.drive()
+    for parameter in TABLE:
+        if parameter.safety:
+            other = parameter.high if parameter.default != parameter.high else parameter.low
+            assert set_(bench, parameter.name, other) == pytest.approx(parameter.default), parameter.name
+    assert memory.kept == {}
 
 
 def test_only_who_is_in_control_sets() -> None:

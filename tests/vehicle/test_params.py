@@ -17,6 +17,21 @@ def test_every_parameter_fits_the_protocol(parameter: Parameter) -> None:
     assert not parameter.whole or (parameter.high <= 2**24 and parameter.default == int(parameter.default))
 
 
+TUNED_WHILE_DRIVING = {
+    # How it feels, how it follows a path, where it goes by itself, what is recorded: no failsafe, interlock or limit
+    # of the motors goes by these. REBOOT_ENABLE and DRIVE_TYPE are read only, and MAV_SYSID waits for a restart.
+    "MAV_SYSID", "REBOOT_ENABLE", "DRIVE_TYPE", "INITIAL_MODE", "MANUAL_EXPO", "MANUAL_STR_EXPO", "ACRO_TURN_RATE",
+    "WP_SPEED", "WP_RADIUS", "WP_PIVOT_ANGLE", "WP_PIVOT_RATE", "RTL_SPEED", "RALLY_LIMIT_KM", "RALLY_INCL_HOME",
+    "LOIT_RADIUS", "TURN_RADIUS", "TRACK_WIDTH", "WHEELBASE", "CRUISE_SPEED", "CRUISE_THROTTLE", "ATC_ACCEL_MAX",
+    "ATC_SPEED_P", "ATC_SPEED_I", "ATC_STR_ANG_P", "ATC_STR_RAT_P", "ATC_STR_RAT_I", "ATC_STR_RAT_FF",
+    "LOG_BACKEND_TYPE", "LOG_DISARMED", "LOG_MAX_FILES", "LOG_FILE_MB_FREE",
+}  # fmt: skip
+
+
+def test_whatever_is_not_named_here_is_refused_while_armed() -> None:
+    assert {parameter.name for parameter in TABLE if not parameter.safety} == TUNED_WHILE_DRIVING
+
+
 def test_names_are_unique() -> None:
     assert len({parameter.name for parameter in TABLE}) == len(TABLE)
 
