@@ -12,6 +12,7 @@ from link.backoff import Backoff
 from link.connection import Connection
 from link.endpoint import Endpoint
 from link.link import Arrived, Gone, LinkError
+from link.troubles import CONNECTING
 
 MAX_CONNECTIONS = 16
 """To one `tcpin`; more are closed at once."""
@@ -84,7 +85,7 @@ class TcpClient:
 
     def __init__(self, endpoint: Endpoint, address: tuple[str, int], family: socket.AddressFamily) -> None:
         self.endpoint = endpoint
-        self.problem: str | None = f"{endpoint.text}: not connected yet"
+        self.problem: str | None = f"{endpoint.text}: {CONNECTING}"
         self.stream = True
         self.fixed: Hashable | None = endpoint.text
         self.capacity: float | None = None

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import NamedTuple
 
 from dialects.enums import Severity
 from link.core import LinkReport
+
+CONNECTING = "connecting"
+"""Why a link does not work that was only just begun: no news, because it is the usual way."""
 
 
 def problem(report: LinkReport) -> str | None:
@@ -27,23 +31,36 @@ class News(NamedTuple):
     severity: Severity
 
 
+class UpsAndDowns:
+    """Which links are down, and why: what has changed is told once, and "back" is only what was there before."""
+
+    def __init__(self) -> None:
+        self._down: dict[Hashable, str] = {}
+        self._worked: set[Hashable] = set()
+
+    def news(self, link: Hashable, why: str | None) -> News | None:
+        """What is to be told of this link, which is down because of `why`, or works."""
+        before = self._down.pop(link, None)
+        if why:
+            self._down[link] = why
+            return None if why in (before, CONNECTING) else News(why, Severity.ERROR)
+        again = link in self._worked
+        self._worked.add(link)
+        return None if before is None else News("it is back" if again else "connected", Severity.NOTICE)
+
+
 class Troubles:
     """What was told of the links' problems: a link that is down and comes back may go down again, and that is news."""
 
     def __init__(self) -> None:
         self._told: set[str] = set()
-        self._down: dict[int, str] = {}
-        """Link -> why it is down."""
+        self._links = UpsAndDowns()
 
     def news(self, report: LinkReport) -> News | None:
         """What is to be told of this link now."""
         trouble = problem(report)
-        if report.down and trouble:
-            before, self._down[report.index] = self._down.get(report.index), trouble
-            return News(trouble, Severity.ERROR) if trouble != before else None
-        if self._down.pop(report.index, None):
-            return News("it is back", Severity.NOTICE)
-        if trouble and trouble not in self._told:
-            self._told.add(trouble)
-            return News(trouble, Severity.ERROR)
-        return None
+        change = self._links.news(report.index, trouble if report.down else None)
+        if change or report.down or not trouble or trouble in self._told:
+            return change
+        self._told.add(trouble)
+        return News(trouble, Severity.ERROR)

@@ -120,8 +120,10 @@ def _logs(asked: argparse.Namespace, config: Config) -> Path | None:
     folder = asked.tlog or (None if asked.sim else config.log.tlog)
     if folder:
         return Path(folder)
+    from vehicle.recorder import LOGS
+
     state = _state(asked, config)
-    return None if state is None else state / "logs"
+    return None if state is None else state / LOGS
 
 
 def _refuse_contradictions(asked: argparse.Namespace, config: Config, parser: Parser) -> None:

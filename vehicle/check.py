@@ -10,22 +10,25 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from dialects.enums import DriveType
-from link.link import LinkError
+from link.link import LinkError, Wire
 from link.openers import open_wires
+from link.troubles import CONNECTING
 from vehicle.config import Config, ConfigError, load
 from vehicle.lock import MotorLock
 from vehicle.mixer import MIXERS
 from vehicle.motors import MotorError, open_motors
 from vehicle.params import Params
+from vehicle.recorder import LOGS
 from vehicle.sensors.encoders import Encoders
 from vehicle.sensors.gps import Gpsd
 from vehicle.sensors.pi_health import PiHealth
 from vehicle.sensors.power import PowerMonitor
 from vehicle.settled import Settled, settled
+from vehicle.writable import obstacle
 
 GPS_WAIT = 3.0
 """s for a first report: gpsd answers at once, receivers give one each second."""
-GPS_POLL = 0.1
+POLL = 0.1
 """s"""
 
 
@@ -53,6 +56,10 @@ def findings(path: str, state: str | None = None) -> Iterator[Finding]:
     yield Finding("settings", True, path)
     known = settled(config, state)
     yield _parameters(config, known)
+    yield _folder("state", known.folder, "state or --state")
+    if known.params["LOG_BACKEND_TYPE"]:
+        logs = Path(config.log.tlog) if config.log.tlog else known.folder / LOGS
+        yield _folder("log.tlog", logs, "log.tlog")
     yield from _links(config)
     if config.motors:
         yield _tried("motors", lambda: _motors(config, known.params))
@@ -99,11 +106,32 @@ def _links(config: Config) -> Iterator[Finding]:
 
 def _link(endpoint: str) -> str:
     [wire] = open_wires([endpoint])
-    problem = wire.problem
-    wire.close()
-    if problem:
-        raise _AbsentError(problem)
-    return "opens"
+    if connects := _connecting(wire):
+        asyncio.run(_connected(wire))
+    else:
+        wire.close()
+    if wire.problem:
+        raise _AbsentError(wire.problem.removeprefix(f"{endpoint}: ").removesuffix("; trying again"))
+    return "connects" if connects else "opens"
+
+
+def _connecting(wire: Wire) -> bool:
+    return wire.problem == f"{wire.endpoint.text}: {CONNECTING}"
+
+
+async def _connected(wire: Wire) -> None:
+    """Until it is, or says why not."""
+    wire.start(asyncio.get_running_loop(), lambda _: None, lambda _: None)
+    while True:
+        await asyncio.sleep(POLL)
+        if not _connecting(wire):
+            wire.close()
+            return
+
+
+def _folder(item: str, folder: Path, setting: str) -> Finding:
+    problem = obstacle(folder, setting)
+    return Finding(item, not problem, problem or f"{folder} {'can be written' if folder.exists() else 'can be made'}")
 
 
 def _log_file(path: Path) -> str:
@@ -153,7 +181,7 @@ async def _gps(config: Config) -> str:
     try:
         end = loop.time() + GPS_WAIT
         while loop.time() < end:
-            await asyncio.sleep(GPS_POLL)
+            await asyncio.sleep(POLL)
             if gps.fault:
                 raise _AbsentError(gps.fault)
             if reading := gps.latest(loop.time()):

@@ -9,6 +9,9 @@ from link.recorder import Recorder
 from link.tape import Tape
 from vehicle.log_files import MEGABYTE, SUFFIX, Limits, LogFiles, time_of
 
+LOGS = "logs"
+"""In the folder that keeps things, unless another one is named."""
+
 
 class VehicleRecorder:
     """Fits `vehicle.logbook.Recording`; `tape` is for the runner."""

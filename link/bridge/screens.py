@@ -15,7 +15,9 @@ import threading
 import time
 from collections.abc import Callable
 
+from dialects.enums import Severity
 from link.bridge.status import Status
+from link.troubles import UpsAndDowns
 
 log = logging.getLogger(__name__)
 
@@ -53,14 +55,12 @@ class Teller:
     """Logs what goes wrong and when it is right again, once each."""
 
     def __init__(self) -> None:
-        self._told: dict[str, str | None] = {}
+        self._links = UpsAndDowns()
 
     def show(self, status: Status) -> None:
         """Say what has changed."""
         for link in status.links:
-            before = self._told.get(link.endpoint)
-            self._told[link.endpoint] = link.problem
-            if link.problem and not before:
-                log.warning("%s", link.problem)
-            elif before and not link.problem:
-                log.info("%s: works", link.endpoint)
+            why = link.problem and link.problem.removeprefix(f"{link.endpoint}: ")
+            if news := self._links.news(link.endpoint, why):
+                level = logging.WARNING if news.severity <= Severity.ERROR else logging.INFO
+                log.log(level, "%s: %s", link.endpoint, news.text)

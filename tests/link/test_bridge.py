@@ -165,7 +165,7 @@ def test_unplugged_and_plugged_in_again(bridge: Callable[..., Program], cable: C
     cable.unplug()
     program.wait_for("waiting for")
     cable.plug()
-    program.wait_for("works")
+    program.wait_for("it is back")
     cable.write(BULK[1])
     assert ground.recv(2000) == BULK[1]
     assert program.end(signal.SIGHUP) == 0

@@ -7,7 +7,7 @@ from typing import Any
 from dialects.enums import Severity
 from link.channel import Channel
 from link.core import LinkReport
-from link.troubles import News, Troubles
+from link.troubles import News, Troubles, UpsAndDowns
 
 
 def report(received: int, **changes: Any) -> LinkReport:
@@ -20,6 +20,31 @@ def test_a_link_that_goes_down_comes_back_and_goes_down_again_is_told_each_time(
     told = [troubles.news(each) for each in (report(0), gone, gone, report(1), report(2), gone)]
     lost = News("lost the port (hung up); waiting for it", Severity.ERROR)
     assert told == [None, lost, None, News("it is back", Severity.NOTICE), None, lost]
+
+
+def test_connecting_is_no_news_and_who_was_never_there_is_not_back() -> None:
+    troubles = Troubles()
+    whys = ("connecting", "not connected (refused)", None, "lost", "not connected (refused)", None)
+    told = [troubles.news(report(0, down=why)) for why in whys]
+    assert [each and each.text for each in told] == [
+        None, "not connected (refused)", "connected", "lost", "not connected (refused)", "it is back"
+    ]  # fmt: skip
+    assert [each and each.severity for each in told[1:3]] == [Severity.ERROR, Severity.NOTICE]
+
+
+def test_what_connects_at_once_is_told_once() -> None:
+    troubles = Troubles()
+    told = [troubles.news(report(0, down=why)) for why in ("connecting", "connecting", None, None)]
+    assert [each and each.text for each in told] == [None, None, "connected", None]
+
+
+def test_links_are_told_apart() -> None:
+    troubles = UpsAndDowns()
+    assert troubles.news("one", None) is None
+    assert troubles.news("two", "missing") == News("missing", Severity.ERROR)
+    assert troubles.news("one", "missing") == News("missing", Severity.ERROR)
+    assert troubles.news("two", None) == News("connected", Severity.NOTICE)
+    assert troubles.news("one", None) == News("it is back", Severity.NOTICE)
 
 
 def test_a_new_reason_is_told_too() -> None:

@@ -18,13 +18,14 @@ from vehicle.sample import sample
 
 FREE = 'endpoints = ["udpout:127.0.0.1:9"]\n'
 QUIET = "[sensors]\ncomputer = false\n"
+KEEPS = ("ok    parameters: ", "ok    state: ", "ok    log.tlog: ")
+USUAL = ("kept in FOLDER", "FOLDER can be written", "FOLDER/logs can be made")
 
 
 def checked(folder: Path, text: str) -> tuple[int, list[str]]:
-    """The exit code and the lines, without those of parameters where they are as usual."""
+    """The exit code and the lines, without those of parameters and folders where they are as usual."""
     code, lines = all_checked(folder, text)
-    usual = "kept in FOLDER"
-    return code, [line for line in lines if not (line.startswith("ok    parameters: ") and line.endswith(usual))]
+    return code, [line for line in lines if not (line.startswith(KEEPS) and line.endswith(USUAL))]
 
 
 def all_checked(folder: Path, text: str, *words: str) -> tuple[int, list[str]]:
@@ -120,6 +121,19 @@ def test_a_log_that_cannot_be_written_is_found_before_the_vehicle_starts(tmp_pat
     assert (code, lines[-1]) == (1, "FAIL  log.file: FOLDER is a folder")
 
 
+def test_folders_that_cannot_be_written_are_found_before_the_vehicle_starts(tmp_path: Path) -> None:
+    (tmp_path / "taken").touch()
+    text = f'{FREE}{QUIET}[motors]\ndriver = "simulated"\n'
+    code, lines = all_checked(tmp_path, text, "--state", str(tmp_path / "taken"))
+    told = "FOLDER/taken is no folder; remove it, or name another folder as"
+    assert code == 1
+    assert lines[2:4] == [f"FAIL  state: {told} state or --state", f"FAIL  log.tlog: {told} log.tlog"]
+    code, lines = checked(tmp_path, f'{text}[log]\ntlog = "{tmp_path}/taken/logs"\n')
+    assert (code, lines[1]) == (1, f"FAIL  log.tlog: {told} log.tlog")
+    assert checked(tmp_path, f'{text}[log]\ntlog = "{tmp_path}/taken/logs"\n[params]\nLOG_BACKEND_TYPE = 0\n')[0] == 0
+    assert not (tmp_path / "logs").exists()  # who checks makes nothing, it would be his
+
+
 def test_a_port_in_use_and_the_wrong_number_of_motors(tmp_path: Path) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
@@ -131,6 +145,16 @@ def test_a_port_in_use_and_the_wrong_number_of_motors(tmp_path: Path) -> None:
     assert code == 1
     assert f"port {port} is in use" in lines[1]
     assert lines[2] == "FAIL  motors: the driver has 2 motors, DRIVE_TYPE 4 needs 4"
+
+
+def test_a_connection_is_tried(tmp_path: Path) -> None:
+    text = f'{QUIET}[motors]\ndriver = "simulated"\n'
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        endpoint = f"tcpout:127.0.0.1:{listener.getsockname()[1]}"
+        code, lines = checked(tmp_path, f'endpoints = ["{endpoint}"]\n{text}')
+        assert (code, lines[1]) == (0, f"ok    endpoint {endpoint}: connects")
+    code, lines = checked(tmp_path, f'endpoints = ["{endpoint}"]\n{text}')
+    assert (code, lines[1]) == (1, f"FAIL  endpoint {endpoint}: not connected (Connection refused)")
 
 
 @pytest.mark.parametrize(
