@@ -156,13 +156,18 @@ def _open(endpoint: Endpoint) -> serial.Serial | None:
         if not stat.S_ISCHR(os.stat(endpoint.path).st_mode):
             raise LinkError(f"{endpoint.text}: {endpoint.path} is no serial port but a file or folder")
         port = serial.Serial(endpoint.path, endpoint.baud, timeout=0, exclusive=True)
-    except OSError as error:  # SerialException is one
-        if error.errno in ABSENT:
+        try:
+            _configure(port)
+        except BaseException:
+            port.close()
+            raise
+    except (OSError, termios.error) as error:  # SerialException is an OSError; termios's own is none
+        fault = OSError(*error.args)
+        if fault.errno in ABSENT:
             return None
-        raise LinkError(f"{endpoint.text}: {in_words(endpoint.path, error)}") from error
+        raise LinkError(f"{endpoint.text}: {in_words(endpoint.path, fault)}") from error
     except (ValueError, OverflowError) as error:
         raise LinkError(f"{endpoint.text}: the port does not take {endpoint.baud} baud; try 57600") from error
-    _configure(port)
     return port
 
 

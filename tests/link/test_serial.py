@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 import subprocess
 import sys
+import termios
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -122,6 +124,35 @@ async def test_taken_by_another_while_it_was_away(cable: Cable) -> None:
     thief.close()
     await until(lambda: wire.problem is None)
     wire.close()
+
+
+@pytest.mark.parametrize("step", ["tcsetattr", "tcflush"])
+async def test_gone_again_while_it_is_set_up(cable: Cable, monkeypatch: pytest.MonkeyPatch, step: str) -> None:
+    wire = opened(cable.endpoint)
+    Heard(wire)
+    cable.unplug()
+    await until(lambda: wire.problem is not None)
+    real, failures = getattr(termios, step), [5, 5]
+
+    def flapping(*words: Any) -> None:  # a loose plug: no pty goes away between two calls of the same function
+        if failures:
+            raise termios.error(failures.pop(), "Input/output error")
+        real(*words)
+
+    monkeypatch.setattr(termios, step, flapping)
+    cable.plug()
+    await until(lambda: wire.problem is None)
+    assert not failures
+    wire.close()
+
+
+def test_a_port_that_cannot_be_set_up_is_refused_in_one_line(cable: Cable, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*words: Any) -> None:
+        raise termios.error(22, "Invalid argument")
+
+    monkeypatch.setattr(termios, "tcsetattr", refused)
+    with pytest.raises(LinkError, match=r"^serial:\S+: Invalid argument$"):
+        opened(cable.endpoint)
 
 
 # ---- writing ----

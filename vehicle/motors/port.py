@@ -36,8 +36,8 @@ class Port:
         # exclusive: two writers would mix their frames. No flow control, and no time in which pyserial may wait.
         try:
             self._serial = serial.Serial(self.path, self._baud, timeout=0, write_timeout=0, exclusive=True)
-        except OSError as error:
-            raise OSError(in_words(self.path, error)) from error
+        except (OSError, termios.error) as error:  # termios's own are no OSErrors: it went while it was set up
+            raise OSError(in_words(self.path, OSError(*error.args))) from error
         self.drain()
         return True
 

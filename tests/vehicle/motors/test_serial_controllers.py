@@ -4,6 +4,7 @@ import json
 import signal
 import subprocess
 import sys
+import termios
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -331,3 +332,16 @@ def test_a_port_that_is_not_there_is_said_in_one_line(kind: str) -> None:
     for path in ("/tmp", "/dev/null"):
         with pytest.raises(MotorError, match=f"{path} is no serial port"):
             open_motors(kind, {"port": path})
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_port_that_goes_while_it_is_set_up_is_an_error_of_the_motors(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def gone(*words: Any) -> None:  # no pty goes between two calls of the same function; a loose plug does
+        raise termios.error(5, "Input/output error")
+
+    with OnPty(RoboClaw()) as line:
+        monkeypatch.setattr(termios, "tcsetattr", gone)
+        with pytest.raises(MotorError, match="is not there; is it plugged in"):
+            open_motors(kind, {"port": line.path})
