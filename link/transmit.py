@@ -17,13 +17,19 @@ from dialects.messages import (
     ManualControl,
     RcChannelsOverride,
     RoverOperatorPresence,
+    SetAttitudeTarget,
     SetMode,
+    SetPositionTargetGlobalInt,
+    SetPositionTargetLocalNed,
     is_stop,
 )
 from dialects.targets import target_of
 from link.frame import read_header
 
-NEWEST_ONLY = frozenset(each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence, Heartbeat))
+SETPOINTS = (SetPositionTargetLocalNed, SetPositionTargetGlobalInt, SetAttitudeTarget)
+NEWEST_ONLY = frozenset(
+    each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence, Heartbeat, *SETPOINTS)
+)
 """State that control depends on: a newer frame of the same sender and target replaces the one that waits."""
 URGENT = NEWEST_ONLY | {each.id for each in (CommandLong, CommandInt, CommandAck, SetMode)}
 """Frames that overtake all others."""

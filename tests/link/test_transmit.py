@@ -5,7 +5,14 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dialects.messages import Attitude, CommandLong, ManualControl
+from dialects.messages import (
+    Attitude,
+    CommandLong,
+    ManualControl,
+    SetAttitudeTarget,
+    SetPositionTargetGlobalInt,
+    SetPositionTargetLocalNed,
+)
 from link.framer import Framer
 from link.transmit import AHEAD, MAX_URGENT, STALE, Pacer, TransmitQueue
 from tests.link.frames import demand, frame, heartbeat
@@ -46,6 +53,18 @@ def test_only_the_newest_demand_of_a_target_waits_and_keeps_its_place() -> None:
     for data in (demand(1), ARM, demand(2, target=2), demand(3, throttle=0.0)):
         queue.put(data, 0.0)
     assert drained(queue) == [demand(3, throttle=0.0), ARM, demand(2, target=2)]
+
+
+def test_setpoints_are_demands_too() -> None:
+    def setpoint(number: int, speed: float) -> bytes:
+        return frame(SetPositionTargetLocalNed(0, 1, 1, 8, 1479, 0, 0, 0, speed, 0, 0, 0, 0, 0, 0, 0), number)
+
+    attitude_target = frame(SetAttitudeTarget(0, 1, 1, 0, [1, 0, 0, 0], 0, 0, 0, 0.5), 3)
+    elsewhere = frame(SetPositionTargetGlobalInt(0, 1, 1, 6, 1479, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0), 4)
+    queue = TransmitQueue(1000)
+    for data in (attitude(1), setpoint(1, 0.5), attitude_target, setpoint(2, 0.0), elsewhere):
+        queue.put(data, 0.0)
+    assert drained(queue) == [setpoint(2, 0.0), attitude_target, elsewhere, attitude(1)]
 
 
 def test_what_waited_too_long_is_not_sent_but_a_stop_is() -> None:
