@@ -7,6 +7,7 @@ station that repeats an old demand, moves nothing.
 
 from __future__ import annotations
 
+from dialects import axes
 from dialects.enums import DriveType, Severity
 from dialects.messages import INVALID_AXIS, ManualControl, RcChannelsOverride, RoverOperatorPresence
 from link.core import Received
@@ -29,9 +30,6 @@ class Control:
         self.neutral_seen = False
         self.not_in_control = 0
         """Demands of ground stations that are not in control."""
-        self.invalid_axes = 0
-        self.refused_stale = 0
-        """Demands refused because their sender had seen nothing new of us for too long."""
         self.presence = Presence()
         self.override = Override()
         self._params = params
@@ -100,8 +98,8 @@ class Control:
         if self.demand and self.demand.sequence == received.sequence:
             return False  # the same packet again: a replay
         demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
-        for axis in (message.x, message.r):
-            self.invalid_axes += abs(axis) > 1000 and axis != INVALID_AXIS
+        if any(abs(axis) > axes.FULL and axis != INVALID_AXIS for axis in (message.x, message.r)):
+            self._tell_nonsense(received.system, "axes out of -1000..1000 count as neutral", now)
         if demand is None:
             return False
         if not self._echo_is_stale():
@@ -111,7 +109,12 @@ class Control:
 
     def rc_override(self, received: Received, message: RcChannelsOverride, now: float) -> bool:
         """Take an RC_CHANNELS_OVERRIDE; True where it is the demand now."""
-        if not self._listens(received, message.target_system, now) or not self.override.take(message, now):
+        if not self._listens(received, message.target_system, now):
+            return False
+        spoken = self.override.take(message, now)
+        if self.override.nonsense:
+            self._tell_nonsense(received.system, "channels out of 800..2200 us are ignored", now)
+        if not spoken:
             return False
         timeout = self._params["MAN_TIMEOUT"]
         return self._use(self.override.demand(received.system, received.sequence, now, timeout), now)
@@ -178,11 +181,14 @@ class Control:
         self._texts.say_once(f"demand {received.system}", Severity.WARNING, text, now)
         return False
 
+    def _tell_nonsense(self, system: int, what: str, now: float) -> None:
+        """Once: a wrong joystick program sends it all the time, and its driver wonders why nothing moves."""
+        self._texts.say_once(f"demand nonsense {system}", Severity.WARNING, f"GCS {system}: {what}", now)
+
     def _echo_is_stale(self) -> bool:
         return self.presence.known and self.presence.echo_age > self._params["OPR_ECHO_MAX"]
 
     def _refuse_old(self, now: float) -> bool:
-        self.refused_stale += 1
         text = "Demands refused: they are old when they arrive (OPR_ECHO_MAX)"
         self._texts.say_once("demand stale", Severity.WARNING, text, now)
         return False

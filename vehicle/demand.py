@@ -75,11 +75,12 @@ class Override:
     def __init__(self) -> None:
         self.channels: dict[int, Channel] = {}
         """Channel 1..18 -> what holds it."""
-        self.invalid = 0
-        """Values that are neither a pulse nor one of the special numbers."""
+        self.nonsense = False
+        """The newest message had a value that is neither a pulse nor one of the special numbers."""
 
     def take(self, message: RcChannelsOverride, now: float) -> bool:
         """Take a message; True where it speaks of throttle or steering (setting them or giving them back)."""
+        self.nonsense = False
         spoken = [self._set(number, getattr(message, f"chan{number}_raw"), now) for number in range(1, self.COUNT + 1)]
         return spoken[THROTTLE_CHANNEL - 1] or spoken[STEERING_CHANNEL - 1]
 
@@ -110,7 +111,7 @@ class Override:
             self.channels.pop(number, None)
             return True
         if not PULSE_MIN <= value <= PULSE_MAX:
-            self.invalid += 1
+            self.nonsense = True
             return False
         self.channels[number] = Channel(value, now)
         return True

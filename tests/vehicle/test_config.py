@@ -99,6 +99,7 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ('[sensors]\nbatery = 1', "sensors.batery: unknown key; did you mean battery?"),
         ('[sensors.battery]\nkind = "ina218"', "sensors.battery.kind: 'ina218' is not known; did you mean ina219 or"),
         ("[sensors.gps]\nport = 0", "sensors.gps.port: must be at least 1"),
+        ("[sensors.encoders]\nwheels = [{ a = 5, b = 5 }]", "sensors.encoders: 5 is used twice"),
         ("[params]\nMAN_TIMOUT = 1", "params.MAN_TIMOUT: unknown parameter; did you mean MAN_TIMEOUT"),
         ("[params]\nman_timeout = 1", "params.man_timeout: unknown parameter; did you mean MAN_TIMEOUT"),
         ("[params]\nMAN_TIMEOUT = 9", "params.MAN_TIMEOUT: must be 0.2 to 2, not 9"),

@@ -74,6 +74,16 @@ def test_34_an_axis_out_of_range_is_neutral_and_not_clamped(wild: int) -> None:
         bench.say(axes(x=wild, r=0))
         bench.wait(0.04)
     assert not bench.turning
+    assert bench.texts.count(f"GCS {DRIVER}: axes out of -1000..1000 count as neutral") == 1
+
+
+def test_axes_that_are_right_or_off_need_no_word() -> None:
+    bench = Bench()
+    bench.drive()
+    for x in (1000, -1000, m.INVALID_AXIS):
+        bench.say(axes(x=x, r=m.INVALID_AXIS))
+        bench.wait(0.04)
+    assert not said(bench, "axes out of")
 
 
 def test_y_moves_a_vehicle_sideways_that_can() -> None:

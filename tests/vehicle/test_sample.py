@@ -14,7 +14,7 @@ import pytest
 import vehicle
 from tests.vehicle.words import said_by
 from vehicle.config import Config, LogSettings, parsed
-from vehicle.motors import DRIVERS, PROFILES, check_settings, settings_type
+from vehicle.motors import DRIVERS, PROFILES, settings_type
 from vehicle.motors.settings import Around, Safety
 from vehicle.params import TABLE, Params
 from vehicle.sample import LISTENING, SIMULATED, sample
@@ -25,9 +25,14 @@ BLOCKS = re.split(r"^# ---- (.+?)(?::.*)?$|^(?=\[sensors\])", sample(), flags=re
 OWN = [name for name in DRIVERS if name != "simulated"]
 
 
-def live(text: str) -> dict[str, Any]:
+def made_live(text: str) -> str:
     """With every setting in force."""
-    return tomllib.loads(re.sub(r"^#(?=[\w\[])", "", text, flags=re.MULTILINE))
+    return re.sub(r"^#(?=[\w\[])", "", text, flags=re.MULTILINE)
+
+
+def live(text: str) -> dict[str, Any]:
+    """... as tables."""
+    return tomllib.loads(made_live(text))
 
 
 def block(title: str) -> str:
@@ -41,7 +46,7 @@ def test_as_it_is_it_holds_the_defaults() -> None:
 
 def test_everything_in_it_is_a_setting() -> None:
     text = "".join(part for part in (BLOCKS[0], BLOCKS[-1]) if part)
-    found = parsed(re.sub(r"^#(?=[\w\[])", "", text, flags=re.MULTILINE).replace("MAV_SYSID", "#"), "rover.toml")
+    found = parsed(made_live(text).replace("MAV_SYSID", "#"), "rover.toml")
     assert set(live(text)) == set(Config.__struct_fields__)
     assert set(live(text)["log"]) == set(LogSettings.__struct_fields__)
     assert found.log.verbose is LogSettings().verbose
@@ -63,9 +68,10 @@ def test_every_sensor_is_in_it_with_every_key_at_its_default() -> None:
 
 @pytest.mark.parametrize("name", OWN)
 def test_every_driver_is_in_it_with_every_key_at_its_default(name: str) -> None:
-    table = live("[motors]\n" + block(name))["motors"]
+    text = made_live("[motors]\n" + block(name))
+    table = tomllib.loads(text)["motors"]
+    assert parsed(text, "rover.toml").motors == table
     assert table.pop("driver") == name
-    check_settings(name, table)
     kind = settings_type(name)
     assert kind is not None
     if name in PROFILES:
@@ -77,10 +83,11 @@ def test_every_driver_is_in_it_with_every_key_at_its_default(name: str) -> None:
 
 
 def test_what_goes_around_a_driver_is_in_it() -> None:
-    table = live(block("for any driver"))["motors"]
+    text = made_live(block("for any driver"))
+    table = tomllib.loads(text)["motors"]
     assert set(table) == set(Around.__struct_fields__)
     assert set(table["safety"]) == set(Safety.__struct_fields__)
-    check_settings("simulated", table)
+    assert parsed(f'[motors]\ndriver = "simulated"\n{text}', "rover.toml").motors["safety"]
 
 
 def test_init_writes_it_once(tmp_path: Path) -> None:

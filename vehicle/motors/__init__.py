@@ -141,11 +141,6 @@ def open_motors(name: str, settings: Mapping[str, Any] | None = None) -> Motors:
     return wrapped
 
 
-def check_settings(name: str, settings: Mapping[str, Any] | None = None) -> None:
-    """Raise what `open_motors` would raise for the user's mistakes, without touching the hardware."""
-    _understood(name, settings)
-
-
 def settings_type(name: str) -> type | None:
     """The msgspec.Struct of a driver's own settings; None where it has none. Raises UnknownDriverError."""
     kind: type | None = getattr(_driver_class(name), "Settings", None)

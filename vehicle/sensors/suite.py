@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import msgspec
 
 from vehicle.battery import SILENT
-from vehicle.motors.settings import told
 from vehicle.readings import Computer, Readings, SensorFault
 from vehicle.sensors.encoders import Encoders, EncoderSettings
 from vehicle.sensors.gps import Gpsd, GpsReading, GpsSettings
@@ -22,10 +21,6 @@ from vehicle.sensors.power import MAX_AGE as POWER_AGE
 from vehicle.sensors.power import PERIOD as POWER_PERIOD
 from vehicle.sensors.power import Power, PowerMonitor, PowerSettings
 from vehicle.sensors.sampler import Sampler
-
-
-class SensorSettingsError(Exception):
-    """There is no such setting, or no such value for it. The text is one clear line."""
 
 
 class SensorSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -93,14 +88,6 @@ class Suite:
         with contextlib.ExitStack() as steps:
             for source in self._present.values():
                 steps.callback(source.close)
-
-
-def sensor_settings(table: Mapping[str, Any]) -> SensorSettings:
-    """Settings from a file's table. Raises SensorSettingsError, one line that says where."""
-    try:
-        return msgspec.convert(dict(table), SensorSettings)
-    except msgspec.ValidationError as error:
-        raise SensorSettingsError(f"sensor settings{told(error)}") from error
 
 
 def open_sensors(settings: SensorSettings) -> Suite:

@@ -14,7 +14,6 @@ from vehicle.motors import (
     Motors,
     MotorSettingsError,
     UnknownDriverError,
-    check_settings,
     checked,
     open_motors,
     safe_stop,
@@ -75,12 +74,11 @@ def test_a_driver_of_your_own_gets_its_settings() -> None:
         open_motors(f"{__name__}:OwnMotors")
 
 
-def test_settings_can_be_checked_without_the_hardware() -> None:
-    check_settings("roboclaw", {"port": "/dev/nowhere"})
+def test_settings_are_judged_before_the_hardware_is_touched() -> None:
     with pytest.raises(MotorSettingsError, match="unknown field `prot`"):
-        check_settings("roboclaw", {"prot": "/dev/nowhere"})
+        open_motors("roboclaw", {"prot": "/dev/nowhere"})
     with pytest.raises(UnknownDriverError, match="did you mean 'roboclaw'"):
-        check_settings("robotclaw")
+        open_motors("robotclaw", {"port": "/dev/nowhere"})
     assert settings_type("simulated") is None
 
 
