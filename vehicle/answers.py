@@ -25,7 +25,8 @@ from vehicle.orders import Orders
 from vehicle.origin import OriginSetting
 from vehicle.param_service import Keeper, ParamService
 from vehicle.params import Params
-from vehicle.plans import PlanKeeper, Plans
+from vehicle.plan_keeping import PlanKeeper
+from vehicle.plans import Plans
 from vehicle.preflight import Preflight
 from vehicle.requests import Requests
 from vehicle.safety import Safety
@@ -82,7 +83,7 @@ class Answers:
         self._services = Services(
             params, control, self.logbook, missions=self._plans.folder(), ids=self._ids, pacer=pacer
         )
-        self._preflight = Preflight(params, safety, control, navigator, self._params, texts)
+        self._preflight = Preflight(params, safety, control, navigator, self._params, self._plans, texts)
         self._requests = Requests(telemetry, look, self._services.messages(), links)
         tables = (self._commands, self._requests, self._orders, self._origin, self._plans, trials, self._preflight)
         handlers = {command: handler for each in tables for command, handler in each.handlers().items()}

@@ -46,7 +46,10 @@ COMMANDS: dict[Command, tuple[str, str]] = {
     Command.DO_SET_RELAY: (DRIVER, "1: relay, 2: 0 or 1"),
     Command.DO_MOTOR_TEST: (DRIVER, "disarmed; 1: motor from 1, 2: 0 (percent), 3: percent, 4: s up to 3"),
     Command.ACTUATOR_TEST: (DRIVER, "disarmed; 1: -1..1, NaN stops, 2: s up to 3, 0 stops, 5: motor from 1"),
-    Command.PREFLIGHT_STORAGE: (DRIVER, "disarmed; 1: 2 or 4 puts parameters back to their defaults"),
+    Command.PREFLIGHT_STORAGE: (
+        DRIVER,
+        "disarmed; 1: 2 or 4 puts parameters back to their defaults; 2: 2 erases the plans; 1 saves either again",
+    ),
     Command.PREFLIGHT_CALIBRATION: (DRIVER, "disarmed; 1: 1 the gyro, at rest for 3 s, told as progress"),
     Command.PREFLIGHT_REBOOT_SHUTDOWN: (
         DRIVER,

@@ -22,17 +22,28 @@ class Keeper(Protocol):
     def problem(self) -> str | None:
         """Why values are not kept, one line."""
 
+    @property
+    def idle(self) -> bool:
+        """What was to be remembered is, or cannot be."""
+
     def keep(self, name: str, value: float) -> None:
         """Remember it, soon. Never blocks and never raises."""
+
+    def save(self) -> None:
+        """Write once more what is remembered."""
 
 
 class NoKeeper:
     """Values end with the program, as in the simulator."""
 
     problem: str | None = None
+    idle = True
 
     def keep(self, name: str, value: float) -> None:
         """Forget it."""
+
+    def save(self) -> None:
+        """Nothing."""
 
 
 class ParamService:
@@ -83,9 +94,23 @@ class ParamService:
             self._texts.say_once(f"keeper {self._keeper.problem}", Severity.WARNING, text, now)
 
     @property
-    def unkept(self) -> str | None:
-        """Why what is set ends with the program, or None."""
-        return "nothing is kept in this run" if isinstance(self._keeper, NoKeeper) else self._keeper.problem
+    def forgets(self) -> bool:
+        """What is set ends with the program."""
+        return isinstance(self._keeper, NoKeeper)
+
+    @property
+    def problem(self) -> str | None:
+        """Why values are not kept, one line."""
+        return self._keeper.problem
+
+    @property
+    def idle(self) -> bool:
+        """Nothing is being written."""
+        return self._keeper.idle
+
+    def save(self) -> None:
+        """Once more: what is set was written already, where the disk took it."""
+        self._keeper.save()
 
     def reset(self, now: float) -> None:
         """Defaults for all that a ground station may set; who listens is told what that changed."""

@@ -32,9 +32,18 @@ class ParamStore:
         """Why values are not kept, one line."""
         return self._scribe.problem
 
+    @property
+    def idle(self) -> bool:
+        """Nothing is being written."""
+        return self._scribe.idle
+
     def keep(self, name: str, value: float) -> None:
         """Have it written."""
         self.values[name] = value
+        self.save()
+
+    def save(self) -> None:
+        """Have all of them written."""
         self._scribe.write(NAME, partial(dump, dict(self.values)))
 
     def close(self) -> None:

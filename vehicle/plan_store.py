@@ -19,7 +19,7 @@ FILES = {kind: name for name, kind in NAMES.items()}
 
 
 class PlanStore:
-    """Fits `vehicle.plans.PlanKeeper`."""
+    """Fits `vehicle.plan_keeping.PlanKeeper`."""
 
     def __init__(self, folder: Path) -> None:
         """Reads what there is; never raises."""
@@ -39,9 +39,14 @@ class PlanStore:
         """Why plans are not kept, one line."""
         return self._scribe.problem
 
-    def keep(self, kind: MissionType, items: Items) -> None:
+    @property
+    def idle(self) -> bool:
+        """Nothing is being written."""
+        return self._scribe.idle
+
+    def keep(self, kind: MissionType, items: Items) -> state_folder.Writing:
         """Have it written."""
-        self._scribe.write(FILES[kind], partial(dump, items))
+        return self._scribe.write(FILES[kind], partial(dump, items))
 
     def close(self) -> None:
         """Wait for what is being written."""

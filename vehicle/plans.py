@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 from dialects import messages as m
 from dialects.enums import Command, MissionResult, MissionType, Result, Severity
@@ -12,6 +11,7 @@ from link.core import Outgoing, Received
 from link.services.command import CommandRequest, Handler, Run
 from link.services.ftp_files import Folder
 from link.services.mission import MissionServer
+from link.services.mission_changes import Change, Keeping
 from link.services.mission_files import PlanFolder
 from link.services.mission_items import Items
 from link.services.pacing import Pacer
@@ -20,6 +20,7 @@ from vehicle.control import Control
 from vehicle.goals import mission_state
 from vehicle.navigator import Navigator, PlanIds
 from vehicle.plan import ACCESSORIES, SERVOS, rules
+from vehicle.plan_keeping import NoPlanKeeper, PlanKeeper
 from vehicle.reached import Reached
 from vehicle.safety import Safety
 from vehicle.texts import Texts
@@ -28,22 +29,6 @@ REMIND = 30.0
 """s between two texts that a kept plan is lost, as ArduPilot repeats what forbids to arm."""
 THIS_ITEM = -1
 """Sequence of DO_SET_MISSION_CURRENT that leaves the item as it is."""
-
-
-class PlanKeeper(Protocol):
-    """Remembers plans for the next start."""
-
-    plans: dict[MissionType, Items]
-    """What was kept."""
-    damage: dict[MissionType, str]
-    """Why a kept plan could not be had."""
-
-    @property
-    def problem(self) -> str | None:
-        """Why plans are not kept, one line."""
-
-    def keep(self, kind: MissionType, items: Items) -> None:
-        """Remember it, soon. Never blocks and never raises."""
 
 
 class Plans:
@@ -70,7 +55,7 @@ class Plans:
         self._navigator = navigator
         self._texts = texts
         self._servos = servos
-        self._keeper = keeper
+        self._keeper = keeper or NoPlanKeeper()
         self._damage: dict[MissionType, str] = {}
         self._remind_due = -math.inf
         self._outbox: list[Outgoing] = []
@@ -78,8 +63,7 @@ class Plans:
         self._rules = rules(servos)
         self._reached = Reached()
         self._server = MissionServer(self, self._rules, system=control.system, component=1, pacer=pacer)
-        if keeper is not None:
-            self._restore(keeper)
+        self._restore()
 
     def handlers(self) -> dict[int, Handler]:
         """The table for link.services.command.CommandServer."""
@@ -95,6 +79,31 @@ class Plans:
     def folder(self) -> Folder:
         """The plans as files; who may write files at all is for the file server to say."""
         return PlanFolder(self._server, lambda kind: self._in_use(kind) is None)
+
+    @property
+    def forgets(self) -> bool:
+        """Plans end with the program."""
+        return isinstance(self._keeper, NoPlanKeeper)
+
+    @property
+    def problem(self) -> str | None:
+        """Why they are not kept, one line."""
+        return self._keeper.problem
+
+    @property
+    def idle(self) -> bool:
+        """Nothing is being written."""
+        return self._keeper.idle and not self._server.changing
+
+    def save(self) -> None:
+        """Once more: what is in force was written already, where the disk took it."""
+        for kind in self._rules:
+            self._rewrite(kind)
+
+    def erase(self) -> Change | None:
+        """All three shall be empty; None while somebody is changing one."""
+        change = self._server.replace(dict.fromkeys(self._rules, ()))
+        return change if isinstance(change, Change) else None
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
         """Answer a message of the mission protocol."""
@@ -121,15 +130,23 @@ class Plans:
         self._texts.say(Severity.WARNING, text, now)
         return MissionResult.DENIED
 
+    def keep(self, kind: MissionType, items: Items) -> Keeping:
+        """Have it written."""
+        return self._keeper.keep(kind, items)
+
     def changed(self, kind: MissionType, items: Items) -> None:
-        """Put it in force, and keep it."""
+        """Put it in force."""
         self._damage.pop(kind, None)
         self._use(kind, items)
         unable = [str(number) for number, item in enumerate(items) if item.command in ACCESSORIES]
         if kind is MissionType.MISSION and unable:
             self._news.append(f"Mission: no accessory for items {', '.join(unable)}, they will be passed over")
-        if self._keeper is not None:
-            self._keeper.keep(kind, items)
+
+    def stays(self, kind: MissionType, items: Items, why: str | None) -> None:
+        """The disk may hold the other one, or not."""
+        self._rewrite(kind)
+        if why:
+            self._news.append(f"{kind.name.capitalize()} not changed, it could not be saved: {why}")
 
     def select(self, sequence: int, received: Received, now: float) -> None:
         """MISSION_SET_CURRENT."""
@@ -146,7 +163,8 @@ class Plans:
 
     # What was kept
 
-    def _restore(self, keeper: PlanKeeper) -> None:
+    def _restore(self) -> None:
+        keeper = self._keeper
         for kind in self._rules:
             damage = keeper.damage.get(kind)
             if damage is None and self._server.load(kind, keeper.plans.get(kind, ())) is not MissionResult.ACCEPTED:
@@ -154,6 +172,11 @@ class Plans:
             if damage is not None:
                 self._damage[kind] = damage
             self._use(kind, self._server.plan(kind))
+
+    def _rewrite(self, kind: MissionType) -> None:
+        """What is in force; in the place of a damaged plan nothing is."""
+        if kind not in self._damage:
+            self._keeper.keep(kind, self._server.plan(kind))
 
     def _use(self, kind: MissionType, items: Items) -> None:
         navigator = self._navigator
@@ -168,7 +191,7 @@ class Plans:
 
     def _remind(self, now: float) -> None:
         """Nobody may have listened when the vehicle started."""
-        if self._keeper is None or now < self._remind_due:
+        if now < self._remind_due:
             return
         self._remind_due = now + REMIND
         if not self._safety.armed:

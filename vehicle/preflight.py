@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from dialects.enums import Command, DriveType, Result, Severity
 from dialects.messages import SetupSigning
 from link.core import Received
@@ -15,14 +13,11 @@ from vehicle.leaving import DELAY, Leave, asked_leave
 from vehicle.navigator import Navigator
 from vehicle.param_service import ParamService
 from vehicle.params import Params
+from vehicle.plans import Plans
 from vehicle.safety import Safety
 from vehicle.status import VERSION
+from vehicle.storage import Storage
 from vehicle.texts import Texts
-
-READ, WRITE, RESET, RESET_ALL = 0, 1, 2, 4
-"""PREFLIGHT_STORAGE_PARAMETER_ACTION; 3 would reset the calibration of sensors, and there is none."""
-PLANS_STAY = (0, -1)
-"""Parameter 2 of PREFLIGHT_STORAGE: plans are read and written by nobody's order."""
 
 
 class Preflight:
@@ -35,22 +30,23 @@ class Preflight:
         control: Control,
         navigator: Navigator,
         param_service: ParamService,
+        plans: Plans,
         texts: Texts,
     ) -> None:
         self._params = params
         self._safety = safety
         self._control = control
-        self._param_service = param_service
         self._texts = texts
         self._asking = Asking(control, texts)
         self._calibration = Calibration(safety, navigator, self._asking, texts)
+        self._storage = Storage(param_service, plans, safety, self._asking)
         self._leave: tuple[Leave, float] | None = None
 
     def handlers(self) -> dict[int, Handler]:
         """The table for link.services.command.CommandServer."""
         return {
             Command.PREFLIGHT_CALIBRATION: self._asking.of_owner(self._calibration.run),
-            Command.PREFLIGHT_STORAGE: self._asking.of_owner(self._store),
+            Command.PREFLIGHT_STORAGE: self._asking.of_owner(self._storage.run),
             Command.PREFLIGHT_REBOOT_SHUTDOWN: self._asking.of_owner(self._reboot),
             Command.DO_SEND_BANNER: Handler(self._banner),
         }
@@ -69,19 +65,6 @@ class Preflight:
             self._leave = None
             self._texts.say(Severity.WARNING, "Armed: no restart", now)
         return self._leave[0] if self._leave else None
-
-    def _store(self, request: CommandRequest, now: float) -> Result:
-        """Parameter 1: what happens to parameters. What is set is kept at once, so that there is nothing to read."""
-        if self._safety.armed:
-            return Result.TEMPORARILY_REJECTED
-        action, plans = request.params[:2]
-        if action not in (READ, WRITE, RESET, RESET_ALL) or not (plans in PLANS_STAY or math.isnan(plans)):
-            return Result.DENIED
-        if action in (RESET, RESET_ALL):
-            self._param_service.reset(now)
-            return Result.ACCEPTED
-        problem = self._param_service.unkept
-        return self._asking.refuse(request, problem, now) if problem and action == WRITE else Result.ACCEPTED
 
     def _reboot(self, request: CommandRequest, now: float) -> Result:
         """Parameter 1: this program; 2: the computer; 3 and 4: a component, which may be this one or all."""

@@ -25,7 +25,7 @@ from vehicle.navigator import Navigator
 from vehicle.outputs import Outputs, Permit
 from vehicle.param_service import Keeper
 from vehicle.params import Params
-from vehicle.plans import PlanKeeper
+from vehicle.plan_keeping import PlanKeeper
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety import Safety
 from vehicle.states import State

@@ -44,6 +44,15 @@ def read(path: Path, parse: Callable[[bytes], T]) -> T | None:
         raise DamagedError(f"cannot be read, {error.strerror}") from error
 
 
+class Writing:
+    """One wish to write a file, and how it went."""
+
+    def __init__(self) -> None:
+        self.done = False
+        """The file is on the disk, or a newer one of its name is, or there is a problem."""
+        self.problem: str | None = None
+
+
 class Scribe:
     """Writes files into one folder, one after the other, in a thread of its own."""
 
@@ -52,17 +61,29 @@ class Scribe:
         """Why the last file was not written; the one before is still there."""
         self._folder = folder
         self._lock = threading.Lock()
-        self._newest: dict[str, Callable[[], bytes]] = {}
-        """What waits to be written: of each file what was wanted last, however slow the disk is."""
+        self._newest: dict[str, tuple[Callable[[], bytes], list[Writing]]] = {}
+        """What waits to be written: of each file what was wanted last, however slow the disk is, and whose wish it was
+        or would have been."""
+        self._unwritten = 0
+        """Files that wait, or are being written."""
         self._worker = Worker("scribe", limit=0)  # a file waits once, so that there are no more jobs than files
 
-    def write(self, name: str, make: Callable[[], bytes]) -> None:
+    @property
+    def idle(self) -> bool:
+        """Everything that was wanted is written, or failed."""
+        return not self._unwritten
+
+    def write(self, name: str, make: Callable[[], bytes]) -> Writing:
         """Have a file written. Returns at once; `make` gives its bytes, in the thread, unless a newer wish for the same
         file comes before its turn."""
+        wish = Writing()
         with self._lock:
-            if name not in self._newest:
+            _, wishes = self._newest.get(name, (make, []))
+            if not wishes:
+                self._unwritten += 1
                 self._worker.put(partial(self._write_newest, name))
-            self._newest[name] = make
+            self._newest[name] = make, [*wishes, wish]
+        return wish
 
     def close(self) -> None:
         """Wait for what is being written."""
@@ -70,12 +91,16 @@ class Scribe:
 
     def _write_newest(self, name: str) -> None:
         with self._lock:
-            make = self._newest.pop(name)
+            make, wishes = self._newest.pop(name)
         try:
             self._write(self._folder / name, make())
             self.problem = None
         except OSError as error:
             self.problem = str(error.strerror)
+        for wish in wishes:
+            wish.problem, wish.done = self.problem, True
+        with self._lock:
+            self._unwritten -= 1
 
     def _write(self, path: Path, data: bytes) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -63,10 +63,11 @@ class Answers:
 
     def _close(self, session: Session) -> bytes | FtpError:
         """A written file counts when it is closed; QGroundControl closes it by a reset."""
+        fault = None
+        if session.writes is not None and session.data is not None:
+            fault = session.writes.folder.store(session.writes.name, bytes(session.data))
         self._sessions.close(session)
-        if session.writes is None or session.data is None:
-            return b""
-        return session.writes.folder.store(session.writes.name, bytes(session.data)) or b""
+        return fault or b""
 
     # ---- reading ----
 

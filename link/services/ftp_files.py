@@ -40,8 +40,8 @@ class NotYetError(Exception):
 
 
 class Folder(Protocol):
-    """A provider of files. It is called inside the control loop and must not wait for a disk: entries(), open()
-    and remove() may raise NotYetError."""
+    """A provider of files. It is called inside the control loop and must not wait for a disk: all but `writable` may
+    raise NotYetError."""
 
     def entries(self) -> Sequence[Entry]:
         """The files, in an order that stays."""

@@ -26,6 +26,8 @@ MAX_CLIENTS = 16
 FRAME_OVERHEAD = m.FileTransferProtocol.unpacker.size - MAX_DATA + OVERHEAD
 """Bytes of a frame around its data."""
 _Kept = TypeVar("_Kept")
+_CLOSING = (Op.TERMINATE, Op.RESET)
+"""What is closed cannot be asked again how its writing went."""
 _OPENING = (Op.OPEN, Op.CREATE, Op.OPEN_TO_WRITE)
 
 
@@ -92,10 +94,9 @@ class FtpServer:
         if answer is None:
             _keep(self._waiting, question.client, question)
             return []
-        if isinstance(answer, FtpError):
-            return [_nak(question, answer)]
-        outgoing = _ack(question, answer)
-        _keep(self._answered, question.client, (question.request, outgoing))
+        outgoing = _nak(question, answer) if isinstance(answer, FtpError) else _ack(question, answer)
+        if not isinstance(answer, FtpError) or question.request.op in _CLOSING:
+            _keep(self._answered, question.client, (question.request, outgoing))
         return [outgoing]
 
     def _begin_burst(self, client: Client, request: FtpPacket, now: float) -> FtpError | None:

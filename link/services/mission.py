@@ -2,19 +2,21 @@
 
 Rules (mavlink.io/en/services/mission.html): an upload is asked for item by item and counts only when it is complete
 and valid; until then the old plan stays. One upload a plan at a time, a second sender is DENIED. Who uploads may end
-it by a MISSION_ACK with an error. What a plan means is the vehicle's work, and so is saving it. Reading is in
-mission_download.py, ids are in mission_shelf.py; the other half is mission_client.py.
+it by a MISSION_ACK with an error. What a plan means is the vehicle's work, and so is saving it; the last answer waits
+for that (mission_changes.py). Reading is in mission_download.py, ids are in mission_shelf.py; the other half is
+mission_client.py.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Outgoing, Received
+from link.services.mission_changes import Change, Changes, Owner
 from link.services.mission_download import Downloads
 from link.services.mission_items import Items, MissionItem, PlanRules
 from link.services.mission_shelf import Shelf
@@ -24,18 +26,15 @@ from link.services.pacing import Pacer
 REMEMBER = 10.0
 """s in which the last item, said again because our answer was lost, is answered again."""
 
-_Begin = m.MissionCount | m.MissionWritePartialList
+_Begin = m.MissionCount | m.MissionWritePartialList | m.MissionClearAll
 _Item = m.MissionItem | m.MissionItemInt
 
 
-class Planner(Protocol):
+class Planner(Owner, Protocol):
     """What the vehicle says to its plans."""
 
     def may_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         """ACCEPTED, or the answer to who may not change this plan now."""
-
-    def changed(self, kind: MissionType, items: Items) -> None:
-        """The plan is a new one; save it."""
 
     def select(self, sequence: int, received: Received, now: float) -> None:
         """Go on with this item of the mission, or tell the driver why not."""
@@ -70,9 +69,12 @@ class MissionServer:
         self._rules = rules
         self._ids = (system, component)
         self._shelf = Shelf(rules)
+        self._changes = Changes(self._shelf, planner)
         self._downloads = Downloads(self._shelf, pacer or Pacer(), lambda: int(planner.current().seq))
         self._uploads: dict[MissionType, Upload] = {}
         self._ended: dict[MissionType, _Ended] = {}
+        self._now = 0.0
+        """Of the newest tick."""
 
     def plan(self, kind: MissionType) -> Items:
         """The plan in force."""
@@ -82,6 +84,11 @@ class MissionServer:
         """Its id: another one for another plan, 0 for none."""
         return self._shelf.id_of(kind)
 
+    @property
+    def changing(self) -> bool:
+        """A plan is on its way to where it is kept."""
+        return any(map(self._changes.of, self._rules))
+
     def load(self, kind: MissionType, items: Sequence[MissionItem]) -> MissionResult:
         """Put a saved plan in force, where it passes the rules; the planner is not told."""
         verdict = self._rules[kind].judge(items)
@@ -89,13 +96,16 @@ class MissionServer:
             self._shelf.put(kind, items)
         return verdict
 
-    def replace(self, kind: MissionType, items: Sequence[MissionItem]) -> MissionResult:
-        """Put a plan in force that came in another way than by upload, e.g. as a file; the planner is told."""
-        busy = kind in self._uploads
-        verdict = MissionResult.DENIED if busy else self.load(kind, items)
-        if verdict is MissionResult.ACCEPTED:
-            self._planner.changed(kind, self.plan(kind))
-        return verdict
+    def replace(self, plans: Mapping[MissionType, Sequence[MissionItem]]) -> Change | MissionResult:
+        """Change plans in another way than by upload, e.g. as files: how that goes, or why not."""
+        if any(self._uploads.get(kind) or self._changes.of(kind) for kind in plans):
+            return MissionResult.DENIED
+        verdict = _first_refusal(self._rules[kind].judge(items) for kind, items in plans.items())
+        if verdict is not MissionResult.ACCEPTED:
+            return verdict
+        change = Change({kind: tuple(items) for kind, items in plans.items()}, lambda now: MissionResult.ACCEPTED)
+        self._changes.begin(change, self._now)  # it answers nobody
+        return change
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
         """Answer one message; nothing where it is not for us or its sender may not ask."""
@@ -110,7 +120,8 @@ class MissionServer:
 
     def tick(self, now: float) -> list[Outgoing]:
         """Ask again for what did not come, give up what does not come at all."""
-        outgoing = self._downloads.tick(now)
+        self._now = now
+        outgoing = self._downloads.tick(now) + self._changes.tick(now)
         for kind, upload in list(self._uploads.items()):
             if upload.overdue(now):
                 del self._uploads[kind]
@@ -121,13 +132,10 @@ class MissionServer:
 
     def _writing(self, received: Received, now: float) -> list[Outgoing]:
         match received.message:
-            case m.MissionCount() | m.MissionWritePartialList() as message:
-                return [self._begin(message, received, now)]
+            case m.MissionCount() | m.MissionWritePartialList() | m.MissionClearAll() as message:
+                return self._begin(message, received, now)
             case m.MissionItem() | m.MissionItemInt() as message:
                 return self._take(message, received, now)
-            case m.MissionClearAll() as message:
-                verdict = self._clear(message, received, now)
-                return [ack(sender_of(received), message.mission_type, verdict)]
             case m.MissionAck() as message if message.type != MissionResult.ACCEPTED:
                 return self._refused(message, sender_of(received), now)
             case m.MissionSetCurrent() as message:
@@ -135,35 +143,52 @@ class MissionServer:
                 return [Outgoing(self._planner.current())]
         return []
 
-    def _begin(self, message: _Begin, received: Received, now: float) -> Outgoing:
-        sender, kind = sender_of(received), self._shelf.kind(message.mission_type)
-        if kind is None:
-            return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
-        verdict = self._may_begin(kind, received, now)
+    def _begin(self, message: _Begin, received: Received, now: float) -> list[Outgoing]:
+        sender, number = sender_of(received), message.mission_type
+        kinds = [kind for kind in self._rules if number == kind]
+        if number == MissionType.ALL and isinstance(message, m.MissionClearAll):
+            kinds = list(self._rules)
+        if not kinds:
+            return [ack(sender, number, MissionResult.UNSUPPORTED)]
+        if any(self._is_saving(kind, message, sender) for kind in kinds):
+            return []
+        verdict = _first_refusal(self._may_begin(kind, received, now) for kind in kinds)
         if verdict is not MissionResult.ACCEPTED:
-            return ack(sender, kind, verdict)
-        return (
-            self._whole(message, sender, kind, now)
-            if isinstance(message, m.MissionCount)
-            else self._part(message, sender, kind, now)
-        )
+            return [ack(sender, number, verdict)]
+        match message:
+            case m.MissionClearAll():
+                return self._clear(message, kinds, received, now)
+            case m.MissionCount():
+                return self._whole(message, received, kinds[0], now)
+            case _:
+                return [self._part(message, sender, kinds[0], now)]
+
+    def _is_saving(self, kind: MissionType, message: _Begin, sender: Sender) -> bool:
+        """A sender whose last change is not kept yet waits: it says this again. An answer to the change would look like
+        one to this, so there is none any more, unless this asks for the same."""
+        change = self._changes.of(kind)
+        if change is None or change.sender != sender:
+            return False
+        if not change.again(message):
+            change.told = lambda verdict, now: []
+        return True
 
     def _may_begin(self, kind: MissionType, received: Received, now: float) -> MissionResult:
         """The same sender may begin again at any time."""
-        busy = self._uploads.get(kind)
+        busy = self._changes.of(kind) or self._uploads.get(kind)
         if busy and busy.sender != sender_of(received):
             return MissionResult.DENIED
         return self._planner.may_write(received, kind, now)
 
-    def _whole(self, message: m.MissionCount, sender: Sender, kind: MissionType, now: float) -> Outgoing:
-        rules = self._rules[kind]
+    def _whole(self, message: m.MissionCount, received: Received, kind: MissionType, now: float) -> list[Outgoing]:
+        sender, rules = sender_of(received), self._rules[kind]
         if message.count > rules.capacity:
-            return ack(sender, kind, MissionResult.NO_SPACE)
+            return [ack(sender, kind, MissionResult.NO_SPACE)]
         upload = Upload(sender, kind, rules, end=message.count, now=now)
         if not message.count:
-            return self._end(upload, rules.check(()), -1, now)
+            return self._end(upload, rules.check(()), received, now)
         self._uploads[kind] = upload
-        return upload.ask(now)
+        return [upload.ask(now)]
 
     def _part(self, message: m.MissionWritePartialList, sender: Sender, kind: MissionType, now: float) -> Outgoing:
         items, first, last = self.plan(kind), message.start_index, message.end_index
@@ -181,26 +206,27 @@ class MissionServer:
         if upload is None or upload.sender != sender:
             return self._said_again(self._ended.get(kind), message, sender, now)
         answer = upload.take(message, now)
-        if isinstance(answer, list):
-            return answer
-        if answer is MissionResult.ACCEPTED:  # since it began, the vehicle may have set off by the old plan
-            answer = self._planner.may_write(received, kind, now)
-        return [self._end(upload, answer, message.seq, now)]
+        return answer if isinstance(answer, list) else self._end(upload, answer, received, now)
 
-    def _end(self, upload: Upload, verdict: MissionResult, last: int, now: float) -> Outgoing:
-        kind = upload.kind
+    def _end(self, upload: Upload, verdict: MissionResult, received: Received, now: float) -> list[Outgoing]:
+        """The last item has come, or one that is wrong."""
+        kind, message = upload.kind, received.message
         self._uploads.pop(kind, None)
-        plan_id = 0
-        if verdict is MissionResult.ACCEPTED:
-            self._put(kind, upload.items)
-            plan_id = self.plan_id(kind)
-        answer = ack(upload.sender, kind, verdict, plan_id)
-        self._ended[kind] = _Ended(upload.sender, last, now, answer)
-        return answer
+        self._ended.pop(kind, None)
+        last = getattr(message, "seq", -1)
 
-    def _put(self, kind: MissionType, items: Items) -> None:
-        self._shelf.put(kind, items)
-        self._planner.changed(kind, items)
+        def told(verdict: MissionResult, now: float) -> list[Outgoing]:
+            answer = ack(upload.sender, kind, verdict, self.plan_id(kind) if verdict is MissionResult.ACCEPTED else 0)
+            self._ended[kind] = _Ended(upload.sender, last, now, answer)
+            return [answer]
+
+        if verdict is not MissionResult.ACCEPTED:
+            return told(verdict, now)
+        # Since it began, the vehicle may have set off by the old plan.
+        change = Change(
+            {kind: upload.items}, lambda now: self._planner.may_write(received, kind, now), told, upload.sender, message
+        )
+        return self._changes.begin(change, now)
 
     def _refused(self, message: m.MissionAck, sender: Sender, now: float) -> list[Outgoing]:
         """Whoever uploads has thought better of it, or wants to be asked in another way."""
@@ -219,14 +245,23 @@ class MissionServer:
             return []
         return [ended.ack]
 
-    def _clear(self, message: m.MissionClearAll, received: Received, now: float) -> MissionResult:
-        number = message.mission_type
-        kinds = [kind for kind in self._rules if number in (kind, MissionType.ALL)]
-        verdicts = [self._may_begin(kind, received, now) for kind in kinds] or [MissionResult.UNSUPPORTED]
-        refused = next((verdict for verdict in verdicts if verdict is not MissionResult.ACCEPTED), None)
-        if refused is not None:
-            return refused
+    def _clear(
+        self, message: m.MissionClearAll, kinds: Sequence[MissionType], received: Received, now: float
+    ) -> list[Outgoing]:
         for kind in kinds:
             self._uploads.pop(kind, None)
-            self._put(kind, ())
-        return MissionResult.ACCEPTED
+            self._ended.pop(kind, None)
+        sender = sender_of(received)
+        change = Change(
+            dict.fromkeys(kinds, ()),
+            lambda now: _first_refusal(self._planner.may_write(received, kind, now) for kind in kinds),
+            lambda verdict, now: [ack(sender, message.mission_type, verdict)],
+            sender,
+            message,
+        )
+        return self._changes.begin(change, now)
+
+
+def _first_refusal(verdicts: Iterable[MissionResult]) -> MissionResult:
+    """ACCEPTED where there is none."""
+    return next((verdict for verdict in verdicts if verdict is not MissionResult.ACCEPTED), MissionResult.ACCEPTED)

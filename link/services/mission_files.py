@@ -13,8 +13,9 @@ from collections.abc import Callable, Sequence
 
 from dialects.enums import MissionResult, MissionType
 from link.services.ftp import FtpError
-from link.services.ftp_files import Bytes, Content, Entry, Query
+from link.services.ftp_files import Bytes, Content, Entry, NotYetError, Query
 from link.services.mission import MissionServer
+from link.services.mission_changes import Change
 from link.services.mission_items import DEGREES, GLOBAL_FRAMES, LOCAL, Items, MissionItem, scaled
 
 HEADER = "QGC WPL 110"
@@ -83,6 +84,8 @@ class PlanFolder:
     def __init__(self, server: MissionServer, allowed: Callable[[MissionType], bool] = lambda kind: True) -> None:
         self._server = server
         self._allowed = allowed
+        self._changes: dict[MissionType, tuple[bytes, Change]] = {}
+        """What was written last, until its writer has heard how that went."""
 
     @property
     def writable(self) -> bool:
@@ -98,16 +101,31 @@ class PlanFolder:
         return Bytes(write(self._server.plan(NAMES[name]))) if name in NAMES and not query else None
 
     def store(self, name: str, data: bytes) -> FtpError | None:
-        """Put the plan in force, or say FAIL where it is none or breaks the rules."""
+        """Put the plan in force, or say FAIL where it is none, breaks the rules or cannot be kept.
+
+        Raises NotYetError until it is kept: the same again gets the answer.
+        """
         kind = NAMES.get(name)
-        if kind is None or not self._allowed(kind):
+        if kind is None:
             return FtpError.PROTECTED
-        try:
-            items = read(data)
-        except PlanFileError:
-            return FtpError.FAIL
-        return None if self._server.replace(kind, items) is MissionResult.ACCEPTED else FtpError.FAIL
+        before, change = self._changes.pop(kind, (b"", None))
+        verdict = self._begun(kind, data) if change is None or before != data else change
+        if isinstance(verdict, FtpError):
+            return verdict
+        if verdict.verdict is None:
+            self._changes[kind] = data, verdict
+            raise NotYetError
+        return None if verdict.verdict is MissionResult.ACCEPTED else FtpError.FAIL
 
     def remove(self, name: str) -> FtpError | None:
-        """The plan is empty after this."""
+        """The plan is empty after this. Raises NotYetError as `store` does."""
         return self.store(name, HEADER.encode()) if name in NAMES else FtpError.NOT_FOUND
+
+    def _begun(self, kind: MissionType, data: bytes) -> Change | FtpError:
+        if not self._allowed(kind):
+            return FtpError.PROTECTED
+        try:
+            change = self._server.replace({kind: read(data)})
+        except PlanFileError:
+            return FtpError.FAIL
+        return change if isinstance(change, Change) else FtpError.FAIL

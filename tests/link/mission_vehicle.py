@@ -10,6 +10,7 @@ from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Received
 from link.services.mission import MissionServer
+from link.services.mission_changes import Forgotten, Keeping
 from link.services.mission_items import ItemRule, Items, MissionItem, Place, PlanRules
 from link.services.pacing import Pacer
 from tests.link.services_world import from_gcs, messages
@@ -52,11 +53,24 @@ def plain(items: Items) -> list[str]:
 
 
 @dataclass
+class Writing:
+    """A plan on its way to a slow disk."""
+
+    kind: MissionType
+    length: int
+    done: bool = False
+    problem: str | None = None
+
+
+@dataclass
 class Vehicle:
     """A server, and what it told its vehicle."""
 
     verdict: MissionResult = MissionResult.ACCEPTED
     changes: list[tuple[MissionType, int]] = field(default_factory=list)
+    disk: list[Writing] | None = None
+    """What is being written, where there is a disk."""
+    stayed: list[tuple[MissionType, int, str | None]] = field(default_factory=list)
     selected: list[int] = field(default_factory=list)
     at: int = 0
     pacer: Pacer | None = None
@@ -66,6 +80,15 @@ class Vehicle:
 
     def may_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         return self.verdict
+
+    def keep(self, kind: MissionType, items: Items) -> Keeping:
+        if self.disk is None:
+            return Forgotten()
+        self.disk.append(Writing(kind, len(items)))
+        return self.disk[-1]
+
+    def stays(self, kind: MissionType, items: Items, why: str | None) -> None:
+        self.stayed.append((kind, len(items), why))
 
     def changed(self, kind: MissionType, items: Items) -> None:
         self.changes.append((kind, len(items)))

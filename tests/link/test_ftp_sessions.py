@@ -5,8 +5,11 @@ from __future__ import annotations
 import pytest
 
 from link.services.ftp import MAX_OFFSET, FtpError, FtpPacket, Op
+from link.services.ftp_files import MemoryFolder, NotYetError, Tree
+from link.services.ftp_server import FtpServer
 from link.services.ftp_sessions import EXPIRY, IDLE, MAX_EACH, MAX_FILE, MAX_SESSIONS
-from tests.link.ftp_vehicle import GENERAL, LOG, Vehicle, as_entries, error
+from link.services.pacing import Pacer
+from tests.link.ftp_vehicle import GENERAL, LOG, Vehicle, as_entries, error, only_plans
 from tests.link.services_world import OTHER_PEER
 
 # ---- repeats ----
@@ -174,3 +177,35 @@ def test_a_file_is_either_read_or_written() -> None:
     assert error(vehicle.ask(Op.WRITE, b"x")) is FtpError.PROTECTED
     vehicle.ask(Op.CREATE, b"/missions/new.plan", session=1)
     assert error(vehicle.ask(Op.READ, session=1, size=9)) is FtpError.INVALID_SESSION
+
+
+class SlowMissions(MemoryFolder):
+    """Written by a disk that is asked `waits` times before it says how that went."""
+
+    waits = 2
+
+    def store(self, name: str, data: bytes) -> FtpError | None:
+        if self.waits:
+            self.waits -= 1
+            raise NotYetError
+        return super().store(name, data)
+
+
+@pytest.mark.parametrize("op", [Op.TERMINATE, Op.RESET])
+@pytest.mark.parametrize(("data", "answer"), [(b"{new}", None), (b"rubbish", FtpError.FAIL)])
+def test_closing_what_was_written_waits_for_the_disk_and_is_said_again(
+    op: Op, data: bytes, answer: FtpError | None
+) -> None:
+    missions = SlowMissions({"old.plan": b"{old}"}, accept=only_plans)
+    vehicle = Vehicle()
+    vehicle.server = FtpServer(Tree(missions, {}), system=1, component=1, pacer=Pacer(lambda peer: 1e6))
+    vehicle.ask(Op.CREATE, b"new.plan")
+    vehicle.ask(Op.WRITE, data)
+    closing = FtpPacket(vehicle.sequence + 1, op)
+    assert vehicle.send(closing) == []
+    assert vehicle.send(closing) == []  # said again meanwhile
+    (told,) = vehicle.tick(0.1)
+    assert told.op == (Op.ACK if answer is None else Op.NAK)
+    assert answer is None or error(told) is answer
+    assert ("new.plan" in missions.files) is (answer is None)
+    assert vehicle.send(closing) == [told]  # the answer was lost

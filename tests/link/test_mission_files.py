@@ -149,4 +149,4 @@ def test_a_plan_that_may_not_be_changed_now_is_protected() -> None:
 def test_a_file_does_not_cross_an_upload() -> None:
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 2))
-    assert vehicle.server.replace(MissionType.MISSION, [waypoint()]) is MissionResult.DENIED
+    assert vehicle.server.replace({MissionType.MISSION: [waypoint()]}) is MissionResult.DENIED

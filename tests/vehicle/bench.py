@@ -15,7 +15,7 @@ from link.core import Peer, Received
 from vehicle.heard import HEARD
 from vehicle.logbook import Recording
 from vehicle.params import Params
-from vehicle.plans import PlanKeeper
+from vehicle.plan_keeping import PlanKeeper
 from vehicle.readings import Computer, Readings
 from vehicle.rover import Rover
 from vehicle.states import State

@@ -32,16 +32,22 @@ def do(command: int, *params: float) -> Item:
 def upload(field: Field, *items: Item, kind: MissionType = MissionType.MISSION, system: int = DRIVER) -> int:
     """As a ground station does it; the verdict."""
     before = len(field.all(m.MissionAck))
+    send(field, *items, kind=kind, system=system)
+    return int(field.all(m.MissionAck)[before].type)
+
+
+def send(field: Field, *items: Item, kind: MissionType = MissionType.MISSION, system: int = DRIVER) -> None:
+    """Without an eye for the answer."""
+    before = len(field.all(m.MissionAck))
     field.say(m.MissionCount(1, 1, len(items), kind), system)
     if len(field.all(m.MissionAck)) > before:  # refused, or an empty one
-        return int(field.newest(m.MissionAck).type)
+        return
     for number, (command, place, params) in enumerate(items):
         latitude, longitude = GROUND.globe(place) if place else (0.0, 0.0)
         one, two, three, four = (*params, *(0.0,) * (4 - len(params)))
         x, y = round(latitude * 1e7), round(longitude * 1e7)
         frame = 6 if place else 2
         field.say(m.MissionItemInt(1, 1, number, frame, command, 0, 1, one, two, three, four, x, y, 0, kind), system)
-    return int(field.newest(m.MissionAck).type)
 
 
 def ready(*items: Item, **params: float) -> Field:

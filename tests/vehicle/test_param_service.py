@@ -21,9 +21,13 @@ class Memory:
     def __init__(self) -> None:
         self.kept: dict[str, float] = {}
         self.problem: str | None = None
+        self.idle = True
 
     def keep(self, name: str, value: float) -> None:
         self.kept[name] = value
+
+    def save(self) -> None:
+        """It is."""
 
 
 def bench_with(params: Params) -> tuple[Bench, Memory]:

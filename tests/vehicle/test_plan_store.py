@@ -16,6 +16,7 @@ from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result
 from dialects.modes import Mode
 from link.core import Peer, Received
+from link.services.mission_changes import Forgotten, Keeping
 from link.services.mission_client import MissionClient, MissionOutcome
 from link.services.mission_items import Items, MissionItem
 from link.services.mission_shelf import plan_id
@@ -23,7 +24,7 @@ from tests.link.mission_vehicle import plain
 from tests.vehicle.bench import said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, running
-from tests.vehicle.test_mission import do, upload, way
+from tests.vehicle.test_mission import do, send, upload, way
 from vehicle.plan_store import PlanStore
 
 FORCE = 21196
@@ -59,9 +60,41 @@ class Memory:
         self.plans = plans or {}
         self.damage = {MissionType[kind.upper()]: why for kind, why in damage.items()}
         self.problem: str | None = None
+        self.idle = True
 
-    def keep(self, kind: MissionType, items: Items) -> None:
+    def keep(self, kind: MissionType, items: Items) -> Keeping:
         self.plans[kind] = items
+        return Forgotten()
+
+
+class Wish:
+    """A plan on its way to a slow disk."""
+
+    def __init__(self, kind: MissionType, items: Items) -> None:
+        self.kind, self.items = kind, items
+        self.done = False
+        self.problem: str | None = None
+
+
+class SlowDisk(Memory):
+    """Writes when it is told to."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.wishes: list[Wish] = []
+
+    def keep(self, kind: MissionType, items: Items) -> Keeping:
+        self.idle = False
+        self.wishes.append(Wish(kind, items))
+        return self.wishes[-1]
+
+    def end(self, problem: str | None = None) -> None:
+        """All that waits is there now, or the last of it is not."""
+        for wish in self.wishes:
+            wish.done, wish.problem = True, problem
+            if problem is None:
+                self.plans[wish.kind] = wish.items
+        self.wishes, self.idle, self.problem = [], True, problem
 
 
 def field_with(keeper: Memory, **params: float) -> Field:
@@ -155,6 +188,65 @@ def test_what_is_uploaded_cleared_or_written_as_a_file_is_kept() -> None:
     assert memory.plans[MISSION] == ()
 
 
+def test_a_slow_disk_delays_the_answer_and_the_plan() -> None:
+    field = field_with(disk := SlowDisk())
+    before = len(field.all(m.MissionAck))
+    send(field, way(5, 0))
+    field.wait(3.0)
+    assert field.all(m.MissionAck)[before:] == []
+    assert field.newest(m.MissionCurrent).mission_id == 0
+    disk.end()
+    field.wait(0.1)
+    (answer,) = field.all(m.MissionAck)[before:]
+    assert (answer.type, answer.opaque_id) == (0, field.newest(m.MissionCurrent).mission_id)
+    assert answer.opaque_id != 0
+
+
+def test_a_disk_that_refuses_leaves_the_old_plan_in_force_and_on_the_disk() -> None:
+    field = field_with(disk := SlowDisk())
+    send(field, way(5, 0))
+    disk.end()
+    field.wait(0.1)
+    (first,) = disk.plans[MISSION]
+    send(field, way(7, 0))
+    disk.end("No space left on device")
+    field.wait(0.1)
+    assert field.newest(m.MissionAck).type == MissionResult.ERROR
+    assert said(field, "Mission not changed, it could not be saved: No space left on device")
+    assert [wish.items for wish in disk.wishes] == [(first,)]  # written back, in case
+    field.say(m.MissionRequestInt(1, 1, 0, 0))
+    assert field.newest(m.MissionItemInt).x == first.x
+
+
+def test_who_sets_off_by_the_old_plan_while_the_new_one_is_written_goes_on_by_it() -> None:
+    field = field_with(disk := SlowDisk())
+    send(field, way(30, 0))
+    disk.end()
+    field.wait(0.1)
+    (first,) = disk.plans[MISSION]
+    send(field, way(0, 30))
+    field.begin(Mode.AUTO)
+    disk.end()
+    field.wait(0.1)
+    assert field.newest(m.MissionAck).type == MissionResult.DENIED
+    assert said(field, "mission not changed: AUTO drives by it")
+    disk.end()
+    assert disk.plans[MISSION] == (first,)
+    field.beat(5.0)
+    assert field.truth.north > 1.0
+
+
+def test_a_failed_upload_does_not_make_a_damaged_fence_a_good_one() -> None:
+    disk = SlowDisk()
+    disk.damage[FENCE] = "saved fence damaged"
+    field = field_with(disk, FENCE_ENABLE=1)
+    send(field, kind=FENCE)
+    disk.end("No space left on device")
+    field.wait(0.1)
+    assert disk.wishes == []
+    assert field.arm() is Result.FAILED
+
+
 def test_plans_that_cannot_be_kept_are_told() -> None:
     memory = Memory()
     memory.problem = "No space left on device"
@@ -220,7 +312,7 @@ def test_a_plan_of_another_version_is_damage() -> None:
 # ---- the daemon ----
 
 
-def done(ground: Ground, client: MissionClient) -> MissionOutcome:
+def done(ground: Ground, client: MissionClient, *, good: bool = True) -> MissionOutcome:
     """Let a client do its job with a real vehicle."""
     outcomes: list[MissionOutcome] = []
     taken = len(ground.heard)
@@ -238,7 +330,7 @@ def done(ground: Ground, client: MissionClient) -> MissionOutcome:
         return bool(outcomes)
 
     ground.wait(step, "the end of a mission job")
-    assert outcomes[0].done
+    assert outcomes[0].done is good
     return outcomes[0]
 
 
@@ -254,9 +346,7 @@ def test_plans_survive_kill_9(tmp_path: Path) -> None:
         for kind, items in PLANS.items():
             client.upload(items, kind, time.monotonic())
             ids[kind] = done(ground, client).plan_id
-        names = {"mission.waypoints", "fence.waypoints", "rally.waypoints"}
-        ground.wait(lambda: state.exists() and names <= set(os.listdir(state)), "all are written")
-        vehicle.process.kill()
+        vehicle.process.kill()  # at once: the answer to the last one says that it is on the disk
         vehicle.process.wait(10)
     with Ground() as ground, running(tmp_path, *words, ground.endpoint) as vehicle:
         vehicle.ready()
@@ -270,6 +360,20 @@ def test_plans_survive_kill_9(tmp_path: Path) -> None:
         ground.wait(lambda: any(isinstance(each, m.MissionCurrent) for each in ground.heard), "MISSION_CURRENT")
         [*_, current] = [each for each in ground.heard if isinstance(each, m.MissionCurrent)]
         assert (current.mission_id, current.fence_id, current.rally_points_id) == tuple(ids.values())
+
+
+@pytest.mark.e2e
+def test_a_plan_that_the_disk_refuses_is_refused_and_the_one_before_stays(tmp_path: Path) -> None:
+    client = MissionClient(255, 190, target_system=1)
+    with Ground() as ground, running(tmp_path, "--sim", "--state", "/proc/no/such", ground.endpoint) as vehicle:
+        vehicle.ready()
+        ground.wait(lambda: bool(ground.heard), "the vehicle is there")
+        client.upload(PLANS[MISSION], MISSION, time.monotonic())
+        assert done(ground, client, good=False).result == MissionResult.ERROR
+        text = "Mission not changed, it could not be saved: No such file or directory"
+        ground.wait(lambda: text in "".join(ground.texts()), "the driver is told")
+        client.download(MISSION, time.monotonic())
+        assert done(ground, client).items == ()
 
 
 @pytest.mark.e2e

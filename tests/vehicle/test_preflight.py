@@ -9,13 +9,17 @@ from pathlib import Path
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, Result
+from dialects.enums import Command, FenceItem, MissionType, Result
 from link.tlog import read, record
 from tests.vehicle.bench import AHEAD, DRIVER, OTHER, Bench, said
+from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, drive, running
+from tests.vehicle.test_mission import send, way
+from tests.vehicle.test_plan_store import SlowDisk, field_with
 from vehicle.ending import Ending
 from vehicle.leaving import Leave
 from vehicle.params import Params
+from vehicle.place import Point
 from vehicle.rover import Rover
 
 REBOOT, STORAGE = Command.PREFLIGHT_REBOOT_SHUTDOWN, Command.PREFLIGHT_STORAGE
@@ -188,9 +192,40 @@ class Kept:
 
     def __init__(self) -> None:
         self.values: dict[str, float] = {}
+        self.idle = True
+        self.saved = 0
 
     def keep(self, name: str, value: float) -> None:
         self.values[name] = value
+
+    def save(self) -> None:
+        self.saved += 1
+
+
+PLANS = {
+    MissionType.MISSION: (way(5, 0),),
+    MissionType.FENCE: ((FenceItem.CIRCLE_INCLUSION, Point(0, 0), (50.0,)),),
+    MissionType.RALLY: ((FenceItem.RALLY_POINT, Point(1, 1), ()),),
+}
+
+
+def stocked(disk: SlowDisk | None = None) -> Field:
+    """With a plan of each kind, and a parameter that was set."""
+    field = field_with(disk, MAN_DEADBAND=10) if disk else Field(MAN_DEADBAND=10)
+    for kind, items in PLANS.items():
+        send(field, *items, kind=kind)
+        if disk:
+            disk.end()
+            field.wait(0.1)
+    assert lengths(field) == [1, 1, 1]
+    return field
+
+
+def lengths(field: Field) -> list[int]:
+    """Of mission, fence and rally points."""
+    for kind in PLANS:
+        field.say(m.MissionRequestList(1, 1, kind))
+    return [each.count for each in field.all(m.MissionCount)[-3:]]
 
 
 class TestStorage:
@@ -234,15 +269,84 @@ class TestStorage:
         bench.wait(0.1)
         assert bench.command(STORAGE, 1, NAN) is Result.ACCEPTED
         assert bench.command(STORAGE, 0) is Result.ACCEPTED
+        assert keeper.saved == 1
         keeper.problem = "No space left on device"
         assert bench.command(STORAGE, 1) is Result.FAILED
+        assert keeper.saved == 2  # tried again
         assert said(bench, "PREFLIGHT_STORAGE refused: No space left on device")
 
-    @pytest.mark.parametrize("wish", [(3,), (5,), (-1,), (NAN,), (0.5,), (0, 1), (0, 2), (2, 7)])
+    @pytest.mark.parametrize("wish", [(3,), (5,), (-2,), (math.inf,), (0.5,), (0, 3), (0, 4), (2, 7), (0, 0, 100)])
     def test_what_is_not_offered_is_denied(self, wish: tuple[float, ...]) -> None:
         bench = Bench(MAN_DEADBAND=10)
         assert bench.command(STORAGE, *wish) is Result.DENIED
         assert bench.rover._params["MAN_DEADBAND"] == 10
+
+    @pytest.mark.parametrize("wish", [(0,), (-1, -1, -1), (NAN,) * 7, (0, 0, 1)])
+    def test_what_means_nothing_changes_nothing(self, wish: tuple[float, ...]) -> None:
+        field = stocked()
+        assert field.command(STORAGE, *wish) is Result.ACCEPTED
+        assert field.rover._params["MAN_DEADBAND"] == 10
+        assert lengths(field) == [1, 1, 1]
+
+    def test_plans_are_erased_all_three_and_parameters_stay(self) -> None:
+        field = stocked()
+        assert field.command(STORAGE, -1, 2) is Result.ACCEPTED
+        assert lengths(field) == [0, 0, 0]
+        field.wait(0.1)
+        current = field.newest(m.MissionCurrent)
+        assert (current.mission_id, current.fence_id, current.rally_points_id) == (0, 0, 0)
+        assert field.rover._params["MAN_DEADBAND"] == 10
+
+    def test_nobody_erases_what_somebody_uploads(self) -> None:
+        field = stocked()
+        field.say(m.MissionCount(1, 1, 2, MissionType.RALLY))
+        assert field.command(STORAGE, 2, 2) is Result.TEMPORARILY_REJECTED
+        assert lengths(field) == [1, 1, 1]
+        assert field.rover._params["MAN_DEADBAND"] == 10
+
+    def test_erasing_lasts_until_the_disk_has_it(self) -> None:
+        field = stocked(disk := SlowDisk())
+        assert field.command(STORAGE, 2, 2) is Result.IN_PROGRESS
+        field.wait(1.0)
+        assert lengths(field) == [1, 1, 1]
+        disk.end()
+        field.wait(0.1)
+        assert field.newest(m.CommandAck).result == Result.ACCEPTED
+        assert lengths(field) == [0, 0, 0]
+        assert set(disk.plans.values()) == {()}
+
+    def test_erasing_fails_with_the_disk(self) -> None:
+        field = stocked(disk := SlowDisk())
+        assert field.command(STORAGE, -1, 2) is Result.IN_PROGRESS
+        disk.end("No space left on device")
+        field.wait(0.1)
+        disk.end()  # what was there before, once more
+        field.wait(1.0)
+        assert field.newest(m.CommandAck).result == Result.FAILED
+        assert said(field, "Mission not changed, it could not be saved: No space left on device")
+        assert said(field, "PREFLIGHT_STORAGE refused: the plans could not be erased")
+        assert lengths(field) == [1, 1, 1]
+
+    def test_plans_are_saved_once_more_where_the_disk_did_not_take_them(self) -> None:
+        field = stocked(disk := SlowDisk())
+        before = dict(disk.plans)
+        disk.plans.clear()
+        disk.problem = "No space left on device"
+        assert field.command(STORAGE, -1, 1) is Result.IN_PROGRESS
+        disk.end()
+        field.wait(0.1)
+        assert field.newest(m.CommandAck).result == Result.ACCEPTED
+        assert disk.plans == before
+
+    def test_a_disk_that_does_not_answer_is_a_failure(self) -> None:
+        field = stocked(SlowDisk())
+        assert field.command(STORAGE, -1, 2) is Result.IN_PROGRESS
+        field.wait(9.0)
+        assert field.newest(m.CommandAck).result == Result.FAILED
+        assert lengths(field) == [1, 1, 1]
+
+    def test_where_nothing_is_kept_plans_are_not_saved(self) -> None:
+        assert stocked().command(STORAGE, -1, 1) is Result.FAILED
 
     def test_while_armed_it_is_rejected_for_now(self) -> None:
         bench = Bench(MAN_DEADBAND=10)
