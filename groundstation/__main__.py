@@ -8,7 +8,6 @@ import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import NoReturn
 
 from platformdirs import user_log_path
 
@@ -16,6 +15,8 @@ from groundstation.client import StationClient, StationError
 from groundstation.keyfile import load_keymap
 from groundstation.keymap import KEYMAPS, KeymapError
 from groundstation.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
+from link import standard_streams
+from link.command_line import Parser
 from link.endpoint import EndpointError, endpoint_help, parse
 
 DEFAULT_ENDPOINT = "udpin:127.0.0.1:14550"
@@ -51,16 +52,11 @@ class UsageError(Exception):
     """The user's mistake, in one line."""
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says a mistake in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"groundstation: {message} (groundstation --help shows how)\n")
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the ground station. 0 after a session, 2 after a mistake of the user's, 1 when the station broke."""
-    options = _parser().parse_args(arguments)
+    standard_streams.secure()
+    parser = _parser()
+    options = parser.parse_args(parser.checked(sys.argv[1:] if arguments is None else arguments))
     try:
         return _run(options)
     except (UsageError, EndpointError, KeymapError, StationError) as error:
@@ -132,8 +128,8 @@ def _speed(text: str) -> float:
     return value
 
 
-def _parser() -> _Parser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="groundstation",
         description="Drive a MAVLink rover from the terminal.",
         epilog=EXAMPLES,

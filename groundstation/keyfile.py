@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
 from groundstation.keymap import ACTIONS, CONFIRM_KEY, KEYMAPS, Keymap, KeymapError
+from link.toml_file import TomlError, read_toml
 
 PUNCTUATION = {
     "!": "exclamation_mark", '"': "quotation_mark", "#": "number_sign", "$": "dollar_sign", "%": "percent_sign",
@@ -53,14 +54,13 @@ def load_keymap(name_or_path: str) -> Keymap:
     """The key map of a name in KEYMAPS or of a TOML file. Raises KeymapError."""
     if name_or_path in KEYMAPS:
         return Keymap(name_or_path, KEYMAPS[name_or_path])
-    path = Path(name_or_path).expanduser()
-    if path.suffix != ".toml" and not path.is_file():
+    path = Path(os.path.expanduser(name_or_path))
+    if path.suffix != ".toml" and not os.path.isfile(path):
         raise KeymapError(f"unknown key map {name_or_path!r}: choose {', '.join(KEYMAPS)} or the path of a .toml file")
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise KeymapError(f"key map {path}: {reason}") from error
+        content = read_toml(path)
+    except TomlError as error:
+        raise KeymapError(f"key map {error}") from error
     return keymap_of(content, path.stem, str(path))
 
 

@@ -8,8 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from link import standard_streams
+from link.command_line import Parser
 from vehicle import verbs
-from vehicle.command_line import GROUND_STATION, USAGE, Parser, joined, new_parser, unknown_option
+from vehicle.command_line import GROUND_STATION, USAGE, joined, new_parser, unknown_option
 
 if TYPE_CHECKING:
     from vehicle.config import Config
@@ -25,6 +27,7 @@ SIMULATION_ONLY = ("home", "sim_battery", "sim_seed", "sim_truth")
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the vehicle; the exit code."""
+    standard_streams.secure()
     words = list(sys.argv[1:] if argv is None else argv)
     if not words:
         sys.stderr.write(USAGE)
@@ -35,7 +38,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser = new_parser()
         if unknown := unknown_option(words):
             parser.error(unknown)
-        return _run(parser.parse_intermixed_args(joined(words)), parser)
+        return _run(parser.parse_intermixed_args(joined(parser.checked(words))), parser)
     except KeyboardInterrupt:  # before the daemon takes signals; no motor is open yet
         return 0
 

@@ -7,8 +7,9 @@ import difflib
 import math
 import sys
 from collections.abc import Sequence
-from typing import Any, NoReturn
+from typing import Any
 
+from link.command_line import Parser
 from link.endpoint import EndpointError, endpoint_help, parse
 from vehicle import verbs
 from vehicle.motors import DRIVERS
@@ -48,13 +49,6 @@ exit codes: 0 asked to stop (SIGTERM, Ctrl-C, SIGHUP), 1 a fault, 2 a mistake on
 station asked for a restart of this program, of the computer, or to shut it down (REBOOT_ENABLE, docs/pi.md).
 Whatever ends it, the motors are neutral and without power first.
 """
-
-
-class Parser(argparse.ArgumentParser):
-    """Says a mistake in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"vehicle: {message} (vehicle --help shows how)\n")
 
 
 class _Version(argparse.Action):

@@ -12,13 +12,13 @@ from typing import Annotated, Any, get_type_hints
 import msgspec
 
 from link.endpoint import EndpointError, parse
+from link.toml_file import TomlError, read_toml, tables, unusable
 from vehicle.clashes import clashes
 from vehicle.explain import explained, suggestion
 from vehicle.motors import DRIVERS, PROFILES, USUAL_PARAMS, MotorError, UnknownDriverError, settings_type
 from vehicle.motors.settings import RETIRED, Around
 from vehicle.params import PARAMETERS, ParamError, Params
 from vehicle.sensors.suite import SensorSettings
-from vehicle.toml_file import TomlError, read_toml, tables, unusable
 
 DEFAULT_FILE = "rover.toml"
 
@@ -71,7 +71,8 @@ def load(path: str | Path) -> Config:
     try:
         return _understood(read_toml(path), str(path))
     except TomlError as error:
-        hint = "" if Path(path).exists() else f"; `vehicle init {path}` writes one to begin with"
+        absent = isinstance(error.__cause__, FileNotFoundError)
+        hint = f"; `vehicle init {path}` writes one to begin with" if absent else ""
         raise ConfigError(f"{error}{hint}") from error
 
 

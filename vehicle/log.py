@@ -51,7 +51,7 @@ class _Queued(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         try:
-            self._lines.put_nowait((self._descriptor, (self.format(record) + "\n").encode()))
+            self._lines.put_nowait((self._descriptor, (self.format(record) + "\n").encode(errors="backslashreplace")))
         except queue.Full:
             return  # losing the newest line is the rule above
 

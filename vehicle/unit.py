@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import grp
 import shlex
 import sys
@@ -166,7 +167,8 @@ def owner(config: Path, python: Path) -> str | None:
     """Whose home it lives in: homes are closed to others, so it has to run as that user. None outside of homes."""
     for path in (config, python):
         if any(path.is_relative_to(home) for home in HOMES) and path.exists():
-            return path.owner()
+            with contextlib.suppress(KeyError):  # a number that belongs to nobody here
+                return path.owner()
     return None
 
 

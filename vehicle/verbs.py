@@ -7,24 +7,19 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
-from vehicle.toml_file import TomlError, read_toml
+from link import standard_streams
+from link.command_line import MISTAKE, Parser
+from link.toml_file import TomlError, read_toml
 
-DONE, FAULT, MISTAKE = 0, 1, 2
-"""Exit codes: it did what was asked; the hardware did not; the user's mistake."""
+DONE, FAULT = 0, 1
+"""Exit codes: it did what was asked; the hardware did not. MISTAKE is the user's."""
 DEFAULT_FILE = "rover.toml"
 
 
 class VerbError(Exception):
     """What was asked for cannot be had; the text is one line."""
-
-
-class _Parser(argparse.ArgumentParser):
-    """Says a mistake in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(MISTAKE, f"{self.prog}: {message} ({self.prog} --help shows how)\n")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,17 +34,24 @@ class Verb:
 def run(words: Sequence[str]) -> int:
     """Do what the first of `words` says; the exit code."""
     parser = parser_of(words[0])
-    asked = parser.parse_args(words[1:])
+    asked = parser.parse_args(parser.checked(words[1:]))
     try:
-        return VERBS[words[0]].run(asked)
+        code = VERBS[words[0]].run(asked)
+        sys.stdout.flush()
     except VerbError as error:
         parser.exit(MISTAKE, f"{parser.prog}: {error}\n")
+    except (
+        OSError
+    ) as error:  # the verbs name those of their own files: this is the output, full or closed by its reader
+        standard_streams.let_go_of_output()
+        parser.exit(FAULT, f"{parser.prog}: {error.strerror or error}\n")
+    return code
 
 
-def parser_of(word: str) -> argparse.ArgumentParser:
+def parser_of(word: str) -> Parser:
     """What reads the rest of the command line after this word."""
     verb = VERBS[word]
-    parser = _Parser(prog=f"vehicle {word}", description=f"{verb.help[0].upper()}{verb.help[1:]}.")
+    parser = Parser(prog=f"vehicle {word}", description=f"{verb.help[0].upper()}{verb.help[1:]}.")
     verb.options(parser)
     return parser
 

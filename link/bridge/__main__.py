@@ -11,12 +11,14 @@ import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
+from link import standard_streams
 from link.bridge.bridge import Bridge
 from link.bridge.recorder import RecorderError, record_to
 from link.bridge.screens import Screen, Teller, print_json
 from link.bridge.status import Status
+from link.command_line import Parser
 from link.endpoint import EndpointError, endpoint_help, parse
 from link.link import LinkError, Wire
 from link.openers import open_wires
@@ -40,13 +42,6 @@ SWITCH_INTERVAL = 0.0005
 """s that the table's thread may hold up the loop at a time; Python's own 5 ms would show in the latency."""
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says a mistake in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"bridge: {message} (bridge --help shows how)\n")
-
-
 class _Version(argparse.Action):
     """Looks the version up only when asked."""
 
@@ -59,8 +54,9 @@ class _Version(argparse.Action):
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the bridge; the exit code."""
+    standard_streams.secure()
     parser = _parser()
-    asked = parser.parse_args(argv)
+    asked = parser.parse_args(parser.checked(sys.argv[1:] if argv is None else argv))
     _check(asked.endpoints, parser)
     logging.basicConfig(level=logging.INFO, format="bridge: %(message)s", stream=sys.stderr)
     try:
@@ -128,7 +124,7 @@ def _live_table(stack: ExitStack) -> Callable[[Status], None]:
     return table.draw
 
 
-def _check(endpoints: Sequence[str], parser: _Parser) -> None:
+def _check(endpoints: Sequence[str], parser: Parser) -> None:
     if len(endpoints) < 2:
         parser.error("a bridge has two ends or more, for example serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550")
     for endpoint in endpoints:
@@ -143,8 +139,8 @@ def _endpoint(text: str) -> str:
         raise argparse.ArgumentTypeError(str(error)) from error
 
 
-def _parser() -> _Parser:
-    parser = _Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="bridge",
         description="Joins MAVLink endpoints: forwards frames by system and component id and changes none.",
         epilog=EXAMPLES.format(endpoints=endpoint_help()),

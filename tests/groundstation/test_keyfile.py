@@ -62,6 +62,8 @@ def test_every_punctuation_name_is_textuals() -> None:
         ("speed = 1", ["unknown entry 'speed'", "base, keys"]),
         ("keys = 1", ["'keys' must be a table"]),
         ("[keys", ["mine.toml"]),
+        (f"base = {'9' * 5000}", ["mine.toml", "a number of thousands of digits"]),
+        (f"base = {'[' * 3000}{']' * 3000}", ["mine.toml", "too deep to be meant"]),
     ],
 )
 def test_mistakes_are_told_in_one_line_with_the_choices(tmp_path: Path, text: str, words: list[str]) -> None:
@@ -78,6 +80,14 @@ def test_a_missing_file_and_an_unknown_name() -> None:
         load_keymap("nowhere.toml")
     with pytest.raises(KeymapError, match=r"unknown key map 'vim': choose standard, teleop or the path"):
         load_keymap("vim")
+    with pytest.raises(KeymapError, match=r"unknown key map 'aaaa"):
+        load_keymap("a" * 300)
+    with pytest.raises(KeymapError, match=r"key map ~nobody-of-this-name/keys\.toml: No such file"):
+        load_keymap("~nobody-of-this-name/keys.toml")
+
+
+def test_the_mark_of_a_windows_editor_is_no_mistake(tmp_path: Path) -> None:
+    assert load_keymap(write(tmp_path, '\ufeffbase = "teleop"\r\n')).bindings == KEYMAPS["teleop"]
 
 
 def test_a_file_that_is_no_text(tmp_path: Path) -> None:

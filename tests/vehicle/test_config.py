@@ -110,7 +110,9 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ('[motors]\ndriver = "article-car"\n[params]\nMOT1_MIN = 70', "params: MOT1_MIN 70 must be smaller than MOT1"),
         (f"[params]\nMAN_TIMEOUT = {10**400}", "params.MAN_TIMEOUT: a number too large to be meant"),
         (f"[params]\nMAN_TIMEOUT = {'1' * 5000}", "a number of thousands of digits, which nothing takes"),
-        ("x = " + "[" * 5000 + "]" * 5000, "brackets in brackets, too deep to read"),
+        ("x = " + "[" * 5000 + "]" * 5000, "brackets in brackets, or tables in tables"),
+        ("a" + ".a" * 3000 + " = 1", "brackets in brackets, or tables in tables, too deep to be meant"),
+        ("x = " + "[" * 40 + "]" * 40, "brackets in brackets, or tables in tables, too deep to be meant"),
         ('[log]\nfile = "a\\u0000b"', "log.file: holds the character NUL; leave it out"),
         ('endpoints = ["udpin:0.0.0.0:1", "serial:/dev/\\u0000:9600"]', "endpoints[1]: holds the character NUL"),
         ("[sensors.encoders]\nwheels = [{ a = 5, b = 6 }]\ndiameter = inf", "sensors.encoders.diameter: must be at "),
@@ -136,6 +138,8 @@ def test_several_mistakes_are_all_found() -> None:
 def test_a_file_that_is_not_there_teaches(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"No such file or directory; `vehicle init .*rover.toml` writes one"):
         load(tmp_path / "rover.toml")
+    with pytest.raises(ConfigError, match=r"aaa: File name too long$"):
+        load("a" * 300)
     with pytest.raises(ConfigError, match="is a folder; name a file in it"):
         load(tmp_path)
     (tmp_path / "noise").write_bytes(b"\xff\xfe")

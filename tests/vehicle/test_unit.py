@@ -70,6 +70,17 @@ def test_the_owner_of_a_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert owner(tmp_path / "none", Path("/usr/bin/python3")) is None
 
 
+def test_a_home_whose_owner_has_no_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def nobody(path: Path) -> str:
+        raise KeyError("getpwuid(): uid not found: 4711")
+
+    monkeypatch.setattr("vehicle.unit.HOMES", (tmp_path,))
+    monkeypatch.setattr(Path, "owner", nobody)
+    file = tmp_path / "rover.toml"
+    file.touch()
+    assert owner(file, Path("/usr/bin/python3")) is None
+
+
 def test_only_where_the_file_allows_it_the_computer_follows_the_exit_code() -> None:
     assert "RestartPreventExitStatus" not in unit(PLACES["of nobody"])
     assert "OnFailure" not in unit(PLACES["of nobody"])

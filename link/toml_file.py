@@ -1,4 +1,4 @@
-"""A TOML file as it stands there, whatever is in it: what cannot be read is one line. What it means is config.py's."""
+"""A TOML file as it stands there, whatever is in it: what cannot be read is one line. What it means is its reader's."""
 
 from __future__ import annotations
 
@@ -9,6 +9,10 @@ from typing import Any
 
 LARGEST = 2**63 - 1
 """TOML's own bound for whole numbers, which Python does not keep."""
+DEEPEST = 32
+"""Tables and lists in each other. No file of ours has more than four; without a bound a dotted key goes as deep as it
+is long, and whoever walks down it ends with a RecursionError."""
+TOO_DEEP = "brackets in brackets, or tables in tables, too deep to be meant"
 
 
 class TomlError(Exception):
@@ -32,13 +36,24 @@ def read_toml(path: str | Path) -> dict[str, Any]:
 def tables(text: str, name: str) -> dict[str, Any]:
     """The tables of a file's text. Raises TomlError."""
     try:
-        return tomllib.loads(text)
+        found = tomllib.loads(text)
     except RecursionError:
-        raise TomlError(f"{name}: brackets in brackets, too deep to read") from None
+        raise TomlError(f"{name}: {TOO_DEEP}") from None
     except tomllib.TOMLDecodeError as error:
         raise TomlError(f"{name}: {error}") from error
     except ValueError:  # of int()
         raise TomlError(f"{name}: a number of thousands of digits, which nothing takes") from None
+    if _too_deep(found):
+        raise TomlError(f"{name}: {TOO_DEEP}")
+    return found
+
+
+def _too_deep(table: dict[str, Any]) -> bool:
+    level: list[Any] = [table]
+    for _ in range(DEEPEST):
+        insides = (each.values() if isinstance(each, dict) else each for each in level)
+        level = [each for inside in insides for each in inside if isinstance(each, dict | list)]
+    return bool(level)
 
 
 def unusable(value: Any, at: str = "") -> Iterator[str]:
