@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 from typing import Protocol
+
+from vehicle.extras import HOW
 
 I2C_TIMEOUT = 0x0702
 """ioctl, in units of 10 ms (linux/i2c-dev.h)."""
 PATIENCE = 2
 """20 ms: a device that holds the clock low must not hold the control loop for the kernel's whole second."""
+
+UNANSWERED = (errno.EREMOTEIO, errno.ENXIO, errno.ETIMEDOUT)
+"""What the kernel says where a chip does not."""
 
 
 class Bus(Protocol):
@@ -36,7 +42,7 @@ def open_bus(number: int) -> Bus:
     try:
         from smbus2 import SMBus
     except ImportError as error:
-        raise ImportError(f"{error}; install it: pip install 'mavhelm[pi]'") from error
+        raise ImportError(f"{error}; {HOW}") from error
     try:
         bus = SMBus(number)
     except FileNotFoundError as error:
@@ -48,3 +54,11 @@ def open_bus(number: int) -> Bus:
     with contextlib.suppress(OSError):  # an adapter that cannot set it keeps its own
         fcntl.ioctl(bus.fd or -1, I2C_TIMEOUT, PATIENCE)
     return bus
+
+
+def in_words(error: OSError, bus: int) -> str:
+    """What is wrong with a chip on this bus, and what to do."""
+    words = error.strerror or str(error)
+    if error.errno in UNANSWERED:
+        return f"{words}: nothing answers there; its wires, power and address? `i2cdetect -y {bus}` lists who does"
+    return words

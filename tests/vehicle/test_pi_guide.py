@@ -1,8 +1,12 @@
-"""The tables in docs/pi.md are settings that the drivers and sensors take."""
+"""What docs/pi.md shows is what the program takes and says."""
 
 from __future__ import annotations
 
+import os
 import re
+import socket
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -11,6 +15,7 @@ import pytest
 from vehicle.config import Config, parsed
 from vehicle.motors import DRIVERS
 from vehicle.params import Params
+from vehicle.sample import sample
 
 GUIDE = (Path(__file__).parents[2] / "docs" / "pi.md").read_text()
 TEXTS = re.findall(r"```toml\n(.*?)```", GUIDE, re.DOTALL)
@@ -32,3 +37,23 @@ def test_a_table_of_parameters_is_right() -> None:
 def test_every_driver_has_its_wiring() -> None:
     missing = [name for name in DRIVERS if name != "simulated" and f"(`{name}`)" not in GUIDE]
     assert missing == []
+
+
+def test_check_says_what_the_guide_shows(tmp_path: Path) -> None:
+    shown = re.findall(r"^ {3}(ok    .*)$", GUIDE, re.MULTILINE)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        endpoint = f"udpin:127.0.0.1:{free.getsockname()[1]}"
+    file = tmp_path / "rover.toml"
+    file.write_text(
+        sample().replace('"udpin:0.0.0.0:14550"', f'"{endpoint}"').replace('"simulated"', '"article-car"', 1)
+    )
+    pins = {"GPIOZERO_PIN_FACTORY": "mock", "GPIOZERO_MOCK_PIN_CLASS": "mockpwmpin"}
+    check = subprocess.run(
+        [sys.executable, "-m", "vehicle", "check", file],
+        env={"PATH": os.environ["PATH"], "HOME": str(tmp_path), **pins},
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    said = check.stdout.replace(str(tmp_path), "/home/pi").replace(endpoint, "udpin:0.0.0.0:14550").splitlines()
+    assert said[:-1] == shown[:-1]
+    assert said[-1].split(": ")[0] == shown[-1].split(": ")[0] == "ok    sensors.computer"

@@ -14,7 +14,7 @@ from typing import Annotated
 
 import msgspec
 
-from vehicle.i2c import Bus, open_bus
+from vehicle.i2c import Bus, in_words, open_bus
 from vehicle.motors import MotorError, checked
 from vehicle.motors.patience import Patience
 from vehicle.motors.pulses import Idle, Pulse
@@ -156,7 +156,7 @@ class Pca9685Motors:
 
     def _said(self, error: OSError) -> str:
         settings = self._settings
-        return f"PCA9685 at 0x{settings.address:02x} on I2C bus {settings.bus}: {error.strerror or error}"
+        return f"PCA9685 at 0x{settings.address:02x} on I2C bus {settings.bus}: {in_words(error, settings.bus)}"
 
     def _set_up(self) -> None:
         """Mode and frequency, read back. Frequency can only be set asleep, which stops all 16 channels for it."""

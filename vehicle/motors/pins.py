@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Iterator
 from importlib import import_module
 
+from vehicle.extras import HOW
 from vehicle.motors import MotorError
 
 
@@ -39,7 +40,7 @@ try:
     from gpiozero import DigitalInputDevice, DigitalOutputDevice, Motor, PhaseEnableMotor, RotaryEncoder
     from gpiozero.exc import GPIOZeroError
 except ImportError as error:
-    raise MotorError(f"{error}; install it: pip install 'mavhelm[pi]'") from error
+    raise MotorError(f"{error}; {HOW}") from error
 
 FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, ImportError, *_lgpio_errors)
 
@@ -48,6 +49,7 @@ __all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMot
 
 HINTS = {
     "unable to locate Pi revision": "is this a Raspberry Pi? Elsewhere simulated pins do (docs/pi.md, Without a Pi)",
+    "No module named 'lgpio'": HOW,
     "can not open gpiochip": "add yourself to its group: sudo usermod -aG gpio $USER, log in again",
 }
 """What gpiozero and lgpio say -> what to do."""

@@ -14,8 +14,9 @@ PERIOD, MAX_AGE = 1.0, 5.0
 """s between readings, and how long one counts."""
 
 THERMAL = "sys/class/thermal/thermal_zone0/temp"
-THROTTLED = "sys/devices/platform/soc/soc:firmware/get_throttled"
-"""What `vcgencmd get_throttled` prints, in hexadecimal; only on Raspberry Pi's own kernels."""
+THROTTLED = "sys/devices/platform/soc*/soc*:firmware/get_throttled"
+"""What `vcgencmd get_throttled` prints, in hexadecimal; only on Raspberry Pi's own kernels. The device tree of a Pi 5
+writes the address of `soc` behind its name."""
 UNDER_VOLTAGE, CAPPED, SLOWED, WARM = 0x1, 0x2, 0x4, 0x8
 """Bits of it that are about now; the same shifted by 16 are about any time since boot."""
 VOLTAGE_MONITOR = "rpi_volt"
@@ -63,7 +64,8 @@ class PiHealth:
         return (total - kilobytes["MemAvailable"]) * 1024, total * 1024
 
     def _throttled(self) -> tuple[bool, bool]:
-        bits = int(self._text(THROTTLED), 16)
+        [file] = self._root.glob(THROTTLED)
+        bits = int(file.read_text(), 16)
         return bool(bits & UNDER_VOLTAGE), bool(bits & (CAPPED | SLOWED | WARM))
 
     def _monitor(self) -> bool | None:

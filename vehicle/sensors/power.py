@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from vehicle.i2c import Bus, open_bus
+from vehicle.i2c import Bus, in_words, open_bus
 from vehicle.motors.settings import chip_name
 
 PERIOD, MAX_AGE = 0.2, 2.0
@@ -91,7 +91,7 @@ class PowerMonitor:
             self.close()
             settings = self._settings
             where = f"{settings.kind} at 0x{settings.address:02x} on I2C bus {settings.bus}"
-            raise OSError(f"{where}: {error.strerror or error}") from error
+            raise OSError(f"{where}: {in_words(error, settings.bus)}") from error
 
     def close(self) -> None:
         """Let go of the bus; the next sample opens it again."""

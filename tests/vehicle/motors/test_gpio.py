@@ -99,6 +99,7 @@ def test_without_a_raspberry_pi_it_says_so(monkeypatch: pytest.MonkeyPatch) -> N
     [
         (PinUnknownPi("unable to locate Pi revision in /proc/device-tree or /proc/cpuinfo"), "is this a Raspberry Pi"),
         (OSError("can not open gpiochip"), "sudo usermod -aG gpio"),
+        (ModuleNotFoundError("No module named 'lgpio'"), r"python\S* -m pip install 'mavhelm\[pi\]'"),
     ],
 )
 def test_what_to_do_is_said_where_it_is_known(error: Exception, says: str) -> None:

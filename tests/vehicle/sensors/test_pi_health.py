@@ -61,6 +61,12 @@ def test_the_bits_of_get_throttled(pi: Path, text: str, under_voltage: bool, thr
     assert (computer.under_voltage, computer.throttled) == (under_voltage, throttled)
 
 
+def test_a_pi_5_has_another_name_for_it(pi: Path) -> None:
+    (pi / THROTTLED).unlink()
+    write(pi, "sys/devices/platform/soc@107c000000/soc@107c000000:firmware/get_throttled", "1\n")
+    assert PiHealth(pi).sample().under_voltage is True
+
+
 @pytest.mark.parametrize(("alarm", "under_voltage"), [("1\n", True), ("0\n", False)])
 def test_the_voltage_monitor_of_other_kernels(pi: Path, alarm: str, under_voltage: bool) -> None:
     (pi / THROTTLED).unlink()
