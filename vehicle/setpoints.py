@@ -21,8 +21,9 @@ BODY = (BODY_NED, BODY_OFFSET_NED, BODY_FRD)
 LOCAL_FRAMES = (LOCAL_NED, LOCAL_OFFSET_NED, *BODY)
 GLOBAL_FRAMES = (0, 3, 10, 5, 6, 11)
 """GLOBAL, _RELATIVE_ALT, _TERRAIN_ALT and their deprecated _INT: the altitude is all that differs."""
-POSITION, VELOCITY, ACCELERATION, FORCE, YAW, YAW_RATE = 1 | 2, 8 | 16, 64 | 128 | 256, 512, 1024, 2048
-"""POSITION_TARGET_TYPEMASK: a bit that is set says "ignore"."""
+POSITION, VELOCITY, ACCELERATION, YAW, YAW_RATE = 1 | 2, 8 | 16, 64 | 128 | 256, 1024, 2048
+"""POSITION_TARGET_TYPEMASK: a bit that is set says "ignore". 512 only says what an acceleration is, where one counts:
+MAVProxy's `velocity` and many scripts set all bits but those of the velocity."""
 ATTITUDE_YAW_RATE, ATTITUDE_THRUST, ATTITUDE_Q = 4, 64, 128
 """ATTITUDE_TARGET_TYPEMASK: "ignore" ..."""
 THRUST_BODY = 32
@@ -107,7 +108,7 @@ def position_target(message: SetPosition, estimate: Estimate) -> Target | Refusa
     frames = LOCAL_FRAMES if isinstance(message, m.SetPositionTargetLocalNed) else GLOBAL_FRAMES
     if message.coordinate_frame not in frames:
         return Refusal(f"frame {message.coordinate_frame} is not offered")
-    if mask & ACCELERATION != ACCELERATION or mask & FORCE:
+    if mask & ACCELERATION != ACCELERATION:
         return Refusal("acceleration and force are not offered")
     if mask & POSITION not in (0, POSITION):
         return Refusal("half a position")

@@ -32,6 +32,17 @@ class TestVelocity:
         assert field.speed == pytest.approx(0.5, abs=0.06)
         assert wrap(field.yaw - before) == pytest.approx(1.0, abs=0.2)
 
+    @pytest.mark.parametrize("frame", [1, 8])
+    def test_a_velocity_alone_with_every_other_bit_set_drives(self, frame: int) -> None:
+        """MAVProxy's `velocity` and the usual scripts for drones send 0xFC7, with the bit of the force in it."""
+        field = Field()
+        field.begin(Mode.GUIDED)
+        for _ in range(40):
+            field.twist(0.8, frame=frame, mask=0xFC7)
+            field.wait(0.05)
+        assert field.speed == pytest.approx(0.8, abs=0.1)
+        assert not said(field, "ignored")
+
     def test_backwards(self) -> None:
         field = going()
         field.stream(3.0, -0.5)

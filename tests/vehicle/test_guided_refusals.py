@@ -24,8 +24,9 @@ class TestRefusals:
         [
             (2, TWIST, "frame 2"),
             (8, TWIST & ~64, "acceleration"),
-            (8, TWIST | 512, "force"),
+            (8, TWIST & ~64 | 512, "force"),
             (8, 0xFFF & ~512, "nothing"),
+            (8, 0xFFF, "nothing"),
             (1, ONLY_PLACE | 1, "half a position"),
         ],
     )
