@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from link.core import Peer
-from link.services.pacing import MAX_PEERS, Pacer
+from link.services.pacing import MAX_PEERS, MOST_FRAMES, Pacer
 
 SLOW, FAST = Peer(0, "radio"), Peer(1, "network")
 
@@ -22,7 +22,11 @@ def taken(pacer: Pacer, peer: Peer, seconds: float, size: int = 100, start: floa
 @pytest.mark.parametrize(("peer", "rate"), [(SLOW, 2304.0), (FAST, 400_000.0)])
 def test_each_peer_has_the_rate_of_its_link(peer: Peer, rate: float) -> None:
     pacer = Pacer(lambda asked: 2304.0 if asked == SLOW else 400_000.0)
-    assert taken(pacer, peer, 10.0) == pytest.approx(rate * 10.0, rel=0.03)
+    assert taken(pacer, peer, 10.0, size=250) == pytest.approx(rate * 10.0, rel=0.03)
+
+
+def test_short_frames_are_no_more_than_a_ground_station_decodes() -> None:
+    assert taken(Pacer(), FAST, 10.0, size=40) == pytest.approx(MOST_FRAMES * 40 * 10.0, rel=0.03)
 
 
 def test_one_peer_does_not_take_from_the_other() -> None:
