@@ -16,7 +16,7 @@ from link.core import Outgoing, Received
 from link.services.command import CommandRequest, Handler
 from vehicle.asking import given
 from vehicle.control import Control
-from vehicle.modes import asked_mode, standard_mode
+from vehicle.modes import asked_mode, mode_words, standard_mode
 from vehicle.safety import Safety
 from vehicle.texts import Texts
 
@@ -67,8 +67,8 @@ class Commands:
 
     def set_mode(self, received: Received, message: SetMode, now: float) -> None:
         """SET_MODE, the old message without acknowledgement: a refusal is told by a text."""
-        mode = asked_mode(message.base_mode, message.custom_mode)
-        self._choose(mode, f"mode {message.custom_mode}", received.system, received.introduced, now)
+        asked = (message.base_mode, message.custom_mode)
+        self._choose(asked_mode(*asked), mode_words(*asked), received.system, received.introduced, now)
 
     def _arm_disarm(self, request: CommandRequest, now: float) -> Result:
         arm, force = request.params[:2]
@@ -93,9 +93,8 @@ class Commands:
         return Result.ACCEPTED
 
     def _set_mode(self, request: CommandRequest, now: float) -> Result:
-        base, main, sub = request.params[:3]
-        words = f"mode {main:g}" if not sub else f"mode {main:g}/{sub:g}"
-        return self._choose(asked_mode(base, main, sub), words, request.system, request.introduced, now)
+        asked = request.params[:3]
+        return self._choose(asked_mode(*asked), mode_words(*asked), request.system, request.introduced, now)
 
     def _set_standard_mode(self, request: CommandRequest, now: float) -> Result:
         """SAFE_RECOVERY is RTL and MISSION is AUTO; for one that we have not the specification wants FAILED."""

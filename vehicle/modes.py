@@ -85,6 +85,13 @@ def asked_mode(base: float, main: float, sub: float = 0.0) -> Mode | None:
     return next((mode for mode, offer in OFFERED.items() if offer.selectable and mode == int(main)), None)
 
 
+def mode_words(base: float, main: float, sub: float = 0.0) -> str:
+    """What was asked for, for a refusal: without the flag the number names no mode of ours, also where we have one."""
+    if math.isfinite(base) and not int(base) & CUSTOM_MODE_ENABLED:
+        return f"base mode {base:g} without a custom mode"
+    return f"mode {main:g}" if not sub else f"mode {main:g}/{sub:g}"
+
+
 def standard_mode(number: float) -> Mode | None:
     """The offered mode that is this MAV_STANDARD_MODE; None for the others."""
     return next((mode for mode, offer in OFFERED.items() if offer.standard and offer.standard == number), None)

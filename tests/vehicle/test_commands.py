@@ -205,6 +205,8 @@ class TestModes:
         assert not bench.turning
         bench.say(m.SetMode(1, 1, 77))
         assert said(bench, "Refused: mode 77 is not offered")
+        bench.say(m.SetMode(1, 128, Mode.ACRO))  # MAVProxy's `arm safetyon` says this too: ACRO is offered, this is not
+        assert said(bench, "Refused: base mode 128 without a custom mode is not offered")
         bench.say(m.SetMode(2, 1, Mode.MANUAL))
         bench.wait(0.1)
         assert bench.mode is Mode.HOLD
