@@ -10,17 +10,50 @@ from __future__ import annotations
 
 import asyncio
 import selectors
+import time
 from collections.abc import Coroutine
 from typing import Any, TypeVar
 
 T = TypeVar("T")
 
 
+class _Waits(selectors.SelectSelector):
+    """Knows how long it has waited."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.waited = 0.0
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        began = time.monotonic()
+        try:
+            return super().select(timeout)
+        finally:
+            self.waited += time.monotonic() - began
+
+
+class Loop(asyncio.SelectorEventLoop):
+    """Says how much of its time nothing was to do."""
+
+    def __init__(self) -> None:
+        self._waits = _Waits()
+        super().__init__(self._waits)
+
+    @property
+    def waited(self) -> float:
+        """s so far."""
+        return self._waits.waited
+
+
+def running_loop() -> Loop:
+    """Inside of `run_loop`. Raises RuntimeError elsewhere."""
+    loop = asyncio.get_running_loop()
+    if not isinstance(loop, Loop):
+        raise RuntimeError("this is not a loop of run_loop")
+    return loop
+
+
 def run_loop(main: Coroutine[Any, Any, T]) -> T:
     """As asyncio.run."""
-    with asyncio.Runner(loop_factory=_loop) as runner:
+    with asyncio.Runner(loop_factory=Loop) as runner:
         return runner.run(main)
-
-
-def _loop() -> asyncio.AbstractEventLoop:
-    return asyncio.SelectorEventLoop(selectors.SelectSelector())

@@ -16,13 +16,15 @@ from collections.abc import Sequence
 
 from link.endpoint import EndpointError
 from link.link import LinkError
-from link.loop import run_loop
+from link.loop import run_loop, running_loop
 from link.runner import Runner, open_links
 from link.tape import Tape
 from vehicle.answers import COMPONENT
 from vehicle.assembly import build, params_of, recorder_of
 from vehicle.ending import Cycles, Ending
 from vehicle.heard import HEARD
+from vehicle.host import Host
+from vehicle.host_facts import LoadMeter, uid_of
 from vehicle.machine import Machine
 from vehicle.motors import MotorError, UnknownDriverError
 from vehicle.notify import Notifier
@@ -64,7 +66,8 @@ def _told(error: Exception) -> str:
 
 
 async def _serve(settings: Settings) -> int:
-    now = asyncio.get_running_loop().time()
+    loop = running_loop()
+    now, host = loop.time(), Host(uid=uid_of())
     with contextlib.ExitStack() as opened:
         keeper = None if settings.state is None else ParamStore(settings.state)
         params = params_of(settings, keeper)
@@ -79,14 +82,17 @@ async def _serve(settings: Settings) -> int:
         opened.callback(notifier.close)
         system = int(params["MAV_SYSID"])
         recorder = recorder_of(settings, system, opened)
-        rover = Rover(params, now=now, wall_clock=time.time(), keeper=keeper, plan_keeper=plans, recording=recorder)
-        cycles = Cycles(rover, notifier)
+        rover = Rover(
+            params, now=now, wall_clock=time.time(), keeper=keeper, plan_keeper=plans, recording=recorder, host=host
+        )
+        meter = LoadMeter(host, lambda: loop.waited, now)
+        cycles = Cycles(rover, notifier, meter)
         machine = build(settings, params, rover, opened, cycles.completed)
         tape = recorder.tape if recorder else None
         try:
             return await _drive(machine, settings.endpoints, system, notifier, cycles, tape)
         except BaseException as error:
-            machine.abandon(error, asyncio.get_running_loop().time())
+            machine.abandon(error, loop.time())
             raise
         finally:
             machine.close()

@@ -17,6 +17,7 @@ from vehicle.control import Control
 from vehicle.demand import Demand
 from vehicle.drive import Drive
 from vehicle.failsafe import Action
+from vehicle.host import Host
 from vehicle.leaving import Leave
 from vehicle.links import Links
 from vehicle.logbook import Recording
@@ -48,16 +49,18 @@ class Rover:
         keeper: Keeper | None = None,
         plan_keeper: PlanKeeper | None = None,
         recording: Recording | None = None,
+        host: Host | None = None,
     ) -> None:
         """`now` is the monotonic time of boot; `wall_clock` the Unix time at `now`, None where it is not known.
 
         `keeper` remembers parameters that are set, `plan_keeper` plans; without them they end with the program.
-        `recording` writes logs.
+        `recording` writes logs. `host` is told of as it is.
         """
         self._params = params
         self._boot = now
         self._wall_clock = wall_clock
         self._system = int(params["MAV_SYSID"])
+        self._host = host or Host()
         self._readings = NO_READINGS
         self._outgoing: list[Outgoing] = []
         self._texts = Texts()
@@ -253,6 +256,7 @@ class Rover:
             drive=self._drive,
             navigator=self._navigator,
             logs=self._answers.logbook.well,
+            host=self._host,
         )
 
     def _demand(self, received: Received, now: float) -> bool:

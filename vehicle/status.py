@@ -84,7 +84,7 @@ def sys_status(view: View) -> m.Message:
         onboard_control_sensors_present=present,
         onboard_control_sensors_enabled=present,
         onboard_control_sensors_health=health,
-        load=0,
+        load=whole(view.host.load, (0, 1000), 1000),
         voltage_battery=whole(readings.battery_voltage, UINT16, 1000, unknown=m.UINT16_MAX),
         current_battery=whole(readings.battery_current, INT16, 100, unknown=-1),
         battery_remaining=whole(readings.battery_remaining, (0, 100), 100, unknown=-1),
@@ -228,7 +228,8 @@ def autopilot_version(view: View) -> m.Message:
         capabilities=can,
         flight_sw_version=major << 24 | minor << 16 | patch << 8,
         middleware_sw_version=0, os_sw_version=0, board_version=0, flight_custom_version=nothing,
-        middleware_custom_version=nothing, os_custom_version=nothing, vendor_id=0, product_id=0, uid=0,
+        middleware_custom_version=nothing, os_custom_version=nothing, vendor_id=0, product_id=0,
+        uid=int.from_bytes(view.host.uid[:8], "big"), uid2=list(view.host.uid.ljust(18, b"\0")),
     )  # fmt: skip
 
 

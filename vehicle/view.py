@@ -8,6 +8,7 @@ from dialects.messages import boot_ms
 from vehicle.control import Control
 from vehicle.drive import Drive
 from vehicle.estimate import Estimate
+from vehicle.host import Host
 from vehicle.navigator import Navigator
 from vehicle.params import Params
 from vehicle.place import Home
@@ -29,6 +30,7 @@ class View:
     control: Control
     drive: Drive
     navigator: Navigator
+    host: Host
     logs: bool | None = None
     """Are they recorded as they should? None where none are wanted."""
 

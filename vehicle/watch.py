@@ -65,24 +65,18 @@ class Watch:
     def clearance(self, now: float, own: Demand | None, *, late: bool, trial: Trial | None = None) -> Clearance:
         """The facts about motion at this moment. `own` is what self-driving wants, `trial` the motor test under way."""
         safety = self._safety
-        stopped = safety.failsafes.action(now) >= Action.NEUTRAL
-        if OFFERED[safety.mode].own:
-            return Clearance(
-                armed=safety.armed,
-                late=late,
-                held=stopped,
-                neutral_seen=safety.cleared,
-                demand_age=None if own is None else now - own.time,
-                timeout=LATE,
-                trial=trial,
-            )
+        offer = OFFERED[safety.mode]
+        if offer.own:
+            cleared, age, timeout = safety.cleared, None if own is None else now - own.time, LATE
+        else:
+            cleared, age, timeout = self._control.neutral_seen, self._control.age(now), self._params["MAN_TIMEOUT"]
         return Clearance(
             armed=safety.armed,
             late=late,
-            held=stopped or not OFFERED[safety.mode].manual,
-            neutral_seen=self._control.neutral_seen,
-            demand_age=self._control.age(now),
-            timeout=self._params["MAN_TIMEOUT"],
+            held=safety.failsafes.action(now) >= Action.NEUTRAL or not offer.moves,
+            neutral_seen=cleared,
+            demand_age=age,
+            timeout=timeout,
             trial=trial,
         )
 
