@@ -26,7 +26,7 @@ from dialects.messages import (
 )
 from link.core import LinkReport, Outgoing, Peer, Received, SourceCount
 from link.flow import FlowControl
-from link.frame import Counts, Frame, noise_hint
+from link.frame import Counts, Frame, noise_hint, payload_of
 from link.framer import Framer
 from link.peer import PeerState
 from link.source import NEW, Order
@@ -169,8 +169,8 @@ class Channel:
                 accepted.append(received)
         return accepted
 
-    def _hear_radio(self, frame: Frame, now: float) -> None:
-        status = codec.decode(RadioStatus.id, frame.payload)
+    def _hear_radio(self, raw: bytes, now: float) -> None:
+        status = codec.decode(RadioStatus.id, payload_of(raw))
         if isinstance(status, RadioStatus):
             self._flow.radio_status(status.txbuf, now)
 
@@ -183,9 +183,9 @@ class Channel:
         return number not in ACKNOWLEDGED
 
     def _decode(self, state: PeerState, frame: Frame, now: float) -> Received | None:
-        number = frame.message_id
+        number, system, component, sequence, raw = frame
         if number == _RADIO_STATUS:
-            self._hear_radio(frame, now)
+            self._hear_radio(raw, now)
         if self._wanted is not None and number not in self._wanted:
             return None
         kind = "demand" if number in _DEMANDS else "command" if number in _COMMANDS else "rest"
@@ -193,14 +193,13 @@ class Channel:
         if not room and kind != "command":
             self._rate_limited += 1
             return None
-        message = codec.decode(number, frame.payload)
+        message = codec.decode(number, payload_of(raw))
         if not room and not is_stop(message):  # a stop passes however much noise its sender makes
             self._rate_limited += 1
             return None
         if number == Heartbeat.id:
-            state.systems.add(frame.system)
-        introduced = frame.system in state.systems
-        return Received(message, frame.system, frame.component, frame.sequence, state.peer, introduced, state.fixed)
+            state.systems.add(system)
+        return Received(message, system, component, sequence, state.peer, system in state.systems, state.fixed)
 
     # ---- sending ----
 

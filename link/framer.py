@@ -8,6 +8,7 @@ ONE byte, so that a stray start byte costs nothing (pymavlink throws the whole c
 from __future__ import annotations
 
 import re
+import struct
 from enum import Enum, auto
 from typing import NamedTuple
 
@@ -33,10 +34,9 @@ shorter than the vehicle's patience with a driver (0.45 s): a forged header must
 MISMATCHES_KEPT = 64
 _SHORTEST = HEADER_V2 + CRC_SIZE
 _MAGIC = re.compile(b"[\xfd\xfe]")
-_KNOWN = {number.to_bytes(3, "little"): (number, extra) for number, extra in CRC_EXTRA.items()}
-
-
-_new_frame = tuple.__new__  # half the cost of Frame(...)
+_HEAD = struct.Struct("<BBBxBBBI")
+"""Start byte, length, flags that must be known, sequence, system, component, and the id's three bytes with one more."""
+_ID = 0xFFFFFF
 
 
 class _Missing(Enum):
@@ -84,13 +84,19 @@ class Framer:
         """
         if self._stream:
             return self._feed_stream(data, now)
-        known = _KNOWN.get(data[7:10])
-        if known is None or data[0] != MAGIC_V2 or data[2] or len(data) != data[1] + _SHORTEST:
-            return self._feed_unusual(data)
-        if mcrf4xx(data[1:-2] + known[1]) != data[-2] | data[-1] << 8:
-            return self._feed_unusual(data)
-        self.counts.frames += 1
-        return [_new_frame(Frame, (known[0], data[5], data[6], data[4], data))]
+        if len(data) < _SHORTEST:
+            return self._scan(data, final=True)[0]
+        magic, length, flags, sequence, system, component, number = _HEAD.unpack_from(data)
+        if length + _SHORTEST == len(data) and magic == MAGIC_V2 and not flags:
+            message_id = number & _ID
+            extra = CRC_EXTRA.get(message_id)
+            if extra is None and not self._unknown:  # by its borders one frame: it is not looked into
+                self.counts.unknown += 1
+                return []
+            if extra is not None and mcrf4xx(data[1:-2] + extra) == data[-2] | data[-1] << 8:
+                self.counts.frames += 1
+                return [(message_id, system, component, sequence, data)]
+        return self._scan(data, final=True)[0]
 
     def expire(self, now: float) -> list[Frame]:
         """Give up a partial frame that is overdue and look behind its first byte; call it when nothing arrives, too."""
@@ -109,14 +115,6 @@ class Framer:
         frames += self._take(now)
         return frames
 
-    def _feed_unusual(self, datagram: bytes) -> list[Frame]:
-        """Any datagram; one that by its borders is one frame of an id that nobody here knows is not looked into."""
-        whole = len(datagram) >= _SHORTEST and len(datagram) == datagram[1] + _SHORTEST
-        if whole and datagram[0] == MAGIC_V2 and not datagram[2] and datagram[7:10] not in _KNOWN and not self._unknown:
-            self.counts.unknown += 1
-            return []
-        return self._scan(datagram, final=True)[0]
-
     def _skip_first_byte(self) -> None:
         self._buffer = self._buffer[1:]
         self._at_border = False
@@ -133,7 +131,7 @@ class Framer:
             self._waiting_since = now
         return frames
 
-    def _scan(self, data: bytes, *, final: bool) -> tuple[list[Frame], int]:
+    def _scan(self, data: bytes, *, final: bool) -> tuple[list[Frame], int]:  # noqa: C901 - calls cost more here
         """Frames in `data` and how many bytes are done with. `final`: no more bytes will come.
 
         The hot path of all reception: a sound unsigned MAVLink 2 frame costs no call here but the checksum's (the rest
@@ -143,23 +141,19 @@ class Framer:
         position, size = 0, len(data)
         border = 0 if self._at_border else -1
         while position < size:
-            known = _KNOWN.get(data[position + 7 : position + 10])
-            if known is not None and data[position] == MAGIC_V2 and not data[position + 2]:
-                crc_at = position + HEADER_V2 + data[position + 1]
-                end = crc_at + CRC_SIZE
-                if end <= size and (
-                    mcrf4xx(data[position + 1 : crc_at] + known[1]) == data[crc_at] | data[crc_at + 1] << 8
-                ):
-                    if self._doubt is not None:
-                        self._settle(position)
-                    frames.append(
-                        _new_frame(
-                            Frame,
-                            (known[0], data[position + 5], data[position + 6], data[position + 4], data[position:end]),
-                        )
-                    )
-                    position = border = end
-                    continue
+            if position + _SHORTEST <= size:
+                magic, length, flags, sequence, system, component, number = _HEAD.unpack_from(data, position)
+                message_id = number & _ID
+                extra = CRC_EXTRA.get(message_id)
+                end = position + length + _SHORTEST
+                if extra is not None and magic == MAGIC_V2 and not flags and end <= size:
+                    raw = data[position:end]
+                    if mcrf4xx(raw[1:-2] + extra) == raw[-2] | raw[-1] << 8:
+                        if self._doubt is not None:
+                            self._settle(position)
+                        frames.append((message_id, system, component, sequence, raw))
+                        position = border = end
+                        continue
             after, border = self._slow(data, position, size, frames, border)
             if after == position:
                 if not final:
@@ -180,10 +174,10 @@ class Framer:
         found = self._frame_at(data, position, size)
         if found is _Missing.FRAME and position == border and self._unknown:
             found = self._unknown_at(data, position, size)
-        if type(found) is Frame:
+        if isinstance(found, tuple):
             self._settle(position)
             frames.append(found)
-            end = position + len(found.raw)
+            end = position + len(found[4])
             return end, end
         if found is _Missing.BYTES:
             return position, border
@@ -205,7 +199,7 @@ class Framer:
         self._doubt = None
         self.counts.unknown += 1
         self.counts.frames -= 1  # _scan counts it with those it has checked
-        return Frame(header.message_id, header.system, header.component, header.sequence, data[start:end])
+        return (header.message_id, header.system, header.component, header.sequence, data[start:end])
 
     def _next_magic(self, data: bytes, position: int, size: int) -> int:
         match = _MAGIC.search(data, position)
@@ -230,7 +224,7 @@ class Framer:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + extra) != data[crc_at] | data[crc_at + 1] << 8:
             return self._bad_crc(start, end, message_id)
-        return Frame(message_id, system, component, sequence, data[start:end])
+        return (message_id, system, component, sequence, data[start:end])
 
     def _foreign(self, start: int, end: int, flags: int, message_id: int) -> _Missing:
         """Flags that we may not ignore (MAVLink serialization: drop it), or an id outside the dialect."""
@@ -253,7 +247,7 @@ class Framer:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + CRC_EXTRA[message_id]) != data[crc_at] | data[crc_at + 1] << 8:
             return self._bad_crc(start, end, message_id)
-        return Frame(message_id, system, component, sequence, data[start:end])
+        return (message_id, system, component, sequence, data[start:end])
 
     def _bad_crc(self, start: int, end: int, message_id: int) -> _Missing:
         self.counts.crc_errors += 1

@@ -45,5 +45,6 @@ class PeerState:
     def first_of(self, frame: Frame) -> Order:
         """The first frame of a source that is new here; of too many sources no numbers are kept."""
         if len(self.sources) < MAX_SOURCES:
-            self.sources[frame.system, frame.component] = Source(frame.sequence, frame.message_id)
+            message_id, system, component, sequence, _ = frame
+            self.sources[system, component] = Source(sequence, message_id)
         return Order.NEW

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V2, MAGIC_V2
 from dialects.messages import RadioStatus, SystemTime
 from dialects.targets import TARGETS, target_of
-from link.frame import Frame
+from link.frame import Frame, payload_of
 from link.routes import Key, RoutedPeer, RouteTable, Source
 
 SETUP_SIGNING = 256
@@ -96,7 +96,7 @@ class Router:
             return
         peer.bytes_in += len(data)
         frames = peer.framer.feed(data, now)
-        if self.table.is_stream(port) or any(frame.message_id in CRC_EXTRA for frame in frames):
+        if self.table.is_stream(port) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
             self.table.admit(peer, now)
             self._forward(peer, frames, now)
         else:
@@ -107,7 +107,7 @@ class Router:
         peer.heard = now
         sources, loaded, table, recents = peer.sources, self._loaded, self.table, self._recent
         if self.tape is not None:
-            self.tape += [frame.raw for frame in frames]
+            self.tape += [raw for *_, raw in frames]
         for frame in frames:
             message_id, system, component, sequence, raw = frame
             key = (system, component)
@@ -125,7 +125,7 @@ class Router:
                 if before is not None and before[1] is not peer and self._came_before(before, raw, now):
                     continue
                 recent[sequence] = (now, peer, raw)
-            if message_id in _LOOKED_AT and self._stays(source, frame):
+            if message_id in _LOOKED_AT and self._stays(source, message_id, raw):
                 continue
             target = target_of(message_id, raw) if message_id in TARGETS else _EVERYBODY
             found = source.destinations.get(target) if source.epoch == table.epoch else None
@@ -136,11 +136,12 @@ class Router:
 
     def _learn(self, peer: RoutedPeer, frame: Frame, now: float) -> Source | None:
         """The entry of a source that is new here; None for frames that go nowhere."""
-        key = (frame.system, frame.component)
-        if not frame.system or key == self._own:  # component 0 is what pymavlink sends unless told otherwise
+        message_id, system, component, sequence, _ = frame
+        key = (system, component)
+        if not system or key == self._own:  # component 0 is what pymavlink sends unless told otherwise
             return None
-        source = Source(key, frame.sequence, now)
-        if frame.message_id not in CRC_EXTRA or not self.table.learn(peer, source):
+        source = Source(key, sequence, now)
+        if message_id not in CRC_EXTRA or not self.table.learn(peer, source):
             return source  # this frame goes its way, but it teaches nothing
         if key not in self._recent and len(self._recent) < MAX_FOLLOWED:
             self._recent[key] = [None] * 256
@@ -152,11 +153,11 @@ class Router:
         self.duplicates += again
         return again
 
-    def _stays(self, source: Source, frame: Frame) -> bool:
+    def _stays(self, source: Source, message_id: int, raw: bytes) -> bool:
         """Messages that are more than freight: two stay here, SYSTEM_TIME tells of a restart and goes on."""
-        if frame.message_id in KEPT:
+        if message_id in KEPT:
             return True
-        boot_time = int.from_bytes(frame.payload[8:12], "little")
+        boot_time = int.from_bytes(payload_of(raw)[8:12], "little")
         if boot_time < self._boot_times.get(source.key, 0):
             self.table.keep_only(source)
         if source.key in self._boot_times or len(self._boot_times) < MAX_FOLLOWED:

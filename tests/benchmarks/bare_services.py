@@ -18,6 +18,7 @@ from typing import TypeVar
 from dialects import codec
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
+from link.frame import payload_of
 from link.framer import Framer
 from link.services.ftp import MAX_DATA, FtpPacket, Op, parse
 from tests.benchmarks.figures import BenchmarkError
@@ -57,7 +58,7 @@ class Line:
     def hear(self) -> tuple[list[m.Message], Hashable]:
         """The messages of the next datagram, and where it came from."""
         data, address = self._socket.recvfrom(2048)
-        return [codec.decode(each.message_id, each.payload) for each in self._framer.feed(data, 0.0)], address
+        return [codec.decode(number, payload_of(raw)) for number, *_, raw in self._framer.feed(data, 0.0)], address
 
     def await_(self, kind: type[M]) -> M:
         """The next message of a kind. Raises BenchmarkError."""

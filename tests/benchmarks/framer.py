@@ -11,6 +11,7 @@ from dialects import codec, rover
 from dialects import messages as m
 from dialects.axes import Axes, manual_control
 from link.channel import Channel
+from link.frame import payload_of
 from link.framer import Framer
 from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Table
 from tests.benchmarks.rates import Work, rates
@@ -126,9 +127,9 @@ def _framer(pieces: Sequence[bytes], stream: bool) -> None:
 def _decoding(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> None:
     feed, decode = Framer(stream=stream).feed, codec.decode
     for piece in pieces:
-        for frame in feed(piece, 0.0):
-            if frame.message_id in ids:
-                decode(frame.message_id, frame.payload)
+        for message_id, *_, raw in feed(piece, 0.0):
+            if message_id in ids:
+                decode(message_id, payload_of(raw))
 
 
 def _channel(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> None:

@@ -17,6 +17,7 @@ from statistics import median
 from dialects import messages as m
 from dialects.axes import Axes, manual_control
 from dialects.enums import Autopilot, Command, ModeFlag, State, Type
+from link.frame import payload_of
 from link.framer import Framer
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table
 from tests.benchmarks.procfs import cpu_seconds, family, memory
@@ -70,11 +71,11 @@ class Light:
     def _read(self) -> bool:
         try:
             while True:
-                for frame in self._framer.feed(self._socket.recv(2048), 0.0):
+                for message_id, *_, raw in self._framer.feed(self._socket.recv(2048), 0.0):
                     self.heard += 1
-                    if frame.message_id == m.Heartbeat.id:
+                    if message_id == m.Heartbeat.id:
                         self.beats += 1
-                        self.armed = bool(frame.payload[MODE_AT] & ModeFlag.ARMED)
+                        self.armed = bool(payload_of(raw)[MODE_AT] & ModeFlag.ARMED)
         except BlockingIOError:
             return True
 

@@ -13,6 +13,7 @@ from dialects import codec
 from dialects.axes import demand
 from dialects.enums import ModeFlag
 from dialects.messages import Heartbeat, LocalPositionNed, ManualControl, Message, StatusText, text_of
+from link.frame import payload_of
 from link.framer import Framer
 from link.memory import LossyPipe
 
@@ -150,7 +151,7 @@ class Relay:
     def _note(book: list[Seen], data: bytes) -> None:
         now = time.monotonic()
         frames = Framer(stream=False).feed(data, now)
-        book += [Seen(now, frame.system, codec.decode(frame.message_id, frame.payload)) for frame in frames]
+        book += [Seen(now, system, codec.decode(number, payload_of(raw))) for number, system, *_, raw in frames]
 
 
 def _asks_for_motion(message: Message) -> bool:

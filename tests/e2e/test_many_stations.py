@@ -58,12 +58,12 @@ class Listener:
                 data = self.socket.recv(2048)
             except (BlockingIOError, ConnectionRefusedError):
                 return
-            for frame in self._framer.feed(data, now):
+            for message_id, _, _, sequence, _ in self._framer.feed(data, now):
                 if self.source is None:
-                    self.source = Source(frame.sequence, frame.message_id)
+                    self.source = Source(sequence, message_id)
                 else:
-                    self.source.accept(frame.sequence, frame.message_id)
-                self.heard[frame.message_id] = self.heard.get(frame.message_id, 0) + 1
+                    self.source.accept(sequence, message_id)
+                self.heard[message_id] = self.heard.get(message_id, 0) + 1
 
 
 @pytest.fixture

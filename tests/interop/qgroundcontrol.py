@@ -17,6 +17,7 @@ from typing import TypeVar
 from dialects import codec
 from dialects import messages as m
 from dialects.enums import Command, Result
+from link.frame import payload_of
 from link.framer import Framer
 from link.services.ftp import crc32
 from tests.interop.qgc_files import LIMIT, Download, DownloadError
@@ -83,8 +84,8 @@ class QGroundControl:
                 data, self._vehicle = self._socket.recvfrom(65536)
             except TimeoutError:
                 continue
-            for frame in self._framer.feed(data, time.monotonic()):
-                message = codec.decode(frame.message_id, frame.payload)
+            for message_id, *_, raw in self._framer.feed(data, time.monotonic()):
+                message = codec.decode(message_id, payload_of(raw))
                 self.watch(message)
                 if isinstance(message, kind) and wanted(message):
                     return message

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from dialects import rover
 from dialects.messages import Attitude, Heartbeat, ManualControl
+from link.frame import payload_of
 from link.framer import PARTIAL_DEADLINE, Framer
 from tests.link.frames import demand, frame, heartbeat, version_1
 
@@ -18,7 +19,7 @@ BOTH = pytest.mark.parametrize("stream", [True, False], ids=["stream", "datagram
 
 
 def sequences(framer: Framer, *pieces: bytes, now: float = 0.0) -> list[int]:
-    return [found.sequence for piece in pieces for found in framer.feed(piece, now)]
+    return [sequence for piece in pieces for _, _, _, sequence, _ in framer.feed(piece, now)]
 
 
 @BOTH
@@ -75,7 +76,7 @@ def test_a_forged_header_hides_nothing_for_long() -> None:
     forged = bytes([0xFD, 255, 0, 0, 0, 1, 1, 69, 0, 0])
     assert sequences(framer, forged + demand(7), now=0.0) == []
     assert framer.expire(PARTIAL_DEADLINE / 2) == []
-    assert [found.sequence for found in framer.expire(PARTIAL_DEADLINE)] == [7]
+    assert [sequence for _, _, _, sequence, _ in framer.expire(PARTIAL_DEADLINE)] == [7]
 
 
 def test_a_slow_but_sound_frame_is_waited_for() -> None:
@@ -100,7 +101,7 @@ def test_no_bytes_raise_and_a_frame_behind_them_acts(stream: bool, soup: bytes) 
     framer = Framer(stream=stream)
     framer.feed(soup, 0.0)
     found = framer.feed(demand(9), 1.0) + framer.expire(2.0)
-    assert 9 in [each.sequence for each in found]
+    assert 9 in [sequence for _, _, _, sequence, _ in found]
 
 
 def test_unknown_ids_are_dropped_and_counted() -> None:
@@ -157,11 +158,11 @@ def test_mavlink_1_needs_its_full_length() -> None:
 
 
 def test_payload_and_sender_are_told() -> None:
-    found = Framer(stream=False).feed(frame(Attitude(1, 0.5, 0, 0, 0, 0, 0), 8, 1, 1), 0.0)[0]
-    assert (found.message_id, found.system, found.component, found.sequence) == (Attitude.id, 1, 1, 8)
-    assert found.payload == found.raw[10:-2]
-    old = Framer(stream=False).feed(version_1(Heartbeat(6, 8, 0, 0, 4, 3)), 0.0)[0]
-    assert len(old.payload) == 9
+    sent = frame(Attitude(1, 0.5, 0, 0, 0, 0, 0), 8, 2, 3)
+    assert Framer(stream=False).feed(sent, 0.0) == [(Attitude.id, 2, 3, 8, sent)]
+    assert payload_of(sent) == sent[10:-2]
+    [(*_, old)] = Framer(stream=False).feed(version_1(Heartbeat(6, 8, 0, 0, 4, 3)), 0.0)
+    assert len(payload_of(old)) == 9
     assert ManualControl.id == 69
 
 

@@ -248,7 +248,7 @@ class Taped:
 
 
 def framed(raw: bytes) -> Frame:
-    return Frame(int.from_bytes(raw[7:10], "little"), raw[5], raw[6], raw[4], raw)
+    return int.from_bytes(raw[7:10], "little"), raw[5], raw[6], raw[4], raw
 
 
 def test_keys_are_never_recorded() -> None:

@@ -170,7 +170,7 @@ async def test_nobody_reads_telemetry_is_dropped_and_the_stop_arrives(cable: Cab
     found: list[int] = []
 
     def stop_arrives() -> bool:
-        found.extend(each.message_id for each in framer.feed(cable.read(), 0.0))
+        found.extend(message_id for message_id, *_ in framer.feed(cable.read(), 0.0))
         return CommandLong.id in found
 
     await until(stop_arrives)
@@ -205,7 +205,7 @@ async def test_a_demand_overtakes_bulk_and_finds_less_than_30_ms_of_bytes_before
 
 
 def _demands(data: bytes) -> int:
-    return sum(each.message_id == ManualControl.id for each in Framer(stream=True).feed(data, 0.0))
+    return sum(message_id == ManualControl.id for message_id, *_ in Framer(stream=True).feed(data, 0.0))
 
 
 # ---- noise ----

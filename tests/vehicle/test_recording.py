@@ -19,7 +19,7 @@ from dialects import messages as m
 from dialects.axes import Axes
 from dialects.enums import Command
 from link.core import Peer, Received
-from link.frame import Frame
+from link.frame import Frame, payload_of
 from link.framer import Framer
 from link.services.ftp_client import FtpClient, FtpOutcome
 from link.tlog import Record, read
@@ -185,10 +185,10 @@ def test_each_message_is_recorded_once_for_all_who_listen(tmp_path: Path) -> Non
             for ground in (one, other):
                 ground.wait(partial(told, ground), "telemetry")
             one.wait(lambda: recorded(folder)["ATTITUDE", 1] >= 5, "a log with something in it")
-    frames = [frame for frame in map(framed, read(logs_of(folder)[0].read_bytes())) if frame.system == 1]
-    times = [frame.payload[:4] for frame in frames if frame.message_id == m.Attitude.id]
+    frames = [frame for frame in map(framed, read(logs_of(folder)[0].read_bytes())) if frame[1] == 1]
+    times = [payload_of(raw)[:4] for message_id, *_, raw in frames if message_id == m.Attitude.id]
     assert len(times) == len(set(times)) >= 5
-    numbers = [frame.sequence for frame in frames]
+    numbers = [sequence for _, _, _, sequence, _ in frames]
     assert numbers == [number % 256 for number in range(len(numbers))]
 
 
