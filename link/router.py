@@ -15,7 +15,7 @@ from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V2, MAGIC_V2
 from dialects.messages import RadioStatus, SystemTime
 from dialects.targets import TARGETS, target_of
 from link.frame import Frame, payload_of
-from link.routes import Key, RoutedPeer, RouteTable, Source
+from link.routes import Key, Recent, RoutedPeer, RouteTable, Source
 
 SETUP_SIGNING = 256
 KEPT = frozenset({SETUP_SIGNING, RadioStatus.id})
@@ -31,6 +31,8 @@ MAX_TARGETS = 256
 
 _EVERYBODY: Key = (0, 0)
 _LOOKED_AT = KEPT | {SystemTime.id}
+_NOT_FOR_ALL = _LOOKED_AT | TARGETS.keys()
+"""Any other message goes to everybody, whatever is in it."""
 
 
 class Delivery(NamedTuple):
@@ -55,8 +57,8 @@ class Router:
         self.tape: list[bytes] | None = None
         """Where it is a list: every frame that arrives, in order, for a recorder to take away."""
         self._own = own
-        self._recent: dict[Key, list[tuple[float, RoutedPeer, bytes] | None]] = {}
-        """Source -> its newest frame of each number."""
+        self._recent: dict[Key, Recent] = {}
+        """One for all peers of a source, so that they can be compared."""
         self._boot_times: dict[Key, int] = {}
         self._loaded: list[RoutedPeer] = []
 
@@ -105,13 +107,15 @@ class Router:
     def _forward(self, peer: RoutedPeer, frames: list[Frame], now: float) -> None:  # noqa: C901 - calls cost more here
         """The hot path: a usual frame of a known source costs no call here but list.append, dict.get and target_of."""
         peer.heard = now
-        sources, loaded, table, recents = peer.sources, self._loaded, self.table, self._recent
+        sources, loaded, table = peer.sources, self._loaded, self.table
+        known: Source | None = None
         if self.tape is not None:
             self.tape += [raw for *_, raw in frames]
         for frame in frames:
             message_id, system, component, sequence, raw = frame
-            key = (system, component)
-            source = sources.get(key) or self._learn(peer, frame, now)
+            if known is None or known.system != system or known.component != component:
+                known = sources.get((system, component))
+            source = known or self._learn(peer, frame, now)
             if source is None:
                 continue
             if sequence == source.next:
@@ -119,15 +123,17 @@ class Router:
                 source.heard, source.next = now, (sequence + 1) & 0xFF
             else:
                 source.count(sequence, now)
-            recent = recents.get(key)
+            recent = source.recent
             if recent is not None:
                 before = recent[sequence]
                 if before is not None and before[1] is not peer and self._came_before(before, raw, now):
                     continue
                 recent[sequence] = (now, peer, raw)
-            if message_id in _LOOKED_AT and self._stays(source, message_id, raw):
-                continue
-            target = target_of(message_id, raw) if message_id in TARGETS else _EVERYBODY
+            target = _EVERYBODY
+            if message_id in _NOT_FOR_ALL:
+                if message_id in _LOOKED_AT and self._stays(source, message_id, raw):
+                    continue
+                target = target_of(message_id, raw)
             found = source.destinations.get(target) if source.epoch == table.epoch else None
             for destination in self._destinations(peer, source, target) if found is None else found:
                 if not destination.waiting:
@@ -141,10 +147,11 @@ class Router:
         if not system or key == self._own:  # component 0 is what pymavlink sends unless told otherwise
             return None
         source = Source(key, sequence, now)
+        source.recent = self._recent.get(key)
         if message_id not in CRC_EXTRA or not self.table.learn(peer, source):
             return source  # this frame goes its way, but it teaches nothing
-        if key not in self._recent and len(self._recent) < MAX_FOLLOWED:
-            self._recent[key] = [None] * 256
+        if source.recent is None and len(self._recent) < MAX_FOLLOWED:
+            source.recent = self._recent[key] = [None] * 256
         return source
 
     def _came_before(self, before: tuple[float, RoutedPeer, bytes], raw: bytes, now: float) -> bool:

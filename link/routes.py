@@ -10,6 +10,9 @@ from link.traffic import PortReport, RouteReport
 Key = tuple[int, int]
 """System and component."""
 
+Recent = list["tuple[float, RoutedPeer, bytes] | None"]
+"""When a frame of this number came last, from whom, and its bytes."""
+
 PEER_SILENCE = 30.0
 """s after which an address that came by itself (UDP) gets nothing more."""
 ROUTE_SILENCE = 300.0
@@ -25,10 +28,13 @@ LATE = 32
 class Source:
     """One system and component, as heard from one peer."""
 
-    __slots__ = ("destinations", "epoch", "heard", "key", "lost", "next", "received")
+    __slots__ = (
+        "component", "destinations", "epoch", "heard", "key", "lost", "next", "received", "recent", "system",
+    )  # fmt: skip
 
     def __init__(self, key: Key, sequence: int, now: float) -> None:
         self.key = key
+        self.system, self.component = key
         self.next = sequence
         """Number of the frame that follows the newest."""
         self.heard = now
@@ -37,6 +43,8 @@ class Source:
         self.destinations: dict[Key, tuple[RoutedPeer, ...]] = {}
         """Target -> where its frames go; valid while `epoch` is the router's."""
         self.epoch = -1
+        self.recent: Recent | None = None
+        """Its newest frame of each number, from whichever peer; None where nobody compares them."""
 
     def count(self, sequence: int, now: float) -> None:
         """One more frame of it."""
