@@ -13,6 +13,7 @@ from link.link import Arrived, Gone, LinkError
 BATCH = 64
 """Datagrams read before the loop gets its turn again: a flood must not starve the control loop (about 1 ms)."""
 BUFFER = 65536
+"""Bytes of the largest datagram."""
 
 
 class UdpWire:
@@ -26,7 +27,6 @@ class UdpWire:
         self.capacity: float | None = None
         self.dropped = 0
         self._socket = sock
-        self._buffer = memoryview(bytearray(BUFFER))
         self._loop: asyncio.AbstractEventLoop | None = None
 
     def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
@@ -58,13 +58,13 @@ class UdpWire:
         batch: list[tuple[bytes, Hashable]] = []
         for _ in range(BATCH):
             try:
-                size, address = self._socket.recvfrom_into(self._buffer)
+                data, address = self._socket.recvfrom(BUFFER)
             except (BlockingIOError, ConnectionRefusedError):
                 break
             except OSError as error:
                 self.problem = f"{self.endpoint.text}: {error.strerror}"
                 break
-            batch.append((bytes(self._buffer[:size]), self.fixed or address))
+            batch.append((data, self.fixed or address))
         if batch:
             arrived(batch)
 
