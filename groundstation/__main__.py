@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import shutil
 import sys
 from collections.abc import Sequence
@@ -104,6 +105,8 @@ def _log_file(wanted: Path | None) -> Path | None:
     try:
         if wanted is None:
             path.parent.mkdir(parents=True, exist_ok=True)
+        if path.is_fifo():
+            raise OSError(errno.EINVAL, "a pipe; name a file")  # a reader is waited for, without a word
         with path.open("a", encoding="utf-8"):
             return path.absolute()
     except OSError as error:

@@ -40,7 +40,8 @@ def params_of(settings: Settings, keeper: ParamStore | None) -> Params:
         log.warning("a kept parameter is not used: %s", problem)
     params.damage = keeper.damage if keeper else None
     if params.damage:
-        log.warning("%s: all parameters that were set have their defaults, and nobody can arm", params.damage)
+        consequence = "all parameters that were set have their defaults, and nobody can arm until one is set"
+        log.warning("%s: %s: %s", settings.state, params.damage, consequence)
     return params
 
 

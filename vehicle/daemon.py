@@ -77,7 +77,7 @@ async def _serve(settings: Settings) -> int:
         if plans is not None:
             opened.callback(plans.close)
             for damage in plans.damage.values():
-                log.warning("%s", damage)
+                log.warning("%s: %s", settings.state, damage)
         notifier = Notifier()
         opened.callback(notifier.close)
         system = int(params["MAV_SYSID"])

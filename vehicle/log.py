@@ -65,7 +65,8 @@ class Log:
         brief = _ForJournal() if "JOURNAL_STREAM" in os.environ else _Brief()
         self._handlers = [self._handler(STDERR, brief)]
         if path is not None:
-            flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
+            # Not blocking: a pipe that nobody reads would be waited for, without a word.
+            flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NONBLOCK
             full = logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s")
             self._handlers.append(self._handler(os.open(path, flags, 0o644), full))
         root = logging.getLogger()

@@ -7,7 +7,9 @@ old file or the new one. A file that is damaged nevertheless is kept aside, and 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
+import stat
 import threading
 from collections.abc import Callable
 from functools import partial
@@ -31,7 +33,7 @@ def read(path: Path, parse: Callable[[bytes], T]) -> T | None:
     """
     aside = path.with_name(f"{path.name}.damaged")
     try:
-        return parse(path.read_bytes())
+        return parse(_bytes(path))
     except FileNotFoundError:
         if aside.exists():
             raise DamagedError("damaged") from None
@@ -42,6 +44,14 @@ def read(path: Path, parse: Callable[[bytes], T]) -> T | None:
         raise DamagedError("damaged") from None
     except OSError as error:
         raise DamagedError(f"cannot be read, {error.strerror}") from error
+
+
+def _bytes(path: Path) -> bytes:
+    """Of a regular file: a pipe in its place would be waited for, and a device may have no end. Raises OSError."""
+    with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise OSError(errno.EINVAL, "no regular file", str(path))
+        return file.read()
 
 
 class Writing:

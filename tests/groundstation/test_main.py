@@ -126,3 +126,11 @@ def test_a_log_file_that_cannot_be_written() -> None:
     code, shown = in_terminal(["--log-file", "/nowhere/station.log"])
     assert code == 2
     assert shown == "groundstation: log file /nowhere/station.log: No such file or directory\n"
+
+
+@pytest.mark.e2e
+def test_a_pipe_for_a_log_file_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "station.log")
+    code, shown = in_terminal(["--log-file", str(tmp_path / "station.log")])
+    assert code == 2
+    assert shown == f"groundstation: log file {tmp_path}/station.log: a pipe; name a file\n"

@@ -8,6 +8,7 @@ import stat
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -100,6 +101,13 @@ def test_a_damaged_file_is_kept_aside_and_stays_damage_until_a_good_one(tmp_path
 def test_a_file_that_cannot_be_read_is_damage_too(tmp_path: Path) -> None:
     (tmp_path / "parameters").mkdir()
     assert ParamStore(tmp_path).damage == "parameter file cannot be read, Is a directory"
+
+
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize("make", [os.mkfifo, lambda path: path.symlink_to("/dev/zero")])
+def test_a_file_without_an_end_is_neither_waited_for_nor_read(make: Callable[[Path], None], tmp_path: Path) -> None:
+    make(tmp_path / "parameters")
+    assert ParamStore(tmp_path).damage == "parameter file cannot be read, no regular file"
 
 
 def test_a_disk_that_takes_nothing_is_a_problem_and_the_old_file_stays(
@@ -230,3 +238,9 @@ def test_damage_reaches_the_arming_checks(tmp_path: Path, caplog: pytest.LogCapt
     (tmp_path / "parameters").write_text("half")
     assert params_of(Settings(()), ParamStore(tmp_path)).damage == "parameter file damaged"
     assert "nobody can arm" in caplog.text
+
+
+def test_damage_is_told_with_its_folder(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    (tmp_path / "parameters").write_text("half")
+    params_of(Settings((), state=tmp_path), ParamStore(tmp_path))
+    assert f"{tmp_path}: parameter file damaged: all parameters" in caplog.text

@@ -17,7 +17,9 @@ class MotorLog:
 
     def __init__(self, path: str) -> None:
         """Open `path` to append. Raises OSError."""
-        self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o644)
+        # Not blocking: it may be a pipe, and whoever reads that must not be able to hold up the motors.
+        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NONBLOCK
+        self._descriptor = os.open(path, flags, 0o644)
         self.fault: OSError | None = None
         """Why lines are missing at the end, or None."""
 

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from itertools import count
 from pathlib import Path
 
@@ -70,3 +71,17 @@ def test_a_full_disk_is_remembered_and_not_raised() -> None:
 def test_a_file_that_cannot_be_opened_is_the_callers_matter(tmp_path: Path) -> None:
     with pytest.raises(OSError, match="No such file"):
         MotorLog(str(tmp_path / "missing" / "motors"))
+
+
+@pytest.mark.timeout(20)
+def test_a_reader_who_stops_reading_does_not_hold_up_the_motors(tmp_path: Path) -> None:
+    path = tmp_path / "motors"
+    os.mkfifo(path)
+    with pytest.raises(OSError, match="No such device"):
+        MotorLog(str(path))
+    reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    log = MotorLog(str(path))
+    for _ in range(10_000):
+        log.write("1000 0.5000 0.5000\n")
+    assert isinstance(log.fault, BlockingIOError)
+    os.close(reader)
