@@ -13,7 +13,7 @@ from link.services.ftp_files import Folder
 from link.services.mission import MissionServer
 from link.services.mission_changes import Change, Keeping
 from link.services.mission_files import PlanFolder
-from link.services.mission_items import Items
+from link.services.mission_items import Items, MissionItem, in_words
 from link.services.pacing import Pacer
 from vehicle.asking import Asking, given
 from vehicle.control import Control
@@ -129,6 +129,12 @@ class Plans:
         text = f"GCS {received.system}: {kind.name.lower()} not changed: {refusal}"
         self._texts.say(Severity.WARNING, text, now)
         return MissionResult.DENIED
+
+    def unfit(
+        self, kind: MissionType, wrong: tuple[int, MissionItem] | None, verdict: MissionResult, now: float
+    ) -> None:
+        """Say which item it is: a ground station shows no more than the verdict."""
+        self._texts.say(Severity.WARNING, f"{kind.name.capitalize()} refused: {in_words(wrong, verdict)}", now)
 
     def keep(self, kind: MissionType, items: Items) -> Keeping:
         """Have it written."""

@@ -36,6 +36,11 @@ class Planner(Owner, Protocol):
     def may_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         """ACCEPTED, or the answer to who may not change this plan now."""
 
+    def unfit(
+        self, kind: MissionType, wrong: tuple[int, MissionItem] | None, verdict: MissionResult, now: float
+    ) -> None:
+        """A plan was refused for this item, with its number, or as a whole: MISSION_ACK does not say which."""
+
     def select(self, sequence: int, received: Received, now: float) -> None:
         """Go on with this item of the mission, or tell the driver why not."""
 
@@ -206,7 +211,11 @@ class MissionServer:
         if upload is None or upload.sender != sender:
             return self._said_again(self._ended.get(kind), message, sender, now)
         answer = upload.take(message, now)
-        return answer if isinstance(answer, list) else self._end(upload, answer, received, now)
+        if isinstance(answer, list):
+            return answer
+        if answer is not MissionResult.ACCEPTED:
+            self._planner.unfit(kind, upload.wrong, answer, now)
+        return self._end(upload, answer, received, now)
 
     def _end(self, upload: Upload, verdict: MissionResult, received: Received, now: float) -> list[Outgoing]:
         """The last item has come, or one that is wrong."""

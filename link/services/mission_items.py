@@ -114,6 +114,19 @@ def problem(
     return _bad_parameter(item, rule) or (_bad_place(item, rule.place) if item.frame in GLOBAL_FRAMES else None)
 
 
+def in_words(wrong: tuple[int, MissionItem] | None, verdict: MissionResult) -> str:
+    """What is wrong with a plan: an item, with its number, or how they fit together."""
+    if wrong is None:
+        return "its items do not fit together"
+    number, item = wrong
+    match verdict:
+        case MissionResult.UNSUPPORTED:
+            return f"item {number}, command {item.command} not offered"
+        case MissionResult.UNSUPPORTED_FRAME:
+            return f"item {number}, frame {item.frame} not offered"
+    return f"item {number}, {verdict.name.lower().replace('_', ' ')}"
+
+
 def _bad_parameter(item: MissionItem, rule: ItemRule) -> MissionResult | None:
     for number, value in (*enumerate(item.params, start=1), (7, item.z)):
         low, high = rule.ranges.get(number, (-math.inf, math.inf))

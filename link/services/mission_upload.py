@@ -62,6 +62,8 @@ class Upload:
         self._only_int = False
         self.asked_in_floats = False
         """MISSION_REQUEST was sent."""
+        self.wrong: tuple[int, MissionItem] | None = None
+        """The item that ended it, and its number; None where the plan as a whole is no good."""
 
     @property
     def items(self) -> Items:
@@ -86,6 +88,7 @@ class Upload:
         item = from_message(message)
         fault = problem(item, self._rules.commands, self._rules.frames)
         if fault is not None:
+            self.wrong = self._next, item
             return fault
         self._items[self._next : self._next + 1] = [item]
         self._next, self._heard = self._next + 1, now

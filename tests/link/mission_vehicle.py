@@ -71,6 +71,7 @@ class Vehicle:
     disk: list[Writing] | None = None
     """What is being written, where there is a disk."""
     stayed: list[tuple[MissionType, int, str | None]] = field(default_factory=list)
+    unfits: list[tuple[MissionType, int | None, MissionResult]] = field(default_factory=list)
     selected: list[int] = field(default_factory=list)
     at: int = 0
     pacer: Pacer | None = None
@@ -92,6 +93,11 @@ class Vehicle:
 
     def changed(self, kind: MissionType, items: Items) -> None:
         self.changes.append((kind, len(items)))
+
+    def unfit(
+        self, kind: MissionType, wrong: tuple[int, MissionItem] | None, verdict: MissionResult, now: float
+    ) -> None:
+        self.unfits.append((kind, wrong[0] if wrong else None, verdict))
 
     def select(self, sequence: int, received: Received, now: float) -> None:
         self.selected.append(sequence)

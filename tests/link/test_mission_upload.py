@@ -216,6 +216,8 @@ def test_68_an_invalid_item_ends_the_upload_and_says_which_field(
     assert (type(ack), ack.type) == (m.MissionAck, verdict)
     assert plain(vehicle.plan) == plain((waypoint(5),))
     assert [each.type for each in vehicle.give(waypoint(**changes), 0, 0.2)] == [verdict], "its answer may get lost"
+    as_a_whole = changes.get("params", (0.0,))[0] == 9.0
+    assert vehicle.unfits == [(MissionType.MISSION, None if as_a_whole else 0, verdict)]
 
 
 @pytest.mark.parametrize("latitude", [math.nan, math.inf, -math.inf, 1e30, 91.0])

@@ -375,6 +375,22 @@ class TestWhoMay:
         assert field.newest(m.MissionCount).count == 1  # the old one stays
 
     @pytest.mark.parametrize(
+        ("item", "why"),
+        [
+            (do(NAV_TAKEOFF), "item 1, command 22 not offered"),
+            ((Command.NAV_WAYPOINT, None, ()), "item 1, frame 2 not offered"),
+            (do(Command.NAV_DELAY, -1), "item 1, invalid param1"),
+            (do(Command.DO_JUMP, 7, 1), "its items do not fit together"),
+        ],
+    )
+    def test_the_driver_reads_which_item_was_refused(self, item: Item, why: str) -> None:
+        field = Field()
+        field.heartbeat()
+        upload(field, way(1, 1), item)
+        field.wait(0.1)
+        assert said(field, f"Mission refused: {why}")
+
+    @pytest.mark.parametrize(
         ("params", "result"), [((1, 1500), Result.DENIED), ((5, 1500), Result.FAILED), ((NAN, 1500), Result.DENIED)]
     )
     def test_a_motor_is_nobodys_servo(self, params: tuple[float, ...], result: Result) -> None:
