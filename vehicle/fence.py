@@ -35,6 +35,11 @@ class Fence:
         return bool(self._params["FENCE_ENABLE"])
 
     @property
+    def there(self) -> bool:
+        """It counts, or areas were uploaded that would."""
+        return self.enabled or bool(self._items)
+
+    @property
     def missing(self) -> str | None:
         """Why nobody may drive inside it, though it counts."""
         return f"{self.damage}, upload it again or set FENCE_ENABLE 0" if self.enabled and self.damage else None

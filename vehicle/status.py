@@ -54,11 +54,11 @@ def _system_status(view: View) -> State:
 
 def sys_status(view: View) -> m.Message:
     """SYS_STATUS: which sensors there are and whether they are well, and the battery."""
-    readings, battery = view.readings, view.safety.battery
+    readings, battery, fence = view.readings, view.safety.battery, view.navigator.boundary.fence
     has = {
         Sensor.MOTOR_OUTPUTS: True,
         Sensor.PREARM: True,
-        Sensor.GEOFENCE: view.navigator.boundary.fence.enabled,
+        Sensor.GEOFENCE: fence.there,
         Sensor.BATTERY: battery.present,
         Sensor.GPS: readings.gps_fix is not None or "gps" in readings.configured,
         Sensor.GYRO: readings.yaw_rate is not None,
@@ -77,12 +77,12 @@ def sys_status(view: View) -> m.Message:
         Sensor.LOGGING: view.logs is False,
     }
     present = sum(sensor for sensor, there in has.items() if there)
-    # MAVProxy takes an absent fence whose health bit is 0 for a breached one.
-    absent = 0 if view.navigator.boundary.fence.enabled else Sensor.GEOFENCE
-    health = absent | sum(sensor for sensor, there in has.items() if there and not ill.get(sensor))
+    # MAVProxy takes a fence that does not count and whose health bit is 0 for a breached one.
+    off = 0 if fence.enabled else Sensor.GEOFENCE
+    health = off | sum(sensor for sensor, there in has.items() if there and not ill.get(sensor))
     return m.SysStatus(
         onboard_control_sensors_present=present,
-        onboard_control_sensors_enabled=present,
+        onboard_control_sensors_enabled=present & ~off,
         onboard_control_sensors_health=health,
         load=whole(view.host.load, (0, 1000), 1000),
         voltage_battery=whole(readings.battery_voltage, UINT16, 1000, unknown=m.UINT16_MAX),

@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result
+from dialects import messages as m
+from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result, Sensor
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, NEUTRAL, said
 from tests.vehicle.field import Field
@@ -79,6 +80,27 @@ class TestFence:
         field.command(Command.COMPONENT_ARM_DISARM, 0)
         assert field.command(Command.DO_FENCE_ENABLE, 0) is Result.ACCEPTED
         assert upload(field, kind=MissionType.FENCE) == MissionResult.ACCEPTED
+
+    def test_areas_that_do_not_count_yet_are_there_for_ground_stations(self) -> None:
+        """MAVProxy says "fence removed" where that changes."""
+
+        def told(field: Field) -> tuple[bool, bool, bool]:
+            field.beat(1.2)
+            status = field.newest(m.SysStatus)
+            present, enabled = status.onboard_control_sensors_present, status.onboard_control_sensors_enabled
+            bits = present, enabled, status.onboard_control_sensors_health
+            return tuple(bool(each & Sensor.GEOFENCE) for each in bits)  # type: ignore[return-value]
+
+        field = Field()
+        assert told(field) == (False, False, True)
+        upload(field, *square(FenceItem.POLYGON_INCLUSION, 0, 0, 5), kind=MissionType.FENCE)
+        assert told(field) == (True, False, True)
+        field.command(Command.DO_FENCE_ENABLE, 1)
+        assert told(field) == (True, True, True)
+        field.command(Command.DO_FENCE_ENABLE, 0)
+        assert told(field) == (True, False, True)
+        upload(field, kind=MissionType.FENCE)
+        assert told(field) == (False, False, True)
 
     def test_half_a_polygon_is_refused(self) -> None:
         field = Field()
