@@ -13,7 +13,7 @@ from vehicle.lock import MotorLock
 from vehicle.machine import Machine
 from vehicle.mixer import MIXERS
 from vehicle.motor_copy import copied
-from vehicle.motors import USUAL_PARAMS, Motors, open_motors, stop_input
+from vehicle.motors import USUAL_PARAMS, Motors, open_motors, proof, stop_input
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.param_store import ParamStore
@@ -67,7 +67,7 @@ def build(
         motors, sensors = _simulated_body(settings.simulation, params)
     try:
         logged = _logged(motors, settings.motor_log)
-        return Machine(rover, logged, sensors, stop_input=stop_input(motors), completed=completed)
+        return Machine(rover, logged, sensors, stop_input=stop_input(motors), prove=proof(motors), completed=completed)
     except BaseException:
         motors.close()
         raise

@@ -16,7 +16,7 @@ from link.troubles import CONNECTING
 from vehicle.config import Config, ConfigError, load
 from vehicle.lock import MotorLock
 from vehicle.mixer import MIXERS
-from vehicle.motors import MotorError, open_motors
+from vehicle.motors import MotorError, open_motors, proof
 from vehicle.params import Params
 from vehicle.recorder import LOGS
 from vehicle.sensors.encoders import Encoders
@@ -158,6 +158,7 @@ def _motors(config: Config, params: Params) -> str:
         opened.callback(motors.close)
         motors.set((0.0,) * motors.count)
         motors.disable()
+        proof(motors)()
         if motors.count != wanted:
             raise _AbsentError(f"the driver has {motors.count} motors, DRIVE_TYPE {kind:d} needs {wanted}")
         version = getattr(motors, "version", None)

@@ -54,7 +54,9 @@ class Mind(Core, Protocol):
 class Drivetrain:
     """Motors that follow Outputs: powered and written when something changes, without power after any failure."""
 
-    def __init__(self, motors: Motors) -> None:
+    def __init__(self, motors: Motors, prove: Callable[[], None]) -> None:
+        self.prove = prove
+        """Raises MotorError as long as the motors must not be armed."""
         self._motors = motors
         self._neutral = (0.0,) * motors.count
         self._powered = False
@@ -75,6 +77,7 @@ class Drivetrain:
     def self_test(self) -> None:
         """Write neutral to motors without power. Raises MotorError."""
         self._unpower()
+        self.prove()
         self._motors.set(self._neutral)
 
     def close(self) -> None:
@@ -120,10 +123,12 @@ class Machine:
         sensors: Sensors,
         *,
         stop_input: Callable[[], str | None] = lambda: None,
+        prove: Callable[[], None] = lambda: None,
         completed: Callable[[float], None] = lambda now: None,
     ) -> None:
-        """`stop_input` asks the emergency stop beside the motors (vehicle.motors.stop_input); `completed` is told the
-        time of each control cycle that came to its end, down to the motors.
+        """`stop_input` asks the emergency stop beside the motors (vehicle.motors.stop_input), `prove` if they may be
+        armed (vehicle.motors.proof); `completed` is told the time of each control cycle that came to its end, down to
+        the motors.
 
         Raises MotorError where the driver has another number of motors than the rover's kind of drive.
         """
@@ -131,7 +136,8 @@ class Machine:
         if motors.count != wanted:
             raise MotorError(f"the motor driver has {motors.count} motors, this drive needs {wanted}")
         self._mind = mind
-        self._drivetrain = Drivetrain(motors)
+        self._drivetrain = Drivetrain(motors, prove)
+        self._proven = False
         self._sensors = sensors
         self._stop_input = stop_input
         self._completed = completed
@@ -198,8 +204,22 @@ class Machine:
         self._mind.stop_input(self._stop_reason(), now)
         self._mind.sense(self._sensors.read(now), now)
         self._mind.tick(now)
+        if not self._proven:
+            self._prove(now)
         if self._retry_due is not None and now >= self._retry_due and not self._closed:
             self._retry(now)
+
+    def _prove(self, now: float) -> None:
+        """Once, in the first cycle; then it belongs to the test after each failure."""
+        self._proven = True
+        try:
+            self._drivetrain.prove()
+        except MotorError as error:
+            self._failed(str(error), now)
+
+    def _failed(self, reason: str, now: float) -> None:
+        self._retry_due = now + RETRY
+        self._mind.motor_failed(reason, now)
 
     def _stop_reason(self) -> str | None:
         try:
@@ -216,8 +236,7 @@ class Machine:
             self._mind.stop_input(str(error), now)
         except MotorError as error:
             if self._retry_due is None:  # told once, not each cycle until it is repaired
-                self._retry_due = now + RETRY
-                self._mind.motor_failed(str(error), now)
+                self._failed(str(error), now)
 
     def _retry(self, now: float) -> None:
         try:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from dialects.messages import Heartbeat
 from link.core import LinkReport, Outgoing, Peer, Received
@@ -98,9 +98,9 @@ class Bench(SimulatedMotors):
             raise self.broken[verb]
 
 
-def machine() -> tuple[Machine, Script, Bench]:
+def machine(prove: Callable[[], None] = lambda: None) -> tuple[Machine, Script, Bench]:
     mind, motors = Script(), Bench()
-    return Machine(mind, motors, NoSensors()), mind, motors
+    return Machine(mind, motors, NoSensors(), prove=prove), mind, motors
 
 
 def driving() -> tuple[Machine, Script, Bench]:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.vehicle.motors.across_processes import NAME, FiledPca9685
-from tests.vehicle.motors.controllers import RoboClaw
+from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
 from vehicle.param_file import dump
@@ -80,6 +80,15 @@ def test_a_controller_answers_and_no_wheel_turns(line: OnPty, tmp_path: Path) ->
         "ok    motors: roboclaw with 2 motors, neutral and without power, it calls itself USB Roboclaw 2x7a v4.2.8"
     )
     assert line.controller.outputs == [0.0, 0.0]
+
+
+def test_a_timeout_that_nobody_has_proven_is_found(tmp_path: Path) -> None:
+    with OnPty(Sabertooth()) as line:
+        text = f'{FREE}[motors]\ndriver = "sabertooth"\nport = "{line.path}"\nsafety = {{}}\n{QUIET}'
+        code, lines = checked(tmp_path, text)
+        assert code == 1
+        assert "its timeout cannot be read back: pull its signal wire with the wheels in the air" in lines[-1]
+        assert line.controller.outputs == [0.0, 0.0]
 
 
 def test_motors_that_turned_stand_after_it(tmp_path: Path) -> None:

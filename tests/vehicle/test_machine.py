@@ -103,6 +103,44 @@ def test_a_driver_that_fails_to_enable_is_stopped_and_told() -> None:
     assert "failed: no power" in mind.calls
 
 
+def test_what_cannot_prove_itself_is_told_before_anything_turns_and_asked_again() -> None:
+    reasons = ["no timeout", "no timeout still"]
+
+    def prove() -> None:
+        if reasons:
+            raise MotorError(reasons.pop(0))
+
+    body, mind, motors = machine(prove)
+    for now in (0.0, RETRY / 2, RETRY, RETRY * 1.5):
+        body.tick(now)
+    assert [call for call in mind.calls if call not in ("sense", "tick")] == ["failed: no timeout"]
+    body.tick(RETRY * 2)
+    assert mind.calls[-1] == "repaired"
+    assert not motors.enabled
+
+
+def test_what_is_proven_is_not_asked_each_cycle() -> None:
+    asked: list[int] = []
+    body, _, motors = machine(lambda: asked.append(1))
+    for cycle in range(200):
+        body.tick(0.02 * cycle)
+    assert len(asked) == 1
+    assert motors.asked == []
+
+
+def test_after_a_failure_it_is_proven_anew() -> None:
+    asked: list[int] = []
+    body, mind, motors = machine(lambda: asked.append(1))
+    mind.outputs = AHEAD
+    body.tick(0.0)
+    motors.broken["set"] = MotorError("no answer on the bus")
+    body.tick(0.02)
+    motors.broken.clear()
+    body.tick(0.02 + RETRY)
+    assert len(asked) == 2
+    assert mind.calls[-1] == "repaired"
+
+
 def test_a_stop_that_fails_is_tried_each_cycle_and_told_once() -> None:
     body, mind, motors = driving()
     motors.broken["disable"] = MotorError("bus is gone")

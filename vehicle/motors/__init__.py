@@ -108,6 +108,19 @@ def _never() -> None:
     """There is no such stop."""
 
 
+def proof(motors: Motors) -> Callable[[], None]:
+    """What raises MotorError as long as `motors` must not be armed, as where a controller's timeout is not certain.
+
+    It is asked without power, at the start and after each failure. A driver has one if it has a method `prove`.
+    """
+    asked: Callable[[], None] = getattr(motors, "prove", _nothing)
+    return asked
+
+
+def _nothing() -> None:
+    """There is nothing to prove."""
+
+
 def checked(throttles: Sequence[float], count: int) -> tuple[float, ...]:
     """`throttles` as a tuple, once it is certain that every one may go to a motor. Raises MotorError.
 

@@ -73,12 +73,16 @@ class RoboClawMotors:
         if self.enabled:
             return
         self._tell(DRIVE_BOTH, _duties((0.0, 0.0)))
+        self.prove()  # again: it forgets with its power
+        self._wire.reminded()
+        self.enabled = True
+
+    def prove(self) -> None:
+        """Set the controller's timeout and read it back. Raises MotorError."""
         self._tell(SET_TIMEOUT, bytes([self._tenths]))
         found = self._ask(READ_TIMEOUT, lambda data: len(data) == 1)[0]
         if found != self._tenths:
             raise self._wire.fault(f"its serial timeout is {found / 10:g} s and not {self._tenths / 10:g} s as set")
-        self._wire.reminded()
-        self.enabled = True
 
     def disable(self) -> None:
         """Duty 0 on both, and the controller has said that it took it. Raises MotorError."""

@@ -68,16 +68,20 @@ class SabertoothMotors:
         """Raises MotorError unless the timeout was proven by hand."""
         if self.enabled:
             return
-        if not self._settings.timeout_proven:
-            raise self._wire.fault(
-                "its timeout cannot be read back: pull its signal wire with the wheels in the air, "
-                "see them stop, then set timeout_proven = true"
-            )
+        self.prove()
         with self._wire.certain():
             self.port.open()
             self.port.write(BAUDING + self._timeout() + self._drive((0.0, 0.0)))
         self._wire.reminded()
         self.enabled = True
+
+    def prove(self) -> None:
+        """Raises MotorError unless the timeout was proven by hand."""
+        if not self._settings.timeout_proven:
+            raise self._wire.fault(
+                "its timeout cannot be read back: pull its signal wire with the wheels in the air, "
+                "see them stop, then set timeout_proven = true"
+            )
 
     def disable(self) -> None:
         """Stop both, ahead of all that still waits to be sent. Raises MotorError where the port does not take it."""

@@ -11,7 +11,7 @@ import contextlib
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from vehicle.motors import MotorError, Motors, StopPressedError
+from vehicle.motors import MotorError, Motors, StopPressedError, proof
 from vehicle.motors.pins import DigitalInputDevice, DigitalOutputDevice, translated
 from vehicle.motors.settings import Safety
 
@@ -131,6 +131,10 @@ class GuardedMotors:
         self._motors.set(throttles)
         if self._enabled:
             self._pins.beat()
+
+    def prove(self) -> None:
+        """What the driver has to prove; the pins need no proof."""
+        proof(self._motors)()
 
     def stop_pressed(self) -> str | None:
         """Why the stop stops, or None: see vehicle.motors.stop_input."""

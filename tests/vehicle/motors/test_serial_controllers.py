@@ -8,17 +8,24 @@ import termios
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from typing import Any
 
 import pytest
 
+from dialects.enums import Command, Result
+from link.core import Received
+from tests.vehicle.bench import CYCLE, said
+from tests.vehicle.bench import Bench as RoverBench
 from tests.vehicle.motors.contract import Bench, MotorsContract
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty, recorded
-from vehicle.motors import MotorError, Motors, MotorSettingsError, open_motors, safe_stop
+from vehicle.machine import Machine
+from vehicle.motors import MotorError, Motors, MotorSettingsError, open_motors, proof, safe_stop
 from vehicle.motors.roboclaw import RoboClawMotors, RoboClawSettings
 from vehicle.motors.sabertooth import SabertoothMotors, SabertoothSettings
 from vehicle.motors.wire import tenths
+from vehicle.sensors import NoSensors
 
 MARGIN = 0.25
 """s more than its timeout that a controller may take here: two cores, and others work on them."""
@@ -28,6 +35,24 @@ KINDS: dict[str, tuple[Callable[[], Any], dict[str, Any], float]] = {
     "sabertooth": (Sabertooth, {"timeout": 0.5, "timeout_proven": True}, 1 / 127),
 }
 """Driver -> controller, settings beside the port, how coarse it is."""
+
+
+class InMachine(RoverBench):
+    """The real rover above a driver; the time of both is the test's, that of the wire is real."""
+
+    def __init__(self, motors: Motors) -> None:
+        self._motors = motors
+        super().__init__()
+
+    @cached_property
+    def machine(self) -> Machine:
+        return Machine(self.rover, self._motors, NoSensors(), prove=proof(self._motors))
+
+    def _receive(self, received: Received) -> None:
+        self.machine.receive(received, self.now)
+
+    def _tick(self) -> None:
+        self.machine.tick(self.now)
 
 
 class SerialContract(MotorsContract):
@@ -181,6 +206,16 @@ class TestRoboClaw(SerialContract):
         motors.disable()
         assert line.controller.outputs == [0.0, 0.0]
 
+    def test_it_proves_its_timeout_and_turns_nothing(self, line: OnPty) -> None:
+        motors = RoboClawMotors(RoboClawSettings(port=line.path, timeout=0.5))
+        proof(motors)()
+        motors.set((1.0, 1.0))
+        assert line.controller.timeout == 0.5
+        assert line.controller.outputs == [0.0, 0.0]
+        line.controller.longest_timeout = 0.1
+        with pytest.raises(MotorError, match=r"its serial timeout is 0.1 s and not 0.5 s"):
+            proof(motors)()
+
     def test_a_damaged_reply_is_asked_for_again(self, line: OnPty) -> None:
         motors = RoboClawMotors(RoboClawSettings(port=line.path))
         line.controller.garbled = 2
@@ -322,6 +357,28 @@ class TestSabertooth(SerialContract):
         with pytest.raises(MotorSettingsError) as caught:
             open_motors("sabertooth", settings)
         assert says in str(caught.value)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_rover_whose_controller_proves_no_timeout_cannot_be_armed(kind: str) -> None:
+    """The rover itself in its machine; then the same one with a controller that does."""
+    make, settings, _ = KINDS[kind]
+    for proven in (False, True):
+        with OnPty(make()) as line:
+            if not proven:
+                line.controller.longest_timeout = 0.1
+            own = {"port": line.path, **settings, **({"timeout_proven": proven} if kind == "sabertooth" else {})}
+            motors = open_motors(kind, own)
+            try:
+                bench = InMachine(motors)
+                bench.wait(CYCLE)
+                answer = bench.command(Command.COMPONENT_ARM_DISARM, 1)
+                bench.wait(0.5)
+                assert (answer is Result.ACCEPTED, bench.armed) == (proven, proven), (answer, bench.texts)
+                assert said(bench, "PreArm: motor driver: ") is not proven
+                assert line.controller.outputs == [0.0, 0.0]
+            finally:
+                motors.close()
 
 
 @pytest.mark.parametrize("kind", KINDS)
