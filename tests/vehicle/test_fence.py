@@ -93,7 +93,7 @@ class TestFence:
 
         field = Field()
         assert told(field) == (False, False, True)
-        upload(field, *square(FenceItem.POLYGON_INCLUSION, 0, 0, 5), kind=MissionType.FENCE)
+        upload(field, *square(FenceItem.POLYGON_INCLUSION, -5, -5, 10), kind=MissionType.FENCE)
         assert told(field) == (True, False, True)
         field.command(Command.DO_FENCE_ENABLE, 1)
         assert told(field) == (True, True, True)
