@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NoReturn
 
+from link import journal
+
 MISTAKE = 2
 """Exit code of a user's mistake."""
 EMPTY = "has nothing behind it: give it a value, or leave it out"
@@ -18,6 +20,12 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Leave with exit code 2. What the user wrote may hold line breaks; the line does not."""
         self.exit(MISTAKE, f"{self.prog}: {' '.join(message.split())} ({self.prog} --help shows how)\n")
+
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
+        """Leave; in the journal a complaint is marked as one."""
+        if message and status:
+            message = journal.mark(journal.ERROR) + message
+        super().exit(status, message)
 
     def checked(self, words: Sequence[str]) -> list[str]:
         """The words, none of which is empty: that is most often a variable of a script that nobody has set, and as the

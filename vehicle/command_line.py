@@ -45,8 +45,9 @@ endpoints:
 motor drivers (--motors):
   {drivers}, or your own as MODULE:CLASS
 
-exit codes: 0 asked to stop (SIGTERM, Ctrl-C, SIGHUP), 1 a fault, 2 a mistake on the command line, 80 to 82 a ground
-station asked for a restart of this program, of the computer, or to shut it down (REBOOT_ENABLE, docs/pi.md).
+exit codes: 0 asked to stop (SIGTERM, Ctrl-C, SIGHUP), 1 a fault, also a link that cannot be had, 2 a mistake on the
+command line or in the file, 80 to 82 a ground station asked for a restart of this program, of the computer, or to shut
+it down (REBOOT_ENABLE, docs/pi.md).
 Whatever ends it, the motors are neutral and without power first.
 """
 

@@ -1,8 +1,8 @@
 """The rover daemon: links, rover, motors and signals joined in one process; what is decided is decided in the cores.
 
 Whatever ends it (a signal, a broken driver, a fault in our own code) the order is the same: motors neutral and without
-power, last messages, exit code with one line. Exit codes: 0 asked to stop, 1 a fault, 2 the user's mistake, 80 to 82
-what a ground station asked for (vehicle/leaving.py).
+power, last messages, exit code with one line. Exit codes: 0 asked to stop, 1 a fault, 2 the user's mistake, which a
+restart cannot mend, 80 to 82 what a ground station asked for (vehicle/leaving.py).
 """
 
 from __future__ import annotations
@@ -40,16 +40,20 @@ PERIOD = 0.02
 """s, the control cycle: 50 Hz is what servos and controllers of this size take, and ten times the driver's own rate."""
 
 FAULT, MISTAKE = 1, 2
-"""Exit codes, beside those of vehicle/ending.py."""
+"""Exit codes, beside those of vehicle/ending.py. The unit starts nothing again after MISTAKE, so whatever may be
+otherwise later is FAULT: a host name that is not known yet at boot, a port that a program still has."""
 
 
 def run(settings: Settings) -> int:
     """Run until asked to stop; the exit code. What goes wrong becomes one line of the log."""
     try:
         return run_loop(_serve(settings))
-    except (SettingsError, EndpointError, LinkError, ParamError, UnknownDriverError) as error:
+    except (SettingsError, EndpointError, ParamError, UnknownDriverError) as error:
         log.error("%s", error)
         return MISTAKE
+    except LinkError as error:
+        log.error("%s", error)
+        return FAULT
     except MotorError as error:
         log.error("motor driver: %s", error, exc_info=True)
         return FAULT

@@ -12,7 +12,8 @@ import queue
 import threading
 from typing import ClassVar
 
-STDERR = 2
+from link import journal
+
 QUEUE_LINES = 1000
 """More than a start and an end write; what a daemon says more than this while nobody can read it is lost."""
 DRAIN = 1.0
@@ -20,25 +21,19 @@ DRAIN = 1.0
 
 
 class _Brief(logging.Formatter):
-    """For a person: one line, never a traceback."""
-
-    def format(self, record: logging.LogRecord) -> str:
-        return "vehicle: " + " ".join(record.getMessage().split())
-
-
-class _ForJournal(_Brief):
-    """For systemd's journal, which takes the severity from `<N>` in front of a line (sd-daemon(3))."""
+    """For a person and for the journal: one line, never a traceback."""
 
     SEVERITIES: ClassVar = {
-        logging.DEBUG: 7,
-        logging.INFO: 6,
-        logging.WARNING: 4,
-        logging.ERROR: 3,
-        logging.CRITICAL: 2,
+        logging.DEBUG: journal.DEBUG,
+        logging.INFO: journal.INFO,
+        logging.WARNING: journal.WARNING,
+        logging.ERROR: journal.ERROR,
+        logging.CRITICAL: journal.CRITICAL,
     }
 
     def format(self, record: logging.LogRecord) -> str:
-        return f"<{self.SEVERITIES.get(record.levelno, 6)}>{super().format(record)}"
+        mark = journal.mark(self.SEVERITIES.get(record.levelno, journal.INFO))
+        return f"{mark}vehicle: " + " ".join(record.getMessage().split())
 
 
 class _Queued(logging.Handler):
@@ -62,8 +57,7 @@ class Log:
     def __init__(self, path: str | None = None, *, verbose: bool = False) -> None:
         """`path` takes every line with its time and traceback. Raises OSError where it cannot be opened."""
         self._lines: queue.Queue[tuple[int, bytes] | None] = queue.Queue(QUEUE_LINES)
-        brief = _ForJournal() if "JOURNAL_STREAM" in os.environ else _Brief()
-        self._handlers = [self._handler(STDERR, brief)]
+        self._handlers = [self._handler(journal.STDERR, _Brief())]
         if path is not None:
             # Not blocking: a pipe that nobody reads would be waited for, without a word.
             flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NONBLOCK

@@ -9,6 +9,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from link.command_line import MISTAKE
 from vehicle.leaving import Leave
 
 HARDWARE_GROUPS = ("dialout", "gpio", "i2c", "video")
@@ -25,7 +26,7 @@ TEMPLATE = """\
 [Unit]
 Description=MAVLink rover (mavhelm)
 After=network.target
-# Never give up: a rover on the road has nobody who starts it again.
+# Never give up: a rover on the road has nobody who starts it again, and what is missing may come.
 StartLimitIntervalSec=0
 {power_units}
 [Service]
@@ -38,7 +39,9 @@ WatchdogSec=1
 WatchdogSignal=SIGKILL
 Restart=always
 RestartSec=0.5
-{no_restart}TimeoutStartSec=30
+# {prevents}.
+RestartPreventExitStatus={prevent}
+TimeoutStartSec=30
 # The daemon stops its motors at once; this also limits safe-stop, which a slow Pi needs 2 s to load.
 TimeoutStopSec=5
 StateDirectory=mavhelm
@@ -135,7 +138,9 @@ class Place:
 
 def unit(place: Place) -> str:
     """The unit."""
-    in_home = any(path.is_relative_to(home) for path in (place.config, place.python) for home in HOMES)
+    in_home = any(_in_home(path) for path in (place.config, place.python))
+    codes = (MISTAKE, *POWER.values()) if place.power else (MISTAKE,)
+    prevents = "A mistake in the file waits for a person" + (", 81 and 82 ask for the computer" if place.power else "")
     groups = f"SupplementaryGroups={' '.join(place.groups)}\n" if place.groups else ""
     pwm = place.driver == PWM
     return TEMPLATE.format(
@@ -144,9 +149,8 @@ def unit(place: Place) -> str:
         user=f"User={place.user}" if place.user else "DynamicUser=yes",
         groups=groups,
         power_units="OnFailure=rover-reboot.service rover-poweroff.service\n" if place.power else "",
-        no_restart=f"RestartPreventExitStatus={' '.join(str(int(code)) for code in POWER.values())}\n"
-        if place.power
-        else "",
+        prevents=prevents,
+        prevent=" ".join(str(int(code)) for code in codes),
         home=f"ProtectHome={'read-only' if in_home else 'yes'}",
         tunables=f"# {PWM} writes to /sys.\nProtectKernelTunables=no" if pwm else "ProtectKernelTunables=yes",
     )
@@ -166,10 +170,15 @@ def existing_groups() -> tuple[str, ...]:
 def owner(config: Path, python: Path) -> str | None:
     """Whose home it lives in: homes are closed to others, so it has to run as that user. None outside of homes."""
     for path in (config, python):
-        if any(path.is_relative_to(home) for home in HOMES) and path.exists():
+        if _in_home(path) and path.exists():
             with contextlib.suppress(KeyError):  # a number that belongs to nobody here
                 return path.owner()
     return None
+
+
+def _in_home(path: Path) -> bool:
+    """Itself, or what it is a link to: the Python of an environment anywhere may live in a home (pyenv, uv)."""
+    return any(each.is_relative_to(home) for each in (path, path.resolve()) for home in HOMES)
 
 
 def _word(path: Path) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from link import standard_streams
+from link import journal, standard_streams
 from link.command_line import MISTAKE, Parser
 from link.toml_file import TomlError, read_toml
 
@@ -133,7 +133,7 @@ def _safe_stop(asked: argparse.Namespace) -> int:
         if driven is None:
             raise
         named = driven
-        sys.stderr.write(f"vehicle safe-stop: {error}; so only what the vehicle drove is stopped\n")
+        _told(journal.ERROR, f"{error}; so only what the vehicle drove is stopped")
     for table in [named] if driven in (None, named) else [driven, named]:
         _stop(table)
     return DONE
@@ -145,9 +145,15 @@ def _stop(motors: Mapping[str, Any]) -> None:
     driver = str(motors["driver"])
     problems = safe_stop(driver, {key: value for key, value in motors.items() if key != "driver"})
     for problem in problems:
-        sys.stderr.write(f"vehicle safe-stop: {problem}\n")
-    word = "motors may still turn, cut their power" if problems else "motors neutral and without power"
-    sys.stderr.write(f"vehicle safe-stop: {driver}: {word}\n")
+        _told(journal.ERROR, problem)
+    if problems:
+        _told(journal.CRITICAL, f"{driver}: motors may still turn, cut their power")
+    else:
+        _told(journal.INFO, f"{driver}: motors neutral and without power")
+
+
+def _told(severity: int, text: str) -> None:
+    sys.stderr.write(f"{journal.mark(severity)}vehicle safe-stop: {text}\n")
 
 
 def _tables(path: str) -> dict[str, Any]:

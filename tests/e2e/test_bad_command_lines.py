@@ -1,5 +1,7 @@
 """Mistakes on the command lines of the real programs: exit code 2, one line that names the thing, no traceback.
 
+A vehicle that lacks what may come later ends with 1: as a service it is started again.
+
 The words of each message are tested beside its code; here it is that nothing else is said, in a process of its own.
 """
 
@@ -70,9 +72,9 @@ def _readable(terminal: int) -> bool:
     return int(waiting) > 0
 
 
-def assert_one_line(result: tuple[int, str, str], program: str, *names: str) -> None:
-    code, printed, complaint = result
-    assert code == 2, result
+def assert_one_line(result: tuple[int, str, str], program: str, *names: str, code: int = 2) -> None:
+    ended, printed, complaint = result
+    assert ended == code, result
     assert printed == ""
     assert complaint.startswith(f"{program}: "), complaint
     assert complaint.endswith("\n")
@@ -107,16 +109,20 @@ ENDPOINTS = [
     ("serial:/dev/ttyUSB0", ["serial:PATH:BAUD"]),
     ("serial:ttyUSB0:57600", ["serial:/dev/ttyUSB0:57600"]),
     ("serial:/dev/ttyUSB0:fast", ["baud rate 'fast'"]),
+]
+"""Words that are no endpoint -> what the line must name."""
+ABSENT = [
     ("serial:/dev/null:57600", ["/dev/null is no serial port"]),
     ("serial:/tmp:57600", ["/tmp is no serial port"]),
     ("udpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
     ("tcpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
     ("udpin:192.0.2.1:14550", ["192.0.2.1"]),
 ]
-"""Endpoint -> what the line must name. The last one is an address of nobody's machine (RFC 5737)."""
+"""Endpoints that cannot be had. The last one is an address of nobody's machine (RFC 5737)."""
+NAMES = [endpoint for endpoint, _ in (*ENDPOINTS, *ABSENT)]
 
 
-@pytest.mark.parametrize(("endpoint", "names"), ENDPOINTS, ids=[endpoint for endpoint, _ in ENDPOINTS])
+@pytest.mark.parametrize(("endpoint", "names"), [*ENDPOINTS, *ABSENT], ids=NAMES)
 def test_endpoints_of_the_ground_station(endpoint: str, names: list[str], tmp_path: Path) -> None:
     assert_one_line(run_in_terminal(["groundstation", endpoint], tmp_path), "groundstation", *names)
 
@@ -126,11 +132,16 @@ def test_endpoints_of_the_vehicle(endpoint: str, names: list[str], tmp_path: Pat
     assert_one_line(run(["vehicle", "--sim", endpoint], tmp_path), "vehicle", *names)
 
 
+@pytest.mark.parametrize(("endpoint", "names"), ABSENT, ids=[endpoint for endpoint, _ in ABSENT])
+def test_endpoints_that_the_vehicle_cannot_have(endpoint: str, names: list[str], tmp_path: Path) -> None:
+    assert_one_line(run(["vehicle", "--sim", endpoint], tmp_path), "vehicle", *names, code=1)
+
+
 @pytest.mark.parametrize("kind", ["udp", "tcp"])
 def test_a_port_in_use(kind: str, taken: dict[str, str], tmp_path: Path) -> None:
     endpoint = f"{kind}in:127.0.0.1:{taken[kind]}"
     assert_one_line(run_in_terminal(["groundstation", endpoint], tmp_path), "groundstation", endpoint, "in use")
-    assert_one_line(run(["vehicle", "--sim", endpoint], tmp_path), "vehicle", endpoint, "in use")
+    assert_one_line(run(["vehicle", "--sim", endpoint], tmp_path), "vehicle", endpoint, "in use", code=1)
 
 
 @pytest.mark.parametrize(

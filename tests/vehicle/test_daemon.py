@@ -162,16 +162,16 @@ def test_missing_hardware_is_a_fault(caplog: pytest.LogCaptureFixture) -> None:
     assert said(caplog) == "motor driver: no board at address 0x40"
 
 
-def test_a_port_in_use_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_port_in_use_may_be_free_later(caplog: pytest.LogCaptureFixture) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
         port = taken.getsockname()[1]
-        assert daemon.run(Settings((f"udpin:127.0.0.1:{port}",), simulation=Simulation())) == MISTAKE
+        assert daemon.run(Settings((f"udpin:127.0.0.1:{port}",), simulation=Simulation())) == FAULT
     assert f"port {port} is in use" in said(caplog)
 
 
-def test_a_host_that_nobody_knows_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
-    assert daemon.run(Settings(("udpout:no-such-host.invalid:14550",), simulation=Simulation())) == MISTAKE
+def test_a_host_that_nobody_knows_may_be_known_later(caplog: pytest.LogCaptureFixture) -> None:
+    assert daemon.run(Settings(("udpout:no-such-host.invalid:14550",), simulation=Simulation())) == FAULT
     assert "host 'no-such-host.invalid' is not known" in said(caplog)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from link import journal
 from vehicle import log as vehicle_log
 from vehicle.log import QUEUE_LINES, Log
 
@@ -18,10 +19,11 @@ log = logging.getLogger("vehicle.test")
 
 @pytest.fixture
 def stderr(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
-    """The reading end of a pipe that stands for stderr."""
+    """The reading end of a pipe that stands for stderr, which a shell inherited whose own went to the journal."""
     reader, writer = os.pipe()
     fcntl.fcntl(writer, fcntl.F_SETPIPE_SZ, 4096)
-    monkeypatch.setattr(vehicle_log, "STDERR", writer)
+    monkeypatch.setattr(journal, "STDERR", writer)
+    monkeypatch.setenv("JOURNAL_STREAM", "8:1")
     yield reader
     os.close(writer)
     os.close(reader)
@@ -32,7 +34,8 @@ def fail() -> None:
 
 
 def test_the_journal_gets_the_severity_in_front(stderr: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("JOURNAL_STREAM", "8:1")
+    stream = os.fstat(stderr)  # both ends of a pipe have one inode
+    monkeypatch.setenv("JOURNAL_STREAM", f"{stream.st_dev}:{stream.st_ino}")
     lines = Log()
     log.info("ready")
     log.error("no board")

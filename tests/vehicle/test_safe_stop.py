@@ -261,3 +261,30 @@ def test_it_needs_neither_the_loop_nor_the_dialect(tmp_path: Path) -> None:
         "sys.exit(code or 'asyncio' in sys.modules or 'dialects.rover' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
+
+
+@pytest.mark.e2e
+@pytest.mark.parametrize(
+    ("text", "marks"),
+    [
+        ('[motors]\ndriver = "roboclaw"\nport = "/dev/nowhere"\n', ["<3>", "<2>"]),
+        ('[motors]\ndriver = "simulated"\n', ["<6>"]),
+        ("[motors\n", ["<3>"]),
+    ],
+    ids=["may still turn", "stopped", "broken file"],
+)
+def test_the_journal_learns_how_bad_it_is(tmp_path: Path, text: str, marks: list[str]) -> None:
+    file = tmp_path / "rover.toml"
+    file.write_text(text)
+    reader, writer = os.pipe()
+    stream = os.fstat(writer)
+    subprocess.run(
+        [sys.executable, "-m", "vehicle", "safe-stop", "--config", str(file)],
+        stderr=writer,
+        check=False,
+        timeout=30,
+        env={**os.environ, "JOURNAL_STREAM": f"{stream.st_dev}:{stream.st_ino}", "XDG_STATE_HOME": str(tmp_path)},
+    )
+    os.close(writer)
+    with open(reader, encoding="utf-8") as said:
+        assert [line[:3] for line in said] == marks

@@ -13,9 +13,11 @@ from pathlib import Path
 import pytest
 
 from tests.vehicle.words import said_by
+from vehicle import daemon
 from vehicle.unit import Place, owner, unit
 
 PYTHON = Path(sys.executable)
+NOBODYS = Place(Path("/etc/rover.toml"), Path("/opt/rover/bin/python3"), ("dialout",))
 PLACES = {
     "of nobody": Place(Path("/etc/rover.toml"), PYTHON, ("dialout",)),
     "with power": Place(Path("/etc/rover.toml"), PYTHON, power=True),
@@ -48,7 +50,7 @@ def test_it_is_watched_restarted_and_its_motors_are_stopped_after_any_end(place:
 
 
 def test_who_it_runs_as_and_what_it_may_touch() -> None:
-    nobody, home = (service(PLACES[name]) for name in ("of nobody", "in a home"))
+    nobody, home = service(NOBODYS), service(PLACES["in a home"])
     assert (nobody["DynamicUser"], nobody["ProtectHome"], nobody["ProtectKernelTunables"]) == ("yes", "yes", "yes")
     assert (home["User"], home["ProtectHome"], home["ProtectKernelTunables"]) == ("daemon", "read-only", "no")
     assert nobody["SupplementaryGroups"] == "dialout"
@@ -81,10 +83,27 @@ def test_a_home_whose_owner_has_no_name(tmp_path: Path, monkeypatch: pytest.Monk
     assert owner(file, Path("/usr/bin/python3")) is None
 
 
+def test_what_is_linked_to_from_elsewhere_may_live_in_a_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The environment is under /opt, and its Python one of pyenv's or uv's."""
+    home, elsewhere = tmp_path / "home", tmp_path / "opt"
+    for folder in (home, elsewhere):
+        folder.mkdir()
+    monkeypatch.setattr("vehicle.unit.HOMES", (home,))
+    (home / "python3.11").touch()
+    (elsewhere / "python3").symlink_to(home / "python3.11")
+    place = Place(Path("/etc/rover.toml"), elsewhere / "python3")
+    assert service(place)["ProtectHome"] == "read-only"
+    assert owner(place.config, place.python) == (home / "python3.11").owner()
+
+
+def test_a_mistake_is_the_code_that_ends_the_restarts() -> None:
+    assert service(PLACES["of nobody"])["RestartPreventExitStatus"] == str(daemon.MISTAKE)
+
+
 def test_only_where_the_file_allows_it_the_computer_follows_the_exit_code() -> None:
-    assert "RestartPreventExitStatus" not in unit(PLACES["of nobody"])
+    assert service(PLACES["of nobody"])["RestartPreventExitStatus"] == "2"
     assert "OnFailure" not in unit(PLACES["of nobody"])
-    assert service(PLACES["with power"])["RestartPreventExitStatus"] == "81 82"
+    assert service(PLACES["with power"])["RestartPreventExitStatus"] == "2 81 82"
     assert "\nOnFailure=rover-reboot.service rover-poweroff.service\n" in unit(PLACES["with power"])
 
 
