@@ -15,8 +15,9 @@ MAX_SOURCES = 64
 
 
 def _buckets() -> dict[str, TokenBucket]:
-    # Demands come at 50 Hz at most and commands by hand; the rest has room for ArduPilot's 1240 messages/s.
-    return {"demand": TokenBucket(200, 50), "command": TokenBucket(50, 50), "rest": TokenBucket(2500, 1000)}
+    # Demands come at 50 Hz at most. Commands come by hand, and from scripts that ask for the rates of all messages at
+    # once; more than these would take a whole control cycle. The rest has room for ArduPilot's 1240 messages/s.
+    return {"demand": TokenBucket(200, 50), "command": TokenBucket(200, 100), "rest": TokenBucket(2500, 1000)}
 
 
 @dataclass(slots=True)

@@ -8,12 +8,16 @@ from dialects.enums import Command, Result, Severity
 from link.services.command import CommandRequest, Handler, Run
 from link.services.command_jobs import Job
 from vehicle.control import Control
+from vehicle.place import Home
 from vehicle.texts import Texts
 
 GLOBAL_FRAMES = (0, 3, 5, 6)
 """MAV_FRAME_GLOBAL, _RELATIVE_ALT and their _INT: frames that a place on the globe may have."""
 RELATIVE_FRAMES = (3, 6)
 """... and those whose height is above home. A place of COMMAND_LONG is in MAV_FRAME_GLOBAL, as ArduPilot's home is."""
+
+HIGHEST = 1e5
+"""m; what is farther above the sea, or below, is no height of a rover."""
 
 
 def given(value: float, otherwise: float = 0.0) -> float:
@@ -55,6 +59,14 @@ def asked_place(request: CommandRequest) -> tuple[float, float] | Result:
     scale = 1.0 if request.is_int else 1e7
     latitude, longitude = request.params[4] * scale, request.params[5] * scale
     return Result.DENIED if nowhere(latitude, longitude) else (latitude, longitude)
+
+
+def asked_altitude(request: CommandRequest, home: Home | None) -> float | None:
+    """m above the sea, of parameter 7; None where it is left out."""
+    altitude = request.params[6]
+    if math.isnan(altitude):
+        return None
+    return altitude + (home.altitude if home and request.frame in RELATIVE_FRAMES else 0.0)
 
 
 def nowhere(latitude: float, longitude: float) -> bool:

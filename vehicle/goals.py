@@ -11,6 +11,7 @@ from dialects import messages as m
 from dialects.modes import Mode
 from vehicle.fields import INT16, INT32, UINT16, real, whole
 from vehicle.modes import OFFERED
+from vehicle.motion import above_origin
 from vehicle.navigator import Navigator
 from vehicle.place import Point, wrap
 from vehicle.plan_runner import Progress
@@ -46,7 +47,7 @@ def position_target_local(view: View) -> m.Message | None:
     """POSITION_TARGET_LOCAL_NED: that place on our ground, or in GUIDED the velocity that is asked for."""
     goal = _goal(view)
     if goal is not None:
-        return _local(view, LOCAL_NED, ONLY_POSITION, x=goal.north, y=goal.east)
+        return _local(view, LOCAL_NED, ONLY_POSITION, x=goal.north, y=goal.east, z=-above_origin(view))
     course = view.navigator.course(view.safety.mode)
     if course is None:
         return None

@@ -57,7 +57,7 @@ def local_position_ned(view: View) -> m.Message | None:
         time_boot_ms=view.boot_ms,
         x=estimate.place.north,
         y=estimate.place.east,
-        z=-real(above_home(view)),
+        z=-above_origin(view),
         vx=velocity.north,
         vy=velocity.east,
         vz=0.0,
@@ -87,7 +87,9 @@ def gps_global_origin(view: View) -> m.Message | None:
     origin = view.estimate.origin
     if origin is None:
         return None
-    altitude = view.home.altitude if view.home else None
+    altitude = view.navigator.origin_altitude
+    if altitude is None and view.home:
+        altitude = view.home.altitude
     return m.GpsGlobalOrigin(
         latitude=whole(origin.latitude, INT32, 1e7),
         longitude=whole(origin.longitude, INT32, 1e7),
@@ -158,6 +160,17 @@ def rc_channels(view: View) -> m.Message:
 def above_home(view: View) -> float:
     """m; 0 where one of both is not known."""
     return real(view.readings.altitude) - (view.home.altitude if view.home else real(view.readings.altitude))
+
+
+def above_origin(view: View) -> float:
+    """m; 0 where that is not known."""
+    return above_home(view) + home_above_origin(view)
+
+
+def home_above_origin(view: View) -> float:
+    """m; 0 until somebody gives the origin a height of its own."""
+    altitude = view.navigator.origin_altitude
+    return 0.0 if altitude is None or view.home is None else view.home.altitude - altitude
 
 
 def _heading(estimate: Estimate, scale: float, unknown: int) -> int:

@@ -67,6 +67,8 @@ class Navigator:
 
     def __init__(self, params: Params, kind: DriveType) -> None:
         self.home: Home | None = None
+        self.origin_altitude: float | None = None
+        """m above the sea of local heights' zero; None: home's, as long as nobody says another."""
         self.demand: Demand | None = None
         """What the mode wants now; None where it wants nothing, or drives not by itself."""
         self.ended: str | None = None
@@ -134,9 +136,10 @@ class Navigator:
             self.home = Home(*estimate.globe, readings.altitude or 0.0, *estimate.place)
         self.boundary.sense(estimate, now)
 
-    def rebase(self, origin: Origin, safety: Safety, now: float) -> None:
+    def rebase(self, origin: Origin, altitude: float | None, safety: Safety, now: float) -> None:
         """Count metres from another place on the globe. Only while disarmed: then no way is kept but the mode's."""
         self.renew(safety, now)
+        self.origin_altitude = altitude
         self._estimator.rebase(origin)
         if self.home is not None:
             point = origin.point(self.home.latitude, self.home.longitude)

@@ -12,7 +12,7 @@ from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from link.core import Received
 from link.services.command import CommandRequest, Handler, Run
-from vehicle.asking import GLOBAL_FRAMES, RELATIVE_FRAMES, Asking, asked_place, given, nowhere
+from vehicle.asking import GLOBAL_FRAMES, HIGHEST, Asking, asked_altitude, asked_place, given, nowhere
 from vehicle.control import Control
 from vehicle.modes import OFFERED
 from vehicle.navigator import USUAL_SPEED, Navigator
@@ -192,11 +192,12 @@ class Orders:
         place = asked_place(request)
         if isinstance(place, Result):
             return place
-        before = navigator.home.altitude if navigator.home else 0.0
-        altitude = given(request.params[6] + (before if request.frame in RELATIVE_FRAMES else 0.0), before)
+        altitude = asked_altitude(request, navigator.home)
+        if altitude is None:
+            altitude = navigator.home.altitude if navigator.home else 0.0
         latitude, longitude = place
         point = globe_point(latitude, longitude, navigator.estimate)
-        if point is None or not abs(altitude) < 1e5:
+        if point is None or not abs(altitude) < HIGHEST:
             return Result.DENIED
         navigator.home = Home(latitude / 1e7, longitude / 1e7, altitude, *point)
         return Result.ACCEPTED

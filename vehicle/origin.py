@@ -1,7 +1,7 @@
 """DO_SET_GLOBAL_ORIGIN, and SET_GPS_GLOBAL_ORIGIN before it: another place on the globe is 0/0 of local positions.
 
-Nothing moves on the globe by it: what is kept in metres is reckoned anew (vehicle/navigator.py, `rebase`). Heights stay
-above home, and GPS_GLOBAL_ORIGIN goes on to say so. Whoever asks is told the origin, moved or not (common.xml).
+Nothing moves on the globe by it: what is kept in metres is reckoned anew (vehicle/navigator.py, `rebase`). Local
+heights count from the origin's, home's where none is given. Whoever asks is told the origin, moved or not (common.xml).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dialects.messages import SetGpsGlobalOrigin
 from link.core import Outgoing, Peer, Received
 from link.services.command import CommandRequest, Handler
 from vehicle import motion
-from vehicle.asking import Asking, asked_place
+from vehicle.asking import HIGHEST, Asking, asked_altitude, asked_place
 from vehicle.control import Control
 from vehicle.navigator import Navigator
 from vehicle.place import Origin
@@ -61,19 +61,22 @@ class OriginSetting:
         if why:
             self._texts.say(Severity.WARNING, f"GCS {received.system}: SET_GPS_GLOBAL_ORIGIN refused: {why}", now)
         else:
-            self._move(*point, received.system, now)
+            self._move(*point, message.altitude / 1e3, received.system, now)
         return self._told(received.peer, now)
 
     def _set(self, request: CommandRequest, now: float) -> Result:
-        """Parameters 5 and 6: the place."""
+        """Parameters 5 to 7: the place, and m above the sea, or above home where the frame says so."""
         place = asked_place(request)
         if isinstance(place, Result):
             return place
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
+        altitude = asked_altitude(request, self._navigator.home)
+        if altitude is not None and not abs(altitude) < HIGHEST:
+            return Result.DENIED
         if why := self._forbidden(*place):
             return self._asking.refuse(request, why, now)
-        self._move(*place, request.system, now)
+        self._move(*place, altitude, request.system, now)
         self._outbox += self._told(request.peer, now)
         return Result.ACCEPTED
 
@@ -88,8 +91,8 @@ class OriginSetting:
         distance = point.distance(estimate.place)
         return None if distance <= FARTHEST else f"it is {distance / 1e3:.0f} km away, {FARTHEST / 1e3:g} at most"
 
-    def _move(self, latitude: float, longitude: float, system: int, now: float) -> None:
-        self._navigator.rebase(Origin(latitude / 1e7, longitude / 1e7), self._safety, now)
+    def _move(self, latitude: float, longitude: float, altitude: float | None, system: int, now: float) -> None:
+        self._navigator.rebase(Origin(latitude / 1e7, longitude / 1e7), altitude, self._safety, now)
         self._texts.say(Severity.NOTICE, f"GCS {system} has set the origin of local positions", now)
 
     def _told(self, peer: Peer, now: float) -> list[Outgoing]:

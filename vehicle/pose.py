@@ -10,7 +10,7 @@ import math
 
 from dialects import messages as m
 from vehicle.fields import real
-from vehicle.motion import above_home
+from vehicle.motion import above_home, above_origin
 from vehicle.view import View
 
 LOCAL_NED, BODY_FRD = 1, 12
@@ -63,7 +63,7 @@ def odometry(view: View) -> m.Message | None:
         return None
     return m.Odometry(
         view.boot_us, LOCAL_NED, BODY_FRD,
-        x=estimate.place.north, y=estimate.place.east, z=-above_home(view), q=list(_quaternion(view)),
+        x=estimate.place.north, y=estimate.place.east, z=-above_origin(view), q=list(_quaternion(view)),
         vx=real(estimate.speed), vy=estimate.sideways, vz=0.0,
         rollspeed=0.0, pitchspeed=0.0, yawspeed=real(estimate.yaw_rate),
         pose_covariance=UNKNOWN_COVARIANCE, velocity_covariance=UNKNOWN_COVARIANCE,
@@ -76,8 +76,8 @@ def altitude(view: View) -> m.Message | None:
     amsl = view.readings.altitude
     if amsl is None:
         return None
-    above = above_home(view)
-    return m.Altitude(view.boot_us, amsl, amsl, above, above, TERRAIN_UNKNOWN, CLEARANCE_UNKNOWN)
+    local, above = above_origin(view), above_home(view)
+    return m.Altitude(view.boot_us, amsl, amsl, local, above, TERRAIN_UNKNOWN, CLEARANCE_UNKNOWN)
 
 
 def _quaternion(view: View) -> tuple[float, float, float, float]:

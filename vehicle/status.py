@@ -9,6 +9,7 @@ from vehicle import states
 from vehicle.failsafe import Action
 from vehicle.fields import INT8, INT16, INT32, UINT16, real, whole
 from vehicle.modes import OFFERED, Need, Offer
+from vehicle.motion import home_above_origin
 from vehicle.view import View
 
 VERSION = (0, 1, 0)
@@ -211,7 +212,7 @@ def home_position(view: View) -> m.Message | None:
         latitude=whole(home.latitude, INT32, 1e7),
         longitude=whole(home.longitude, INT32, 1e7),
         altitude=whole(home.altitude, INT32, 1000),
-        x=real(home.north), y=real(home.east), z=0.0, q=[1.0, 0.0, 0.0, 0.0],
+        x=real(home.north), y=real(home.east), z=-home_above_origin(view), q=[1.0, 0.0, 0.0, 0.0],
         approach_x=0.0, approach_y=0.0, approach_z=0.0, time_usec=view.boot_us,
     )  # fmt: skip
 

@@ -80,6 +80,19 @@ def leaving(system: Any, folder: str) -> None:
         step(line.strip(), partial(insist, getattr(action, line.strip())))
 
 
+def places(system: Any, folder: str) -> None:
+    """Set home and the origin of local positions, and read them back."""
+    action, telemetry = plugin("action", system), plugin("telemetry", system)
+    north, east = here(telemetry)
+    step("home", lambda: insist(lambda: action.set_home(False, (north + AWAY) / 1e7, east / 1e7, 0.0)))
+    near = 1e-7
+    step("home told", lambda: first(
+        telemetry.subscribe_home, lambda home: abs(home.latitude_deg - (north + AWAY) / 1e7) < near
+    ).latitude_deg)  # fmt: skip
+    step("origin", lambda: action.set_gps_global_origin((north - AWAY) / 1e7, east / 1e7, 500.0))
+    step("origin told", lambda: telemetry.get_gps_global_origin().altitude_m)
+
+
 def guided(system: Any, folder: str) -> None:
     """Go somewhere at a speed, come back, drive by velocity; each until a line comes on stdin."""
     action, offboard, telemetry = (plugin(name, system) for name in ("action", "offboard", "telemetry"))
@@ -222,6 +235,7 @@ SCENARIOS = {
         parameters,
         driving,
         leaving,
+        places,
         guided,
         mission,
         files,

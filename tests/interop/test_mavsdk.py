@@ -80,6 +80,13 @@ def test_it_starts_again_and_is_turned_off(
     assert rover.vehicle.process.wait(30) == code
 
 
+def test_home_and_the_origin_are_where_they_are_set(client: Callable[[str], Client]) -> None:
+    sdk = client("places")
+    for done in ("home", "home told", "origin"):
+        sdk.good(done)
+    assert sdk.good("origin told").value == pytest.approx(500.0)
+
+
 def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> None:
     sdk = client("guided")
     sdk.good("speed")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from dialects import messages as m
@@ -118,6 +120,38 @@ def test_odometry_says_that_it_has_jumped() -> None:
         assert field.newest(m.Odometry).reset_counter == number
 
 
+def heights(field: Field) -> tuple[float, float, float, float]:
+    """Of the origin, m above the sea; of home and of the rover below it; of the rover above home."""
+    field.command(Command.REQUEST_MESSAGE, m.Altitude.id)
+    field.wait(2.5)
+    return (
+        field.newest(m.GpsGlobalOrigin).altitude / 1000,
+        field.newest(m.HomePosition).z,
+        field.newest(m.LocalPositionNed).z,
+        field.newest(m.GlobalPositionInt).relative_alt / 1000,
+    )
+
+
+@pytest.mark.parametrize(
+    ("frame", "altitude", "origin"), [(0, 60.0, 60.0), (6, -40.0, 60.0), (3, 0.0, 100.0), (0, math.nan, 100.0)]
+)
+def test_local_heights_count_from_the_origins(frame: int, altitude: float, origin: float) -> None:
+    field = away()
+    assert heights(field) == pytest.approx((100, 0, 0, 0))
+    x, y = degrees(ELSEWHERE)
+    assert field.command_int(SET, x=x, y=y, z=altitude, frame=frame) is Result.ACCEPTED
+    assert heights(field) == pytest.approx((origin, origin - 100, origin - 100, 0))
+
+
+@pytest.mark.parametrize("altitude", [math.inf, 1e6])
+def test_a_height_that_is_none_is_denied(altitude: float) -> None:
+    field = away()
+    before = field.estimate.origin
+    x, y = degrees(ELSEWHERE)
+    assert field.command_int(SET, x=x, y=y, z=altitude) is Result.DENIED
+    assert field.estimate.origin == before
+
+
 def test_far_away_is_refused_and_nothing_changes() -> None:
     field = away()
     before = field.estimate.origin
@@ -141,6 +175,12 @@ class TestTheOlderMessage:
         assert field.estimate.place.distance(Point(-392, 300)) < 3
         origin = field.newest(m.GpsGlobalOrigin)
         assert (origin.latitude, origin.longitude) == pytest.approx(degrees(ELSEWHERE), abs=1)
+
+    def test_its_height_is_told_as_it_was_said(self) -> None:
+        """MAVSDK takes anything else for silence."""
+        field = away()
+        field.say(m.SetGpsGlobalOrigin(1, *degrees(ELSEWHERE), 60_000))
+        assert field.newest(m.GpsGlobalOrigin).altitude == 60_000
 
     @pytest.mark.parametrize(("x", "y"), [(0, 0), (2**31 - 1, 2**31 - 1), (910_000_000, 0), (-(2**31), 0)])
     def test_what_is_no_place_is_refused_in_words(self, x: int, y: int) -> None:
