@@ -14,6 +14,7 @@ import logging
 import time
 from collections.abc import Sequence
 
+from dialects.enums import Severity
 from link.endpoint import EndpointError
 from link.link import LinkError
 from link.loop import run_loop, running_loop
@@ -38,6 +39,18 @@ log = logging.getLogger(__name__)
 
 PERIOD = 0.02
 """s, the control cycle: 50 Hz is what servos and controllers of this size take, and ten times the driver's own rate."""
+
+LEVELS: dict[Severity, int] = {
+    Severity.EMERGENCY: logging.CRITICAL,
+    Severity.ALERT: logging.CRITICAL,
+    Severity.CRITICAL: logging.CRITICAL,
+    Severity.ERROR: logging.ERROR,
+    Severity.WARNING: logging.WARNING,
+    Severity.NOTICE: logging.INFO,
+    Severity.INFO: logging.INFO,
+    Severity.DEBUG: logging.DEBUG,
+}
+"""Of STATUSTEXT -> of the log."""
 
 FAULT, MISTAKE = 1, 2
 """Exit codes, beside those of vehicle/ending.py. The unit starts nothing again after MISTAKE, so whatever may be
@@ -69,6 +82,11 @@ def _told(error: Exception) -> str:
     return f"{state}; stopped by a fault in the program: {type(error).__name__}: {error}"
 
 
+def _journal(severity: Severity, text: str) -> None:
+    """What ground stations read, for who reads the journal: most of it happens while nobody looks."""
+    log.log(LEVELS[severity], "%s", text)
+
+
 async def _serve(settings: Settings) -> int:
     loop = running_loop()
     now, host = loop.time(), Host(uid=uid_of())
@@ -87,7 +105,14 @@ async def _serve(settings: Settings) -> int:
         system = int(params["MAV_SYSID"])
         recorder = recorder_of(settings, system, opened)
         rover = Rover(
-            params, now=now, wall_clock=time.time(), keeper=keeper, plan_keeper=plans, recording=recorder, host=host
+            params,
+            now=now,
+            wall_clock=time.time(),
+            keeper=keeper,
+            plan_keeper=plans,
+            recording=recorder,
+            host=host,
+            told=_journal,
         )
         meter = LoadMeter(host, lambda: loop.waited, now)
         cycles = Cycles(rover, notifier, meter)

@@ -21,7 +21,8 @@ DRAIN = 1.0
 
 
 class _Brief(logging.Formatter):
-    """For a person and for the journal: one line, never a traceback."""
+    """For a person and for the journal: one line, never a traceback, and nothing that a terminal would obey: some words
+    come from afar."""
 
     SEVERITIES: ClassVar = {
         logging.DEBUG: journal.DEBUG,
@@ -33,7 +34,8 @@ class _Brief(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         mark = journal.mark(self.SEVERITIES.get(record.levelno, journal.INFO))
-        return f"{mark}vehicle: " + " ".join(record.getMessage().split())
+        words = " ".join(record.getMessage().split())
+        return f"{mark}vehicle: " + "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in words)
 
 
 class _Queued(logging.Handler):

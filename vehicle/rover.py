@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from dialects import messages as m
+from dialects.enums import Severity
 from dialects.modes import Mode
 from link.core import LinkReport, Outgoing, Received
 from vehicle import status
@@ -50,11 +51,12 @@ class Rover:
         plan_keeper: PlanKeeper | None = None,
         recording: Recording | None = None,
         host: Host | None = None,
+        told: Callable[[Severity, str], None] = lambda severity, text: None,
     ) -> None:
         """`now` is the monotonic time of boot; `wall_clock` the Unix time at `now`, None where it is not known.
 
         `keeper` remembers parameters that are set, `plan_keeper` plans; without them they end with the program.
-        `recording` writes logs. `host` is told of as it is.
+        `recording` writes logs. `host` is told of as it is. `told` hears what the driver reads.
         """
         self._params = params
         self._boot = now
@@ -63,7 +65,7 @@ class Rover:
         self._host = host or Host()
         self._readings = NO_READINGS
         self._outgoing: list[Outgoing] = []
-        self._texts = Texts()
+        self._texts = Texts(told)
         self._complaints = Complaints(self._texts)
         self._control = Control(params, self._texts, system=self._system, boot=now)
         self._drive = Drive(params, now)

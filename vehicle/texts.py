@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 
 from dialects.enums import Severity
 from dialects.messages import StatusText
@@ -23,7 +24,10 @@ REPEAT_AFTER = 3.0
 class Texts:
     """Says things to whoever drives."""
 
-    def __init__(self) -> None:
+    def __init__(self, told: Callable[[Severity, str], None] = lambda severity, text: None) -> None:
+        """`told` hears each text whole, also where no ground station listens: the daemon's own log."""
+        self._told = told
+        self._log_bucket = TokenBucket(RATE, WAITING)
         self._bucket = TokenBucket(RATE, BURST)
         self._waiting: deque[StatusText] = deque(maxlen=WAITING)
         self._said: dict[str, float] = {}
@@ -36,6 +40,8 @@ class Texts:
         if text in self._said:
             return
         self._said[text] = now
+        if self._log_bucket.take(now):
+            self._told(severity, text)
         self._waiting.extend(self._chunks(severity, text.encode("utf-8", "replace")[:LONGEST]))
 
     def say_once(self, key: str, severity: Severity, text: str, now: float) -> None:

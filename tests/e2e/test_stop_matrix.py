@@ -173,4 +173,6 @@ def test_vehicle_told_to_end(rig: Build) -> None:
     world.vehicle.process.send_signal(signal.SIGTERM)
     assert world.vehicle.process.wait(5) == 0
     assert not world.vehicle.turning()
-    assert len(world.vehicle.errors.read_text().splitlines()) <= 3
+    lines = world.vehicle.errors.read_text().splitlines()
+    assert lines[-1] == "vehicle: stopped by SIGTERM, motors neutral"
+    assert all(line.startswith("vehicle: ") for line in lines)

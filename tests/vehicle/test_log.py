@@ -43,6 +43,13 @@ def test_the_journal_gets_the_severity_in_front(stderr: int, monkeypatch: pytest
     assert os.read(stderr, 4096) == b"<6>vehicle: ready\n<3>vehicle: no board\n"
 
 
+def test_a_terminal_gets_nothing_that_it_would_obey(stderr: int) -> None:
+    lines = Log()
+    log.info("No parameter %s", "\x1b[2J\r\n\x07X")
+    lines.close()
+    assert os.read(stderr, 4096).decode() == "vehicle: No parameter \ufffd[2J \ufffdX\n"
+
+
 def test_a_person_gets_one_line_and_the_file_the_traceback(stderr: int, tmp_path: Path) -> None:
     path = tmp_path / "log"
     path.write_text("earlier\n")

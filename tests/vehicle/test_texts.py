@@ -43,6 +43,25 @@ def test_fifty_bytes_need_no_chunks() -> None:
     assert [message.id for message in texts.due(0.0)] == [0]
 
 
+def test_the_daemons_log_hears_each_text_whole_though_nobody_listens() -> None:
+    heard: list[tuple[Severity, str]] = []
+    texts = Texts(lambda severity, text: heard.append((severity, text)))
+    long = "Motor driver failed: " + "x" * 100
+    for now in (0.0, 1.0):
+        texts.say(Severity.CRITICAL, long, now)
+    texts.say(Severity.NOTICE, "Disarmed", 1.0)
+    assert heard == [(Severity.CRITICAL, long), (Severity.NOTICE, "Disarmed")]
+
+
+def test_a_flood_does_not_fill_the_log() -> None:
+    heard: list[str] = []
+    texts = Texts(lambda severity, text: heard.append(text))
+    for number in range(1000):
+        texts.say(Severity.WARNING, f"No parameter P{number}", number / 1000)
+    assert 30 <= len(heard) <= 40
+    assert heard[0] == "No parameter P0"
+
+
 def test_the_same_is_not_said_again_for_a_while() -> None:
     texts = Texts()
     for now in (0.0, 1.0, 2.9):
