@@ -67,7 +67,7 @@ class Mission:
         self._barred = barred
         self._refused: str | None = None
         self._task: Task | None = None
-        self._waiting: list[MissionItem] = []
+        self._waiting: list[tuple[int, MissionItem]] = []
         self._held_since: float | None = None
         self._jumped: dict[int, int] = {}
         self._ending: str | None = None
@@ -146,7 +146,7 @@ class Mission:
             if item.command == Command.DO_JUMP:
                 index = self._jump(index, item, count=True)
             elif item.command in CONDITIONS or item.command in EFFECTS:
-                self._waiting.append(item)
+                self._waiting.append((index, item))
                 index += 1
             else:
                 self.current, self.progress = index, Progress.ACTIVE
@@ -223,9 +223,11 @@ class Mission:
         return estimate.origin.point(item.latitude, item.longitude)
 
     def _run_waiting(self, estimate: Estimate, now: float) -> None:
-        """DO items up to the next condition that does not hold."""
-        while self._waiting and self._may_run(self._waiting[0], estimate, now):
-            item = self._waiting.pop(0)
+        """DO items up to the next condition that does not hold. Each counts as reached, as in ArduPilot: by the last
+        one of a mission MAVSDK knows that it is finished."""
+        while self._waiting and self._may_run(self._waiting[0][1], estimate, now):
+            number, item = self._waiting.pop(0)
+            self.reached.append(number)
             self._held_since = None
             if item.command in ACCESSORIES:
                 self.passed_over.append(item)

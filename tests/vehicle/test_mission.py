@@ -111,6 +111,14 @@ def test_ten_minutes_stay_within_half_a_metre_of_the_lines(seed: int) -> None:
 
 
 class TestItems:
+    def test_items_that_are_done_beside_the_drive_count_as_reached(self) -> None:
+        """Else a client that counts by them goes back and forth between them and MISSION_CURRENT."""
+        speed = do(Command.DO_CHANGE_SPEED, 1, 0.7)
+        field = ready(way(3, 0), speed, way(6, 0), do(Command.CONDITION_DISTANCE, 1.0), speed, way(9, 0))
+        start(field)
+        finish(field, 60.0)
+        assert passed(field) == [0, 1, 2, 3, 4, 5]
+
     def test_a_waypoint_with_a_hold_time_is_stood_at(self) -> None:
         field = ready(way(5, 0, 4.0), way(5, 5))
         start(field)
