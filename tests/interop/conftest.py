@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import socket
 import threading
 import time
@@ -18,6 +19,10 @@ HOME = (-35.3632581, 149.1652363)
 """Where the simulated rover starts, degrees."""
 STEP = 0.02
 """s between two looks at the motor log."""
+DEGREE = 1e7 / 89.83
+"""m, to the north."""
+NEARLY = 1.2
+"""m that the rover may be from where it shall be: 0.3 m of control, and what its simulated receiver is wrong by."""
 
 
 class Rover:
@@ -27,7 +32,10 @@ class Rover:
         self.port = relay.ground_port if relay else free_port()
         self.second_port = free_port()
         first = relay.vehicle_port if relay else self.port
-        self.vehicle = Vehicle(folder, first, f"udpout:127.0.0.1:{self.second_port}", *options)
+        self._truth = folder / "truth.log"
+        self.vehicle = Vehicle(
+            folder, first, f"udpout:127.0.0.1:{self.second_port}", "--sim-truth", str(self._truth), *options
+        )
 
     def soon(self, condition: Callable[[], bool], within: float) -> bool:
         """Look at the motors until `condition`; False where it does not come."""
@@ -41,7 +49,21 @@ class Rover:
 
     def wait(self, condition: Callable[[], bool], within: float, what: str) -> None:
         """Look at the motors until `condition`."""
-        assert self.soon(condition, within), f"not within {within} s: {what}; {self.vehicle.outputs()[-3:]}"
+        assert self.soon(condition, within), (
+            f"not within {within} s: {what}; {self.vehicle.outputs()[-3:]}, at {self._place()}"
+        )
+
+    def is_at(self, place: tuple[float, float], within: float = 10.0) -> None:
+        """Wait until it really is there, whatever it believes; latitude and longitude."""
+        north = (place[0] - HOME[0]) * DEGREE
+        east = (place[1] - HOME[1]) * DEGREE * math.cos(math.radians(HOME[0]))
+        self.wait(lambda: math.dist(self._place(), (north, east)) < NEARLY, within, f"{north:.1f}, {east:.1f} m")
+
+    def _place(self) -> tuple[float, float]:
+        """Where it really is, m to the north and to the east of its start."""
+        lines = self._truth.read_text().rpartition("\n")[0].splitlines()
+        _, north, east, *_ = lines[-1].split()
+        return float(north), float(east)
 
     def speaks(self, within: float = 15.0) -> None:
         """Wait until it has started and sends."""

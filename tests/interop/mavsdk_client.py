@@ -28,6 +28,7 @@ from tests.interop.mavsdk_tools import (
     following,
     insist,
     plugin,
+    refused,
     step,
     twenty,
     wait_until,
@@ -143,7 +144,7 @@ def mission(system: Any, folder: str) -> None:
     """Upload, download, be refused, drive it to its end, clear."""
     action, raw, telemetry = (plugin(name, system) for name in ("action", "mission_raw", "telemetry"))
     north, east = here(telemetry)
-    plan = [item(n, 16, 0, north + 100 * (n + 1), east) for n in range(2)]
+    plan = [item(n, 16, 0, north + 200 * (n + 1), east) for n in range(2)]
     step("upload", lambda: raw.upload_mission(plan))
     step("download", lambda: shape(raw.download_mission()) == shape(plan))
     step("refused", lambda: raw.upload_mission([item(0, 22, 0, north, east)]))
@@ -157,6 +158,28 @@ def mission(system: Any, folder: str) -> None:
     step("disarm", action.disarm)
     step("clear", raw.clear_mission)
     step("empty", lambda: len(raw.download_mission()))
+
+
+def plan(system: Any, folder: str) -> None:
+    """A mission as MAVSDK's own examples make it, with a speed at each place, and one with what a rover has not."""
+    action, missions, telemetry = (plugin(name, system) for name in ("action", "mission", "telemetry"))
+    kinds = import_module("mavsdk.plugins.mission.mission")
+    north, east = here(telemetry)
+    camera, nothing = kinds.MissionItem.CameraAction, float("nan")
+
+    def place(number: int, action: Any) -> Any:
+        where = ((north + 200 * number) / 1e7, east / 1e7, 0.0)
+        none = kinds.MissionItem.VehicleAction.NONE
+        return kinds.MissionItem(*where, 0.8, True, nothing, nothing, action, *[nothing] * 5, none)
+
+    photo = kinds.MissionPlan([place(1, camera.TAKE_PHOTO)])
+    step("refused", lambda: insist(lambda: refused(partial(missions.upload_mission, photo), "UNSUPPORTED")))
+    step("upload", lambda: missions.upload_mission(kinds.MissionPlan([place(1, camera.NONE), place(2, camera.NONE)])))
+    step("download", lambda: len(missions.download_mission().mission_items))
+    step("arm", lambda: insist(action.arm))
+    step("start", missions.start_mission)
+    step("progress", lambda: first(missions.subscribe_mission_progress, lambda value: value.current == value.total))
+    step("finished", lambda: wait_until(lambda: missions.is_mission_finished()))
 
 
 def files(system: Any, folder: str) -> None:
@@ -199,7 +222,7 @@ def lossy(system: Any, folder: str) -> None:
     path = "/missions/mission.waypoints"
     step("file", lambda: finished(lambda take: ftp.download_async(path, folder, True, take)))
     north, east = here(telemetry)
-    plan = [item(n, 16, 0, north + 100 * (n + 1), east) for n in range(2)]
+    plan = [item(n, 16, 0, north + 150 * (n + 1), east) for n in range(2)]
     step("upload", lambda: insist(lambda: raw.upload_mission(plan)))
     step("download", lambda: shape(insist(raw.download_mission)) == shape(plan))
     step("arm", lambda: insist(action.arm))
@@ -238,6 +261,7 @@ SCENARIOS = {
         places,
         guided,
         mission,
+        plan,
         files,
         recordings,
         lossy,

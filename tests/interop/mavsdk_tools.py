@@ -113,6 +113,17 @@ def insist(attempt: Callable[[], Any]) -> Any:
         pause.wait(0.2)
 
 
+def refused(attempt: Callable[[], Any], why: str) -> None:
+    """Raises where it is not refused for that."""
+    try:
+        attempt()
+    except Exception as error:
+        if why not in str(error):
+            raise
+    else:
+        raise AssertionError("it was not refused")
+
+
 def by_hand(manual: Any, throttle: float) -> None:
     """Hold the stick, neutral first, until a line comes on stdin."""
     end = threading.Event()

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.interop import mavsdk_process, mavsdk_streams
-from tests.interop.conftest import Rover
+from tests.interop.conftest import HOME, Rover
 from tests.interop.mavsdk_process import Client
 from vehicle.leaving import Leave
 from vehicle.params import TABLE
@@ -120,9 +120,23 @@ def test_a_mission_from_upload_to_its_end(client: Callable[[str], Client], rover
     rover.drives()
     sdk.good("progress")
     assert sdk.good("finished").value is True
+    rover.is_at((HOME[0] + 0.00004, HOME[1]))
     sdk.good("disarm")
     sdk.good("clear")
     assert sdk.good("empty").value == 0
+
+
+def test_a_mission_as_its_examples_make_it(client: Callable[[str], Client], rover: Rover) -> None:
+    sdk = client("plan")
+    sdk.good("refused")
+    sdk.good("upload")
+    assert sdk.good("download").value == 2
+    sdk.good("arm")
+    sdk.good("start")
+    sdk.good("progress")
+    assert sdk.good("finished").value is True
+    rover.stands()
+    rover.is_at((HOME[0] + 0.00004, HOME[1]))
 
 
 def test_files_logs_and_what_the_parameters_mean(client: Callable[[str], Client]) -> None:
