@@ -182,10 +182,10 @@ def dying(call):
         calls -= 1
         return call(*words, **options)
     return wrapped
+store = ParamStore(Path(sys.argv[1]))  # reading is not what dies
 for name in ("open", "write", "fsync", "close"):
     setattr(os, name, dying(getattr(os, name)))
 Path.replace = dying(Path.replace)
-store = ParamStore(Path(sys.argv[1]))
 store.keep("SPEED_MAX", 9.0)
 store.close()
 """
