@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import logging
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -49,12 +50,17 @@ def _run(asked: argparse.Namespace, parser: Parser) -> int:
 
     config = _config(asked, parser)
     settings = _settings(asked, config, parser)
-    path = asked.log_file or config.log.file
+    verbose = asked.verbose or config.log.verbose
+    problem = None
     try:
-        log = Log(path, verbose=asked.verbose or config.log.verbose)
+        log = Log(asked.log_file or config.log.file, verbose=verbose)
     except OSError as error:
-        parser.error(f"log file {path}: {error.strerror}")
+        if asked.log_file:
+            parser.error(f"log file {asked.log_file}: {error.strerror}")
+        log, problem = Log(verbose=verbose), error.strerror  # a card that is read-only keeps no service from driving
     try:
+        if problem:
+            logging.getLogger(__name__).warning("log.file %s: %s; going on without it", config.log.file, problem)
         return daemon.run(settings)
     finally:
         log.close()

@@ -75,6 +75,20 @@ def test_motors_that_cannot_be_stopped_are_said_to_turn(tmp_path: Path) -> None:
 
 
 @pytest.mark.e2e
+def test_a_log_file_that_cannot_be_had_keeps_nobody_from_driving(tmp_path: Path) -> None:
+    """The file of settings names one, on a card that is gone or read-only; on the command line it is a mistake."""
+    config, endpoint = tmp_path / "rover.toml", "udpout:127.0.0.1:9"
+    text = f'endpoints = ["{endpoint}"]\n[motors]\ndriver = "simulated"\n[log]\nfile = "{tmp_path}/none/log"\n'
+    config.write_text(text)
+    with running(tmp_path, "--config", str(config)) as vehicle:
+        told = vehicle.ready()
+        assert told == f"vehicle: log.file {tmp_path}/none/log: No such file or directory; going on without it"
+        assert vehicle.ready() == f"vehicle: ready, system 1, {endpoint}"
+        vehicle.process.send_signal(signal.SIGTERM)
+        assert vehicle.ended() == (0, ["vehicle: stopped by SIGTERM, motors neutral"])
+
+
+@pytest.mark.e2e
 def test_a_terminal_on_hold_does_not_hold_the_vehicle(tmp_path: Path) -> None:
     """Nobody reads stderr and it is full: the vehicle lives on, and ends when asked."""
     reader, writer = os.pipe()
