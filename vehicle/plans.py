@@ -78,7 +78,7 @@ class Plans:
 
     def folder(self) -> Folder:
         """The plans as files; who may write files at all is for the file server to say."""
-        return PlanFolder(self._server, lambda kind: self._in_use(kind) is None)
+        return PlanFolder(self._server, self._in_use, self._tell_refused)
 
     @property
     def forgets(self) -> bool:
@@ -102,8 +102,7 @@ class Plans:
 
     def erase(self) -> Change | None:
         """All three shall be empty; None while somebody is changing one."""
-        change = self._server.replace(dict.fromkeys(self._rules, ()))
-        return change if isinstance(change, Change) else None
+        return self._server.replace(dict.fromkeys(self._rules, ()), lambda kind: not self._safety.armed)
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
         """Answer a message of the mission protocol."""
@@ -216,6 +215,9 @@ class Plans:
         for text in self._news:
             self._texts.say(Severity.WARNING, text, now)
         self._news.clear()
+
+    def _tell_refused(self, kind: MissionType, why: str) -> None:
+        self._news.append(f"File of the {kind.name.lower()} not taken: {why}")
 
     def _in_use(self, kind: MissionType) -> str | None:
         if not self._safety.armed:

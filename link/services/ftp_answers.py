@@ -169,7 +169,7 @@ class Answers:
         place = self._tree.find(question.request.data)
         if place is None or not place.name or place.query:
             return FtpError.NOT_FOUND
-        return place if place.folder.writable and question.allowed else FtpError.PROTECTED
+        return place if place.folder.writable(place.name) and question.allowed else FtpError.PROTECTED
 
 
 def _line(entry: Entry) -> bytes:

@@ -49,9 +49,8 @@ class Folder(Protocol):
     def open(self, name: str, query: Query) -> Content | None:
         """The file, or None where there is none."""
 
-    @property
-    def writable(self) -> bool:
-        """May files be written at all?"""
+    def writable(self, name: str) -> bool:
+        """May a file of this name be written at all?"""
 
     def store(self, name: str, data: bytes) -> FtpError | None:
         """Write a whole file; returns why not."""
@@ -79,8 +78,7 @@ class Bytes:
 class ReadOnly:
     """The half of a Folder that writes, for one that does not."""
 
-    @property
-    def writable(self) -> bool:
+    def writable(self, name: str) -> bool:
         """Never."""
         return False
 
@@ -130,8 +128,7 @@ class MemoryFolder:
         """As it is now: a later store does not change what is open."""
         return Bytes(self.files[name]) if name in self.files and not query else None
 
-    @property
-    def writable(self) -> bool:
+    def writable(self, name: str) -> bool:
         """Is there anybody who accepts?"""
         return self.accept is not None
 

@@ -68,7 +68,7 @@ def _parameter(setting: Setting) -> dict[str, Any]:
         "decimalPlaces": 0 if setting.whole else DECIMALS,
         "rebootRequired": setting.needs_reboot,
         "readOnly": setting.read_only,
-        "group": setting.name.partition("_")[0],
+        "group": setting.name.partition("_")[0].rstrip("0123456789"),
         "category": "Standard",
     }
     return described | ({"increment": 1} if setting.whole else {})

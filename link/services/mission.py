@@ -9,7 +9,7 @@ mission_client.py.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -101,14 +101,22 @@ class MissionServer:
             self._shelf.put(kind, items)
         return verdict
 
-    def replace(self, plans: Mapping[MissionType, Sequence[MissionItem]]) -> Change | MissionResult:
-        """Change plans in another way than by upload, e.g. as files: how that goes, or why not."""
+    def replace(
+        self, plans: Mapping[MissionType, Sequence[MissionItem]], allowed: Callable[[MissionType], bool]
+    ) -> Change | None:
+        """Change plans in another way than by upload, e.g. as files: how that goes. None where it breaks the rules, of
+        which the planner is told, or where somebody is changing one of them."""
+        for kind, items in plans.items():
+            verdict = self._rules[kind].judge(items)
+            if verdict is not MissionResult.ACCEPTED:
+                self._planner.unfit(kind, self._rules[kind].wrong(items), verdict, self._now)
+                return None
         if any(self._uploads.get(kind) or self._changes.of(kind) for kind in plans):
-            return MissionResult.DENIED
-        verdict = _first_refusal(self._rules[kind].judge(items) for kind, items in plans.items())
-        if verdict is not MissionResult.ACCEPTED:
-            return verdict
-        change = Change({kind: tuple(items) for kind, items in plans.items()}, lambda now: MissionResult.ACCEPTED)
+            return None
+        change = Change(
+            {kind: tuple(items) for kind, items in plans.items()},
+            lambda now: MissionResult.ACCEPTED if all(map(allowed, plans)) else MissionResult.DENIED,
+        )
         self._changes.begin(change, self._now)  # it answers nobody
         return change
 

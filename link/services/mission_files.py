@@ -79,18 +79,25 @@ def _float32(text: str) -> float:
 
 
 class PlanFolder:
-    """The plans of a MissionServer as files; writing one puts it in force, where `allowed` lets its kind be changed."""
+    """The plans of a MissionServer as files; writing one puts it in force."""
 
-    def __init__(self, server: MissionServer, allowed: Callable[[MissionType], bool] = lambda kind: True) -> None:
+    def __init__(
+        self,
+        server: MissionServer,
+        in_use: Callable[[MissionType], str | None] = lambda kind: None,
+        refused: Callable[[MissionType, str], None] = lambda kind, why: None,
+    ) -> None:
+        """`in_use` says why a plan may not be changed now, or None; `refused` is told why a file was not
+        taken: MAVLink FTP has no words for that, and some clients do not look."""
         self._server = server
-        self._allowed = allowed
+        self._in_use = in_use
+        self._refused = refused
         self._changes: dict[MissionType, tuple[bytes, Change]] = {}
         """What was written last, until its writer has heard how that went."""
 
-    @property
-    def writable(self) -> bool:
+    def writable(self, name: str) -> bool:
         """Under the names of the plans."""
-        return True
+        return name in NAMES
 
     def entries(self) -> list[Entry]:
         """One file a plan, also where it is empty."""
@@ -122,10 +129,13 @@ class PlanFolder:
         return self.store(name, HEADER.encode()) if name in NAMES else FtpError.NOT_FOUND
 
     def _begun(self, kind: MissionType, data: bytes) -> Change | FtpError:
-        if not self._allowed(kind):
+        why = self._in_use(kind)
+        if why:
+            self._refused(kind, why)
             return FtpError.PROTECTED
         try:
-            change = self._server.replace({kind: read(data)})
-        except PlanFileError:
+            items = read(data)
+        except PlanFileError as fault:
+            self._refused(kind, str(fault))
             return FtpError.FAIL
-        return change if isinstance(change, Change) else FtpError.FAIL
+        return self._server.replace({kind: items}, lambda kind: self._in_use(kind) is None) or FtpError.FAIL

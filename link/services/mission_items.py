@@ -97,9 +97,13 @@ class PlanRules:
         """ACCEPTED, or what is wrong with a whole plan."""
         if len(items) > self.capacity:
             return MissionResult.NO_SPACE
-        faults = (problem(item, self.commands, self.frames) for item in items)
-        fault = next((each for each in faults if each is not None), None)
+        wrong = self.wrong(items)
+        fault = None if wrong is None else problem(wrong[1], self.commands, self.frames)
         return self.check(tuple(items)) if fault is None else fault
+
+    def wrong(self, items: Sequence[MissionItem]) -> tuple[int, MissionItem] | None:
+        """The first item that is invalid by itself, and its number."""
+        return next((each for each in enumerate(items) if problem(each[1], self.commands, self.frames)), None)
 
 
 def problem(
@@ -116,6 +120,8 @@ def problem(
 
 def in_words(wrong: tuple[int, MissionItem] | None, verdict: MissionResult) -> str:
     """What is wrong with a plan: an item, with its number, or how they fit together."""
+    if verdict is MissionResult.NO_SPACE:
+        return "it has too many items"
     if wrong is None:
         return "its items do not fit together"
     number, item = wrong

@@ -147,7 +147,7 @@ def test_only_what_may_go_is_removed(folder: DiskFolder, tmp_path: Path) -> None
     assert soon(lambda: folder.remove("1.tlog")) is FtpError.NOT_FOUND
     assert soon(lambda: folder.remove("2.tlog")) is FtpError.PROTECTED
     assert soon(folder.entries) == [Entry("2.tlog", 0)]
-    assert not folder.writable
+    assert not folder.writable("1.tlog")
     assert folder.store("3.tlog", b"") is FtpError.PROTECTED
 
 

@@ -83,6 +83,12 @@ def test_parameters_are_described_as_in_the_table() -> None:
         assert set(each) <= PARAMETER_KEYS
 
 
+def test_numbered_parameters_are_one_group() -> None:
+    table = [Line(name, 0, 0, 1, "", "") for name in ("BTN0_FUNCTION", "BTN15_FUNCTION", "MOT1_MIN", "MOT_REV_DELAY")]
+    described = unpacked(build(table, vendor="v", model="m", version="1.2.3").parameters)["parameters"]
+    assert [each["group"] for each in described] == ["BTN", "BTN", "MOT", "MOT"]
+
+
 def test_the_message_names_a_file_that_is_served() -> None:
     metadata = made()
     message: Any = through_the_wire(metadata.message(1234))

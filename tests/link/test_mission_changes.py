@@ -210,3 +210,14 @@ def test_another_file_meanwhile_is_refused() -> None:
     assert folder.store("mission.waypoints", write(OLD)) is FtpError.FAIL
     vehicle.end()
     assert plain(vehicle.plan) == plain(tuple(NEW))
+
+
+def test_a_file_that_may_not_be_put_in_force_any_more_when_it_is_written_is_refused() -> None:
+    vehicle, driving = Disk(), False
+    folder = PlanFolder(vehicle.server, lambda kind: "AUTO drives by it" if driving else None)
+    with pytest.raises(NotYetError):
+        folder.store("mission.waypoints", write(NEW))
+    driving = True
+    vehicle.end()
+    assert vehicle.old
+    assert folder.store("mission.waypoints", write(NEW)) is FtpError.FAIL

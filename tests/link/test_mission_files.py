@@ -140,8 +140,14 @@ def test_what_breaks_the_rules_changes_nothing(name: str, data: bytes, error: Ft
 
 def test_a_plan_that_may_not_be_changed_now_is_protected() -> None:
     vehicle = Vehicle()
-    folder = PlanFolder(vehicle.server, allowed=lambda kind: kind is not MissionType.MISSION)
+    told: list[tuple[MissionType, str]] = []
+    folder = PlanFolder(
+        vehicle.server,
+        lambda kind: "AUTO drives by it" if kind is MissionType.MISSION else None,
+        lambda kind, why: told.append((kind, why)),
+    )
     assert folder.store("mission.waypoints", write([waypoint()])) is FtpError.PROTECTED
+    assert told == [(MissionType.MISSION, "AUTO drives by it")]
     assert folder.remove("mission.waypoints") is FtpError.PROTECTED
     assert vehicle.plan == ()
 
@@ -149,4 +155,27 @@ def test_a_plan_that_may_not_be_changed_now_is_protected() -> None:
 def test_a_file_does_not_cross_an_upload() -> None:
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 2))
-    assert vehicle.server.replace({MissionType.MISSION: [waypoint()]}) is MissionResult.DENIED
+    assert PlanFolder(vehicle.server).store("mission.waypoints", write([waypoint()])) is FtpError.FAIL
+
+
+@pytest.mark.parametrize(
+    ("data", "told", "unfit"),
+    [
+        (b"no plan", [(MissionType.MISSION, "line 1 is not 'QGC WPL 110'")], []),
+        (write([waypoint(), waypoint(command=22)]), [], [(MissionType.MISSION, 1, MissionResult.UNSUPPORTED)]),
+        (write([waypoint()] * 301), [], [(MissionType.MISSION, None, MissionResult.NO_SPACE)]),
+    ],
+)
+def test_what_is_wrong_with_a_file_is_told(data: bytes, told: list[object], unfit: list[object]) -> None:
+    """MAVLink FTP says no more than "failed", and MAVProxy does not even look."""
+    vehicle, why = Vehicle(), []
+    folder = PlanFolder(vehicle.server, refused=lambda kind, words: why.append((kind, words)))
+    assert folder.store("mission.waypoints", data) is FtpError.FAIL
+    assert why == told
+    assert vehicle.unfits == unfit
+
+
+def test_only_plans_have_a_place() -> None:
+    folder = PlanFolder(Vehicle().server)
+    assert all(map(folder.writable, NAMES))
+    assert not folder.writable("other.waypoints")

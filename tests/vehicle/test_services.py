@@ -12,7 +12,7 @@ from dialects import messages as m
 from dialects.enums import Capability, Command, Result
 from link.services.ftp import FtpError, FtpPacket, Op, crc32, parse
 from link.services.param_pack import MAGIC
-from tests.vehicle.bench import DRIVER, OTHER, Bench
+from tests.vehicle.bench import DRIVER, OTHER, Bench, said
 from vehicle.params import TABLE
 
 
@@ -107,6 +107,17 @@ def test_plans_are_files() -> None:
     bench.say(m.MissionRequestList(1, 1, 0))
     assert bench.newest(m.MissionCount).count == 1
     assert b"47.1000000\t8.5000000" in fetch(bench, path)
+
+
+def test_a_file_that_is_no_plan_is_refused_in_words_and_one_that_has_no_place_at_once() -> None:
+    bench = Bench()
+    assert ask(bench, Op.CREATE, b"/missions/fence.waypoints").op == Op.ACK
+    bench.say(FtpPacket(500, Op.WRITE, 0, b"no plan").message(1, 1))
+    assert ask(bench, Op.TERMINATE).op == Op.NAK
+    bench.wait(0.1)
+    assert said(bench, "File of the fence not taken: line 1 is not 'QGC WPL 110'")
+    answer = ask(bench, Op.CREATE, b"/missions/other.txt")
+    assert (answer.op, answer.data[0]) == (Op.NAK, FtpError.PROTECTED)
 
 
 def test_only_the_driver_in_control_writes_plans() -> None:
