@@ -121,7 +121,8 @@ class Failsafes:
         self.latched = Failsafe(0)
         """Conditions that took the mode or the arming away, until the driver chooses anew."""
         self.active = Failsafe(0)
-        """Conditions that hold now."""
+        """Conditions that have come to something and hold still. One that may pass before its first step, as standing
+        for a moment at full throttle, is none yet."""
         self._params = params
         self._since: dict[Failsafe, float] = {}
         self._done: dict[Failsafe, tuple[Step, ...]] = {}
@@ -135,8 +136,9 @@ class Failsafes:
             return []
         self._since = {cause: min(began, self._since.get(cause, began)) for cause, began in conditions.items()}
         self._done = {cause: done for cause, done in self._done.items() if cause in conditions}
-        self.active = Failsafe(sum(self._since))
-        return [taken for cause in conditions for taken in self._advance(cause, now)]
+        taken = [step for cause in conditions for step in self._advance(cause, now)]
+        self.active = Failsafe(sum(cause for cause, done in self._done.items() if done))
+        return taken
 
     def action(self, now: float) -> Action:
         """The worst up to NEUTRAL that holds now: a HOLD or DISARM is carried by the mode and the state."""
@@ -154,6 +156,7 @@ class Failsafes:
         coming = [
             Next(since + step.delay(self._params) - now, step.action)
             for cause, since in self._since.items()
+            if cause in self.active
             for step in RULES[cause].steps
             if step.action >= Action.HOLD and now < since + step.delay(self._params) < math.inf
         ]

@@ -71,7 +71,7 @@ def sys_status(view: View) -> m.Message:
     ill = {
         Sensor.MOTOR_OUTPUTS: view.safety.fault is not None,
         Sensor.GEOFENCE: view.navigator.boundary.beyond > 0.0,
-        Sensor.PREARM: bool(view.safety.problems(view.now)),
+        Sensor.PREARM: not view.safety.armed and bool(view.safety.problems(view.now)),  # a moving stick forbids to arm
         Sensor.BATTERY: battery.silent(view.now) or battery.low_since(view.now) is not None,
         Sensor.GPS: (readings.gps_fix or 0) < 3,
         Sensor.AHRS: readings.gps_fix is not None and not view.estimate.good,

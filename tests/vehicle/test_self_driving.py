@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from dialects import messages as m
 from dialects.axes import Axes
-from dialects.enums import Command, Failsafe, ModeFlag, Result
+from dialects.enums import Command, Failsafe, ModeFlag, Result, State
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, EVERYTHING, NEUTRAL, OTHER, Bench, said
 from tests.vehicle.field import GROUND, Field
@@ -201,6 +202,24 @@ class TestHazards:
         assert bench.armed is armed
         assert not armed or bench.mode is Mode.HOLD
         assert bench.newest(m.RoverFailsafeStatus).latched & Failsafe.BLOCKED
+
+    @pytest.mark.parametrize("change", [{"wheel_speeds": (0.0, 0.0)}, {"roll": -0.9}])
+    def test_a_moment_of_it_is_nothing_to_tell(self, change: dict[str, Any]) -> None:
+        """Each start, each change of direction stands for a moment, and a stone tilts."""
+        bench = Bench()
+        bench.readings = EVERYTHING
+        bench.drive()
+        bench.texts.clear()
+        for _ in range(3):
+            bench.readings = replace(EVERYTHING, **change)
+            bench.wait(0.4, AHEAD)
+            status = bench.newest(m.RoverFailsafeStatus)
+            assert (status.active, status.action_in_ms) == (0, 65535)
+            bench.readings = EVERYTHING
+            bench.wait(1.2, AHEAD)
+        assert bench.turning
+        assert not said(bench, "Failsafe")
+        assert {beat.system_status for beat in bench.all(m.Heartbeat)[-4:]} == {State.ACTIVE}
 
     def test_both_can_be_turned_off(self) -> None:
         bench = Bench(FS_CRASH_CHECK=0, CRASH_ANGLE=0)

@@ -75,6 +75,15 @@ def test_health_is_told_truthfully() -> None:
     assert not health & (Sensor.MOTOR_OUTPUTS | Sensor.PREARM | Sensor.GPS)
 
 
+def test_who_is_armed_could_arm() -> None:
+    """Ground stations show the bit as a fault of the vehicle, and a stick that moves is none."""
+    bench = equipped()
+    bench.drive()
+    bench.wait(1.5, AHEAD)
+    assert bench.turning
+    assert bench.newest(m.SysStatus).onboard_control_sensors_health & Sensor.PREARM
+
+
 def test_numbers_arrive_in_their_units() -> None:
     bench = equipped()
     gps, position, battery = bench.newest(m.GpsRawInt), bench.newest(m.GlobalPositionInt), bench.newest(m.BatteryStatus)
