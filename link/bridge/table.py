@@ -9,8 +9,13 @@ from rich.text import Text
 
 from link.bridge.status import LinkStatus, RouteStatus, Status
 
-LINK_COLUMNS = ("link", "peers", "in /s", "in B/s", "out /s", "out B/s", "loss", "CRC", "noise B", "unknown", "dropped")
+LINK_COLUMNS = (
+    "link", "peers", "in\n/s", "in\nB/s", "out\n/s", "out\nB/s", "loss", "CRC", "noise\nB", "unknown", "dropped",
+)  # fmt: skip
 ROUTE_COLUMNS = ("system", "component", "link", "address", "/s", "lost", "silent")
+NAMED = ("link", "address")
+NAME_WIDTH = 14
+"""What a name has at least, in as many lines as it takes: with it all columns fit a terminal of 80."""
 QUIET_AFTER = 3.0
 """s of silence that deserve a look: three missing heartbeats."""
 
@@ -48,8 +53,17 @@ def _links(status: Status) -> Table:
 def _link(link: LinkStatus) -> list[Text]:
     rates = (link.frames_in_per_s, link.bytes_in_per_s, link.frames_out_per_s, link.bytes_out_per_s)
     counts = (link.crc_errors, link.noise_bytes, link.unknown, link.dropped)
-    cells = [link.endpoint, str(link.peers), *(f"{rate:.0f}" for rate in rates), f"{link.loss:.1%}", *map(str, counts)]
+    cells = [link.endpoint, str(link.peers), *map(short, rates), f"{link.loss:.1%}", *map(short, counts)]
     return [Text(cell) for cell in cells]
+
+
+def short(number: float) -> str:
+    """At most five characters up to 10^13: 98765, 123k, 45.6M."""
+    for unit, suffix in ((1.0, ""), (1e3, "k"), (1e6, "M"), (1e9, "G")):
+        size = number / unit
+        if size < 9999.5 or (not suffix and size < 99999.5):
+            return f"{size:.1f}{suffix}" if suffix and size < 99.95 else f"{size:.0f}{suffix}"
+    return f"{number:.0e}"
 
 
 def _routes(status: Status) -> Table:
@@ -63,13 +77,15 @@ def _routes(status: Status) -> Table:
 
 def _route(route: RouteStatus) -> list[Text]:
     where = "" if route.address == route.endpoint else route.address
-    numbers = (f"{route.frames_per_s:.0f}", str(route.lost), f"{route.silence:.1f} s")
+    numbers = (short(route.frames_per_s), short(route.lost), f"{route.silence:.1f} s")
     return [Text(cell) for cell in (str(route.system), str(route.component), route.endpoint, where, *numbers)]
 
 
 def _table(title: str, columns: tuple[str, ...]) -> Table:
-    table = Table(title=title, title_justify="left")
+    table = Table(title=title, title_justify="left", box=None, padding=(0, 1, 0, 0))
     for column in columns:
-        named = column in ("link", "address")
-        table.add_column(column, justify="left" if named else "right", no_wrap=not named, overflow="fold")
+        if column in NAMED:
+            table.add_column(column, overflow="fold", min_width=NAME_WIDTH)
+        else:
+            table.add_column(column, justify="right", no_wrap=True)
     return table
