@@ -26,6 +26,7 @@ from vehicle.ending import Cycles, Ending
 from vehicle.heard import HEARD
 from vehicle.host import Host
 from vehicle.host_facts import LoadMeter, uid_of
+from vehicle.lock import state_lock
 from vehicle.machine import Machine
 from vehicle.motors import MotorError, UnknownDriverError
 from vehicle.notify import Notifier
@@ -91,6 +92,8 @@ async def _serve(settings: Settings) -> int:
     loop = running_loop()
     now, host = loop.time(), Host(uid=uid_of())
     with contextlib.ExitStack() as opened:
+        if settings.state is not None:
+            opened.enter_context(state_lock(settings.state))
         keeper = None if settings.state is None else ParamStore(settings.state)
         params = params_of(settings, keeper)
         if keeper is not None:

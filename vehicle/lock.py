@@ -1,15 +1,21 @@
-"""One program at a time for one set of motors, also where the hardware itself does not see to that (pins, I2C, PWM).
+"""One program at a time for one set of motors, also where the hardware itself does not see to that (pins, I2C, PWM),
+and one vehicle for one folder of kept things: two would write over each other's parameters and plans.
 
-The lock is a name in the kernel, which forgets it with the process, however that ends. Stopping needs no lock.
+The locks are the kernel's, which forgets them with the process, however that ends. Stopping needs no lock.
 """
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
+import os
 import socket
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from vehicle.motors import DRIVERS, MotorError
+from vehicle.run_settings import SettingsError
 
 SIMULATED = "simulated"
 
@@ -52,3 +58,29 @@ def _name(motors: Mapping[str, Any]) -> str | None:
     if driver == SIMULATED or driver not in DRIVERS:
         return None
     return f"\0mavhelm motors {DRIVERS[driver]} {motors.get('port', '')}"
+
+
+@contextlib.contextmanager
+def state_lock(folder: Path) -> Iterator[None]:
+    """Hold `folder`, which is made where it is missing, to the end. Raises SettingsError where another vehicle does.
+
+    One that cannot be made or opened is no matter here: whoever writes into it says so.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except OSError:
+        yield
+        return
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        words = "is in use by another vehicle; end that, or name another folder with --state"
+        raise SettingsError(f"state folder {folder} {words}") from None
+    except OSError:  # a file system without locks
+        pass
+    try:
+        yield
+    finally:
+        os.close(descriptor)
