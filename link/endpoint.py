@@ -69,6 +69,11 @@ def _path_baud(scheme: str, rest: str) -> Endpoint:
 SLOWEST_BAUD, FASTEST_BAUD = 300, 12_000_000
 """What a radio modem of old and the fastest USB adapters take; 57600 and 921600 are usual."""
 
+USUAL_BAUD = 57600
+"""What telemetry radios have at first."""
+FOREIGN = {"tcp": "tcpout", "udp": "udpin", "udpbcast": "udpout"}
+"""MAVProxy's and pymavlink's names -> ours."""
+
 SCHEMES: dict[str, Scheme] = {
     "udpin": Scheme("udpin:HOST:PORT", "wait on this address; answer whoever shows a heartbeat", _host_port),
     "udpout": Scheme("udpout:HOST:PORT", "send to this address first", _host_port),
@@ -84,12 +89,21 @@ def parse(text: str) -> Endpoint:
     scheme, colon, rest = text.strip().partition(":")
     scheme = scheme.lower()
     if scheme not in SCHEMES or not colon:
-        near = difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
-        hint = f"did you mean {near[0]}:? " if near else ""
         raise EndpointError(
-            f"endpoint {text!r}: {hint}it must be one of " + ", ".join(each.form for each in SCHEMES.values())
+            f"endpoint {text!r}: {_hint(text.strip(), scheme)}it must be one of "
+            + ", ".join(each.form for each in SCHEMES.values())
         )
     return SCHEMES[scheme].parse(scheme, rest.removeprefix("//").rstrip("/"))
+
+
+def _hint(text: str, scheme: str) -> str:
+    """What was meant, where that can be told: a slip of the pen, or how MAVProxy writes it."""
+    if text.startswith("/dev/"):
+        path, _, baud = text.replace(",", ":").rpartition(":")
+        path, baud = (path, baud) if path and baud.isdigit() else (text, str(USUAL_BAUD))
+        return f"did you mean serial:{path}:{baud}? "
+    near = [FOREIGN[scheme]] if scheme in FOREIGN else difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
+    return f"did you mean {near[0]}:? " if near else ""
 
 
 def endpoint_help() -> str:

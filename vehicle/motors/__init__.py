@@ -185,11 +185,18 @@ def _line(error: Exception) -> str:
 
 def _understood(name: str, settings: Mapping[str, Any] | None) -> tuple[Any, Any, Around]:
     """The driver's class, its own settings or None where it takes none, and what goes around it."""
+    from msgspec.structs import fields
+
     from vehicle.motors.settings import parsed, split
 
     driver, kind = _driver_class(name), settings_type(name)
     around, own = split({**PROFILES.get(name, {}), **(settings or {})})
     if kind is not None:
+        if not own and (required := [field.encode_name for field in fields(kind) if field.required]):
+            raise MotorSettingsError(
+                f"motor driver {name!r} needs settings, at least {', '.join(required)}: "
+                "[motors] of a file for --config, which `vehicle init` writes"
+            )
         return driver, parsed(own, kind), around
     if own:
         raise MotorSettingsError(f"motor driver {name!r} takes no settings, so {', '.join(own)} cannot be set")
