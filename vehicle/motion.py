@@ -154,7 +154,8 @@ def rc_channels(view: View) -> m.Message:
         pulses[THROTTLE_CHANNEL - 1] = pulse(control.demand.throttle or 0.0)
         pulses[STEERING_CHANNEL - 1] = pulse(control.demand.steering or 0.0)
     channels = {f"chan{number}_raw": value for number, value in enumerate(pulses, start=1)}
-    return m.RcChannels(time_boot_ms=view.boot_ms, chancount=Override.COUNT, rssi=RSSI_UNKNOWN, **channels)
+    count = max((number for number, value in enumerate(pulses, start=1) if value != m.UINT16_MAX), default=0)
+    return m.RcChannels(time_boot_ms=view.boot_ms, chancount=count, rssi=RSSI_UNKNOWN, **channels)
 
 
 def above_home(view: View) -> float:

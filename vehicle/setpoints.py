@@ -37,6 +37,8 @@ CLOCK_DRIFT = 5e-4
 """s/s by which a sender's clock may be slower than ours; a crystal's is a tenth of it."""
 WRAP = 2**32
 """ms; where time_boot_ms begins again."""
+SHORTEST = 0.5
+"""Length of a quaternion, which should be 1: all zeros are somebody who has filled in nothing."""
 FARTHEST = 1e5
 """m; a place beyond is no place for a rover."""
 
@@ -137,6 +139,8 @@ def attitude_target(message: m.SetAttitudeTarget, full_speed: float) -> Target |
     speed = max(-1.0, min(1.0, thrust)) * full_speed
     if not mask & ATTITUDE_YAW_RATE:
         return Course(speed, turn_rate=message.body_yaw_rate)
+    if math.hypot(*message.q) < SHORTEST:
+        return Refusal("its quaternion is none")
     return Course(speed, heading=_yaw(message.q))
 
 
@@ -220,4 +224,4 @@ def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
 
 def _yaw(q: Sequence[float]) -> float:
     w, x, y, z = q
-    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)

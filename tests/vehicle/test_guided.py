@@ -118,6 +118,25 @@ class TestVelocity:
             field.wait(0.06)
         assert wrap(field.yaw - math.pi / 2) == pytest.approx(0.0, abs=0.1)
 
+    @pytest.mark.parametrize("length", [0.9, 1.1, 3.0])
+    def test_a_quaternion_of_another_length_is_the_same_heading(self, length: float) -> None:
+        field = Field()
+        field.begin(Mode.GUIDED)
+        q = [length * math.cos(math.pi / 4), 0, 0, length * math.sin(math.pi / 4)]
+        for _ in range(60):
+            field.say(m.SetAttitudeTarget(0, 1, 1, 1 | 2 | 4, q, 0, 0, 0, 0.5))
+            field.wait(0.06)
+        assert wrap(field.yaw - math.pi / 2) == pytest.approx(0.0, abs=0.1)
+
+    def test_a_quaternion_of_zeros_is_none(self) -> None:
+        field = Field()
+        field.begin(Mode.GUIDED)
+        for _ in range(10):
+            field.say(m.SetAttitudeTarget(0, 1, 1, 1 | 2 | 4, [0, 0, 0, 0], 0, 0, 0, 0.5))
+            field.wait(0.06)
+        assert not field.turning
+        assert said(field, "its quaternion is none")
+
     def test_44_more_than_the_rover_can_is_cut(self) -> None:
         field = Field()
         field.begin(Mode.GUIDED)

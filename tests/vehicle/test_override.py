@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
+from dialects.enums import Command
 from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench, said
 
 
@@ -34,6 +35,7 @@ def test_it_drives_as_mavproxy_types_it() -> None:
     assert bench.throttles == (1.0, 1.0)
     channels = bench.newest(m.RcChannels)
     assert (channels.chan3_raw, channels.chan2_raw) == (1900, m.UINT16_MAX)
+    assert channels.chancount == 3
 
 
 def test_steering_is_channel_1() -> None:
@@ -110,3 +112,10 @@ def test_of_another_ground_station_it_is_ignored() -> None:
     bench.say(override(chan3=1900), OTHER)
     bench.wait(CYCLE)
     assert not bench.turning
+
+
+def test_without_a_stick_or_an_override_there_are_no_channels() -> None:
+    bench = armed()
+    bench.command(Command.REQUEST_MESSAGE, m.RcChannels.id)
+    channels = bench.newest(m.RcChannels)
+    assert (channels.chancount, channels.chan1_raw, channels.chan3_raw) == (0, m.UINT16_MAX, m.UINT16_MAX)
