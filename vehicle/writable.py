@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import pwd
+import stat
 import tempfile
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def obstacle(folder: Path, setting: str) -> str | None:
     """
     there = next(each for each in (folder, *folder.parents) if os.path.lexists(each))
     try:
-        if not there.is_dir():
+        if not _is_folder(there):
             return f"{there} is no folder; remove it, or name another folder as {setting}"
         if there != folder:
             return None if os.access(there, os.W_OK | os.X_OK, effective_ids=True) else _forbidden(there, setting)
@@ -35,12 +35,23 @@ def obstacle(folder: Path, setting: str) -> str | None:
     return None
 
 
+def _is_folder(path: Path) -> bool:
+    """Not Path.is_dir: newer Pythons say False also of what they may not look at. Raises PermissionError."""
+    try:
+        return stat.S_ISDIR(path.stat().st_mode)
+    except FileNotFoundError:  # a link to nowhere
+        return False
+
+
 def _forbidden(folder: Path, setting: str) -> str:
-    me, owner = _name(os.geteuid()), None
-    with contextlib.suppress(OSError):
+    me = _name(os.geteuid())
+    try:
         owner = _name(folder.stat().st_uid)
-    whose = f", it belongs to {owner}; run this as {owner}" if owner and owner != me else "; chmod u+rwx it"
-    return f"{folder} may not be written by {me}{whose}, or name another folder as {setting}"
+    except OSError:  # behind a closed door, as what a service keeps that runs as nobody in particular
+        remedy = "nor looked at; run this with sudo"
+    else:
+        remedy = "chmod u+rwx it" if owner == me else f"it belongs to {owner}; run this as {owner}"
+    return f"{folder} may not be written by {me}, {remedy}, or name another folder as {setting}"
 
 
 def _name(user: int) -> str:

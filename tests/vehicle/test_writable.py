@@ -65,7 +65,7 @@ def test_a_folder_of_another_user(open_folder: Path, below: str) -> None:
     if os.geteuid() == 0:
         assert ", it belongs to root; run this as root" in told
     else:
-        assert "; chmod u+rwx it" in told
+        assert ", chmod u+rwx it" in told
 
 
 def test_a_folder_behind_a_closed_door(open_folder: Path) -> None:
@@ -76,6 +76,18 @@ def test_a_folder_behind_a_closed_door(open_folder: Path) -> None:
     os.chmod(open_folder / "door", 0o755)
     assert told is not None
     assert f"{open_folder}/door" in told
+
+
+def test_a_link_into_what_a_service_keeps_for_itself(open_folder: Path) -> None:
+    """As systemd has it with DynamicUser: /var/lib/mavhelm leads into /var/lib/private, which is root's alone."""
+    (open_folder / "private" / "mavhelm").mkdir(parents=True)
+    (open_folder / "mavhelm").symlink_to(open_folder / "private" / "mavhelm")
+    os.chmod(open_folder / "private", 0)
+    with somebody_else():
+        told = obstacle(open_folder / "mavhelm", "state")
+    os.chmod(open_folder / "private", 0o755)
+    assert told is not None
+    assert "nor looked at; run this with sudo" in told
 
 
 def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
