@@ -10,6 +10,7 @@ import contextlib
 import os
 import re
 import selectors
+import time
 from codecs import getincrementaldecoder
 from collections.abc import Callable, Iterable, Sequence
 from threading import Thread
@@ -42,8 +43,17 @@ SUSPEND_PATIENCE = 0.1
 SELECT_TIMEOUT = 0.1
 """Of the input thread, s: how late it may see the end of the app, or that an Escape stands alone."""
 
+PASTE_BEGINS, PASTE_ENDS = "\x1b[200~", "\x1b[201~"
+PASTE_PATIENCE = 2.0
+"""s of silence in which a paste may go on. One whose end never comes would swallow every key, stops too; one that a bad
+line only held up must not become keys that drive."""
+LARGEST = 1000
+"""Columns or rows that a terminal may claim to have: more would be drawn for minutes."""
+
 _KEY = re.compile(r"\x1b\[(\d+)((?::\d*)*)(?:;(\d*)(?::(\d*))?)?(?:;([\d:]*))?([u~ABCDEFHPQRS])")
 _REPORT = re.compile(r"\x1b\[(?:\?\d+u|\d+n)")
+_PASTE = KeyPress("paste")
+"""Bound to nothing, and so a stop while driving."""
 _REPEAT, _RELEASE = "2", "3"
 
 
@@ -85,8 +95,13 @@ class KeySink(Protocol):
 class KeyEventParser(XTermParser):
     """Textual's parser that also understands repeats, releases and non-Latin layouts of the kitty protocol."""
 
-    def __init__(self, sink: KeySink, debug: bool = False) -> None:
+    def __init__(self, sink: KeySink, debug: bool = False, *, clock: Callable[[], float] = time.monotonic) -> None:
         self._sink = sink
+        self._clock = clock
+        self._pasting = False
+        self._end_of_read = ""
+        self._heard = 0.0
+        """When something was read last."""
         self._names: dict[str, str] = {}
         """Code of a key -> its name at the press: Shift let go before W must still give the release of "W"."""
         self._latin: dict[str, str] = {}
@@ -95,14 +110,29 @@ class KeyEventParser(XTermParser):
 
     def feed(self, data: str) -> Iterable[Message]:
         """The events of one read. Its keys have gone to the sink when this returns."""
-        return self._batched(super().feed(data))
+        found = self._batched(super().feed(data))
+        self._follow_paste(data)
+        return found
 
     def tick(self) -> Iterable[Message]:
-        """The events that only time tells: a lone Escape."""
+        """The events that only time tells: a lone Escape, and a paste without an end."""
+        if self._pasting and self._clock() - self._heard > PASTE_PATIENCE:
+            return self.feed(PASTE_ENDS)
         return self._batched(super().tick())
 
+    def _follow_paste(self, data: str) -> None:
+        """A paste is no key from its first moment on, and so a stop while driving."""
+        self._heard = self._clock()
+        seen = self._end_of_read + data
+        self._end_of_read = seen[1 - len(PASTE_ENDS) :]
+        before, begun, ended = self._pasting, seen.rfind(PASTE_BEGINS), seen.rfind(PASTE_ENDS)
+        if begun != ended:
+            self._pasting = begun > ended
+        if self._pasting and not before:
+            self._sink.take([_PASTE])
+
     def _batched(self, tokens: Iterable[Message]) -> list[Message]:
-        found = list(tokens)
+        found = [token for token in tokens if not _beyond_any_terminal(token)]
         batch = [press for token in found if (press := self._press(token)) is not None]
         if batch:
             self._sink.take(batch)
@@ -117,7 +147,7 @@ class KeyEventParser(XTermParser):
                 name = self._latin.get(key, key)
                 return KeyPress(name, repeat=isinstance(token, KeyRepeat), release=isinstance(token, KeyUp))
             case events.Paste():
-                return KeyPress("paste")  # bound to nothing, and so a stop while driving
+                return _PASTE
         return None
 
     def _sequence_to_key_events(self, sequence: str, alt: bool = False) -> Iterable[events.Key]:
@@ -163,6 +193,10 @@ class KeyEventParser(XTermParser):
         base = alternates.split(":")[2:3]
         if base and base[0].isdecimal() and key.character is not None and not key.character.isascii():
             self._latin[key.key] = _character_to_key(chr(int(base[0])))
+
+
+def _beyond_any_terminal(token: Message) -> bool:
+    return isinstance(token, events.Resize) and max(token.size) > LARGEST
 
 
 def _ignored(sequence: str) -> events.Key:

@@ -124,6 +124,43 @@ def test_lost_focus_shuts_in_the_same_read() -> None:
     assert isinstance(found[-1], events.AppBlur)
 
 
+class Clock:
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def test_a_paste_is_a_stop_from_its_first_moment_on_and_its_text_is_no_keys() -> None:
+    sink, _ = feed("\x1b[200", "~ryi", "i" * 5000, "\x1b[20", "1~", "k")
+    assert sink.batches == [[KeyPress("paste")], [KeyPress("paste")], [KeyPress("k")]]
+
+
+def test_a_paste_whose_end_never_comes_does_not_keep_the_keys_for_ever() -> None:
+    sink, clock = Sink(), Clock()
+    parser = KeyEventParser(sink, clock=clock)
+    parser.feed("\x1b[200~ryi")
+    clock.now += 1.9
+    parser.tick()
+    parser.feed("!")
+    assert sink.batches == [[KeyPress("paste")]]
+    clock.now += 1.9
+    parser.tick()
+    assert sink.batches == [[KeyPress("paste")]]
+    clock.now += 0.2
+    parser.tick()
+    parser.feed("!")
+    assert sink.batches[1:] == [[KeyPress("paste")], [KeyPress("exclamation_mark")]]
+
+
+@pytest.mark.parametrize("size", ["99999;80", "24;99999"])
+def test_no_terminal_is_as_large_as_that(size: str) -> None:
+    """Its text would be drawn for minutes, and no key would be looked at."""
+    assert feed(f"\x1b[48;{size};1;1t")[1] == []
+    [event] = feed("\x1b[48;24;80;1;1t")[1]
+    assert isinstance(event, events.Resize)
+
+
 def test_widgets_get_repeats_as_keys_and_releases_apart() -> None:
     _, found = feed(PRESS_W + REPEAT_W + RELEASE_W)
     assert [type(event) for event in found] == [events.Key, KeyRepeat, KeyUp]
