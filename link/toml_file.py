@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +14,9 @@ DEEPEST = 32
 """Tables and lists in each other. No file of ours has more than four; without a bound a dotted key goes as deep as it
 is long, and whoever walks down it ends with a RecursionError."""
 TOO_DEEP = "brackets in brackets, or tables in tables, too deep to be meant"
+
+TWICE = re.compile(r"Cannot declare \((?P<names>.*?)\) twice \((?P<where>at line \d+)")
+OVERWRITES = "Cannot overwrite a value"
 
 
 class TomlError(Exception):
@@ -40,12 +44,23 @@ def tables(text: str, name: str) -> dict[str, Any]:
     except RecursionError:
         raise TomlError(f"{name}: {TOO_DEEP}") from None
     except tomllib.TOMLDecodeError as error:
-        raise TomlError(f"{name}: {error}") from error
+        raise TomlError(f"{name}: {_in_words(error)}") from error
     except ValueError:  # of int()
         raise TomlError(f"{name}: a number of thousands of digits, which nothing takes") from None
     if _too_deep(found):
         raise TomlError(f"{name}: {TOO_DEEP}")
     return found
+
+
+def _in_words(error: tomllib.TOMLDecodeError) -> str:
+    """What tomllib says, and what to do where somebody has put a table of a guide at the end of a file."""
+    words = str(error)
+    if twice := TWICE.match(words):
+        table = ".".join(re.findall(r"'([^']*)'", twice["names"]))
+        return f"[{table}] is there already, and again {twice['where']}; put its lines below the first one"
+    if words.startswith(OVERWRITES):
+        return f"a key that is set already, {words.removeprefix(OVERWRITES).strip(' ()')}; leave one out"
+    return words
 
 
 def _too_deep(table: dict[str, Any]) -> bool:

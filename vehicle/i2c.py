@@ -46,7 +46,7 @@ def open_bus(number: int) -> Bus:
     try:
         bus = SMBus(number)
     except FileNotFoundError as error:
-        hint = "no such bus; dtparam=i2c_arm=on in config.txt makes bus 1"
+        hint = "no such bus; on a Pi `sudo raspi-config nonint do_i2c 0` makes bus 1"
         raise OSError(error.errno, f"{error.strerror}: {hint}", error.filename) from error
     except PermissionError as error:
         hint = "add yourself to its group: sudo usermod -aG i2c $USER, log in again"

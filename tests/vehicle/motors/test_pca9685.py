@@ -186,7 +186,10 @@ def test_no_board_is_said_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_no_bus_is_said_in_one_line() -> None:
-    with pytest.raises(MotorError, match=r"I2C bus 99: .*No such file or directory: no such bus; dtparam=i2c_arm=on"):
+    with pytest.raises(
+        MotorError,
+        match=r"I2C bus 99: .*No such file or directory: no such bus; on a Pi `sudo raspi-config nonint do_i2c 0`",
+    ):
         open_motors("pca9685", {"channels": [{"channel": 0}], "bus": 99})
 
 
