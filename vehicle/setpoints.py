@@ -81,11 +81,16 @@ class SenderClock:
         self._at = -math.inf
         self._least = math.inf
         """Least difference of the two clocks seen, s."""
+        self._first: int | None = None
+        self._stands = 0
+        """Setpoints with the first time again: this is no clock. -1: another time was there, it is one."""
 
     def age(self, boot_ms: int, now: float) -> float | None:
-        """s; None for one that was overtaken. 0 where the sender has no clock: many scripts send 0."""
+        """s; None for one that was overtaken. 0 where the sender has no clock: many scripts send 0, and ArduPilot's
+        examples always 10. A clock that stops is another matter."""
         if not boot_ms:
             return 0.0
+        stood = self._look(boot_ms)
         ahead = (boot_ms - self._newest + WRAP // 2) % WRAP - WRAP // 2
         quiet = now - self._at
         if ahead < 0 and quiet < REORDERED:
@@ -96,8 +101,19 @@ class SenderClock:
             self._least, unwrapped = self._least + CLOCK_DRIFT * quiet, self._newest + ahead
         self._newest, self._at = unwrapped, now
         difference = now - unwrapped / 1000
-        self._least = min(self._least, difference)
+        self._least = difference if stood else min(self._least, difference)
         return difference - self._least
+
+    def _look(self, boot_ms: int) -> bool:
+        """Did it stand until now?"""
+        if self._first is None:
+            self._first = boot_ms
+        elif boot_ms == self._first and self._stands >= 0:
+            self._stands += 1
+        stood = self._stands > 0
+        if boot_ms != self._first:
+            self._stands = -1
+        return stood
 
 
 Setpoint = m.SetPositionTargetLocalNed | m.SetPositionTargetGlobalInt | m.SetAttitudeTarget

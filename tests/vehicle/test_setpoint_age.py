@@ -35,9 +35,24 @@ def test_overtaken_and_started_anew() -> None:
     assert heard((5000, 100.0), (4990, 100.01), (10, 100.9), (10, 101.1)) == pytest.approx([0, None, None, 0])
 
 
-def test_47_a_frozen_clock_grows_old() -> None:
-    ages = heard(*((7777, 100.0 + step / 10) for step in range(20)))
+def test_47_a_clock_that_stops_grows_old() -> None:
+    ages = heard((7677, 99.9), *((7777, 100.0 + step / 10) for step in range(20)))
     assert ages[-1] == pytest.approx(1.9, abs=0.01)
+
+
+def test_one_that_never_ran_is_none() -> None:
+    ages = heard(*((10, 100.0 + step / 10) for step in range(50)), (5000, 200.0), (5100, 200.5))
+    assert ages == pytest.approx([0.0] * 51 + [0.4], abs=0.02), "from then on it is a clock"
+
+
+def test_the_script_of_ardupilots_examples_drives_on() -> None:
+    field = Field()
+    field.begin(Mode.GUIDED)
+    for _ in range(60):
+        field.twist(0.8, boot_ms=10)
+        field.wait(0.05)
+        field.heartbeat()
+    assert field.speed > 0.7
 
 
 def test_no_clock_has_no_age() -> None:
