@@ -88,7 +88,7 @@ class Channel:
     # ---- receiving ----
 
     def receive(self, data: bytes, address: Hashable, now: float) -> list[Received]:
-        """The messages in `data` from `address`. `now` in s, monotonic."""
+        """The messages in `data` from `address`; a new connection comes without any. `now` in s, monotonic."""
         self._bytes_received += len(data)
         state = self._peers.get(address)
         if state is not None:
@@ -123,6 +123,7 @@ class Channel:
                 return None
             self._forget(leaving)
         state = self._peers[address] = self._new_peer(address, now)
+        state.connected = state.silent = self._stream
         return state
 
     def _dispensable(self, state: PeerState, now: float) -> bool:
@@ -199,7 +200,7 @@ class Channel:
             return None
         if number == Heartbeat.id:
             state.systems.add(system)
-        return Received(message, system, component, sequence, state.peer, system in state.systems, state.fixed)
+        return Received(message, system, component, sequence, state.peer, system in state.systems, state.asked_for)
 
     # ---- sending ----
 
@@ -238,11 +239,12 @@ class Channel:
     # ---- telling ----
 
     def forget_silent(self, now: float) -> None:
-        """Drop peers that have been silent for PEER_SILENCE; the one the user named stays, for a new conversation."""
+        """Drop peers that have been silent for PEER_SILENCE; the one the user named stays, and connections do, for a
+        new conversation."""
         for state in list(self._peers.values()):
             if state.silent or now - state.heard <= PEER_SILENCE:
                 continue
-            if state.fixed:
+            if state.asked_for:
                 state.peer, state.silent = self._name(state.peer.address), True
             else:
                 self._forget(state)

@@ -39,7 +39,8 @@ class Received(NamedTuple):
     introduced: bool
     """The peer has shown a HEARTBEAT of this system: only then may it control (a moved address must say who it is)."""
     named: bool = False
-    """The user named this peer's address, as in `udpout`: what goes there goes nowhere unasked."""
+    """The user named this peer's address, as in `udpout`, or it has connected to us: what goes there goes nowhere
+    unasked."""
 
     @property
     def may_ask(self) -> bool:
@@ -97,7 +98,7 @@ class LinkReport:
     """Frames of ours that the link had no room for."""
     sources: dict[tuple[int, int], SourceCount] = field(default_factory=dict)
     audience: tuple[Peer, ...] = ()
-    """Who gets what is for everybody: peers that have shown a HEARTBEAT, and the address that the user named."""
+    """Who gets what is for everybody: who has shown a HEARTBEAT, or connected, and the address that the user named."""
 
 
 class Core(Protocol):

@@ -17,7 +17,8 @@ class LinkError(Exception):
 
 
 Arrived = Callable[[Sequence[tuple[bytes, Hashable]]], None]
-"""Takes what arrived: bytes (a datagram, or any piece of a stream) and the address they came from."""
+"""Takes what arrived: bytes (a datagram, or any piece of a stream) and the address they came from; none yet from a new
+connection."""
 Gone = Callable[[Hashable], None]
 """Hears that the connection to an address has ended."""
 

@@ -29,6 +29,8 @@ class PeerState:
     heard: float
     fixed: bool = False
     """The user named this address: it is sent to before it has spoken."""
+    connected: bool = False
+    """A connection that somebody made: it is sent to before it has spoken, too, while it lasts."""
     silent: bool = False
     """It has not spoken yet in this conversation; only one that the user named is kept all the same."""
     sequence: int = 0
@@ -37,10 +39,15 @@ class PeerState:
     sources: dict[tuple[int, int], Source] = field(default_factory=dict)
     buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
 
+    @property
+    def asked_for(self) -> bool:
+        """Does somebody wait for what we say, though he has said nothing himself?"""
+        return self.fixed or self.connected
+
     def hears(self, target: int) -> bool:
         """Should a message for system `target` (0: for all) go here?"""
         if not self.systems:
-            return self.fixed
+            return self.asked_for
         return target == 0 or target in self.systems
 
     def first_of(self, frame: Frame) -> Order:

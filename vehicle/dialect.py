@@ -72,8 +72,8 @@ Printed by `vehicle dialect > docs/dialect.md` from the tables in the code; a te
 
 MAVLink 2 (version 1 is understood), component {COMPONENT} (autopilot), type ground rover, autopilot generic. The
 message set is pymavlink's common.xml with `dialects/rover.xml`. A **driver** is the ground station in control, or any
-introduced one while nobody is; **introduced** is who has shown a HEARTBEAT, or, for questions, whose address the user
-named.
+introduced one while nobody is; **introduced** is who has shown a HEARTBEAT, or, for questions, who has connected (TCP)
+or whose address the user named.
 """
 
 

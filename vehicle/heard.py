@@ -15,7 +15,7 @@ class Who(Enum):
     """Whose message counts."""
 
     ANYBODY = "anybody"
-    ASKERS = "who has shown a HEARTBEAT, or is at an address that the user named"
+    ASKERS = "who has shown a HEARTBEAT, has connected, or is at an address that the user named"
     INTRODUCED = "who has shown a HEARTBEAT"
     DRIVER = "the driver in control"
     NOBODY_ELSE = "the driver in control, or anybody introduced while nobody is"

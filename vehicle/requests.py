@@ -1,7 +1,7 @@
 """Commands that ask for messages and rates. They change nothing that moves; anybody with a HEARTBEAT may ask.
 
-So may who is at an address that the user named. An answer goes to the asker alone. Everybody else gets a refusal, which
-is not longer than the question: a forged address must not turn the vehicle into an amplifier.
+So may who has connected, or is at an address that the user named. An answer goes to the asker alone. Everybody else
+gets a refusal, which is not longer than the question: a forged address must not turn the vehicle into an amplifier.
 """
 
 from __future__ import annotations

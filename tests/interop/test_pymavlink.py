@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
 
 from dialects.enums import MissionResult
+from tests.e2e.programs import Vehicle
+from tests.e2e.relay import free_port
 from tests.interop.conftest import Rover
-from tests.interop.script import Script, mavftp, mavparm, mavwp
+from tests.interop.script import Script, mavftp, mavparm, mavutil, mavwp
 from vehicle.params import TABLE
 
 pytestmark = pytest.mark.interop
@@ -63,3 +67,16 @@ def test_a_mission_of_100_items_goes_up_and_comes_back(script: Script) -> None:
         assert item.x / 1e7 == pytest.approx(47.0 + number / 1e5, abs=4e-6)  # mavwp sends float32 degrees
     script.link.waypoint_clear_all_send()
     assert script.hear("MISSION_ACK").type == MissionResult.ACCEPTED
+
+
+def test_over_tcp_the_vehicle_speaks_first(tmp_path: Path) -> None:
+    """mavutil says no HEARTBEAT of its own, and scripts wait for the vehicle's."""
+    port = free_port()
+    with ExitStack() as stack:
+        stack.callback(Vehicle(tmp_path, f"tcpin:127.0.0.1:{port}").end)
+        link = mavutil.mavlink_connection(f"tcp:127.0.0.1:{port}", retries=60)
+        stack.callback(link.close)
+        assert link.wait_heartbeat(timeout=15) is not None
+        link.param_fetch_all()
+        while len(link.params) < len(TABLE):
+            assert link.recv_match(type="PARAM_VALUE", blocking=True, timeout=10) is not None

@@ -222,6 +222,32 @@ def test_a_connection_that_ends_ends_the_conversation() -> None:
     assert audience(channel) != first
 
 
+def test_a_connection_is_sent_to_before_it_has_spoken_and_while_it_lasts() -> None:
+    channel = vehicle(stream=True)
+    assert channel.receive(b"", HERE, 0.0) == []
+    [peer] = audience(channel)
+    channel.forget_silent(1000.0)
+    assert audience(channel) == (peer,), "a program that only listens"
+    [question] = channel.receive(demand(0), HERE, 1000.0)
+    assert (question.may_ask, question.introduced) == (True, False)
+    channel.gone(HERE)
+    assert audience(channel) == ()
+
+
+def test_a_datagram_without_anything_in_it_makes_no_peer() -> None:
+    channel = vehicle()
+    channel.receive(b"", HERE, 0.0)
+    assert audience(channel) == ()
+
+
+def test_a_connection_that_says_nothing_keeps_no_place_that_another_needs() -> None:
+    channel = vehicle(stream=True)
+    for port in range(MAX_PEERS):
+        channel.receive(b"", ("10.0.0.1", port), 0.001 * port)
+    assert channel.receive(heartbeat(0), HERE, 1.0) != []
+    assert len(audience(channel)) == MAX_PEERS
+
+
 # ---- too much ----
 
 

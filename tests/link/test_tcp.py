@@ -10,6 +10,7 @@ import pytest
 
 from dialects.messages import Attitude, CommandLong, Heartbeat
 from link.channel import Channel
+from link.core import Outgoing
 from link.endpoint import parse
 from link.framer import Framer
 from link.link import LinkError
@@ -60,12 +61,31 @@ def received(sock: socket.socket) -> bytes:
         return b""
 
 
+def said(heard: Heard) -> list[tuple[bytes, object]]:
+    """What came, without the connections themselves."""
+    return [(data, address) for data, address in heard.data if data]
+
+
+async def test_who_connects_is_heard_of_before_he_has_said_anything(server: TcpServer, port: int) -> None:
+    """mavutil, DroneKit and MAVSDK say nothing before they have heard a vehicle."""
+    heard = Heard(server)
+    with connected(port) as sock:
+        await until(lambda: heard.data)
+        assert heard.data == [(b"", sock.getsockname())]
+        channel = Channel("tcpin:127.0.0.1:5760", 0, system=1, component=1, stream=True)
+        channel.receive(*heard.data[0], 0.0)
+        [(beat, address, _)] = channel.send(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+        server.send(beat, address)
+        await until(lambda: received(sock) == beat)
+    server.close()
+
+
 async def test_each_client_is_a_peer_of_its_own_and_goes_when_it_closes(server: TcpServer, port: int) -> None:
     heard = Heard(server)
     one, two = connected(port), connected(port)
     one.sendall(heartbeat(0))
     two.sendall(heartbeat(0, system=254))
-    await until(lambda: len(heard.data) == 2)
+    await until(lambda: len(said(heard)) == 2)
     assert {address for _, address in heard.data} == {one.getsockname(), two.getsockname()}
     server.send(demand(1), two.getsockname())
     await until(lambda: received(two) == demand(1))
@@ -83,7 +103,7 @@ async def test_the_crowd_is_closed_at_once(server: TcpServer, port: int) -> None
     crowd = [connected(port) for _ in range(MAX_CONNECTIONS + 1)]
     for sock in crowd[:MAX_CONNECTIONS]:
         sock.sendall(heartbeat(0))
-    await until(lambda: len(heard.data) == MAX_CONNECTIONS)
+    await until(lambda: len(said(heard)) == MAX_CONNECTIONS)
 
     def last_is_closed() -> bool:
         try:
