@@ -73,7 +73,7 @@ class TcpServer:
             sock.close()
             return
         self._connections[address] = Connection(sock, address, self._arrived, self._ended)
-        self._arrived([(b"", address)])  # mavutil, DroneKit and MAVSDK wait for a HEARTBEAT before they say theirs
+        self._arrived([(b"", address)])  # mavutil and MAVSDK wait for a HEARTBEAT before they say theirs
 
     def _ended(self, connection: Connection, why: str) -> None:
         del self._connections[connection.address]

@@ -67,7 +67,7 @@ def said(heard: Heard) -> list[tuple[bytes, object]]:
 
 
 async def test_who_connects_is_heard_of_before_he_has_said_anything(server: TcpServer, port: int) -> None:
-    """mavutil, DroneKit and MAVSDK say nothing before they have heard a vehicle."""
+    """mavutil and MAVSDK say nothing before they have heard a vehicle."""
     heard = Heard(server)
     with connected(port) as sock:
         await until(lambda: heard.data)
