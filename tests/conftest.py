@@ -1,8 +1,20 @@
-"""Stops, with one line, where a thousand tests would fail for one reason."""
+"""Stops, with one line, where a thousand tests would fail for one reason; and how hypothesis looks for examples."""
 
 from __future__ import annotations
 
+import os
+
+from hypothesis import HealthCheck, settings
+
 from dialects.fingerprint import fault
+
+settings.register_profile(
+    "mavhelm",
+    deadline=None,  # a machine that pauses is no fault of the example
+    suppress_health_check=[HealthCheck.too_slow],
+    derandomize="MAVHELM_CI" in os.environ,  # there the same each time: what is new is looked for at home
+)
+settings.load_profile("mavhelm")
 
 if reason := fault():
     raise SystemExit(reason)  # here and not in a hook: the other conftest.py files import the dialect

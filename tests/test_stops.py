@@ -218,7 +218,7 @@ def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
     assert driving > 0.99
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 10_000))
 def test_thirty_percent_loss_never_moves_late(seed: int) -> None:
     drive = Drive(loss=0.30, delay=0.010, seed=seed)

@@ -65,7 +65,7 @@ def test_pytest_stops_with_that_line_and_runs_nothing(folder: Path) -> None:
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests"]
 
     def run() -> tuple[int, str]:
-        done = subprocess.run(command, cwd=folder.parent, capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(command, cwd=folder.parent, capture_output=True, text=True, timeout=180, check=False)
         return done.returncode, done.stdout + done.stderr
 
     code, words = run()

@@ -4,21 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
 
+from tests.e2e import programs
 from tests.e2e.programs import GroundStation, Vehicle
 from tests.e2e.relay import Relay
+from tests.waits import Waits
 
 
-class Rig(NamedTuple):
+@dataclass
+class Rig:
     """Vehicle - relay - ground station."""
 
     vehicle: Vehicle
     relay: Relay
     station: GroundStation
+    obeying: Waits = field(init=False)
+    """What the machine made the vehicle and the relay wait since the last `watch`."""
+    asking: Waits = field(init=False)
+    """The same, with the ground station."""
+
+    def drive(self) -> None:
+        """Arm and hold `i` until the wheels turn: what they do now is watched."""
+        programs.drive(self.station, self.vehicle, self.relay.armed)
+        self.watch()
+
+    def watch(self) -> None:
+        """From now on the machine's part in being late counts."""
+        self.obeying = Waits(self.vehicle.process.pid)
+        self.asking = Waits(self.vehicle.process.pid, self.station.process.pid)
 
 
 @pytest.fixture

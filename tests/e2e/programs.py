@@ -17,13 +17,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from dialects.modes import Mode
-from tests.e2e.relay import Relay
-
 REPEAT = 0.033
 """s between the auto-repeats of a held key: 30 a second, as most systems do."""
 FIRST_REPEAT = 0.4
 """s from pressing a key to its first repeat; shorter than the longest in use (0.66 s, X11)."""
+LET_GO = 1.2
+"""s without a repeat after which a key counts as let go, whatever the ground station has learned (1.1 s at most)."""
+PATIENCE = 60.0
+"""s for what must come, and comes in one or two: the machine is shared."""
+AT_REST = 0.5
+"""s for which wheels that have come to rest have stood."""
+PATIENT_LOOP = "FS_LOOP_TIMEOUT=2"
+"""A control cycle later than this disarms: the longest that can be set, because the machine is shared."""
 
 
 _ESCAPES = re.compile(rb"\x1b\[[0-9;?<>=]*[a-zA-Z]")
@@ -49,7 +54,7 @@ class Vehicle:
         self.motor_log = folder / "motors.log"
         self.errors = folder / "vehicle.err"
         endpoint = port if isinstance(port, str) else f"udpout:127.0.0.1:{port}"
-        command = [sys.executable, "-m", "vehicle", "--sim", endpoint, *options]
+        command = [sys.executable, "-m", "vehicle", "--sim", endpoint, "--param", PATIENT_LOOP, *options]
         with self.errors.open("wb") as errors:
             self.process = subprocess.Popen(
                 [*command, "--motor-log", str(self.motor_log)], stdout=errors, stderr=errors, stdin=subprocess.DEVNULL
@@ -67,6 +72,11 @@ class Vehicle:
         """Do the wheels turn now?"""
         outputs = self.outputs()
         return bool(outputs) and outputs[-1].turning
+
+    def stands(self) -> bool:
+        """Have the wheels come to rest? A late control cycle gives zero once, and goes on: that is no rest."""
+        outputs = self.outputs()
+        return bool(outputs) and not outputs[-1].turning and time.monotonic() - outputs[-1].at > AT_REST
 
     def at_full(self, least: float = 0.4) -> bool:
         """Do both wheels get at least `least` of their power?"""
@@ -122,15 +132,21 @@ class GroundStation:
         os.write(self._terminal, keys.encode())
         self.look(0.0)
 
-    def hold(self, key: str, until: Callable[[], bool], within: float = 20.0) -> None:
+    def hold(self, key: str, until: Callable[[], bool], within: float = PATIENCE) -> None:
         """Hold a key down, as auto-repeat shows it, until `until`; then let go."""
+        assert self.held(key, until, within), f"holding {key!r} for {within} s did not do it\n{self.drawn()}"
+
+    def held(self, key: str, until: Callable[[], bool], within: float) -> bool:
+        """The same; False where it does not come within so many s."""
         deadline = time.monotonic() + within
         self.type(key)
         self.look(FIRST_REPEAT)
         while not until():
-            assert time.monotonic() < deadline, f"holding {key!r} for {within} s did not do it"
+            if time.monotonic() > deadline:
+                return False
             self.type(key)
             self.look(REPEAT)
+        return True
 
     def look(self, seconds: float) -> None:
         """Read what the program draws, for `seconds`: a terminal that nobody reads blocks its program."""
@@ -146,18 +162,28 @@ class GroundStation:
 
     def wait_for(self, condition: Callable[[], bool], within: float, what: str) -> None:
         """Look at the screen until `condition`."""
+        assert self.soon(condition, within), f"not within {within} s: {what}\n{self.drawn()}"
+
+    def soon(self, condition: Callable[[], bool], within: float) -> bool:
+        """The same; False where it does not come."""
         deadline = time.monotonic() + within
         while not condition():
-            assert time.monotonic() < deadline, f"not within {within} s: {what}\n{self.drawn()}"
+            if time.monotonic() > deadline:
+                return False
             self.look(0.02)
+        return True
+
+    def says_armed(self) -> bool:
+        """Of the hints of a vehicle that stands, was the one drawn last that of an armed one?"""
+        return self.screen.rfind(b"hold i to drive") > self.screen.rfind(b"disarmed:")
 
     def drawn(self) -> str:
         """The last things drawn, without colours and places: for the message of a failed test."""
         return _ESCAPES.sub(b" ", self.screen)[-2500:].decode(errors="replace") + self.log.read_text()[-1000:]
 
-    def ended(self, within: float = 10.0) -> int:
+    def ended(self) -> int:
         """Wait for the program's end; returns its exit code."""
-        self.wait_for(lambda: self.process.poll() is not None, within, "the ground station ends")
+        self.wait_for(lambda: self.process.poll() is not None, PATIENCE, "the ground station ends")
         return int(self.process.returncode)
 
     def close_terminal(self) -> None:
@@ -169,7 +195,7 @@ class GroundStation:
         """End it and the processes that it started, whatever state they are in."""
         if self.process.returncode is None:  # its number, and so its group's, is still its own
             os.killpg(self.process.pid, signal.SIGKILL)  # a frozen one that only loses its parent stays for ever
-            self.process.wait(10)
+            self.process.wait(PATIENCE)
         if self._terminal >= 0:
             os.close(self._terminal)
 
@@ -182,32 +208,40 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     if process.poll() is None:
         process.send_signal(signal.SIGCONT)
         process.kill()
-    process.wait(10)
+    process.wait(PATIENCE)
 
 
-def _armed(station: GroundStation, relay: Relay) -> bool:
-    """One try to arm, as an operator does on a bad link: again, where it was refused."""
-    if not relay.armed():
-        station.type("r")
-        station.look(0.3)
-        station.type("y")
-        station.look(2.0)
-    return relay.armed()
-
-
-def _keys_drive(station: GroundStation, relay: Relay) -> bool:
-    """Does the screen say that keys drive? MANUAL once more, where a bad link has led to HOLD after arming."""
-    if relay.mode() != Mode.MANUAL:
-        station.type("1")
-        station.look(1.0)
-    return relay.mode() == Mode.MANUAL and b"hold i to drive" in station.screen
-
-
-def drive(station: GroundStation, vehicle: Vehicle, relay: Relay, key: str = "i") -> None:
+def drive(station: GroundStation, vehicle: Vehicle, armed: Callable[[], bool], key: str = "i") -> None:
     """Arm through the keys and hold one until the wheels turn: every stop test starts from here."""
-    station.wait_for(lambda: relay.mode() is not None, 20, "the vehicle is heard")
-    station.wait_for(lambda: b"arms" in station.screen, 20, "the drive screen says how to arm")
-    station.wait_for(lambda: _armed(station, relay), 30, "armed")
-    station.wait_for(lambda: _keys_drive(station, relay), 30, "the drive screen says that keys drive")
-    station.hold(key, vehicle.at_full)
-    assert vehicle.turning()
+    station.wait_for(lambda: b"disarmed:" in station.screen, PATIENCE, "the drive screen says how to arm")
+    deadline = time.monotonic() + PATIENCE
+    while not (_arms(station, armed) and station.held(key, vehicle.at_full, 5.0)):
+        assert time.monotonic() < deadline, f"it does not drive: {vehicle.errors.read_text()}\n{station.drawn()}"
+        _begin_anew(station)
+
+
+def drive_on(station: GroundStation, vehicle: Vehicle, key: str = "i") -> None:
+    """After the vehicle has stopped by itself, and it went to HOLD: drive again, armed as it still is."""
+    deadline = time.monotonic() + PATIENCE
+    _begin_anew(station)
+    while not station.held(key, vehicle.at_full, 5.0):
+        assert time.monotonic() < deadline, f"it does not drive again: {vehicle.errors.read_text()}\n{station.drawn()}"
+        _begin_anew(station)
+
+
+def _begin_anew(station: GroundStation) -> None:
+    """As a driver does whom the rover does not obey, after a bad link or a screen that stood still: let go, MANUAL."""
+    station.look(LET_GO)
+    station.type("1")
+    station.look(0.6)
+
+
+def _arms(station: GroundStation, armed: Callable[[], bool]) -> bool:
+    """One try to arm: a bad link may lose it, and a vehicle that has just started refuses."""
+    if armed():
+        return True
+    asked = len(station.screen)
+    station.type("r")
+    station.soon(lambda: b"Arm?" in station.screen[asked:], 3.0)
+    station.type("y")
+    return station.soon(lambda: armed() and station.says_armed(), 3.0)

@@ -16,6 +16,7 @@ from dialects.messages import Heartbeat, LocalPositionNed, ManualControl, Messag
 from link.frame import payload_of
 from link.framer import Framer
 from link.memory import LossyPipe
+from tests.ports import free_port
 
 STEP = 0.005
 """s at most between two looks at what is under way."""
@@ -162,9 +163,3 @@ def _bound() -> socket.socket:
     sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sock.bind(("127.0.0.1", 0))
     return sock
-
-
-def free_port() -> int:
-    """A UDP port on loopback that nobody uses now."""
-    with _bound() as sock:
-        return int(sock.getsockname()[1])

@@ -7,6 +7,8 @@ import selectors
 import socket
 import threading
 
+from tests.ports import free_port
+
 STEP = 0.005
 """s at most between two looks."""
 
@@ -17,8 +19,8 @@ class TcpCable:
     def __init__(self, target: int) -> None:
         self._target = target
         self._running = True
-        self._listener = _listening(0)
-        self.port: int = self._listener.getsockname()[1]
+        self.port = free_port()
+        self._listener = _listening(self.port)
         self._pairs: dict[socket.socket, socket.socket] = {}
         self._lock = threading.Lock()
         self._turn = threading.Event()
@@ -91,9 +93,3 @@ def _listening(port: int) -> socket.socket:
     sock.bind(("127.0.0.1", port))
     sock.listen(4)
     return sock
-
-
-def free_tcp_port() -> int:
-    """A TCP port on loopback that nobody uses now."""
-    with _listening(0) as sock:
-        return int(sock.getsockname()[1])

@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.ports import free_port
+
 pytestmark = [
     pytest.mark.e2e,
     pytest.mark.tmux,
@@ -39,7 +41,7 @@ class Tmux:
         self._run("-f", "/dev/null", "new-session", "-d", *size, f"{shlex.join(program)}; echo EXIT CODE $?; exec cat")
 
     def _run(self, *words: str) -> str:
-        done = subprocess.run(["tmux", "-S", self._socket, *words], capture_output=True, text=True, timeout=20)
+        done = subprocess.run(["tmux", "-S", self._socket, *words], capture_output=True, text=True, timeout=60)
         return done.stdout
 
     def screen(self) -> str:
@@ -110,8 +112,6 @@ def test_the_first_drive(tmux: Callable[..., Tmux], columns: int, lines: int) ->
 
 
 def test_waiting_offers_the_simulator(tmux: Callable[..., Tmux]) -> None:
-    from tests.e2e.relay import free_port
-
     port = free_port()
     terminal = tmux(80, 24, f"udpin:127.0.0.1:{port}")
     waiting = terminal.until(lambda screen: "waiting for a vehicle" in screen, 20)

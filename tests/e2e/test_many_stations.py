@@ -16,6 +16,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, Type
 from link.framer import Framer
 from link.source import Source
+from tests.ports import free_port
 from tests.vehicle.ground import running
 
 pytestmark = [pytest.mark.e2e]
@@ -69,9 +70,7 @@ class Listener:
 @pytest.fixture
 def stations(tmp_path: Path) -> Iterator[list[Listener]]:
     """All of them, with a vehicle that answers them."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     with ExitStack() as stack:
         stack.enter_context(running(tmp_path, "--sim", f"udpin:127.0.0.1:{port}"))
         found = [Listener(port, 200 + number) for number in range(STATIONS)]

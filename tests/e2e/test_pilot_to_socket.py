@@ -14,11 +14,11 @@ from groundstation.intents import SetStyle
 from groundstation.keymap import KEYMAPS, Keymap
 from groundstation.processes import start_module
 from groundstation.ui.app import HelmApp
-from tests.e2e.relay import free_port
 from tests.groundstation.broken_helm import ORDER
 from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.groundstation.ui.frames import text
 from tests.groundstation.ui.ptys import until
+from tests.ports import free_port
 
 pytestmark = pytest.mark.e2e
 

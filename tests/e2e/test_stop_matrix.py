@@ -2,7 +2,8 @@
 
 The bounds of docs/safety.md (outputs begin to fall within 0.5 s of the last valid demand, and are neutral within 1 s)
 are held to the millisecond in virtual time by tests/test_stops.py. Here a shared machine with two cores may be late
-itself: NOISE is what we grant it.
+itself: what it made the programs wait, by the kernel's own count, is granted (waits.py), and NOISE for what is not
+counted.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ import pytest
 
 from dialects.modes import Mode
 from tests.e2e.conftest import Rig
-from tests.e2e.programs import REPEAT, drive
+from tests.e2e.programs import PATIENCE, drive_on
 
-pytestmark = [pytest.mark.e2e, pytest.mark.timeout(180)]
+pytestmark = pytest.mark.e2e
 
 FALLS_WITHIN = 0.5
 NEUTRAL_WITHIN = 1.0
@@ -29,57 +30,67 @@ HOLD_TIMEOUT = 0.25
 Build = Callable[..., Rig]
 
 
-def assert_stops(rig: Rig, *, from_last_demand: bool = True) -> None:
-    """The wheels, turning until now, stop in time and stay still."""
-    rig.relay.wait(lambda: not rig.vehicle.turning(), NEUTRAL_WITHIN + HOLD_TIMEOUT + 2, "the wheels stop")
-    if from_last_demand:
-        falls, stops = rig.vehicle.falls_and_stops_after(rig.relay.last_demand())
-        assert falls <= FALLS_WITHIN + NOISE
-        assert stops <= NEUTRAL_WITHIN + NOISE
-    stopped = time.monotonic()
-    rig.relay.wait(lambda: time.monotonic() > stopped + 1.5, 3, "a while passes")
+def assert_stops(rig: Rig) -> None:
+    """The wheels, turning until now, stop in time after the last demand that the vehicle got, and stay still."""
+    rig.relay.wait(rig.vehicle.stands, PATIENCE, "the wheels stop")
+    noise = NOISE + rig.obeying.total()
+    falls, stops = rig.vehicle.falls_and_stops_after(rig.relay.last_demand())
+    assert falls <= FALLS_WITHIN + noise
+    assert stops <= NEUTRAL_WITHIN + noise
+    stopped = rig.vehicle.outputs()[-1].at
+    rig.relay.wait(lambda: time.monotonic() > stopped + 1.5, PATIENCE, "a while passes")
     assert not rig.vehicle.moved_since(stopped)
+
+
+def assert_stood(rig: Rig, since: float, within: float) -> None:
+    """The wheels, which stand now, have stood so soon after `since`, when the driver did what stops them."""
+    assert rig.vehicle.outputs()[-1].at - since <= within + NOISE + rig.asking.total()
+
+
+def assert_said_neutral(rig: Rig, since: float) -> None:
+    """The ground station has taken its leave in neutral frames."""
+    rig.relay.wait(lambda: rig.relay.neutral_since(since) >= 3, PATIENCE, "three neutral demands")
 
 
 def test_key_released(rig: Build) -> None:
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     released = time.monotonic()
     assert_stops(world)
-    assert world.vehicle.outputs()[-1].at - released <= HOLD_TIMEOUT + NEUTRAL_WITHIN + NOISE
+    assert_stood(world, released, HOLD_TIMEOUT + NEUTRAL_WITHIN)
     assert world.relay.armed()
 
 
 @pytest.mark.parametrize("burst", ["ik", "ki", "iiiii ", " i", "lk", "ik\x1b[A"])
 def test_a_stop_key_in_a_burst_wins(rig: Build, burst: str) -> None:
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     pressed = time.monotonic()
     world.station.type(burst)
     assert_stops(world)
-    assert world.vehicle.outputs()[-1].at - pressed <= NEUTRAL_WITHIN + NOISE
+    assert_stood(world, pressed, NEUTRAL_WITHIN)
 
 
 def test_terminal_closed(rig: Build) -> None:
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     closed = time.monotonic()
     world.station.close_terminal()
     assert_stops(world)
-    assert world.station.process.wait(10) is not None
-    assert world.relay.neutral_since(closed) >= 3
+    assert world.station.process.wait(PATIENCE) is not None
+    assert_said_neutral(world, closed)
 
 
 def test_ground_station_killed(rig: Build) -> None:
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     os.kill(world.station.process.pid, signal.SIGKILL)
     assert_stops(world)
 
 
 def test_ground_station_and_its_children_killed(rig: Build) -> None:
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     os.killpg(world.station.process.pid, signal.SIGKILL)
     assert_stops(world)
 
@@ -87,7 +98,7 @@ def test_ground_station_and_its_children_killed(rig: Build) -> None:
 def test_ground_station_frozen(rig: Build) -> None:
     """Only the screen's process hangs: the station notices that its lease is not renewed."""
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     os.kill(world.station.process.pid, signal.SIGSTOP)
     assert_stops(world)
     assert world.relay.newest_demand_is_neutral()
@@ -95,83 +106,99 @@ def test_ground_station_frozen(rig: Build) -> None:
 
 def test_ground_station_frozen_with_its_children(rig: Build) -> None:
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     os.killpg(world.station.process.pid, signal.SIGSTOP)
     assert_stops(world)
     os.killpg(world.station.process.pid, signal.SIGCONT)
     back = time.monotonic()
-    world.relay.wait(lambda: time.monotonic() > back + 1.0, 3, "a while passes")
+    world.relay.wait(lambda: time.monotonic() > back + 1.0, PATIENCE, "a while passes")
     assert not world.vehicle.moved_since(back)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_ground_station_told_to_end(rig: Build, number: signal.Signals) -> None:
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     told = time.monotonic()
     os.kill(world.station.process.pid, number)
     assert_stops(world)
     assert world.station.ended() == 128 + number  # as shells count
-    assert world.relay.neutral_since(told) >= 3
+    assert_said_neutral(world, told)
 
 
 def test_quit_by_key(rig: Build) -> None:
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     told = time.monotonic()
     world.station.type("\x03")
     assert_stops(world)
     assert world.station.ended() == 0
-    assert world.relay.neutral_since(told) >= 3
+    assert_said_neutral(world, told)
 
 
 def test_link_cut_and_back_with_the_key_held_all_along(rig: Build) -> None:
     """After 10 s without a link nothing moves by itself: not on the old demand, not on the key that is still held."""
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     world.relay.cut()
     cut = time.monotonic()
     world.station.hold("i", lambda: time.monotonic() > cut + 10.0)
+    noise = NOISE + world.obeying.total()
     falls, stops = world.vehicle.falls_and_stops_after(world.relay.last_demand())
-    assert falls <= FALLS_WITHIN + NOISE
-    assert stops <= NEUTRAL_WITHIN + NOISE
+    assert falls <= FALLS_WITHIN + noise
+    assert stops <= NEUTRAL_WITHIN + noise
+    stopped = time.monotonic()
     world.relay.cut(False)
     back = time.monotonic()
-    world.station.hold("i", lambda: time.monotonic() > back + 3.0)
-    assert world.relay.demands_since(back + 1.0)  # the station is heard again, and asks for motion
-    assert not world.vehicle.moved_since(cut + NEUTRAL_WITHIN + NOISE)
-    world.station.look(1.0)  # the key is let go
-    world.station.type("1")  # MANUAL, because the vehicle went to HOLD
-    world.station.wait_for(lambda: world.relay.mode() == Mode.MANUAL, 5, "MANUAL again")
-    world.station.hold("i", world.vehicle.at_full)
+
+    def heard_again() -> bool:  # and it asks for nothing old
+        return time.monotonic() > back + 3.0 and bool(world.relay.demands_since(back + 1.0))
+
+    world.station.hold("i", heard_again)
+    assert not world.vehicle.moved_since(stopped)
+    drive_on(world.station, world.vehicle)
+
+
+HOLDS = 9
+"""Of a lossy minute; all but one must drive where the loss is small."""
 
 
 @pytest.mark.parametrize(("loss", "keeps_driving"), [(0.10, True), (0.30, False)])
 def test_a_lossy_minute(rig: Build, loss: float, keeps_driving: bool) -> None:
     """One minute of holding and letting go. Motion follows the keys or ends; it never comes late."""
     world = rig(loss=loss, delay=0.010)
-    drive(world.station, world.vehicle, world.relay)
-    start = time.monotonic()
-    drove = 0
-    while time.monotonic() < start + 60:
-        if world.relay.mode() != Mode.MANUAL:
-            world.station.type("1")
-        pressed = time.monotonic()
-        world.station.hold("i", lambda pressed=pressed: time.monotonic() > pressed + 5.0)  # type: ignore[misc]
-        drove += world.vehicle.at_full()
-        released = time.monotonic()
-        world.station.look(HOLD_TIMEOUT + NEUTRAL_WITHIN + NOISE)
-        assert not world.vehicle.moved_since(released + HOLD_TIMEOUT + NEUTRAL_WITHIN + NOISE - REPEAT)
-        assert not world.vehicle.turning()
+    world.drive()
+    drove = sum(drives_for_5_s(world) for _ in range(HOLDS))
     if keeps_driving:
-        assert drove >= 8
+        assert drove >= HOLDS - 1
+
+
+def drives_for_5_s(rig: Rig) -> bool:
+    """Hold the key and let go; what moves then, stops in time. Did it drive?"""
+    if rig.relay.mode() != Mode.MANUAL:
+        rig.station.type("1")
+        rig.station.soon(lambda: rig.relay.mode() == Mode.MANUAL, 2.0)
+    rig.watch()
+    pressed, full = time.monotonic(), False
+
+    def over() -> bool:
+        nonlocal full
+        full = full or rig.vehicle.at_full()
+        return time.monotonic() > pressed + 5.0
+
+    rig.station.hold("i", over)
+    released = time.monotonic()
+    rig.station.look(HOLD_TIMEOUT + NEUTRAL_WITHIN + NOISE)
+    rig.station.wait_for(rig.vehicle.stands, PATIENCE, "the wheels stop")
+    assert_stood(rig, released, HOLD_TIMEOUT + NEUTRAL_WITHIN)
+    return full
 
 
 def test_vehicle_told_to_end(rig: Build) -> None:
     world = rig()
-    drive(world.station, world.vehicle, world.relay)
+    world.drive()
     world.vehicle.process.send_signal(signal.SIGTERM)
-    assert world.vehicle.process.wait(5) == 0
+    assert world.vehicle.process.wait(PATIENCE) == 0
     assert not world.vehicle.turning()
     lines = world.vehicle.errors.read_text().splitlines()
     assert lines[-1] == "vehicle: stopped by SIGTERM, motors neutral"

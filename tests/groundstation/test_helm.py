@@ -13,12 +13,15 @@ from pathlib import Path
 import pytest
 
 from dialects import messages as m
+from groundstation import client as client_module
 from groundstation.client import StationClient, StationError
 from groundstation.intents import Arm, Gate, Lease, Push, Release, StartSimulator
-from groundstation.sitl import free_port
+from groundstation.snapshot import Snapshot
 from groundstation.wire import Batch, encode
-from tests.groundstation.screen import FORWARD, Screen, children, running, until
+from tests.groundstation.screen import FORWARD, PATIENCE, Screen, children, running, until
 from tests.groundstation.udp_vehicle import UdpVehicle
+from tests.ports import free_port
+from tests.waits import Waits
 
 pytestmark = pytest.mark.e2e
 
@@ -33,24 +36,36 @@ def neutral(vehicle: UdpVehicle, since: float) -> list[float]:
     return [at for at, x in vehicle.demands(since) if not x]
 
 
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A station may take its time to end."""
+    monkeypatch.setattr(client_module, "CLOSE_TIMEOUT", PATIENCE)
+
+
+def assert_said_neutral(vehicle: UdpVehicle, since: float) -> None:
+    """A station that has ended said neutral five times as the last it said."""
+    until(lambda: len(neutral(vehicle, since)) >= 5)
+    assert len(neutral(vehicle, since)) == 5
+    assert not moving(vehicle, neutral(vehicle, since)[0])
+
+
 def test_a_held_key_drives_and_its_release_is_neutral_at_once() -> None:
     with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
         screen.drive(vehicle)
-        released = time.monotonic()
+        waits, released = Waits(screen.client.pid), time.monotonic()
         screen.client.send(Release(key="i"))
         until(lambda: len(neutral(vehicle, released)) > 5)
-        assert neutral(vehicle, released)[0] - released < 0.3
+        assert neutral(vehicle, released)[0] - released < 0.3 + waits.total()
         assert not moving(vehicle, neutral(vehicle, released)[0])
 
 
+@pytest.mark.usefixtures("patient")
 def test_quit_sends_neutral_several_times_and_ends() -> None:
     with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
         screen.drive(vehicle)
         at = time.monotonic()
         assert screen.client.close() == 0
-        until(lambda: len(neutral(vehicle, at)) >= 5)
-        assert len(neutral(vehicle, at)) == 5
-        assert not moving(vehicle, neutral(vehicle, at)[0])
+        assert_said_neutral(vehicle, at)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
@@ -59,8 +74,8 @@ def test_signals_mean_neutral_and_end(number: signal.Signals) -> None:
         screen.drive(vehicle)
         at = time.monotonic()
         os.kill(screen.client.pid, number)
-        until(lambda: not running(screen.client.pid) and len(neutral(vehicle, at)) >= 5)
-        assert len(neutral(vehicle, at)) == 5
+        until(lambda: not running(screen.client.pid))
+        assert_said_neutral(vehicle, at)
         until(lambda: screen.client.receive() is None and not screen.client.alive)
 
 
@@ -83,12 +98,12 @@ def test_killed_screen_is_neutral_and_the_station_ends() -> None:
             assert parent.stdout is not None
             station = int(parent.stdout.readline())
             until(lambda: bool(moving(vehicle, 0.0)))
-            killed = time.monotonic()
+            waits, killed = Waits(station), time.monotonic()
             parent.kill()
-            until(lambda: not running(station) and len(neutral(vehicle, killed)) >= 5)
-            assert len(neutral(vehicle, killed)) == 5
-            assert neutral(vehicle, killed)[0] - killed < 0.4
-            assert not moving(vehicle, neutral(vehicle, killed)[0])
+            until(lambda: bool(neutral(vehicle, killed)))
+            assert neutral(vehicle, killed)[0] - killed < 0.4 + waits.total()
+            until(lambda: not running(station))
+            assert_said_neutral(vehicle, killed)
     finally:
         parent.kill()
         parent.wait()
@@ -99,29 +114,42 @@ def test_killed_screen_is_neutral_and_the_station_ends() -> None:
 def test_frozen_screen_is_neutral_within_half_a_second_and_control_is_given_up() -> None:
     with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
         screen.drive(vehicle)
+        waits = Waits(screen.client.pid)
         screen.freeze()
         frozen = time.monotonic()
-        until(lambda: len(neutral(vehicle, frozen)) >= 5, within=2.0)
-        assert max(moving(vehicle, frozen - 0.1)) - frozen < 0.5
+        until(lambda: len(neutral(vehicle, frozen)) >= 5)
+        assert max(moving(vehicle, 0.0)) - frozen < 0.5 + waits.total()
         quiet = time.monotonic()
         until(lambda: time.monotonic() > quiet + 1.5)
-        assert vehicle.demands(quiet + 0.1) == []
-        assert [at for at, _ in vehicle.core.all(m.Heartbeat) if at > quiet + 0.1] == []
+        still = quiet + 0.1 + waits.total()  # what was on its way
+        until(lambda: time.monotonic() > still + 0.5)
+        assert vehicle.demands(still) == []
+        assert [at for at, _ in vehicle.core.all(m.Heartbeat) if at > still] == []
 
 
 def test_no_key_is_lost_at_5_ms() -> None:
     with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
         screen.drive(vehicle)
         until(lambda: bool(vehicle.core.all(m.RoverOperatorPresence)))
-        before = vehicle.core.all(m.RoverOperatorPresence)[-1][1].input_count
+        before = counted(vehicle) + late(screen.snapshot)
         started = time.monotonic()
         for number in range(1000):
             key, direction = ("j", -1) if number % 2 else ("l", 1)
             screen.client.send(Push(key=key, throttle=0, steering=direction))
             pause = started + 0.005 * (number + 1) - time.monotonic()
             screen._stop.wait(max(0.0, pause))
-        until(lambda: vehicle.core.all(m.RoverOperatorPresence)[-1][1].input_count >= before + 1000)
-        assert vehicle.core.all(m.RoverOperatorPresence)[-1][1].input_count == before + 1000
+        screen.see(lambda snapshot: counted(vehicle) + late(snapshot) >= before + 1000)
+        assert counted(vehicle) + late(screen.snapshot) == before + 1000
+
+
+def counted(vehicle: UdpVehicle) -> int:
+    """Keys, as the station has told last."""
+    return vehicle.core.all(m.RoverOperatorPresence)[-1][1].input_count
+
+
+def late(snapshot: Snapshot) -> int:
+    """Keys that a station which the machine held up has dropped, because they came 0.3 s late, and has told."""
+    return sum(line.count for line in snapshot.texts if "Push came" in line.text)
 
 
 def test_intents_that_lay_in_the_pipe_of_a_frozen_station_do_not_act() -> None:
@@ -187,9 +215,10 @@ def test_nothing_is_printed_and_the_log_is_written(tmp_path: Path, capfd: pytest
 
 
 def sees_rover(screen: Screen) -> None:
-    screen.see(lambda snapshot: snapshot.vehicle is not None and snapshot.vehicle.alive, within=15.0)
+    screen.see(lambda snapshot: snapshot.vehicle is not None and snapshot.vehicle.alive)
 
 
+@pytest.mark.usefixtures("patient")
 def test_sitl_starts_a_rover_on_a_free_port_and_ends_it_with_us() -> None:
     with Screen(sitl=True) as screen:
         sees_rover(screen)

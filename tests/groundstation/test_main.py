@@ -31,7 +31,7 @@ def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 
 
 def in_terminal(
-    arguments: Sequence[str], *, columns: int = 80, rows: int = 24, timeout: float = 20.0
+    arguments: Sequence[str], *, columns: int = 80, rows: int = 24, timeout: float = 60.0
 ) -> tuple[int, str]:
     """Run in a terminal of this size; exit code and everything that was shown."""
     ours, theirs = pty.openpty()

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 from tests.e2e.programs import Vehicle
-from tests.e2e.relay import Relay, free_port
+from tests.e2e.relay import Relay
+from tests.ports import free_port
 
 HOME = (-35.3632581, 149.1652363)
 """Where the simulated rover starts, degrees."""

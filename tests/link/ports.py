@@ -95,7 +95,7 @@ class Heard:
         return b"".join(data for data, _ in self.data)
 
 
-async def until(condition: Callable[[], object], within: float = 10.0) -> None:
+async def until(condition: Callable[[], object], within: float = 60.0) -> None:
     """Let the loop run until `condition`."""
     async with asyncio.timeout(within):
         while not condition():

@@ -37,6 +37,7 @@ from link.transmit import AHEAD, STALE
 from tests.link.frames import demand, frame, heartbeat
 from tests.link.ports import Cable
 from tests.link.test_router import command, unknown
+from tests.ports import free_port
 
 VEHICLE = heartbeat(0, 1, 1)
 BULK = [frame(Attitude(number, 0.5, 0, 0, 0, 0, 1), number % 256, 1, 1) for number in range(100)]
@@ -51,7 +52,7 @@ class Program:
         )
         self.said = b""
 
-    def wait_for(self, text: str, within: float = 20.0) -> None:
+    def wait_for(self, text: str, within: float = 60.0) -> None:
         """Until it has logged `text`."""
         assert self.process.stderr
         deadline = time.monotonic() + within
@@ -68,11 +69,11 @@ class Program:
 
     def end(self, number: int = signal.SIGTERM) -> int:
         self.process.send_signal(number)
-        return self.process.wait(10)
+        return self.process.wait(60)
 
     def close(self) -> None:
         self.process.kill()
-        self.process.wait(10)
+        self.process.wait(60)
         for stream in (self.process.stdout, self.process.stderr):
             if stream:
                 stream.close()
@@ -101,7 +102,7 @@ def cable(tmp_path: Path) -> Iterator[Cable]:
 def ground() -> Iterator[socket.socket]:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
         sock.bind(("127.0.0.1", 0))
-        sock.settimeout(10)
+        sock.settimeout(60)
         yield sock
 
 
@@ -109,13 +110,7 @@ def to(sock: socket.socket) -> str:
     return f"udpout:127.0.0.1:{sock.getsockname()[1]}"
 
 
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        sock.bind(("127.0.0.1", 0))
-        return int(sock.getsockname()[1])
-
-
-def read_until(cable: Cable, expected: bytes, within: float = 10.0) -> bytes:
+def read_until(cable: Cable, expected: bytes, within: float = 60.0) -> bytes:
     """What the bridge writes to the port, until `expected` is among it."""
     found, deadline = b"", time.monotonic() + within
     while expected not in found:
@@ -225,7 +220,7 @@ def test_a_live_table_on_a_terminal(bridge: Callable[..., Program], cable: Cable
     fcntl.ioctl(program_side, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 140, 0, 0))
     program = bridge(cable.endpoint, to(ground), stdout=program_side)
     os.close(program_side)
-    screen, deadline = b"", time.monotonic() + 20
+    screen, deadline = b"", time.monotonic() + 60
     while not (b"routes" in screen and b"190" in screen):
         assert time.monotonic() < deadline, screen
         cable.write(heartbeat(0))
@@ -303,7 +298,7 @@ def test_it_records_what_passes_and_the_file_is_whole_after_a_signal(
 )
 def test_a_mistake_is_one_line_and_exit_code_2(words: tuple[str, ...], told: str) -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "link.bridge", *words], capture_output=True, text=True, timeout=30, check=False
+        [sys.executable, "-m", "link.bridge", *words], capture_output=True, text=True, timeout=60, check=False
     )
     assert done.returncode == 2
     assert told in done.stderr
@@ -330,7 +325,7 @@ def test_the_document_names_every_endpoint_and_option_and_the_right_numbers() ->
     for scheme in SCHEMES.values():
         assert f"`{scheme.form}`" in text
     help_text = subprocess.run(
-        [sys.executable, "-m", "link.bridge", "--help"], capture_output=True, text=True, timeout=30, check=True
+        [sys.executable, "-m", "link.bridge", "--help"], capture_output=True, text=True, timeout=60, check=True
     ).stdout
     for option in ("--json", "--quiet", "--tlog", "--one-frame"):
         assert option in help_text

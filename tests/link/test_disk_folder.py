@@ -21,7 +21,7 @@ from tests.link.services_world import from_gcs, messages
 
 T = TypeVar("T")
 DATA = os.urandom(3 * PIECE + 77)
-PATIENCE = 10.0
+PATIENCE = 60.0
 
 
 @pytest.fixture

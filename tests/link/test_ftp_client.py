@@ -37,7 +37,7 @@ def fetch(vehicle: Vehicle, path: str, **how: Any) -> FtpOutcome:
     return ending(client, pair)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(
     st.integers(0, 10_000),
     st.sampled_from([0.0, 0.1, 0.3]),
@@ -163,7 +163,7 @@ def test_a_size_that_would_fill_our_memory_is_refused() -> None:
     assert opened(MAX_SIZE.to_bytes(4, "little")).outcomes() == []
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(st.lists(st.binary(min_size=251, max_size=251), max_size=10), st.integers(0, 2000))
 def test_any_answer_raises_nothing_and_stays_in_bounds(payloads: list[bytes], size: int) -> None:
     client = opened(size.to_bytes(4, "little"))

@@ -97,7 +97,7 @@ def test_what_is_meant_for_others_or_comes_from_strangers_is_not_answered() -> N
     assert vehicle.send(question, introduced=False) == []
 
 
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(st.lists(st.binary(min_size=251, max_size=251), max_size=8))
 def test_any_bytes_are_answered_once_and_raise_nothing(payloads: list[bytes]) -> None:
     vehicle = Vehicle()
@@ -107,7 +107,7 @@ def test_any_bytes_are_answered_once_and_raise_nothing(payloads: list[bytes]) ->
         assert len(answers) <= 1
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(
     st.lists(
         st.builds(

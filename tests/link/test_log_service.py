@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects import messages as m
@@ -161,7 +161,6 @@ def test_what_is_meant_for_others_or_comes_from_strangers_is_not_answered(
     assert Vehicle().ask(m.LogRequestData(system, component, 0, 0, 90), introduced=introduced) == []
 
 
-@settings(deadline=None)
 @given(
     st.lists(
         st.tuples(*[st.integers(0, 0xFFFF)] * 2, st.integers(0, 0xFFFF_FFFF), st.integers(0, 0xFFFF_FFFF)), max_size=9

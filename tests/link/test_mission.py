@@ -7,7 +7,7 @@ import struct
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects import messages as m
@@ -269,7 +269,6 @@ WORDS = st.one_of(
 )
 
 
-@settings(deadline=None)
 @given(st.lists(WORDS, max_size=30))
 def test_nothing_that_is_said_raises(words: list[m.Message]) -> None:
     vehicle = Vehicle()

@@ -28,7 +28,7 @@ def ending(client: MissionClient, pair: Pair, within: float) -> MissionOutcome:
     return outcome
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.1, 0.3]), st.integers(0, 40))
 def test_a_plan_goes_up_and_down_whatever_is_lost(seed: int, loss: float, length: int) -> None:
     vehicle = Vehicle()

@@ -17,7 +17,7 @@ from tests.link.param_vehicle import Vehicle, big_table
 from tests.link.services_world import Pair, from_vehicle
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.1, 0.3]))
 def test_all_parameters_arrive_whatever_is_lost(seed: int, loss: float) -> None:
     vehicle = Vehicle(table=big_table(120))
@@ -38,7 +38,7 @@ def test_a_whole_list_takes_one_question() -> None:
     assert pair.sent_by_client == 1
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(st.integers(0, 10_000))
 def test_a_set_over_a_lossy_link_ends_as_wanted(seed: int) -> None:
     vehicle = Vehicle()

@@ -20,7 +20,7 @@ from link.tlog import Record, read
 from link.worker import Worker
 from tests.link.frames import demand, heartbeat
 
-PATIENCE = 10.0
+PATIENCE = 60.0
 
 
 class MemoryFile:

@@ -57,7 +57,7 @@ def addressed(number: int, payload: bytes, system: int, component: int) -> m.Mes
 
 
 @pytest.mark.parametrize("make", SERVERS)
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(frames=st.lists(FRAMES, max_size=8))
 def test_servers(make: Callable[[], Any], frames: list[tuple[int, bytes]]) -> None:
     server = make()
@@ -87,7 +87,7 @@ CLIENTS: list[Callable[[], Any]] = [
 
 
 @pytest.mark.parametrize("make", CLIENTS)
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(frames=st.lists(FRAMES, max_size=8))
 def test_clients(make: Callable[[], Any], frames: list[tuple[int, bytes]]) -> None:
     client = make()

@@ -17,14 +17,9 @@ from link.link import LinkError
 from link.tcp import MAX_CONNECTIONS, TcpClient, TcpServer, open_tcpin, open_tcpout
 from tests.link.frames import demand, frame, heartbeat
 from tests.link.ports import Heard, until
+from tests.ports import free_port
 
 DISARM = frame(CommandLong(1, 1, 400, 0, 0, 0, 0, 0, 0, 0, 0), 9)
-
-
-def free_port() -> int:
-    with socket.socket() as sock:
-        sock.bind(("127.0.0.1", 0))
-        return int(sock.getsockname()[1])
 
 
 @pytest.fixture
@@ -40,7 +35,7 @@ async def server(port: int) -> TcpServer:
 @pytest.fixture
 def listener(port: int) -> Iterator[socket.socket]:
     with socket.create_server(("127.0.0.1", port)) as sock:
-        sock.settimeout(10)
+        sock.settimeout(60)
         yield sock
 
 
@@ -130,7 +125,7 @@ async def test_it_connects_when_somebody_listens_and_again_when_he_returns(port:
             await until(lambda: len(heard.data) == len(heard.gone) + 1)
             assert heard.bytes.endswith(heartbeat(number))
             wire.send(demand(number), "whoever")
-            sock.settimeout(10)
+            sock.settimeout(60)
             assert sock.recv(100) == demand(number)
             sock.close()
         await until(lambda: wire.problem is not None)

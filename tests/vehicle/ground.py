@@ -19,6 +19,10 @@ from dialects.axes import Axes, manual_control
 from dialects.enums import Autopilot, Command, ModeFlag, Type
 from dialects.messages import CommandLong, Heartbeat, Message, StatusText, text_of
 
+PATIENCE = 60.0
+"""s for what must come, and comes in one or two: the machine is shared."""
+PATIENT_LOOP = "FS_LOOP_TIMEOUT=2"
+"""A control cycle later than this disarms: the longest that can be set, because the machine is shared."""
 DEMAND_PERIOD = 0.05
 """s; the 20 Hz of a ground station that drives."""
 
@@ -46,7 +50,7 @@ class Ground:
     def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
         self._socket.close()
 
-    def wait(self, condition: Callable[[], bool], what: str, within: float = 20.0) -> None:
+    def wait(self, condition: Callable[[], bool], what: str, within: float = PATIENCE) -> None:
         """Keep talking and listening until `condition`."""
         deadline = time.monotonic() + within
         while not condition():
@@ -108,7 +112,8 @@ class Vehicle:
 
     def __init__(self, folder: Path, *words: str) -> None:
         self._motor_log = folder / "motors.log"
-        command = [sys.executable, "-m", "vehicle", *words, "--motor-log", str(self._motor_log)]
+        patient = ["--param", PATIENT_LOOP, "--motor-log", str(self._motor_log)]
+        command = [sys.executable, "-m", "vehicle", *words, *patient]
         environment = {**os.environ, "XDG_STATE_HOME": str(folder)}  # parameters that you have set are not the tests'
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
 
@@ -119,7 +124,7 @@ class Vehicle:
 
     def ended(self) -> tuple[int, list[str]]:
         """Wait for its end: exit code, and what it said since the last line read."""
-        _, errors = self.process.communicate(timeout=10)
+        _, errors = self.process.communicate(timeout=PATIENCE)
         return self.process.returncode, errors.splitlines()
 
     def outputs(self) -> list[tuple[float, ...]]:
@@ -144,7 +149,7 @@ def running(folder: Path, *words: str) -> Iterator[Vehicle]:
     finally:
         if vehicle.process.poll() is None:
             vehicle.process.kill()
-        vehicle.process.communicate(timeout=10)
+        vehicle.process.communicate(timeout=PATIENCE)
 
 
 def drive(ground: Ground, vehicle: Vehicle) -> None:

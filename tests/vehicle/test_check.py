@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.ports import free_port
 from tests.vehicle.motors.across_processes import NAME, FiledPca9685
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty
@@ -44,9 +45,7 @@ def line() -> Iterator[OnPty]:
 
 
 def test_the_sample_is_well_as_it_is(tmp_path: Path) -> None:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = free_port()
     code, lines = checked(tmp_path, sample().replace("0.0.0.0:14550", f"127.0.0.1:{port}"))
     assert code == 0
     assert lines[:3] == [

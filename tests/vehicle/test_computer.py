@@ -73,7 +73,7 @@ NUMBER = st.one_of(st.none(), st.floats(), st.sampled_from([math.nan, math.inf, 
 BYTES = st.one_of(st.none(), st.integers(min_value=-(2**70), max_value=2**70))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.builds(Computer, temperature=NUMBER, load=NUMBER, uptime=NUMBER, memory_used=BYTES, memory_total=BYTES))
 def test_no_reading_of_the_computer_breaks_a_message(computer: Computer) -> None:
     """The bench encodes every message that leaves."""

@@ -103,7 +103,7 @@ def test_a_terminal_on_hold_does_not_hold_the_vehicle(tmp_path: Path) -> None:
             assert process.returncode == 0
         finally:
             process.kill()
-            process.wait(10)
+            process.wait(60)
             os.close(reader)
             os.close(writer)
 
@@ -118,10 +118,10 @@ def test_a_closed_stderr_is_no_fault() -> None:
         try:
             ground.arm()
             process.send_signal(signal.SIGTERM)
-            assert process.wait(10) == 0
+            assert process.wait(60) == 0
         finally:
             process.kill()
-            process.wait(10)
+            process.wait(60)
 
 
 @pytest.mark.e2e

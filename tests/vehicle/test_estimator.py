@@ -170,7 +170,7 @@ def test_one_wild_fix_is_left_out_and_many_are_believed() -> None:
 BAD = st.sampled_from([math.nan, math.inf, -math.inf, 1e308, -1e308, 0.0, 1.0, -1.0, 89.9, None])
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.lists(st.tuples(BAD, BAD, BAD, BAD, BAD, BAD, BAD), max_size=20), st.floats(0.0, 10.0))
 def test_no_reading_makes_it_something_that_is_no_number(rows: list[tuple[float | None, ...]], dt: float) -> None:
     estimator = Estimator()

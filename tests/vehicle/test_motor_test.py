@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.vehicle.motors.controllers import RoboClaw
-from tests.vehicle.motors.pty_controller import OnPty
+from tests.vehicle.motors.pty_controller import PATIENCE, OnPty
 from tests.vehicle.words import said_by
 from vehicle.motor_test import RefusedError, Wish, turn, wish
 from vehicle.motors import MotorError
@@ -104,8 +104,8 @@ def test_56_what_is_too_much_is_refused(motor: str, throttle: float, seconds: fl
 
 def test_one_motor_turns_and_ends_neutral_and_without_power() -> None:
     began = time.monotonic()
-    assert turn(TABLE, Wish((0.0, 0.2), 0.1)) is None
-    assert 0.1 <= time.monotonic() - began < 2.0
+    assert turn(TABLE, Wish((0.0, 0.2), 0.5)) is None
+    assert time.monotonic() - began >= 0.5
     assert ASKED[:2] == ["open", "enable"]
     assert ASKED[2:-3] == ["0 0.2"] * len(ASKED[2:-3])
     assert len(ASKED[2:-3]) >= 3
@@ -124,12 +124,11 @@ def test_a_signal_ends_it_at_once() -> None:
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
     signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
     signal.pthread_kill(threading.get_ident(), signal.SIGTERM)  # other threads of the test runner do not hold it back
-    began = time.monotonic()
     try:
         assert turn(TABLE, Wish((0.2, 0.0), 3.0)) is signal.SIGTERM
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    assert time.monotonic() - began < 1.0
+    assert ASKED.count("0.2 0") == 1
     assert ASKED[-3:] == ["0 0", "disable", "disable"]
 
 
@@ -178,11 +177,12 @@ def test_at_a_terminal_it_asks(line: OnPty, tmp_path: Path, answer: bytes, code:
     process = subprocess.Popen(words, stdin=theirs, stderr=subprocess.PIPE, text=True)
     os.write(ours, answer)
     if code == 0:
-        line.until(lambda: line.controller.outputs[0] == pytest.approx(0.25, abs=1e-4))
-    _, told = process.communicate(timeout=10)
+        line.until(lambda: any(outputs[0] == pytest.approx(0.25, abs=1e-4) for outputs in line.history))
+    _, told = process.communicate(timeout=PATIENCE)
     os.close(ours)
     os.close(theirs)
     assert process.returncode == code
+    assert any(map(any, line.history)) is (code == 0)
     assert "Are the wheels in the air?" in told
     assert line.controller.outputs == [0.0, 0.0]
 
@@ -193,9 +193,7 @@ def test_ctrl_c_stops_it(line: OnPty, tmp_path: Path, number: signal.Signals) ->
     process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
     line.until(lambda: line.controller.outputs[1] > 0.1)
     process.send_signal(number)
-    began = time.monotonic()
-    _, told = process.communicate(timeout=10)
-    assert time.monotonic() - began < 2.0
+    _, told = process.communicate(timeout=PATIENCE)
     assert (process.returncode, told) == (0, f"vehicle motor-test: stopped by {number.name}, motors neutral\n")
     assert line.controller.outputs == [0.0, 0.0]
 
@@ -204,7 +202,7 @@ def test_killed_the_controllers_own_timeout_ends_it(line: OnPty, tmp_path: Path)
     process = subprocess.Popen(command(line, tmp_path, "right", "--time", "3", "--yes"))
     line.until(lambda: line.controller.outputs[1] > 0.1)
     process.kill()
-    process.wait(10)
+    process.wait(PATIENCE)
     line.until(lambda: not any(line.controller.outputs))
 
 
@@ -219,7 +217,7 @@ def test_a_reversed_motor_turns_as_the_vehicle_turns_it(line: OnPty, tmp_path: P
     wanted = 0.25 if where == "neither" else -0.25
     line.until(lambda: line.controller.outputs[1] == pytest.approx(wanted, abs=1e-4))
     process.send_signal(signal.SIGTERM)
-    process.communicate(timeout=10)
+    process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
     assert line.controller.outputs == [0.0, 0.0]
 
@@ -237,12 +235,15 @@ def test_without_knowing_what_is_kept_nothing_turns(line: OnPty, tmp_path: Path)
 def test_while_a_vehicle_runs_it_is_refused(line: OnPty, tmp_path: Path) -> None:
     words = command(line, tmp_path, "right", "--time", "3", "--yes")
     process = subprocess.Popen(words, stderr=subprocess.DEVNULL)  # holds the motors as a vehicle does
-    line.until(lambda: line.controller.outputs[1] > 0.1)
-    second = subprocess.run(words, capture_output=True, text=True, check=False, timeout=10)
-    assert second.returncode == 1
-    assert second.stderr.startswith("vehicle motor-test: the motors are in use by another vehicle")
-    process.send_signal(signal.SIGTERM)
-    process.wait(10)
+    try:
+        line.until(lambda: line.controller.outputs[1] > 0.1)
+        process.send_signal(signal.SIGSTOP)  # so that it holds them however long the second takes to start
+        second = subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE)
+        assert second.returncode == 1
+        assert second.stderr.startswith("vehicle motor-test: the motors are in use by another vehicle")
+    finally:
+        process.kill()
+        process.wait(PATIENCE)
 
 
 @pytest.mark.parametrize(

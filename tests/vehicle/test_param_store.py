@@ -131,13 +131,13 @@ def test_to_keep_does_not_wait_for_the_disk(tmp_path: Path, monkeypatch: pytest.
 
     def slow(descriptor: int) -> None:
         writing.set()
-        assert released.wait(10)
+        assert released.wait(60)
         fsync(descriptor)
 
     monkeypatch.setattr(os, "fsync", slow)
     store = ParamStore(tmp_path)
     store.keep("SPEED_MAX", 2.0)
-    assert writing.wait(10)
+    assert writing.wait(60)
     store.keep("SPEED_MAX", 3.0)  # returned, though the disk hangs
     released.set()
     store.close()
@@ -150,7 +150,7 @@ def test_a_slow_disk_gets_the_newest_of_many_wishes(tmp_path: Path) -> None:
 
     def slow() -> bytes:
         writing.set()
-        assert released.wait(10)
+        assert released.wait(60)
         return b"first"
 
     def made_of(word: str) -> bytes:
@@ -159,7 +159,7 @@ def test_a_slow_disk_gets_the_newest_of_many_wishes(tmp_path: Path) -> None:
 
     scribe = Scribe(tmp_path)
     scribe.write("parameters", slow)
-    assert writing.wait(10)
+    assert writing.wait(60)
     for number in range(1000):
         scribe.write("parameters", partial(made_of, f"{number}"))
     scribe.write("fence", partial(made_of, "fence"))

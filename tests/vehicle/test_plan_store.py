@@ -347,7 +347,7 @@ def test_plans_survive_kill_9(tmp_path: Path) -> None:
             client.upload(items, kind, time.monotonic())
             ids[kind] = done(ground, client).plan_id
         vehicle.process.kill()  # at once: the answer to the last one says that it is on the disk
-        vehicle.process.wait(10)
+        vehicle.process.wait(60)
     with Ground() as ground, running(tmp_path, *words, ground.endpoint) as vehicle:
         vehicle.ready()
         ground.wait(lambda: bool(ground.heard), "the vehicle is there again")

@@ -139,7 +139,7 @@ def test_the_process_ends_with_the_code_that_says_what_is_wanted(
         vehicle.ready()
         drive(ground, vehicle)
         ask(ground, REBOOT, *wish, until=lambda: Result.FAILED in answers(ground, REBOOT))
-        assert vehicle.turning()
+        ground.wait(vehicle.turning, "they turn still")
         ground.demand = None
         ask(ground, Command.COMPONENT_ARM_DISARM, until=lambda: not ground.armed and not vehicle.turning())
         ask(ground, REBOOT, *wish, until=lambda: vehicle.process.poll() is not None)

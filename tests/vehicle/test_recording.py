@@ -23,7 +23,7 @@ from link.frame import Frame, payload_of
 from link.framer import Framer
 from link.services.ftp_client import FtpClient, FtpOutcome
 from link.tlog import Record, read
-from tests.e2e.relay import free_port
+from tests.ports import free_port
 from tests.vehicle.ground import Ground, drive, running
 from vehicle.log_files import number_of, time_of
 from vehicle.params import TABLE
@@ -163,11 +163,8 @@ def test_what_the_vehicle_does_is_recorded_also_where_nobody_listens(tmp_path: P
     with Ground() as ground, running(tmp_path, "--sim", *words) as vehicle:
         vehicle.ready()
         ground.wait(lambda: recorded(folder)["PARAM_VALUE", 1] >= len(TABLE), "all parameters")
-        ground.wait(lambda: recorded(folder)["SERVO_OUTPUT_RAW", 1] >= 3, "outputs")
-        found = recorded(folder)
-        assert found["ATTITUDE", 1] >= 3
-        assert found["HEARTBEAT", 1] >= 1
-        assert found["UNKNOWN_46001", 0] >= 3  # ROVER_DRIVE_STATUS
+        for kind in (("SERVO_OUTPUT_RAW", 1), ("ATTITUDE", 1), ("HEARTBEAT", 1), ("UNKNOWN_46001", 0)):
+            ground.wait(lambda kind=kind: recorded(folder)[kind] >= 3, str(kind))  # type: ignore[misc]
         assert not vehicle.process.poll()
 
 
@@ -215,12 +212,12 @@ def test_pymavlinks_own_client_fetches_a_log(tmp_path: Path) -> None:
             f"udpin:127.0.0.1:{port}", source_system=255, source_component=190
         )
         try:
-            assert master.wait_heartbeat(timeout=10)
+            assert master.wait_heartbeat(timeout=60)
             master.mav.heartbeat_send(6, 8, 0, 0, 4)
             got: list[bytes] = []
             client = mavftp.MAVFTP(master, 1, 1)
             client.cmd_get(["/logs/00000003.tlog"], callback=lambda file: got.append(file.read()))
-            client.process_ftp_reply("get", timeout=10)
+            client.process_ftp_reply("get", timeout=60)
             assert [hashlib.sha256(data).digest() for data in got] == [hashlib.sha256(content).digest()]
         finally:
             master.close()
@@ -231,13 +228,12 @@ def test_a_killed_vehicle_leaves_a_log_that_can_be_read(tmp_path: Path) -> None:
     with Ground() as ground, running(tmp_path, "--sim", ground.endpoint, "--tlog", str(folder)) as vehicle:
         vehicle.ready()
         drive(ground, vehicle)
-        ground.wait(lambda: grown(folder, 4000), "a log with something in it")
+        ground.wait(lambda: told_of(recorded(folder)), "a log with something in it")
         vehicle.process.kill()
-        vehicle.process.wait(10)
+        vehicle.process.wait(60)
     [log] = logs_of(folder)
     found = sources(by_pymavlink(log))
-    assert found["MANUAL_CONTROL", 255] > 3
-    assert found["HEARTBEAT", 1] >= 1
+    assert told_of(found)
     assert found["BAD_DATA", 0] == 0
     # And the next drive is another log.
     with Ground() as ground, running(tmp_path, "--sim", ground.endpoint, "--tlog", str(folder)) as vehicle:
@@ -245,6 +241,11 @@ def test_a_killed_vehicle_leaves_a_log_that_can_be_read(tmp_path: Path) -> None:
         ground.arm()
         ground.wait(lambda: len(logs_of(folder)) == 2, "a second log")
     assert [number_of(each.name) for each in logs_of(folder)] == [1, 2]
+
+
+def told_of(found: Counter[tuple[str, int]]) -> bool:
+    """Are driver and vehicle in the log?"""
+    return found["MANUAL_CONTROL", 255] > 3 and found["HEARTBEAT", 1] >= 1
 
 
 def test_log_disarmed_and_erase(tmp_path: Path) -> None:
@@ -274,11 +275,13 @@ def test_a_disk_that_takes_no_more_is_told_and_the_wheels_go_on(tmp_path: Path) 
         ground.wait(lambda: any(text.startswith("Log: ") for text in ground.texts()), "it is told")
         told = [text for text in ground.texts() if text.startswith("Log: ")]
         assert told == ["Log: File too large"]
-        assert vehicle.turning()
+        ground.wait(vehicle.turning, "they turn still")
         assert ground.armed
     [log] = logs_of(folder)
     assert log.stat().st_size == 6000
-    assert sources(by_pymavlink(log))["MANUAL_CONTROL", 255] > 3
+    whole = list(map(framed, read(log.read_bytes())))  # pymavlink's reader stumbles over half a frame at the end
+    assert len(whole) > 50
+    assert {1, 255} <= {frame.system for frame in whole}
 
 
 def test_a_folder_that_cannot_be_had_does_not_keep_it_from_driving(tmp_path: Path) -> None:
@@ -287,7 +290,7 @@ def test_a_folder_that_cannot_be_had_does_not_keep_it_from_driving(tmp_path: Pat
         vehicle.ready()
         drive(ground, vehicle)
         ground.wait(lambda: "Log: File exists" in ground.texts(), "it is told")
-        assert vehicle.turning()
+        ground.wait(vehicle.turning, "they turn still")
         assert ground.log_list() == []
 
 

@@ -14,7 +14,7 @@ import pytest
 
 from dialects.enums import Command
 from dialects.messages import CommandLong
-from tests.vehicle.ground import Ground, Vehicle, drive, running
+from tests.vehicle.ground import PATIENCE, Ground, Vehicle, drive, running
 from tests.vehicle.motors.across_processes import NAME, FiledPca9685
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.fake_sysfs import FakeSysfs
@@ -194,7 +194,7 @@ def kill_while_it_turns(rig: Rig, tmp_path: Path, turn: Callable[[Ground, Vehicl
             turn(ground, vehicle)
             ground.wait(rig.turning, "the hardware turns the wheels")
             vehicle.process.kill()
-            vehicle.process.wait(10)
+            vehicle.process.wait(PATIENCE)
     assert rig.turning()  # nobody is there to stop it
 
 
@@ -202,7 +202,7 @@ def safe_stop(file: Path) -> tuple[int, str]:
     """As systemd runs it: exit code, and what it says."""
     words = [sys.executable, "-m", "vehicle", "safe-stop", "--config", str(file)]
     environment = {**os.environ, "XDG_STATE_HOME": str(file.parent)}
-    ended = subprocess.run(words, capture_output=True, text=True, check=False, timeout=30, env=environment)
+    ended = subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE, env=environment)
     return ended.returncode, ended.stderr
 
 

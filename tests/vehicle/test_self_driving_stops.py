@@ -206,7 +206,7 @@ class Witness:
         self.field.cycle()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.lists(STEPS, max_size=25))
 def test_no_order_moves_a_rover_that_is_disarmed_stopped_or_in_a_failsafe(steps: list[Step]) -> None:
     field = Field()

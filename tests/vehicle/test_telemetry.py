@@ -235,7 +235,7 @@ WILD = st.one_of(st.none(), st.floats(), st.sampled_from([math.nan, math.inf, -m
 NO_NUMBERS = ("wheel_speeds", "computer", "configured", "faults")
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.fixed_dictionaries({field.name: WILD for field in fields(Readings) if field.name not in NO_NUMBERS}))
 def test_no_reading_breaks_a_message(values: dict[str, float]) -> None:
     """The bench encodes every message that leaves."""

@@ -20,7 +20,7 @@ from groundstation.ui.output import TerminalFile
 from tests.groundstation.ui.examples import Recorder
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])
-PATIENCE = 10.0
+PATIENCE = 60.0
 """s that a test waits for what must come; it comes in milliseconds."""
 
 Value = TypeVar("Value")

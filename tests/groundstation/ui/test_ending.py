@@ -29,7 +29,7 @@ print("ENDED", code, *(type(intent).__name__ for intent in station.intents[-4:])
 sys.exit(code)
 """
 
-LIMIT = 20.0
+LIMIT = 60.0
 """s for what takes half a second."""
 
 

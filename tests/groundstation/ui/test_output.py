@@ -10,7 +10,7 @@ from threading import Thread
 
 from groundstation.ui.output import TerminalFile, only_the_screen
 
-LIMIT = 10.0
+LIMIT = 60.0
 
 
 def test_a_terminal_that_takes_nothing_is_stuck_until_it_is_given_up() -> None:

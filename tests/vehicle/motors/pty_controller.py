@@ -14,7 +14,7 @@ from typing import Any
 
 from tests.vehicle.motors.controllers import Controller
 
-PATIENCE = 10.0
+PATIENCE = 60.0
 """s: never reached where the code is right, so it may be long."""
 
 
@@ -25,6 +25,8 @@ class OnPty:
         self.controller: Any = controller
         self.tail = b""
         """The last bytes that came."""
+        self.history: list[list[float]] = []
+        """Each change of the motor outputs, also those that were over before anybody looked."""
         self._master, self._slave = pty.openpty()  # our own end of the slave keeps the line up between processes
         tty.setraw(self._slave)
         os.set_blocking(self._master, False)
@@ -79,7 +81,13 @@ class OnPty:
             reply = self.controller.feed(data, now)
             with contextlib.suppress(BlockingIOError):  # nobody reads the replies
                 os.write(self._master, reply)
+            self._note()
         self.controller.tick(now)
+        self._note()
+
+    def _note(self) -> None:
+        if not self.history or self.history[-1] != self.controller.outputs:
+            self.history.append(list(self.controller.outputs))
 
 
 def recorded(port: Any) -> list[bytes]:

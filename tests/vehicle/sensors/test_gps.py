@@ -5,13 +5,13 @@ import contextlib
 import os
 import pty
 import shutil
-import socket
 import tty
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 
 import pytest
 
+from tests.ports import free_port
 from vehicle.sensors import gps
 from vehicle.sensors.gps import Gpsd, GpsSettings
 
@@ -49,7 +49,7 @@ class Server:
 
 async def until(holds: Callable[[], object]) -> None:
     """Let the loop run until it holds."""
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(60):
         while not holds():  # noqa: ASYNC110 - what is waited for has no event
             await asyncio.sleep(0.005)
 
@@ -75,8 +75,7 @@ async def test_a_recorded_stream_over_tcp() -> None:
 
 @pytest.mark.usefixtures("quick")
 async def test_a_gpsd_that_is_not_there_is_found_when_it_comes() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        port = taken.getsockname()[1]
+    port = free_port()
     source = Gpsd(GpsSettings(port=port))
     await until(lambda: source.fault)
     assert source.fault is not None
@@ -119,15 +118,14 @@ GPSD = shutil.which("gpsd") or shutil.which("/usr/sbin/gpsd")
 async def test_a_real_gpsd_with_a_receiver_on_a_terminal_line() -> None:
     master, slave = pty.openpty()
     tty.setraw(slave)
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
+    port = free_port()
     assert GPSD is not None
     process = await asyncio.create_subprocess_exec(
         GPSD, "-N", "-n", "-S", str(port), os.ttyname(slave), stderr=asyncio.subprocess.DEVNULL
     )
     source = Gpsd(GpsSettings(port=port))
     try:
-        async with asyncio.timeout(30):
+        async with asyncio.timeout(60):
             while (reading := source.latest(asyncio.get_running_loop().time())) is None or reading.fix.fix < 3:
                 for sentence in (
                     "GPGGA,120000.00,5230.9780,N,01322.6620,E,1,08,0.9,34.5,M,39.5,M,,",

@@ -50,7 +50,7 @@ def sampled(steps: Steps, clock: Callable[[], float]) -> Sampler[int]:
 def test_it_goes_on_after_anything_that_a_sensor_raises() -> None:
     steps = Steps(1, OSError("gone"), ZeroDivisionError(), 2)
     sampler = sampled(steps, lambda: 50.0)
-    assert steps.done.wait(10)
+    assert steps.done.wait(60)
     sampler.close()
     assert sampler.latest(50.0) == 2
     assert sampler.fault is None
@@ -60,7 +60,7 @@ def test_a_sensor_that_fails_ages_out() -> None:
     times = iter([50.0])
     steps = Steps(1, OSError("gone"))
     sampler = sampled(steps, times.__next__)
-    assert steps.done.wait(10)
+    assert steps.done.wait(60)
     sampler.close()
     assert sampler.fault == "gone"
     assert sampler.latest(52.0) == 1
@@ -76,7 +76,7 @@ def test_a_sensor_that_hangs_holds_nothing_up() -> None:
         return 1
 
     sampler = Sampler(hang, period=0.001, max_age=2.0)
-    assert inside.wait(10)
+    assert inside.wait(60)
     assert sampler.latest(0.0) is None
     never.set()
     sampler.close()

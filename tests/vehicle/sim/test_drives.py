@@ -82,7 +82,7 @@ part = st.floats(-1 / 3, 1 / 3)
 
 
 @pytest.mark.parametrize("kind", [OMNI, MECANUM])
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(part, part, part)
 def test_four_wheels_make_each_wish_that_fits(
     kind: DriveType, throttle: float, steering: float, sideways: float
