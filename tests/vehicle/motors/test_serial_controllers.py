@@ -290,7 +290,7 @@ class TestRoboClaw(SerialContract):
     @pytest.mark.parametrize(
         ("settings", "says"),
         [
-            ({}, "missing required field `port`"),
+            ({}, "needs settings, at least port"),
             ({"port": "/dev/x", "timeout": 0.6}, "timeout: Expected `float` <= 0.5"),
             ({"port": "/dev/x", "timeout": 0}, "timeout: Expected `float` >= 0.1"),
             ({"port": "/dev/x", "address": 0x90}, "address: Expected `int` <= 135"),
