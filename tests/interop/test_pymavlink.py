@@ -10,9 +10,9 @@ import pytest
 
 from dialects.enums import MissionResult
 from tests.e2e.programs import Vehicle
-from tests.e2e.relay import free_port
 from tests.interop.conftest import Rover
 from tests.interop.script import Script, mavftp, mavparm, mavutil, mavwp
+from tests.ports import free_port
 from vehicle.params import TABLE
 
 pytestmark = pytest.mark.interop
