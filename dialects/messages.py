@@ -71,6 +71,7 @@ LocalPositionNed = rover.MAVLink_local_position_ned_message
 GlobalPositionInt = rover.MAVLink_global_position_int_message
 GpsRawInt = rover.MAVLink_gps_raw_int_message
 ServoOutputRaw = rover.MAVLink_servo_output_raw_message
+RelayStatus = rover.MAVLink_relay_status_message
 RcChannels = rover.MAVLink_rc_channels_message
 AttitudeQuaternion = rover.MAVLink_attitude_quaternion_message
 HighresImu = rover.MAVLink_highres_imu_message

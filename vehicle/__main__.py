@@ -102,6 +102,7 @@ def _settings(asked: argparse.Namespace, config: Config, parser: Parser) -> Sett
     return Settings(
         endpoints=config.endpoints,
         motors=config.motors,
+        accessories=config.accessories,
         config=Path(asked.config) if asked.config else None,
         sensors=config.sensors,
         simulation=simulation if asked.sim else None,

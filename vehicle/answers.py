@@ -12,6 +12,8 @@ from dialects import messages as m
 from link.core import Outgoing, Received
 from link.services import timesync
 from link.services.command import CommandServer
+from vehicle.accessories.orders import AccessoryOrders
+from vehicle.accessories.rack import Rack
 from vehicle.actuator_test import ActuatorTest
 from vehicle.bandwidth import Bandwidth
 from vehicle.commands import Commands
@@ -64,9 +66,10 @@ class Answers:
         links: Links,
         trials: ActuatorTest,
         keepers: Keepers,
+        rack: Rack,
         look: Callable[[float], View],
     ) -> None:
-        """`look` is the rover at a moment."""
+        """`rack` holds the accessories; `look` is the rover at a moment."""
         self._safety = safety
         self._navigator = navigator
         self._system = control.system
@@ -78,14 +81,19 @@ class Answers:
         self._commands = Commands(safety, control, texts)
         self._orders = Orders(params, safety, control, navigator, texts)
         self._origin = OriginSetting(safety, control, navigator, texts, look)
-        self._plans = Plans(safety, control, navigator, texts, drive.mixer.servos, pacer=pacer, keeper=keepers.plans)
+        motors = drive.mixer.servos
+        self._accessories = AccessoryOrders(rack, safety, control, texts, motors)
+        self._plans = Plans(
+            safety, control, navigator, texts, motors, self._accessories, pacer=pacer, keeper=keepers.plans
+        )
         self.logbook = Logbook(params, control, texts, lambda: safety.armed, keepers.logs)
         self._services = Services(
             params, control, self.logbook, missions=self._plans.folder(), ids=self._ids, pacer=pacer
         )
         self._preflight = Preflight(params, safety, control, navigator, self._params, self._plans, texts)
         self._requests = Requests(telemetry, look, self._services.messages(), links)
-        tables = (self._commands, self._requests, self._orders, self._origin, self._plans, trials, self._preflight)
+        tables = (self._commands, self._requests, self._orders, self._origin, self._plans, self._accessories, trials,
+                  self._preflight)  # fmt: skip
         handlers = {command: handler for each in tables for command, handler in each.handlers().items()}
         self._server = CommandServer(handlers, system=self._system, component=COMPONENT)
 
@@ -130,13 +138,15 @@ class Answers:
 
     def tick(self, now: float) -> list[Outgoing]:
         """The next of what is under way."""
-        return [
+        outgoing = [
             *self._server.tick(now),
             *self._params.tick(now),
             *self._services.tick(now),
             *self._plans.tick(now),
             *self.logbook.tick(now),
         ]
+        self._accessories.step(now)
+        return outgoing
 
     def observe(self, now: float) -> None:
         """The links have reported."""

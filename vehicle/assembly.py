@@ -6,9 +6,17 @@ import contextlib
 import logging
 import time
 from collections.abc import Callable
+from dataclasses import replace
+
+from msgspec import to_builtins
 
 from dialects.enums import DriveType
+from vehicle.accessories.outlet import Output, Pulses
+from vehicle.accessories.rack import Rack
+from vehicle.accessories.settings import outputs_of
+from vehicle.accessories.simulated import SimulatedAccessory
 from vehicle.answers import COMPONENT
+from vehicle.clashes import clashes, motors_among
 from vehicle.lock import MotorLock
 from vehicle.machine import Machine
 from vehicle.mixer import MIXERS
@@ -30,6 +38,12 @@ from vehicle.sim.truth import WatchedBody
 
 log = logging.getLogger(__name__)
 
+SIMULATED = (
+    *(Output("relay", number, SimulatedAccessory) for number in (0, 1)),
+    *(Output("servo", number, SimulatedAccessory, pulses=Pulses(1000, 1500, 2000)) for number in (9, 10)),
+)
+"""Accessories of a simulation that was told of none: so that there are some to try."""
+
 
 def params_of(settings: Settings, keeper: ParamStore | None) -> Params:
     """Defaults, a known car's, what was kept, the file of settings, this run: the later wins. Raises ParamError."""
@@ -43,6 +57,20 @@ def params_of(settings: Settings, keeper: ParamStore | None) -> Params:
         consequence = "all parameters that were set have their defaults, and nobody can arm until one is set"
         log.warning("%s: %s: %s", settings.state, params.damage, consequence)
     return params
+
+
+def rack_of(settings: Settings, params: Params) -> Rack:
+    """The accessories, not open yet. Raises SettingsError where one of them might be a motor."""
+    outputs = outputs_of(settings.accessories)
+    problems = motors_among(outputs, DriveType(int(params["DRIVE_TYPE"])))
+    if settings.simulation is None:  # the file was right with the motors that it names, which need not be these
+        problems += clashes({"motors": settings.motors, "accessories": to_builtins(settings.accessories)})
+    if problems:
+        raise SettingsError(problems[0])
+    if settings.simulation is not None:
+        outputs = [replace(output, make=SimulatedAccessory) for output in outputs]
+        return Rack(outputs or SIMULATED)
+    return Rack(outputs)
 
 
 def recorder_of(settings: Settings, system: int, opened: contextlib.ExitStack) -> VehicleRecorder | None:
@@ -59,15 +87,21 @@ def build(
     rover: Rover,
     opened: contextlib.ExitStack,
     completed: Callable[[float], None],
+    rack: Rack,
 ) -> Machine:
-    """The rover in its body; what must be closed after the motors is in `opened`. Raises MotorError, SettingsError."""
+    """The rover in its body, with its accessories open; what must be closed after the motors is in `opened`. Raises
+    MotorError, SettingsError."""
     if settings.simulation is None:
         motors, sensors = _body(settings, opened)
     else:
         motors, sensors = _simulated_body(settings.simulation, params)
     try:
         logged = _logged(motors, settings.motor_log)
-        return Machine(rover, logged, sensors, stop_input=stop_input(motors), prove=proof(motors), completed=completed)
+        prove = proof(motors)
+        machine = Machine(rover, logged, sensors, stop_input=stop_input(motors), prove=prove, completed=completed)
+        opened.callback(rack.close)
+        rack.open()
+        return machine
     except BaseException:
         motors.close()
         raise
@@ -75,7 +109,9 @@ def build(
 
 def _body(settings: Settings, opened: contextlib.ExitStack) -> tuple[Motors, Sensors]:
     opened.callback(MotorLock(settings.motors).close)
-    opened.enter_context(copied(settings.motors, settings.config))
+    accessories = {name: tables for name, tables in to_builtins(settings.accessories).items() if tables}
+    parts = {"motors": dict(settings.motors), "accessories": accessories}
+    opened.enter_context(copied(parts, settings.config))
     own = {key: value for key, value in settings.motors.items() if key != "driver"}
     motors = open_motors(settings.motors["driver"], own)
     if settings.sensors is None:

@@ -13,6 +13,10 @@ from dialects.enums import DriveType
 from link.link import LinkError, Wire
 from link.openers import open_wires
 from link.troubles import CONNECTING
+from vehicle.accessories import OFF
+from vehicle.accessories.outlet import Output
+from vehicle.accessories.settings import outputs_of
+from vehicle.clashes import motors_among
 from vehicle.config import Config, ConfigError, load
 from vehicle.lock import MotorLock
 from vehicle.mixer import MIXERS
@@ -65,10 +69,29 @@ def findings(path: str, state: str | None = None) -> Iterator[Finding]:
         yield _tried("motors", lambda: _motors(config, known.params))
     else:
         yield Finding("motors", False, 'none; add [motors] and driver = "NAME"', mistake=True)
+    yield from _accessories(config, known.params)
     yield from _sensors(config)
     for name, log in (("log.file", config.log.file), ("log.motors", config.log.motors)):
         if log is not None:
             yield _tried(name, lambda log=Path(log): _log_file(log))  # type: ignore[misc]
+
+
+def _accessories(config: Config, params: Params) -> Iterator[Finding]:
+    """Each is opened as it is when it is safe; a servo without pulses, so that it does not move."""
+    outputs = outputs_of(config.accessories)
+    for problem in motors_among(outputs, DriveType(int(params["DRIVE_TYPE"]))):
+        yield Finding("settings", False, problem, mistake=True)
+    for output in outputs:
+        yield _tried(output.name, lambda output=output: _accessory(output))  # type: ignore[misc]
+
+
+def _accessory(output: Output) -> str:
+    value = output.safe if output.kind == "relay" else OFF
+    try:
+        output.make(value).close()
+    except Exception as error:  # anybody's driver may raise anything
+        raise _AbsentError(str(error) or type(error).__name__) from error
+    return f"{output.driver}, {output.words(value)}"
 
 
 def _sensors(config: Config) -> Iterator[Finding]:

@@ -13,10 +13,12 @@ import msgspec
 
 from link.endpoint import EndpointError, parse
 from link.toml_file import TomlError, read_toml, tables, unusable
+from vehicle.accessories import settings as accessory_settings
+from vehicle.accessories.settings import Accessories
 from vehicle.clashes import clashes
 from vehicle.explain import explained, suggestion
 from vehicle.motors import DRIVERS, PROFILES, USUAL_PARAMS, MotorError, UnknownDriverError, settings_type
-from vehicle.motors.settings import RETIRED, Around
+from vehicle.motors.settings import RETIRED, Around, NoSettings
 from vehicle.params import PARAMETERS, ParamError, Params
 from vehicle.sensors.suite import SensorSettings
 
@@ -61,6 +63,7 @@ class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Folder that keeps what ground stations set; without it the service's own, or one in your home."""
     identity: Identity = Identity()
     motors: dict[str, Any] = {}
+    accessories: Accessories = Accessories()
     sensors: SensorSettings = SensorSettings()
     params: dict[str, float] = {}
     log: LogSettings = LogSettings()
@@ -137,10 +140,6 @@ def _motor_problems(table: Mapping[str, Any]) -> list[str]:
     return _problem(beside, Around) + _problem(own, kind or NoSettings, Around.__struct_fields__)
 
 
-class NoSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Of a driver that has none of its own."""
-
-
 def _problem(table: Mapping[str, Any], kind: Any, also: tuple[str, ...] = ()) -> list[str]:
     try:
         msgspec.convert(dict(table), kind)
@@ -177,9 +176,14 @@ def _contradictions(table: Mapping[str, Any]) -> list[str]:
     return clashes(table)
 
 
+def _accessory_problems(table: Mapping[str, Any]) -> list[str]:
+    return accessory_settings.problems(msgspec.convert(table, Accessories))
+
+
 _CHECKS: dict[str, Callable[[Any], list[str]]] = {
     "endpoints": _endpoint_problems,
     "motors": _motor_problems,
+    "accessories": _accessory_problems,
     "params": _param_problems,
 }
 """Section -> what its types cannot say."""

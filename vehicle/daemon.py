@@ -21,7 +21,7 @@ from link.loop import run_loop, running_loop
 from link.runner import Runner, open_links
 from link.tape import Tape
 from vehicle.answers import COMPONENT
-from vehicle.assembly import build, params_of, recorder_of
+from vehicle.assembly import build, params_of, rack_of, recorder_of
 from vehicle.ending import Cycles, Ending
 from vehicle.heard import HEARD
 from vehicle.host import Host
@@ -107,6 +107,7 @@ async def _serve(settings: Settings) -> int:
         opened.callback(notifier.close)
         system = int(params["MAV_SYSID"])
         recorder = recorder_of(settings, system, opened)
+        rack = rack_of(settings, params)
         rover = Rover(
             params,
             now=now,
@@ -116,10 +117,11 @@ async def _serve(settings: Settings) -> int:
             recording=recorder,
             host=host,
             told=_journal,
+            rack=rack,
         )
         meter = LoadMeter(host, lambda: loop.waited, now)
         cycles = Cycles(rover, notifier, meter)
-        machine = build(settings, params, rover, opened, cycles.completed)
+        machine = build(settings, params, rover, opened, cycles.completed, rack)
         tape = recorder.tape if recorder else None
         try:
             return await _drive(machine, settings.endpoints, system, notifier, cycles, tape)

@@ -43,7 +43,9 @@ COMMANDS: dict[Command, tuple[str, str]] = {
     Command.DO_SET_MISSION_CURRENT: (DRIVER, "1: item, -1 the one under way; 2: 1 forgets the jumps made"),
     Command.DO_FENCE_ENABLE: (DRIVER, "1: 1 on, 0 off; not off while armed, nor against the file of settings"),
     Command.DO_SET_SERVO: (DRIVER, "1: output, 2: us; outputs of motors are denied"),
+    Command.DO_REPEAT_SERVO: (DRIVER, "1: output, 2: us, 3: how often there and back, 4: s between two changes"),
     Command.DO_SET_RELAY: (DRIVER, "1: relay, 2: 0 or 1"),
+    Command.DO_REPEAT_RELAY: (DRIVER, "1: relay, 2: how often there and back, 3: s between two changes"),
     Command.DO_MOTOR_TEST: (DRIVER, "disarmed; 1: motor from 1, 2: 0 (percent), 3: percent, 4: s up to 3"),
     Command.ACTUATOR_TEST: (DRIVER, "disarmed; 1: -1..1, NaN stops, 2: s up to 3, 0 stops, 5: motor from 1"),
     Command.PREFLIGHT_STORAGE: (

@@ -8,7 +8,12 @@ import textwrap
 
 
 def field_docs(kind: type) -> dict[str, str]:
-    """The docstring behind each field of a class, as its source has it."""
+    """The docstring behind each field of a class and of those it is made from, as their source has it."""
+    kinds = [each for each in reversed(kind.__mro__) if "__annotations__" in vars(each)]
+    return {name: text for each in kinds for name, text in _own_docs(each).items()}
+
+
+def _own_docs(kind: type) -> dict[str, str]:
     body = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
     assert isinstance(body, ast.ClassDef)
     pairs = zip(body.body, body.body[1:], strict=False)

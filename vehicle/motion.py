@@ -137,11 +137,23 @@ def gps_raw_int(view: View) -> m.Message | None:
 
 
 def servo_output_raw(view: View) -> m.Message:
-    """SERVO_OUTPUT_RAW: what each motor gets, as a pulse, at the servo numbers of ArduRover's default wiring."""
+    """SERVO_OUTPUT_RAW: what each motor gets, as a pulse, at the servo numbers of ArduRover's default wiring; beside
+    them the servos that are accessories. 0: no pulses, or nothing there."""
     pulses = [0] * 16
+    for servo, width in view.rack.values("servo").items():
+        pulses[servo - 1] = width
     for servo, value in zip(view.drive.mixer.servos, view.drive.outputs.throttles, strict=True):
         pulses[servo - 1] = pulse(value)
     return m.ServoOutputRaw(view.boot_us & m.UINT32_MASK, 0, *pulses)
+
+
+def relay_status(view: View) -> m.Message | None:
+    """RELAY_STATUS: a bit for each relay, as the hardware has it; nothing where there is none."""
+    relays = view.rack.values("relay")
+    if not relays:
+        return None
+    on = sum(1 << number for number, value in relays.items() if value)
+    return m.RelayStatus(time_boot_ms=view.boot_ms, on=on, present=sum(1 << number for number in relays))
 
 
 def rc_channels(view: View) -> m.Message:

@@ -1,4 +1,5 @@
-"""A copy of the motors' settings for as long as a vehicle drives them, for safe-stop: their file may change meanwhile.
+"""A copy of the settings of motors and accessories for as long as a vehicle drives them, for safe-stop: their file may
+change meanwhile.
 
 There is one for each file of settings, in the usual state folder, because a broken file cannot say where another one
 is. A vehicle that ends as it should has stopped its motors and takes the copy away; one that is killed leaves it.
@@ -30,8 +31,9 @@ def usual_state() -> Path:
 
 
 @contextlib.contextmanager
-def copied(motors: Mapping[str, Any], config: Path | None) -> Iterator[None]:
-    """Keep a copy of `motors`, the table of the file `config`, until the end; beyond it where it ends by an exception.
+def copied(parts: Mapping[str, Any], config: Path | None) -> Iterator[None]:
+    """Keep a copy of `parts`, the tables of the file `config` by name, [motors] for one, until the end; beyond it where
+    it ends by an exception.
 
     A copy that cannot be written is a warning and no more: safe-stop then goes by the file.
     """
@@ -40,7 +42,7 @@ def copied(motors: Mapping[str, Any], config: Path | None) -> Iterator[None]:
         return
     path = _path(config)
     scribe = Scribe(path.parent)
-    scribe.write(path.name, lambda: json.dumps(dict(motors), default=str).encode())
+    scribe.write(path.name, lambda: json.dumps(dict(parts), default=str).encode())
     scribe.close()  # no wheel turns yet: there is time to wait for the disk
     if scribe.problem:
         log.warning("after a kill safe-stop will have to go by %s alone: %s: %s", config, path, scribe.problem)
@@ -50,12 +52,13 @@ def copied(motors: Mapping[str, Any], config: Path | None) -> Iterator[None]:
 
 
 def left_behind(config: Path) -> dict[str, Any] | None:
-    """The motors that a killed vehicle drove by this file; None where none was killed, or nobody can tell."""
+    """The tables of what a killed vehicle drove by this file; None where none was killed, or nobody can tell."""
     try:
-        table = json.loads(_path(config).read_bytes())
+        parts = json.loads(_path(config).read_bytes())
     except (OSError, ValueError):
         return None
-    return table if isinstance(table, dict) and isinstance(table.get("driver"), str) else None
+    motors = parts.get("motors") if isinstance(parts, dict) else None
+    return parts if isinstance(motors, dict) and isinstance(motors.get("driver"), str) else None
 
 
 def _path(config: Path) -> Path:

@@ -1,8 +1,8 @@
 """Which items the three plans of this vehicle may hold. What a mission does is plan_runner.py's, a fence fence.py's.
 
-To offer another mission command, add a line here and its task or effect there. Plans made for ArduPilot move servos and
-relays: they are taken, and told and passed over when their turn comes, for this vehicle has no accessory. Its motors
-are nobody's servos: a plan that moves one is refused.
+To offer another mission command, add a line here and its task or effect there. Plans move servos and relays, which
+vehicle/accessories/orders.py does; one that this vehicle has not is told at the upload, and passed over when its turn
+comes. Motors are nobody's servos: a plan that moves one is refused.
 """
 
 from __future__ import annotations
@@ -12,15 +12,19 @@ from functools import partial
 
 from dialects.enums import Command, FenceItem, MissionResult, MissionType
 from link.services.mission_items import ItemRule, Items, Place, PlanRules
+from vehicle.accessories import LARGEST_RELAY, LARGEST_SERVO, PERIOD_MAX, TIMES_MAX
 
 DAY = 86400.0
 TURNS_MAX = 1000.0
 SPEED_LOW, SPEED_HIGH = -2.0, 100.0
 """m/s; -1 and -2 are "no change" and "the usual one"."""
-SERVOS, RELAYS = 16, 16
-ACCESSORIES = (Command.DO_SET_SERVO, Command.DO_SET_RELAY)
-PULSE_LOW, PULSE_HIGH = 500.0, 2500.0
-"""us; what any servo takes."""
+OF_RELAYS = (Command.DO_SET_RELAY, Command.DO_REPEAT_RELAY)
+OF_SERVOS = (Command.DO_SET_SERVO, Command.DO_REPEAT_SERVO)
+ACCESSORIES = (*OF_SERVOS, *OF_RELAYS)
+_SERVOS, _RELAYS = (1.0, LARGEST_SERVO), (0.0, LARGEST_RELAY)
+_PULSES = (500.0, 2500.0)
+"""us; what any servo takes. What this one takes is its own matter."""
+_TIMES, _PERIOD = (1.0, TIMES_MAX), (0.0, PERIOD_MAX)
 CORNERS_MIN = 3
 RADIUS_MAX = 1e5
 
@@ -41,8 +45,10 @@ MISSION: dict[int, ItemRule] = {
     Command.DO_CHANGE_SPEED: ItemRule(ranges={1: (0.0, 1.0), 2: (SPEED_LOW, SPEED_HIGH)}),
     Command.DO_SET_REVERSE: ItemRule(ranges={1: (0.0, 1.0)}),
     Command.DO_FENCE_ENABLE: ItemRule(ranges={1: (0.0, 1.0)}),
-    Command.DO_SET_SERVO: ItemRule(ranges={1: (1.0, SERVOS), 2: (PULSE_LOW, PULSE_HIGH)}),
-    Command.DO_SET_RELAY: ItemRule(ranges={1: (0.0, RELAYS - 1.0), 2: (0.0, 1.0)}),
+    Command.DO_SET_SERVO: ItemRule(ranges={1: _SERVOS, 2: _PULSES}),
+    Command.DO_REPEAT_SERVO: ItemRule(ranges={1: _SERVOS, 2: _PULSES, 3: _TIMES, 4: _PERIOD}),
+    Command.DO_SET_RELAY: ItemRule(ranges={1: _RELAYS, 2: (0.0, 1.0)}),
+    Command.DO_REPEAT_RELAY: ItemRule(ranges={1: _RELAYS, 2: _TIMES, 3: _PERIOD}),
 }
 
 FENCE: dict[int, ItemRule] = {
@@ -56,13 +62,14 @@ RALLY: dict[int, ItemRule] = {FenceItem.RALLY_POINT: ItemRule(Place.NEEDED)}
 
 
 def _mission_is_sane(items: Items, motors: Collection[int]) -> MissionResult:
-    """Jumps lead somewhere, and no servo is a motor."""
+    """Jumps lead somewhere, numbers are whole, and no servo is a motor."""
 
-    def numbers(command: Command) -> list[float]:
-        return [item.params[0] for item in items if item.command == command]
+    def numbers(*commands: Command) -> list[float]:
+        return [item.params[0] for item in items if item.command in commands]
 
     sane = all(target == int(target) and target < len(items) for target in numbers(Command.DO_JUMP))
-    sane &= all(servo == int(servo) and servo not in motors for servo in numbers(Command.DO_SET_SERVO))
+    sane &= all(servo == int(servo) and servo not in motors for servo in numbers(*OF_SERVOS))
+    sane &= all(relay == int(relay) for relay in numbers(*OF_RELAYS))
     return MissionResult.ACCEPTED if sane else MissionResult.INVALID_PARAM1
 
 

@@ -58,8 +58,8 @@ class Mission:
         self.progress = Progress.NONE
         self.reached: list[int] = []
         """Items reached and not told yet."""
-        self.passed_over: list[MissionItem] = []
-        """Items that this vehicle cannot do, passed and not told yet."""
+        self.for_accessories: list[MissionItem] = []
+        """Items whose turn came, and that nobody has done yet: Plans hands them on."""
         self._params = params
         self._guide = guide
         self._haven = haven
@@ -114,6 +114,7 @@ class Mission:
             if self._task is None:
                 self._next(self.current, estimate, start)
             if self._task is None:
+                self._run_waiting(estimate, now)  # no NAV item follows, so what waits has all the time there is
                 return self._end()
             motion = self._task.step(self._guide, estimate, speed, now)
             if motion is not None:
@@ -230,7 +231,7 @@ class Mission:
             self.reached.append(number)
             self._held_since = None
             if item.command in ACCESSORIES:
-                self.passed_over.append(item)
+                self.for_accessories.append(item)
             elif item.command in EFFECTS:
                 self._effect(item)
 

@@ -15,11 +15,13 @@ from link.services.mission_changes import Change, Keeping
 from link.services.mission_files import PlanFolder
 from link.services.mission_items import Items, MissionItem, in_words
 from link.services.pacing import Pacer
+from vehicle.accessories import in_plans
+from vehicle.accessories.orders import AccessoryOrders
 from vehicle.asking import Asking, given
 from vehicle.control import Control
 from vehicle.goals import mission_state
 from vehicle.navigator import Navigator, PlanIds
-from vehicle.plan import ACCESSORIES, SERVOS, rules
+from vehicle.plan import rules
 from vehicle.plan_keeping import NoPlanKeeper, PlanKeeper
 from vehicle.reached import Reached
 from vehicle.safety import Safety
@@ -41,11 +43,13 @@ class Plans:
         navigator: Navigator,
         texts: Texts,
         servos: tuple[int, ...],
+        accessories: AccessoryOrders,
         *,
         pacer: Pacer,
         keeper: PlanKeeper | None = None,
     ) -> None:
-        """`servos` are the outputs that motors are at; `pacer` says how fast plans are told.
+        """`servos` are the outputs that motors are at; `accessories` do what a mission says of them; `pacer` says how
+        fast plans are told.
 
         Without a `keeper` they end with the program.
         """
@@ -54,7 +58,7 @@ class Plans:
         self._asking = Asking(control, texts)
         self._navigator = navigator
         self._texts = texts
-        self._servos = servos
+        self._accessories = accessories
         self._keeper = keeper or NoPlanKeeper()
         self._damage: dict[MissionType, str] = {}
         self._remind_due = -math.inf
@@ -71,8 +75,6 @@ class Plans:
             Command.MISSION_START: self._start,
             Command.DO_SET_MISSION_CURRENT: self._set_current,
             Command.DO_FENCE_ENABLE: self._enable_fence,
-            Command.DO_SET_SERVO: self._accessory,
-            Command.DO_SET_RELAY: self._accessory,
         }
         return {command: self._asking.of_owner(run) for command, run in mine.items()}
 
@@ -111,8 +113,11 @@ class Plans:
     def tick(self, now: float) -> list[Outgoing]:
         """What uploads need, and what the mission has reached."""
         self._remind(now)
+        mission = self._navigator.mission
+        self._news += in_plans.run(self._accessories, mission.for_accessories, now)
+        mission.for_accessories.clear()
         self._tell_news(now)
-        mission, outgoing = self._navigator.mission, self._server.tick(now) + self._outbox
+        outgoing = self._server.tick(now) + self._outbox
         self._outbox.clear()
         outgoing += self._reached.tick(mission.reached, now)
         mission.reached.clear()
@@ -143,9 +148,8 @@ class Plans:
         """Put it in force."""
         self._damage.pop(kind, None)
         self._use(kind, items)
-        unable = [str(number) for number, item in enumerate(items) if item.command in ACCESSORIES]
-        if kind is MissionType.MISSION and unable:
-            self._news.append(f"Mission: no accessory for items {', '.join(unable)}, they will be passed over")
+        if kind is MissionType.MISSION:
+            self._news += in_plans.impossible(self._accessories, items)
 
     def stays(self, kind: MissionType, items: Items, why: str | None) -> None:
         """The disk may hold the other one, or not."""
@@ -207,11 +211,6 @@ class Plans:
             self._texts.say_once(f"plans {self._keeper.problem}", Severity.WARNING, text, now)
 
     def _tell_news(self, now: float) -> None:
-        passed_over = self._navigator.mission.passed_over
-        if passed_over:
-            names = (f"{Command(item.command).name} {item.params[0]:g}" for item in passed_over)
-            self._news += [f"Mission: passed over {name}, there is no such accessory" for name in names]
-            passed_over.clear()
         for text in self._news:
             self._texts.say(Severity.WARNING, text, now)
         self._news.clear()
@@ -275,12 +274,3 @@ class Plans:
             return self._asking.refuse(request, "disarm first", now)
         refusal = self._navigator.boundary.fence.enable(bool(wish))
         return self._asking.refuse(request, refusal, now) if refusal else Result.ACCEPTED
-
-    def _accessory(self, request: CommandRequest, now: float) -> Result:
-        """DO_SET_SERVO, DO_SET_RELAY: motors are not for them, and there is nothing else at the outputs."""
-        number = request.params[0]
-        if not math.isfinite(number) or not 0 <= number <= SERVOS:
-            return Result.DENIED
-        if request.command == Command.DO_SET_SERVO and number in self._servos:
-            return Result.DENIED
-        return self._asking.refuse(request, f"there is no accessory {number:g}", now)

@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from dialects.modes import Mode
 from link.core import LinkReport, Outgoing, Received
 from vehicle import status
+from vehicle.accessories.rack import Rack
 from vehicle.actuator_test import ActuatorTest
 from vehicle.answers import COMPONENT, Answers, Keepers
 from vehicle.bandwidth import Bandwidth
@@ -52,11 +53,13 @@ class Rover:
         recording: Recording | None = None,
         host: Host | None = None,
         told: Callable[[Severity, str], None] = lambda severity, text: None,
+        rack: Rack | None = None,
     ) -> None:
         """`now` is the monotonic time of boot; `wall_clock` the Unix time at `now`, None where it is not known.
 
         `keeper` remembers parameters that are set, `plan_keeper` plans; without them they end with the program.
-        `recording` writes logs. `host` is told of as it is. `told` hears what the driver reads.
+        `recording` writes logs. `host` is told of as it is. `told` hears what the driver reads. `rack` holds relays
+        and servos.
         """
         self._params = params
         self._boot = now
@@ -87,6 +90,7 @@ class Rover:
         self._bandwidth = Bandwidth(lambda: self._safety.armed)
         self._actuator_test = ActuatorTest(params, self._safety, self._control, self._texts, self._drive.mixer.motors)
         self._buttons = Buttons(params, self._safety, self._control, self._texts)
+        self._rack = rack or Rack()
         self._links = Links(self._control, self._texts, (self._system, COMPONENT))
         self._answers = Answers(
             params,
@@ -100,6 +104,7 @@ class Rover:
             links=self._links,
             trials=self._actuator_test,
             keepers=Keepers(keeper, plan_keeper, recording),
+            rack=self._rack,
             look=self._look,
         )
 
@@ -259,6 +264,7 @@ class Rover:
             navigator=self._navigator,
             logs=self._answers.logbook.well,
             host=self._host,
+            rack=self._rack,
         )
 
     def _demand(self, received: Received, now: float) -> bool:

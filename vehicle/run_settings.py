@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from vehicle.accessories.settings import Accessories
 from vehicle.sensors.suite import SensorSettings
 from vehicle.sim.body import Home
 
@@ -31,6 +32,8 @@ class Settings:
     endpoints: tuple[str, ...]
     motors: Mapping[str, Any] = field(default_factory=lambda: {"driver": "simulated"})
     """The driver's name as `driver`, and its settings; a simulation has its own."""
+    accessories: Accessories = field(default_factory=Accessories)
+    """Relays and servos; a simulation has simulated ones of the same numbers."""
     config: Path | None = None
     """The file that says so; safe-stop is told the same one."""
     sensors: SensorSettings | None = None

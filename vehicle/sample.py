@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 import textwrap
+from collections.abc import Mapping
 from typing import Any
 
 import msgspec
 
-from vehicle.config import Config, NoSettings
+from vehicle.accessories import DRIVERS as ACCESSORY_DRIVERS
+from vehicle.accessories.settings import COMMON, Accessories, Kind
+from vehicle.accessories.settings import settings_type as settings_type_of
+from vehicle.config import Config
 from vehicle.docstrings import field_docs, words
 from vehicle.motors import DRIVERS, PROFILES, USUAL_PARAMS, MotorError, settings_type
-from vehicle.motors.settings import Around
+from vehicle.motors.settings import Around, NoSettings
 from vehicle.params import TABLE, Parameter
 from vehicle.sensors.suite import SensorSettings
 
@@ -39,6 +43,10 @@ SENSORS: dict[str, Any] = {
     "battery": {"kind": "ina219"},
     "gps": {},
     "encoders": {"wheels": [{"a": 23, "b": 24}, {"a": 25, "b": 26}]},
+}
+ACCESSORIES: dict[Kind, dict[str, dict[str, Any]]] = {
+    "relay": {"gpio": {"number": 0, "pin": 16}},
+    "servo": {"pca9685": {"number": 9, "channel": 0, "address": 0x41}},
 }
 TOP: dict[str, Any] = {
     "state": "/var/lib/mavhelm",
@@ -71,6 +79,8 @@ def sample() -> str:
         *(_driver(name) for name in DRIVERS if name != "simulated"),
         "\n# ---- for any driver\n" + _body(around, "motors"),
         "\n[sensors]\n" + _body(sensors, "sensors"),
+        f"\n[accessories]\n{_comment(words(Accessories.__doc__))}# docs/pi.md has their wiring.\n",
+        *(_accessory(kind, name) for kind, drivers in ACCESSORIES.items() for name in drivers),
         "\n[params]\n# A parameter that is set here is set here only: ground stations can read it and not change it.\n",
         *(_parameter(parameter) for parameter in TABLE),
         "\n[log]\n" + _body(config.log, "log"),
@@ -89,6 +99,21 @@ def _driver(name: str) -> str:
         return f'\n# ---- {name}: {error}\n#driver = "{name}"\n'
     settings: msgspec.Struct = msgspec.convert(EXAMPLES[name], kind)
     return f'\n# ---- {name}: {words(kind.__doc__)}\n#driver = "{name}"\n{_body(settings, "motors")}'
+
+
+def _accessory(kind: Kind, name: str) -> str:
+    """A table for one, with every key."""
+    kinds = (COMMON[kind], settings_type_of(kind, name) or NoSettings)
+    also = f"One of {', '.join(ACCESSORY_DRIVERS[kind])}; or your own as module:Class."
+    head = f'\n#[[accessories.{kind}s]]\n{_comment(also)}#driver = "{name}"\n'
+    return head + "".join(_plain(ACCESSORIES[kind][name], each) for each in kinds)
+
+
+def _plain(example: Mapping[str, Any], kind: Any) -> str:
+    """The keys of a table without tables, as far as `kind` knows them."""
+    names = kind.__struct_fields__
+    struct = msgspec.convert({key: value for key, value in example.items() if key in names}, kind)
+    return "".join(_line(key, getattr(struct, key), kind) for key in names)
 
 
 def _body(struct: msgspec.Struct, path: str) -> str:

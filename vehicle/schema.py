@@ -8,10 +8,13 @@ from typing import Any
 
 import msgspec
 
-from vehicle.config import Config, NoSettings
+from vehicle.accessories import DRIVERS as ACCESSORIES
+from vehicle.accessories.settings import COMMON
+from vehicle.accessories.settings import settings_type as settings_type_of
+from vehicle.config import Config
 from vehicle.docstrings import field_docs
 from vehicle.motors import DRIVERS, PROFILES, MotorError, settings_type
-from vehicle.motors.settings import Around
+from vehicle.motors.settings import Around, NoSettings
 from vehicle.params import TABLE, Parameter
 from vehicle.sample import about
 
@@ -19,12 +22,23 @@ from vehicle.sample import about
 def schema() -> str:
     """The JSON schema."""
     kinds = {name: kind for name in DRIVERS if (kind := _settings(name)) is not None}
-    structs = [Config, Around, *dict.fromkeys(kinds.values())]
+    accessories = {
+        (kind, name): settings_type_of(kind, name) or NoSettings for kind in COMMON for name in ACCESSORIES[kind]
+    }
+    structs = [Config, Around, *COMMON.values(), *dict.fromkeys([*kinds.values(), *accessories.values()])]
     _, parts = msgspec.json.schema_components(structs, ref_template="#/$defs/{name}")
     _describe(parts, _structs(structs))
     whole = parts.pop("Config")
     around = parts.pop("Around")
-    own = {kind.__name__: parts.pop(kind.__name__) for kind in dict.fromkeys(kinds.values())}
+    own = {kind.__name__: parts.pop(kind.__name__) for kind in dict.fromkeys([*kinds.values(), *accessories.values()])}
+    common = {kind: parts.pop(each.__name__) for kind, each in COMMON.items()}
+    for which, known in common.items():
+        variants = [
+            _accessory_schema(name, own[each.__name__], known)
+            for (of, name), each in accessories.items()
+            if of == which
+        ]
+        parts["Accessories"]["properties"][f"{which}s"]["items"] = {"oneOf": [*variants, _own(known)]}
     drivers = [_driver_schema(name, own[kind.__name__], around) for name, kind in kinds.items()]
     whole["properties"]["motors"] = {"oneOf": [*drivers, _OWN_DRIVER]}
     whole["properties"]["params"] = {
@@ -43,7 +57,27 @@ def _settings(name: str) -> type | None:
         return None
 
 
-_OWN_DRIVER = {
+def _accessory_schema(name: str, own: Mapping[str, Any], common: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "title": name,
+        "description": own.get("description", ""),
+        "properties": {"driver": {"const": name}, **common["properties"], **own["properties"]},
+        "required": ["driver", *common["required"], *own.get("required", ())],
+        "additionalProperties": False,
+    }
+
+
+def _own(common: Mapping[str, Any]) -> dict[str, Any]:
+    """One of somebody's own, whose settings nobody knows here."""
+    return {
+        **_OWN_DRIVER,
+        "properties": {**_OWN_DRIVER["properties"], **common["properties"]},
+        "required": ["driver", *common["required"]],
+    }
+
+
+_OWN_DRIVER: dict[str, Any] = {
     "type": "object",
     "description": "A driver of your own: module:Class.",
     "properties": {"driver": {"type": "string", "pattern": ":"}},

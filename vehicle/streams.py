@@ -95,6 +95,8 @@ STREAMS: tuple[Stream, ...] = (
            change=lambda view: (view.navigator.boundary.fence.enabled, view.navigator.boundary.beyond > 0.0)),
     Stream(m.ServoOutputRaw, COMMON, 2, motion.servo_output_raw, DataStream.RC_CHANNELS),
     Stream(m.RcChannels, COMMON, 2, motion.rc_channels, DataStream.RC_CHANNELS),
+    Stream(m.RelayStatus, COMMON, 0.5, motion.relay_status, DataStream.RC_CHANNELS,
+           change=lambda view: tuple(view.rack.values("relay").items())),
     Stream(m.GpsGlobalOrigin, COMMON, 0, motion.gps_global_origin,
            change=lambda view: (view.navigator.estimate.origin, view.navigator.origin_altitude)),
     Stream(m.HomePosition, COMMON, 0.5, status.home_position, change=lambda view: view.home),

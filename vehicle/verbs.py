@@ -128,15 +128,30 @@ def _safe_stop(asked: argparse.Namespace) -> int:
 
     driven = left_behind(Path(asked.config))
     try:
-        named = _motor_table(asked.config)
+        named: Mapping[str, Any] = {**_tables(asked.config), "motors": _motor_table(asked.config)}
     except VerbError as error:
         if driven is None:
             raise
         named = driven
         _told(journal.ERROR, f"{error}; so only what the vehicle drove is stopped")
-    for table in [named] if driven in (None, named) else [driven, named]:
-        _stop(table)
+    both = [named] if driven is None else [driven, named]
+    for motors in _different([parts["motors"] for parts in both]):
+        _stop(motors)
+    for accessories in _different([parts.get("accessories") or {} for parts in both]):
+        _make_safe(accessories)
     return DONE
+
+
+def _different(tables: Sequence[Any]) -> list[Any]:
+    return [table for index, table in enumerate(tables) if table not in tables[:index]]
+
+
+def _make_safe(accessories: Any) -> None:
+    """After the motors, which are more urgent."""
+    from vehicle.accessories.safe_stop import safe_stop
+
+    for well, words in safe_stop(accessories):
+        _told(journal.INFO if well else journal.ERROR, words)
 
 
 def _stop(motors: Mapping[str, Any]) -> None:

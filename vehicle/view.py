@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dialects.messages import boot_ms
+from vehicle.accessories.rack import Rack
 from vehicle.control import Control
 from vehicle.drive import Drive
 from vehicle.estimate import Estimate
@@ -31,6 +32,8 @@ class View:
     drive: Drive
     navigator: Navigator
     host: Host
+    rack: Rack
+    """Relays and servos."""
     logs: bool | None = None
     """Are they recorded as they should? None where none are wanted."""
 

@@ -13,7 +13,7 @@ from tests.interop.conversation import Conversation
 
 MAVPROXY = Path(__file__).parents[2] / ".venv-mavproxy/bin"
 """`.ci/run` makes it."""
-MODULES = "log,wp,rally,fence,ftp,param,arm,mode,rc,misc,cmdlong,battery"
+MODULES = "log,wp,rally,fence,ftp,param,arm,mode,rc,misc,cmdlong,battery,relay"
 """Of its usual modules those that need no map, no plot and no screen."""
 
 needed = pytest.mark.skipif(

@@ -108,6 +108,30 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     mavproxy.hear("DISARMED")
 
 
+def test_relays_and_servos_do_as_they_are_told(mavproxy: Conversation, rover: Rover) -> None:
+    """Of a simulation, which has relays 0 and 1 and servos 9 and 10; 3 is a motor."""
+    mavproxy.hear("Received .* parameters", 15)
+    mavproxy.say("relay set 0 1")
+    mavproxy.hear("DO_SET_RELAY: ACCEPTED")
+    mavproxy.ask("status RELAY_STATUS", r"on : 1, present : 3")
+    mavproxy.say("servo set 9 1700")
+    mavproxy.hear("DO_SET_SERVO: ACCEPTED")
+    mavproxy.ask("status SERVO_OUTPUT_RAW", r"servo9_raw : 1700")
+    mavproxy.say("relay repeat 1 1 0.2")
+    mavproxy.hear("DO_REPEAT_RELAY: ACCEPTED")
+    mavproxy.say("servo repeat 10 1200 1 0.2")
+    mavproxy.hear("DO_REPEAT_SERVO: ACCEPTED")
+    mavproxy.ask("status SERVO_OUTPUT_RAW", r"servo10_raw : 1500")  # there, and back at its trim
+    mavproxy.say("relay set 0 0")
+    mavproxy.hear("DO_SET_RELAY: ACCEPTED")
+    mavproxy.ask("status RELAY_STATUS", r"on : 0, present : 3")
+    assert_no_loss(mavproxy)
+    assert_no_error(mavproxy)
+    mavproxy.say("servo set 3 1900")
+    mavproxy.hear("DO_SET_SERVO: DENIED")
+    assert rover.vehicle.outputs() == []
+
+
 def choose(mavproxy: Conversation, mode: str) -> None:
     """Change the mode, and see that it did."""
     mavproxy.say(f"mode {mode}")

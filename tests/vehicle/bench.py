@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from typing import TypeVar
 
 from dialects import codec
@@ -12,6 +12,9 @@ from dialects.axes import Axes, manual_control
 from dialects.enums import Autopilot, Command, Result, Type
 from dialects.modes import Mode
 from link.core import Peer, Received
+from vehicle.accessories.outlet import Output, Pulses
+from vehicle.accessories.rack import Rack
+from vehicle.accessories.simulated import SimulatedAccessory
 from vehicle.heard import HEARD
 from vehicle.logbook import Recording
 from vehicle.params import Params
@@ -50,9 +53,14 @@ class Bench:
     recording: Recording | None = None
     """What writes its logs."""
 
+    outputs: Sequence[Output] = ()
+    """Its relays and servos."""
+
     def __init__(self, now: float = 100.0, **params: float) -> None:
         self.now = now
-        self.rover = Rover(Params(params), now=now, plan_keeper=self.plans, recording=self.recording)
+        self.rack = Rack(self.outputs)
+        self.rack.open()
+        self.rover = Rover(Params(params), now=now, plan_keeper=self.plans, recording=self.recording, rack=self.rack)
         self.readings = Readings()
         self.sent: list[m.Message] = []
         self.peers: list[Peer | None] = []
@@ -186,6 +194,17 @@ class Bench:
             self.texts[-1] += text
         else:
             self.texts.append(text)
+
+
+class Equipped(Bench):
+    """With a relay for each way to be safe, and a servo."""
+
+    outputs = (
+        Output("relay", 0, SimulatedAccessory),
+        Output("relay", 1, SimulatedAccessory, until="end"),
+        Output("relay", 2, SimulatedAccessory, until="disarm"),
+        Output("servo", 9, SimulatedAccessory, pulses=Pulses(1100, 1500, 1900)),
+    )
 
 
 def said(bench: Bench, part: str) -> bool:

@@ -21,8 +21,8 @@ from vehicle.telemetry import LINK_BUDGET
 
 ONE, OTHER, THIRD = Peer(0, "one"), Peer(0, "other"), Peer(0, "third")
 RADIO = Peer(1, "radio")
-UNTOLD = {m.PositionTargetGlobalInt, m.PositionTargetLocalNed, m.NavControllerOutput, m.FenceStatus}
-"""By a rover that drives to no place and has no fence."""
+UNTOLD = {m.PositionTargetGlobalInt, m.PositionTargetLocalNed, m.NavControllerOutput, m.FenceStatus, m.RelayStatus}
+"""By a rover that drives to no place and has no fence and no relay."""
 SIK = 5760.0
 """bytes/s: 57600 baud."""
 OWN = {m.RoverDriveStatus, m.RoverFailsafeStatus, m.RoverLinkStatus, m.RoverDriveInfo}

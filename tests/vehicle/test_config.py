@@ -66,7 +66,10 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
     ("text", "says"),
     [
         ('endpont = ["a"]', "endpont: unknown key; did you mean endpoints?"),
-        ("zebra = 1", "zebra: unknown key; there are endpoints, state, identity, motors, sensors, params, log"),
+        (
+            "zebra = 1",
+            "zebra: unknown key; there are endpoints, state, identity, motors, accessories, sensors, params, log",
+        ),
         ("a =", "Invalid value (at end of document)"),
         ("[params]\n\n[params]", "[params] is there already, and again at line 3; put its lines below the first one"),
         ("[motors.safety]\n[motors.safety]", "[motors.safety] is there already, and again at line 2; put"),

@@ -196,12 +196,15 @@ class TestItems:
     def test_what_moves_accessories_is_told_and_passed_over(self) -> None:
         field = ready(do(Command.DO_SET_SERVO, 5, 1500), do(Command.DO_SET_RELAY, 0, 1), way(5, 0))
         field.wait(0.2)
-        assert said(field, "Mission: no accessory for items 0, 1, they will be passed over")
+        words = (
+            "Mission: no accessory for items 0, 1, they will be passed over: there is no servo 5, there is no relay 0"
+        )
+        assert said(field, words)
         start(field)
         finish(field, 40.0)
         assert field.truth.distance(Point(5, 0)) < 0.7
-        assert said(field, "Mission: passed over DO_SET_SERVO 5, there is no such accessory")
-        assert said(field, "Mission: passed over DO_SET_RELAY 0, there is no such accessory")
+        assert said(field, "Mission: passed over DO_SET_SERVO 5: there is no servo 5")
+        assert said(field, "Mission: passed over DO_SET_RELAY 0: there is no relay 0")
 
     def test_the_usual_speed_comes_back(self) -> None:
         field = ready(
@@ -370,6 +373,13 @@ class TestWhoMay:
             (do(Command.DO_SET_SERVO, 5, 1e6), MissionResult.INVALID_PARAM2),
             (do(Command.DO_SET_RELAY, 0, 2), MissionResult.INVALID_PARAM2),
             (do(Command.DO_SET_RELAY, -1, 1), MissionResult.INVALID_PARAM1),
+            (do(Command.DO_SET_RELAY, 0.5, 1), MissionResult.INVALID_PARAM1),
+            (do(Command.DO_REPEAT_SERVO, 3, 1500, 2, 1), MissionResult.INVALID_PARAM1),  # a motor
+            (do(Command.DO_REPEAT_SERVO, 9, 1500, 0, 1), MissionResult.INVALID_PARAM3),
+            (do(Command.DO_REPEAT_SERVO, 9, 1500, 2, -1), MissionResult.INVALID_PARAM4),
+            (do(Command.DO_REPEAT_RELAY, 16, 2, 1), MissionResult.INVALID_PARAM1),
+            (do(Command.DO_REPEAT_RELAY, 0, NAN, 1), MissionResult.INVALID_PARAM2),
+            (do(Command.DO_REPEAT_RELAY, 0, 2, NAN), MissionResult.INVALID_PARAM3),
             (do(Command.DO_JUMP, 7, 1), MissionResult.INVALID_PARAM1),
             (do(Command.NAV_DELAY, -1), MissionResult.INVALID_PARAM1),
             (do(Command.DO_CHANGE_SPEED, 1, NAN), MissionResult.INVALID_PARAM2),
@@ -399,7 +409,7 @@ class TestWhoMay:
         assert said(field, f"Mission refused: {why}")
 
     @pytest.mark.parametrize(
-        ("params", "result"), [((1, 1500), Result.DENIED), ((5, 1500), Result.FAILED), ((NAN, 1500), Result.DENIED)]
+        ("params", "result"), [((1, 1500), Result.DENIED), ((5, 1500), Result.DENIED), ((NAN, 1500), Result.DENIED)]
     )
     def test_a_motor_is_nobodys_servo(self, params: tuple[float, ...], result: Result) -> None:
         assert Field().command(Command.DO_SET_SERVO, *params) is result

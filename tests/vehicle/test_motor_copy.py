@@ -9,7 +9,8 @@ import pytest
 
 from vehicle.motor_copy import copied, left_behind, usual_state
 
-TABLE = {"driver": "gpio", "frequency": 0.1, "bridges": [{"wiring": "two-inputs", "forward": 5, "backward": 6}]}
+MOTORS = {"driver": "gpio", "frequency": 0.1, "bridges": [{"wiring": "two-inputs", "forward": 5, "backward": 6}]}
+TABLE = {"motors": MOTORS, "accessories": {"relays": [{"driver": "gpio", "number": 0, "pin": 16}]}}
 
 
 @pytest.fixture(autouse=True)
@@ -38,8 +39,8 @@ def test_an_end_by_an_exception_leaves_it_and_the_next_start_replaces_it(tmp_pat
     file = tmp_path / "rover.toml"
     kill(file)
     assert left_behind(file) == TABLE
-    with copied({"driver": "simulated"}, file):
-        assert left_behind(file) == {"driver": "simulated"}
+    with copied({"motors": {"driver": "simulated"}}, file):
+        assert left_behind(file) == {"motors": {"driver": "simulated"}}
     assert left_behind(file) is None
 
 
@@ -62,7 +63,7 @@ def test_without_a_file_there_is_none(state: Path) -> None:
         assert not state.exists()
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "null", "{}", '{"driver": 1}', "\udcff"])
+@pytest.mark.parametrize("text", ["", "{", "[]", "null", "{}", '{"motors": 1}', '{"motors": {"driver": 1}}', "\udcff"])
 def test_a_copy_that_is_none_counts_for_nothing(tmp_path: Path, state: Path, text: str) -> None:
     kill(tmp_path / "rover.toml")
     [path] = state.iterdir()

@@ -16,7 +16,7 @@ from dialects import messages as m
 from dialects.enums import Command, MissionType, Result
 from dialects.modes import Mode
 from link.core import LinkReport
-from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench
+from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench, Equipped
 
 C, R = Command, Result
 NAN, INF = math.nan, math.inf
@@ -39,6 +39,7 @@ REQUESTABLE = (
     242,
     244,
     300,
+    376,
     397,
     435,
     436,
@@ -56,7 +57,7 @@ NOTHING_TO_TELL = (62, 162)
 
 def free() -> Bench:
     """Disarmed, and nobody in control."""
-    bench = Bench(REBOOT_ENABLE=2)
+    bench = Equipped(REBOOT_ENABLE=2)
     bench.heartbeat()
     bench.heartbeat(OTHER)
     return bench
@@ -275,10 +276,31 @@ ROWS: tuple[Row, ...] = (
     Row(C.ACTUATOR_TEST, (0.2, 1, 0, 0, 1), R.TEMPORARILY_REJECTED, armed),
     Row(C.ACTUATOR_TEST, (0.2, 1, 0, 0, 1), R.FAILED, ended), Row(C.ACTUATOR_TEST, (0.4, 1, 0, 0, 1), R.DENIED),
     Row(C.ACTUATOR_TEST, (0.2, NAN, 0, 0, 1), R.DENIED), other(C.ACTUATOR_TEST, (0.2, 1, 0, 0, 1), R.FAILED),
-    Row(C.DO_SET_SERVO, (1, 1500), R.DENIED), Row(C.DO_SET_SERVO, (9, 1500), R.FAILED),
-    Row(C.DO_SET_SERVO, (NAN, 1500), R.DENIED), other(C.DO_SET_SERVO, (9, 1500), R.FAILED),
-    Row(C.DO_SET_RELAY, (0, 1), R.FAILED), Row(C.DO_SET_RELAY, (99, 1), R.DENIED),
-    other(C.DO_SET_RELAY, (0, 1), R.FAILED),
+    Row(C.DO_SET_SERVO, (9, 1700), R.ACCEPTED), Row(C.DO_SET_SERVO, (9, 1700), R.ACCEPTED, free),
+    Row(C.DO_SET_SERVO, (9, 1700), R.ACCEPTED, armed), Row(C.DO_SET_SERVO, (9, 1700), R.FAILED, stopped),
+    Row(C.DO_SET_SERVO, (9, 1700), R.FAILED, ended), Row(C.DO_SET_SERVO, (9, 1700), R.ACCEPTED, broken),
+    Row(C.DO_SET_SERVO, (9, 1700), R.ACCEPTED, place=NOWHERE),
+    *(Row(C.DO_SET_SERVO, (number, 1500), R.DENIED) for number in (1, 3, 0, -1, 5, 9.5, 17, NAN, INF)),
+    *(Row(C.DO_SET_SERVO, (9, width), R.DENIED) for width in (0, 1099, 1901, 1e9, NAN, INF)),
+    other(C.DO_SET_SERVO, (9, 1500), R.FAILED), stranger(C.DO_SET_SERVO, (9, 1500), R.FAILED),
+    Row(C.DO_SET_SERVO, (9, 1500), R.DENIED, Bench), everybody(C.DO_SET_SERVO, (9, 1500), None),
+    Row(C.DO_REPEAT_SERVO, (9, 1700, 3, 0.5), R.ACCEPTED), Row(C.DO_REPEAT_SERVO, (9, 1700, 3, 0), R.ACCEPTED, armed),
+    Row(C.DO_REPEAT_SERVO, (1, 1700, 3, 1), R.DENIED), Row(C.DO_REPEAT_SERVO, (9, 2000, 3, 1), R.DENIED),
+    *(Row(C.DO_REPEAT_SERVO, (9, 1700, times, 1), R.DENIED) for times in (0, -1, 1.5, 1001, NAN, INF)),
+    *(Row(C.DO_REPEAT_SERVO, (9, 1700, 3, period), R.DENIED) for period in (-1, 3601, NAN, INF)),
+    Row(C.DO_REPEAT_SERVO, (9, 1700, 3, 1), R.FAILED, stopped), other(C.DO_REPEAT_SERVO, (9, 1700, 3, 1), R.FAILED),
+    Row(C.DO_SET_RELAY, (0, 1), R.ACCEPTED), Row(C.DO_SET_RELAY, (0, 0), R.ACCEPTED, free),
+    Row(C.DO_SET_RELAY, (0, 1), R.ACCEPTED, armed), Row(C.DO_SET_RELAY, (0, 1), R.FAILED, stopped),
+    Row(C.DO_SET_RELAY, (1, 1), R.ACCEPTED, stopped), Row(C.DO_SET_RELAY, (2, 1), R.ACCEPTED, armed),
+    Row(C.DO_SET_RELAY, (2, 1), R.FAILED), Row(C.DO_SET_RELAY, (2, 1), R.FAILED, broken),
+    *(Row(C.DO_SET_RELAY, (number, 1), R.DENIED) for number in (3, -1, 0.5, 99, NAN, INF)),
+    *(Row(C.DO_SET_RELAY, (0, state), R.DENIED) for state in (2, -1, 0.5, NAN, INF)),
+    other(C.DO_SET_RELAY, (0, 1), R.FAILED), stranger(C.DO_SET_RELAY, (0, 1), R.FAILED),
+    Row(C.DO_SET_RELAY, (0, 1), R.DENIED, Bench), everybody(C.DO_SET_RELAY, (0, 1), None),
+    Row(C.DO_REPEAT_RELAY, (0, 3, 0.5), R.ACCEPTED), Row(C.DO_REPEAT_RELAY, (0, 3, 0.5), R.FAILED, stopped),
+    Row(C.DO_REPEAT_RELAY, (2, 3, 0.5), R.FAILED), Row(C.DO_REPEAT_RELAY, (7, 3, 0.5), R.DENIED),
+    Row(C.DO_REPEAT_RELAY, (0, 0, 0.5), R.DENIED), Row(C.DO_REPEAT_RELAY, (0, 3, NAN), R.DENIED),
+    other(C.DO_REPEAT_RELAY, (0, 3, 0.5), R.FAILED),
     # Standing still
     Row(C.PREFLIGHT_STORAGE, (0,), R.ACCEPTED), Row(C.PREFLIGHT_STORAGE, (1,), R.FAILED),
     Row(C.PREFLIGHT_STORAGE, (2,), R.ACCEPTED), Row(C.PREFLIGHT_STORAGE, (3,), R.DENIED),
@@ -307,6 +329,7 @@ ROWS: tuple[Row, ...] = (
     Row(C.REQUEST_MESSAGE, (9999,), R.UNSUPPORTED), Row(C.REQUEST_MESSAGE, (NAN,), R.DENIED),
     Row(C.REQUEST_MESSAGE, (-1,), R.DENIED), Row(C.REQUEST_MESSAGE, (4294967040.0,), R.DENIED),
     Row(C.REQUEST_MESSAGE, (242,), R.FAILED), Row(C.REQUEST_MESSAGE, (435, *(NAN,) * 6), R.ACCEPTED),
+    Row(C.REQUEST_MESSAGE, (376,), R.FAILED, Bench),
     Row(C.REQUEST_MESSAGE, (46003,), R.FAILED, unreported), everybody(C.REQUEST_MESSAGE, (148,), R.ACCEPTED),
     stranger(C.REQUEST_MESSAGE, (148,), R.TEMPORARILY_REJECTED),
     other(C.SET_MESSAGE_INTERVAL, (30, 1), R.ACCEPTED), Row(C.SET_MESSAGE_INTERVAL, (30, -1), R.ACCEPTED),

@@ -10,8 +10,11 @@ import sys
 import tomllib
 from pathlib import Path
 
+import msgspec
 import pytest
 
+from vehicle import accessories
+from vehicle.accessories.settings import Accessories, outputs_of
 from vehicle.config import Config, parsed
 from vehicle.motors import DRIVERS
 from vehicle.params import Params
@@ -35,7 +38,8 @@ def test_a_table_of_parameters_is_right() -> None:
 
 
 def test_every_driver_has_its_wiring() -> None:
-    missing = [name for name in DRIVERS if name != "simulated" and f"(`{name}`)" not in GUIDE]
+    names = {*DRIVERS, *(name for drivers in accessories.DRIVERS.values() for name in drivers)}
+    missing = [name for name in names if name != "simulated" and f"(`{name}`)" not in GUIDE]
     assert missing == []
 
 
@@ -57,3 +61,9 @@ def test_check_says_what_the_guide_shows(tmp_path: Path) -> None:
     said = check.stdout.replace(str(tmp_path), "/home/pi").replace(endpoint, "udpin:0.0.0.0:14550").splitlines()
     assert said[:-1] == shown[:-1]
     assert said[-1].split(": ")[0] == shown[-1].split(": ")[0] == "ok    sensors.computer"
+
+
+def test_accessories_have_tables_that_are_right() -> None:
+    [table] = [table["accessories"] for table in TABLES if "accessories" in table]
+    outputs = outputs_of(msgspec.convert(table, Accessories))
+    assert [output.name for output in outputs] == ["relay 0", "servo 9"]

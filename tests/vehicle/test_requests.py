@@ -11,7 +11,7 @@ from dialects import messages as m
 from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.core import LinkReport, Peer
-from tests.vehicle.bench import EVERYTHING, OTHER, Bench
+from tests.vehicle.bench import EVERYTHING, OTHER, Bench, Equipped
 from vehicle.modes import OFFERED
 from vehicle.streams import STREAMS, Stream
 
@@ -19,7 +19,7 @@ REQUEST, SET, GET = Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Comma
 
 
 def equipped(**params: float) -> Bench:
-    bench = Bench(**params)
+    bench = Equipped(**params)
     bench.readings = EVERYTHING
     bench.wait(0.1)
     return bench

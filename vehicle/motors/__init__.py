@@ -156,7 +156,7 @@ def open_motors(name: str, settings: Mapping[str, Any] | None = None) -> Motors:
 
 def settings_type(name: str) -> type | None:
     """The msgspec.Struct of a driver's own settings; None where it has none. Raises UnknownDriverError."""
-    kind: type | None = getattr(_driver_class(name), "Settings", None)
+    kind: type | None = getattr(driver_class(name), "Settings", None)
     return kind
 
 
@@ -189,7 +189,7 @@ def _understood(name: str, settings: Mapping[str, Any] | None) -> tuple[Any, Any
 
     from vehicle.motors.settings import parsed, split
 
-    driver, kind = _driver_class(name), settings_type(name)
+    driver, kind = driver_class(name), settings_type(name)
     around, own = split({**PROFILES.get(name, {}), **(settings or {})})
     if kind is not None:
         if not own and (required := [field.encode_name for field in fields(kind) if field.required]):
@@ -221,18 +221,22 @@ def _fitting(name: str, motors: Any) -> Motors:
     return fitting
 
 
-def _driver_class(name: str) -> Any:
-    target = DRIVERS.get(name, name)
+def driver_class(name: str, table: Mapping[str, str] = DRIVERS, what: str = "motor driver") -> Any:
+    """The class of a driver: `name` is one of `table`, or "module:Class". Raises UnknownDriverError.
+
+    `what` it is stands in its texts.
+    """
+    target = table.get(name, name)
     module_name, colon, class_name = target.partition(":")
     if not (colon and module_name and class_name):
-        raise UnknownDriverError(_unknown(name))
-    found = getattr(_module(name, module_name), class_name, None)
+        raise UnknownDriverError(_unknown(name, table, what))
+    found = getattr(_module(name, module_name, what), class_name, None)
     if found is None:
-        raise UnknownDriverError(f"motor driver {name!r}: module {module_name} has no {class_name!r}")
+        raise UnknownDriverError(f"{what} {name!r}: module {module_name} has no {class_name!r}")
     return found
 
 
-def _module(name: str, module: str) -> Any:
+def _module(name: str, module: str, what: str) -> Any:
     """The module of the driver `name`, which may be somebody's own, with any fault in it. Raises UnknownDriverError."""
     try:
         return import_module(module)
@@ -241,10 +245,10 @@ def _module(name: str, module: str) -> Any:
     except Exception as error:
         absent = isinstance(error, ModuleNotFoundError) and error.name == module.partition(".")[0]
         hint = "; install it beside vehicle, or name its folder in PYTHONPATH" if absent else ""
-        raise UnknownDriverError(f"motor driver {name!r} cannot be loaded: {_line(error)}{hint}") from error
+        raise UnknownDriverError(f"{what} {name!r} cannot be loaded: {_line(error)}{hint}") from error
 
 
-def _unknown(name: str) -> str:
-    near = difflib.get_close_matches(name, DRIVERS, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(DRIVERS)}; or your own as module:Class"
-    return f"unknown motor driver {name!r}; {hint}"
+def _unknown(name: str, table: Mapping[str, str], what: str) -> str:
+    near = difflib.get_close_matches(name, table, n=1)
+    hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(table)}; or your own as module:Class"
+    return f"unknown {what} {name!r}; {hint}"

@@ -16,7 +16,7 @@ import msgspec
 from fastcrc.crc16 import xmodem
 
 from vehicle.motors import checked
-from vehicle.motors.settings import port_name
+from vehicle.motors.settings import port_name, uart_pins
 from vehicle.motors.wire import Wire, tenths
 
 SET_TIMEOUT, READ_TIMEOUT, READ_VERSION, DRIVE_BOTH = 14, 15, 21, 34
@@ -46,6 +46,11 @@ class RoboClawSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def taken(self) -> list[str]:
         """The port."""
         return [port_name(self.port)]
+
+    @property
+    def pins_nearby(self) -> tuple[int, ...]:
+        """Where it may come out."""
+        return uart_pins(self.port)
 
 
 class RoboClawMotors:

@@ -16,7 +16,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from vehicle.motors import checked
-from vehicle.motors.settings import port_name
+from vehicle.motors.settings import port_name, uart_pins
 from vehicle.motors.wire import Wire, tenths
 
 BAUDING = bytes([170])
@@ -45,6 +45,11 @@ class SabertoothSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True
     def taken(self) -> list[str]:
         """The port."""
         return [port_name(self.port)]
+
+    @property
+    def pins_nearby(self) -> tuple[int, ...]:
+        """Where it may come out."""
+        return uart_pins(self.port)
 
 
 class SabertoothMotors:

@@ -28,9 +28,29 @@ def chip_name(bus: int, address: int) -> str:
     return f"address 0x{address:02x} on I2C bus {bus}"
 
 
+def channel_name(number: int, chip: str) -> str:
+    """As vehicle/clashes.py knows an output of a chip."""
+    return f"channel {number} at {chip}"
+
+
 def port_name(path: str) -> str:
     """As vehicle/clashes.py knows a serial port: /dev/serial0 is another name of one."""
     return os.path.realpath(path)
+
+
+def uart_pins(path: str) -> tuple[int, ...]:
+    """Pins of the header at which a serial port may come out; none for one of USB."""
+    return (14, 15) if path.startswith(HEADER_UARTS) or port_name(path).startswith(HEADER_UARTS) else ()
+
+
+def i2c_pins(bus: int) -> tuple[int, ...]:
+    """Pins of the header at which an I2C bus may come out."""
+    return I2C_PINS.get(bus, ())
+
+
+HEADER_UARTS = ("/dev/serial", "/dev/ttyAMA", "/dev/ttyS")
+I2C_PINS = {0: (0, 1), 1: (2, 3)}
+"""Without overlays."""
 
 
 class Safety(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -79,6 +99,10 @@ class Around(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         from vehicle.motors.safety_pins import GuardedMotors
 
         return GuardedMotors(motors, guard)
+
+
+class NoSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Of a driver that has none of its own."""
 
 
 RETIRED = {

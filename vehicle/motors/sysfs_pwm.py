@@ -19,6 +19,8 @@ from vehicle.motors.pwm_channel import Channel, exported
 from vehicle.motors.settings import Pin, pin_name, refuse_doubles
 
 Number = Annotated[int, msgspec.Meta(ge=0, le=7)]
+PWM_PINS = (12, 13, 18, 19)
+"""Of the header, on every Pi."""
 
 
 class BridgePwm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="drives", tag="bridge"):
@@ -70,6 +72,11 @@ class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def taken(self) -> list[str]:
         """Pins."""
         return [pin_name(pin) for pin in self.pins]
+
+    @property
+    def pins_nearby(self) -> tuple[int, ...]:
+        """Where the hardware PWM may come out: which of them is an overlay's matter."""
+        return PWM_PINS
 
 
 class Bridge:

@@ -107,7 +107,7 @@ def test_disabled_and_closed_is_neutral_or_nothing(settings: Pca9685Settings, af
 @pytest.mark.parametrize("idle", ["neutral", "off"])
 def test_safe_stop_ends_the_pulses_of_a_killed_process(idle: str, monkeypatch: pytest.MonkeyPatch) -> None:
     fake = FakePca9685()
-    monkeypatch.setattr("vehicle.motors.pca9685.open_bus", lambda number: fake)
+    monkeypatch.setattr("vehicle.motors.pca9685_board.open_bus", lambda number: fake)
     settings = {"channels": [{"channel": 0}, {"channel": 1}], "idle": idle}
     killed = open_motors("pca9685", settings)
     killed.enable()
@@ -178,7 +178,7 @@ def test_something_else_at_the_address_is_refused() -> None:
 
 
 def test_no_board_is_said_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vehicle.motors.pca9685.open_bus", lambda number: FakePca9685())
+    monkeypatch.setattr("vehicle.motors.pca9685_board.open_bus", lambda number: FakePca9685())
     with pytest.raises(
         MotorError, match=r"PCA9685 at 0x41 on I2C bus 1: Remote I/O error: nothing .* `i2cdetect -y 1`"
     ):

@@ -1,0 +1,32 @@
+"""Relays and servos that nobody serves any more, as after a killed daemon: each to its safe value; never raises."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from vehicle.accessories.settings import COMMON, Kind, understood
+
+
+def safe_stop(tables: Any) -> Iterator[tuple[bool, str]]:
+    """Try each of [accessories], whatever it holds: is it safe, and a line of what it has now or why nobody knows."""
+    for kind in COMMON:
+        for index, table in enumerate(_listed(tables, f"{kind}s")):
+            try:
+                yield True, _made_safe(kind, table)
+            except Exception as error:  # whatever it is, the caller has nothing better to do than to say it
+                text = " ".join(str(error).split()) or type(error).__name__
+                yield False, f"accessories.{kind}s[{index}]: may have its last value still: {text}"
+
+
+def _listed(tables: Any, name: str) -> list[Any]:
+    found = tables.get(name) if isinstance(tables, Mapping) else None
+    return found if isinstance(found, list) else []
+
+
+def _made_safe(kind: Kind, table: Any) -> str:
+    output = understood(kind, table)
+    accessory = output.make(output.safe)
+    accessory.put(output.safe)  # what it was made with is the driver's word only
+    accessory.close()
+    return f"{output.name}: {output.words(output.safe)}"
