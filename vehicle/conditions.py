@@ -6,7 +6,7 @@ What sensors and self-driving find wrong is in vehicle/hazards.py.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from dialects.enums import Failsafe
 from vehicle.battery import BatteryWatch
@@ -18,9 +18,8 @@ GO_ON = 2
 """FS_GCS_ENABLE: a mission does not end with the ground station's voice."""
 
 
-@dataclass(frozen=True, slots=True)
-class Scene:
-    """What the conditions look at, while armed."""
+class Scene(NamedTuple):
+    """What the conditions look at, in each cycle while armed."""
 
     params: Params
     control: Control

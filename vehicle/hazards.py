@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from dialects.enums import Failsafe
 from vehicle.estimate import Estimate
@@ -20,8 +20,7 @@ STANDING = 0.05
 """... faster than this, m/s."""
 
 
-@dataclass(frozen=True, slots=True)
-class Look:
+class Look(NamedTuple):
     """What is looked at in a cycle."""
 
     readings: Readings

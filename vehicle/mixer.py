@@ -60,8 +60,8 @@ def skid(throttle: float, steering: float, sideways: float, limit: AtLimit) -> M
     excess = max(push + abs(steer), (push - abs(steer)) / lowest)
     if excess > 1.0:
         steer, push = _shared(steer, push, excess, lowest, best, limit.mix)
-    sides = (_strengthened(side, limit.asymmetry) for side in (push + steer, push - steer))
-    return Mixed(tuple(sides), saturated=excess > 1.0 or fits != (steering, throttle))
+    sides = _strengthened(push + steer, limit.asymmetry), _strengthened(push - steer, limit.asymmetry)
+    return Mixed(sides, saturated=excess > 1.0 or fits != (steering, throttle))
 
 
 def _shared(

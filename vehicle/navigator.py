@@ -182,8 +182,8 @@ class Navigator:
             readings=self._readings,
             estimate=self.estimate,
             throttles=throttles,
-            needs_position=placed or bool(latched & Failsafe.POSITION),
-            guided_lost=self.guided.lost_since() if guided or latched & Failsafe.GUIDED_LOSS else None,
+            needs_position=placed or bool(latched and latched & Failsafe.POSITION),
+            guided_lost=self.guided.lost_since() if guided or (latched and latched & Failsafe.GUIDED_LOSS) else None,
             outside=self.boundary.beyond > 0.0,
         )
         return self._hazards.found(look, now)

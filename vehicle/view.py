@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from dialects.messages import boot_ms
 from vehicle.accessories.rack import Rack
@@ -17,9 +17,8 @@ from vehicle.readings import Readings
 from vehicle.safety import Safety
 
 
-@dataclass(frozen=True, slots=True)
-class View:
-    """The rover at the time `now`."""
+class View(NamedTuple):
+    """The rover at the time `now`; made in each cycle and for each demand."""
 
     now: float
     since_boot: float

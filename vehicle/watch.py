@@ -84,9 +84,9 @@ class Watch:
         armed, failsafes = self._safety.armed, self._safety.failsafes
         before = failsafes.active
         taken = failsafes.update(found(self._scene(hazards), now) if armed else {}, now)
-        over = before & ~failsafes.active if before and armed else Failsafe(0)
-        for cause in over:
-            self._texts.say(Severity.NOTICE, f"Failsafe over: {RULES[cause].words}", now)
+        if before and armed:
+            for cause in before & ~failsafes.active:
+                self._texts.say(Severity.NOTICE, f"Failsafe over: {RULES[cause].words}", now)
         for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
             self._follow(step, now)
 
