@@ -30,7 +30,9 @@ _ZEROS = bytes(255)
 _SIZES = {number: message.unpacker.size for number, message in MESSAGES.items()}
 _DECODERS: dict[int, Any] = rover.DECODERS
 _ENCODERS: dict[int, Any] = rover.ENCODERS
-_HEADER = struct.Struct("<BBBBBBBHB")
+_MAGIC = bytes([MAGIC_V2])
+_HEADER = struct.Struct("<B2xBBBHB")
+"""What follows the start byte: length, no flags of either kind, sequence, system, component, id in two parts."""
 _CRC = struct.Struct("<H")
 
 
@@ -64,8 +66,5 @@ def encode_payload(message: Message) -> bytes:
 
 def frame(message_id: int, payload: bytes, sequence: int, system: int, component: int) -> bytes:
     """An unsigned MAVLink 2 frame. `sequence`, `system` and `component` are 0..255."""
-    head = _HEADER.pack(
-        MAGIC_V2, len(payload), 0, 0, sequence, system, component, message_id & 0xFFFF, message_id >> 16
-    )  # fmt: skip
-    body = head + payload
-    return body + _CRC.pack(mcrf4xx(body[1:] + CRC_EXTRA[message_id]))
+    body = _HEADER.pack(len(payload), sequence, system, component, message_id & 0xFFFF, message_id >> 16) + payload
+    return _MAGIC + body + _CRC.pack(mcrf4xx(body + CRC_EXTRA[message_id]))
