@@ -35,7 +35,7 @@ class _Brief(logging.Formatter):
     def format(self, record: logging.LogRecord) -> str:
         mark = journal.mark(self.SEVERITIES.get(record.levelno, journal.INFO))
         words = " ".join(record.getMessage().split())
-        return f"{mark}vehicle: " + "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in words)
+        return f"{mark}vehicle: " + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in words)
 
 
 class _Queued(logging.Handler):

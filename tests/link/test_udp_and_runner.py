@@ -123,7 +123,7 @@ async def test_the_core_ticks_and_hears_of_its_links_while_flooded(ground: socke
     assert core.reports[0][0].name == f"udpin:127.0.0.1:{port}"
 
 
-async def test_a_port_that_is_away_is_told_to_the_log_and_its_return_too(
+async def test_a_port_that_is_away_is_told_to_the_log_and_that_it_has_come_too(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """A vehicle without a screen has no other way to say that its port is missing."""
@@ -135,13 +135,13 @@ async def test_a_port_that_is_away_is_told_to_the_log_and_its_return_too(
         if core.reports and not cables:
             assert core.reports[0][0].down
             cables.append(Cable(path))
-        return "it is back" in caplog.text
+        return "connected" in caplog.text
 
     await run(f"serial:{path}:57600", plug_in_when_it_is_missed)
     cables[0].unplug()
     assert [(record.levelname, record.message) for record in caplog.records if record.name == "link.runner"] == [
         ("WARNING", f"serial:{path}:57600: waiting for {path}, it is not there; is it plugged in?"),
-        ("INFO", f"serial:{path}:57600: it is back"),
+        ("INFO", f"serial:{path}:57600: connected"),
     ]
 
 
