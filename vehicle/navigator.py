@@ -106,6 +106,12 @@ class Navigator:
         return self._estimator.estimate
 
     @property
+    def altitude(self) -> float | None:
+        """m above the sea, where a sensor says it."""
+        altitude = self._readings.altitude
+        return altitude if altitude is not None and math.isfinite(altitude) else None
+
+    @property
     def turn_rate(self) -> float | None:
         """rad/s as the gyro says it, its bias included; None without a gyro."""
         return sane_rate(self._readings)

@@ -182,7 +182,8 @@ class Orders:
         if not estimate.good or estimate.globe is None:
             return self._asking.refuse(request, "position is not known", now)
         if here:
-            altitude = navigator.home.altitude if navigator.home else 0.0
+            before = navigator.home.altitude if navigator.home else 0.0
+            altitude = before if navigator.altitude is None else navigator.altitude
             navigator.home = Home(*estimate.globe, altitude, *estimate.place)
             return Result.ACCEPTED
         return self._home_at(request, navigator)

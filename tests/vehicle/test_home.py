@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -58,4 +59,14 @@ def test_here_again() -> None:
     bench = placed()
     set_home(bench, 0, 520)
     assert bench.command(Command.DO_SET_HOME, 1) is Result.ACCEPTED
-    assert home(bench) == pytest.approx((*HERE[:2], 520_000), abs=1000)  # it drifts
+    assert home(bench) == pytest.approx(HERE, abs=1000)  # it drifts
+
+
+@pytest.mark.parametrize("altitude", [None, math.nan])
+def test_here_without_a_height_is_as_high_as_before(altitude: float | None) -> None:
+    bench = placed()
+    set_home(bench, 0, 520)
+    bench.readings = replace(EVERYTHING, altitude=altitude)
+    bench.wait(0.1)
+    assert bench.command(Command.DO_SET_HOME, 1) is Result.ACCEPTED
+    assert home(bench)[2] == 520_000
