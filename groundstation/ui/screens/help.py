@@ -46,7 +46,8 @@ class HelpScreen(Screen[None]):
         """Back to the Drive screen."""
         if event.key not in ("up", "down", "pageup", "pagedown", "home", "end"):
             event.stop()
-            self.dismiss()
+            if self.is_current:  # the second key of one read comes here too, and would take the Drive screen away
+                self.dismiss()
 
     def _lines(self) -> Iterator[tuple[str, str]]:
         for group, title in TITLES.items():

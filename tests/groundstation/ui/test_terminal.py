@@ -204,6 +204,17 @@ async def test_a_stop_in_the_same_read_wins() -> None:
         assert station.wishes[before:] == [Stop()]
 
 
+async def test_keys_that_come_together_leave_the_help_once_and_the_drive_screen_where_it_is() -> None:
+    async with app_on_a_pty() as (app, station, terminal):
+        terminal.type("?")
+        await until(lambda: app.screen is not app.drive)
+        terminal.type("xyzxyz")
+        await until(lambda: app.screen is app.drive)
+        terminal.type("i")
+        await until(lambda: station.of(Push))
+        assert app.screen is app.drive
+
+
 async def test_no_key_of_a_thousand_is_lost_at_5_ms_gaps() -> None:
     async with app_on_a_pty() as (_, station, terminal):
         keys = "ijl," * 250
