@@ -2,9 +2,9 @@
 
 rover.xml includes the definitions of the installed pymavlink; extension fields that those lack are in additions.xml.
 
-dialects/rover.py is the module that pymavlink's mavgen writes, and below it, written here, a flat pair of functions a
-message (payload bytes <-> fields) and MAVLink 1's payload lengths. mavgen's own decode() reads the same definitions at
-run time, five times slower.
+dialects/rover.py is the module that pymavlink's mavgen writes, without what nothing here reads at run time, and below
+it, written here, a flat pair of functions a message (payload bytes <-> fields) and MAVLink 1's payload lengths.
+mavgen's own decode() reads the same definitions at run time, five times slower.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 import contextlib
 import io
 import py_compile
+import re
 import runpy
 import shutil
 import sys
@@ -30,6 +31,10 @@ XML = HERE / "rover.xml"
 ADDITIONS = HERE / "additions.xml"
 MODULE = HERE / "rover.py"
 INCLUDES = ("minimal.xml", "standard.xml", "common.xml")
+TEXTS = ("description", "param", "field")
+"""Elements whose text explains and defines nothing."""
+NAMED = ("MAV_CMD", "MAV_RESULT")
+"""Enums whose names are read at run time (enums.py); of the others only the numbers are."""
 
 
 def generate(target: Path = MODULE) -> Path:
@@ -44,12 +49,13 @@ def generate(target: Path = MODULE) -> Path:
             shutil.copy(installed / name, scratch)
         add_fields(ADDITIONS, [Path(scratch) / name for name in INCLUDES])
         xml = Path(shutil.copy(XML, scratch))
+        drop_texts([xml, *(Path(scratch) / name for name in INCLUDES)])
         module = Path(scratch) / target.name
         with _quiet():
             _mavgen(xml, module)
             messages = _messages(Path(scratch))
         made_from = runpy.run_path(str(HERE / "fingerprint.py"))["line"]()
-        code = "\n".join([module.read_text("utf-8"), *_codec(messages), made_from]) + "\n"
+        code = "\n".join([lightened(module.read_text("utf-8")), *_codec(messages), made_from]) + "\n"
     whole = target.with_suffix(".new")
     whole.write_text(code, "utf-8")
     whole.replace(target)  # a program that starts meanwhile finds the old module or the new one, never half of it
@@ -82,6 +88,32 @@ def _extend(message: ElementTree.Element, fields: list[ElementTree.Element], sou
     if message.find("extensions") is None:
         ElementTree.SubElement(message, "extensions")
     message.extend(fields)
+
+
+def drop_texts(definitions: Sequence[Path]) -> None:
+    """Empty the explanations in `definitions`, which are rewritten: mavgen would put them into the module."""
+    for path in definitions:
+        tree = ElementTree.parse(path)
+        for name in TEXTS:
+            for element in tree.iter(name):
+                element.text = ""
+        tree.write(path, "utf-8")
+
+
+def lightened(code: str) -> str:
+    """mavgen's module without its tables of enums, but for the names of NAMED, and without the two methods a message
+    that MAVLink has for making and sending it. With the texts that is 1.6 MiB in each process that imports it."""
+    named = re.compile(rf'enums\["({"|".join(NAMED)})"\](\[\d+\])? = ')
+    method = re.compile(r"    def \w+_(encode|send)\(self, ")
+    kept: list[str] = []
+    inside = False
+    """... one of those methods."""
+    for line in code.splitlines():
+        if line.strip() and not line.startswith("     "):  # not the body of a method
+            inside = method.match(line) is not None
+        if not inside and (not line.startswith("enums[") or named.match(line)):
+            kept.append(line)
+    return "\n".join(kept)
 
 
 @contextlib.contextmanager

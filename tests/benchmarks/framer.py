@@ -158,7 +158,7 @@ def _encoders() -> dict[str, dict[str, Work]]:
     message: Any = manual_control(axes, 1)
     return {
         "numbers to bytes": {
-            "pymavlink": _times(lambda: mavlink.manual_control_encode(1, 600, 32767, 32767, -200, 0).pack(mavlink)),
+            "pymavlink": _times(lambda: m.ManualControl(1, 600, 32767, 32767, -200, 0).pack(mavlink)),
             "ours": _times(lambda: framed(manual_control(axes, 1), 7, 255, 190)),
         },
         "made message to bytes": {

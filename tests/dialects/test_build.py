@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
 pytest.importorskip("hatchling", reason="hatchling is not installed: pip install -e '.[dev]' has it")
 
-from dialects.build import MODULE, add_fields, generate
+from dialects import rover
+from dialects.build import MODULE, add_fields, drop_texts, generate, lightened
 
 ROOT = Path(__file__).parents[2]
 
@@ -68,3 +70,84 @@ def test_a_field_that_a_newer_definition_has_is_refused(tmp_path: Path) -> None:
 def test_a_field_of_an_unknown_message_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="there is no message THREE"):
         added(tmp_path, "THREE", "new")
+
+
+MODULE_OF_MAVGEN = '''enums: Dict[str, Enum] = {}
+
+# MAV_CMD
+enums["MAV_CMD"] = Enum()
+enums["MAV_CMD"].bitmask = False
+MAV_CMD_NAV_WAYPOINT = 16
+enums["MAV_CMD"][16] = EnumEntry("MAV_CMD_NAV_WAYPOINT", """""")
+enums["MAV_CMD"][16].param[1] = """"""
+enums["MAV_TYPE"] = Enum()
+MAV_TYPE_GCS = 6
+enums["MAV_TYPE"][6] = EnumEntry("MAV_TYPE_GCS", """""")
+
+
+class MAVLink(object):
+    def __init__(self) -> None:
+        self.seq = 0
+
+    def heartbeat_encode(self, type: int) -> MAVLink_heartbeat_message:
+        """
+
+        """
+        return MAVLink_heartbeat_message(type)
+
+    def heartbeat_send(self, type: int) -> None:
+        self.send(self.heartbeat_encode(type))
+
+    def send(self, message: object) -> None:
+        self.seq += 1
+
+    def last_encode(self, type: int) -> None:
+        pass
+
+
+mavlink_map = {}'''
+
+LIGHTENED = '''enums: Dict[str, Enum] = {}
+
+# MAV_CMD
+enums["MAV_CMD"] = Enum()
+MAV_CMD_NAV_WAYPOINT = 16
+enums["MAV_CMD"][16] = EnumEntry("MAV_CMD_NAV_WAYPOINT", """""")
+MAV_TYPE_GCS = 6
+
+
+class MAVLink(object):
+    def __init__(self) -> None:
+        self.seq = 0
+
+    def send(self, message: object) -> None:
+        self.seq += 1
+
+mavlink_map = {}'''
+
+
+def test_tables_and_methods_that_nobody_here_uses_are_left_out_and_all_else_stays() -> None:
+    assert lightened(MODULE_OF_MAVGEN) == LIGHTENED
+
+
+def test_the_module_has_all_numbers_and_the_names_that_are_shown() -> None:
+    assert list(rover.enums) == ["MAV_CMD", "MAV_RESULT"]
+    assert rover.enums["MAV_CMD"][400].name == "MAV_CMD_COMPONENT_ARM_DISARM"
+    assert rover.MAV_TYPE_GROUND_ROVER == 10
+    assert not [name for name in vars(rover.MAVLink) if name.endswith(("_encode", "_send"))]
+    assert {"parse_buffer", "send", "decode"} <= vars(rover.MAVLink).keys()
+
+
+def test_explanations_go_and_definitions_stay(tmp_path: Path) -> None:
+    definitions = tmp_path / "common.xml"
+    definitions.write_text(
+        '<mavlink><enums><enum name="E"><description>e</description><entry value="1" name="E_ONE">'
+        '<description>one</description><param index="1" label="L">p</param></entry></enum></enums>'
+        '<messages><message id="1" name="ONE"><description>d</description>'
+        '<field type="uint8_t" name="a" units="s">a</field></message></messages></mavlink>'
+    )
+    drop_texts([definitions])
+    root = ElementTree.parse(definitions).getroot()
+    assert not "".join(root.itertext())
+    assert [each.attrib for each in root.iter("field")] == [{"type": "uint8_t", "name": "a", "units": "s"}]
+    assert [each.attrib for each in root.iter("param")] == [{"index": "1", "label": "L"}]
