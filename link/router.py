@@ -110,7 +110,7 @@ class Router:
         sources, loaded, table = peer.sources, self._loaded, self.table
         known: Source | None = None
         if self.tape is not None:
-            self.tape += [raw for *_, raw in frames]
+            self.tape += [raw for _, _, _, _, raw in frames]
         for frame in frames:
             message_id, system, component, sequence, raw = frame
             if known is None or known.system != system or known.component != component:

@@ -28,7 +28,7 @@ class Tape:
 
     def heard(self, frames: Sequence[Frame], now: float) -> None:
         """Frames that were found whole, of anybody."""
-        self._add(now, [raw for message_id, *_, raw in frames if message_id != SETUP_SIGNING])
+        self._add(now, [raw for message_id, _, _, _, raw in frames if message_id != SETUP_SIGNING])
 
     def said(self, message_id: int, payload: bytes, now: float) -> None:
         """A message of ours."""

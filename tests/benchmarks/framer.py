@@ -127,7 +127,7 @@ def _framer(pieces: Sequence[bytes], stream: bool) -> None:
 def _decoding(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> None:
     feed, decode = Framer(stream=stream).feed, codec.decode
     for piece in pieces:
-        for message_id, *_, raw in feed(piece, 0.0):
+        for message_id, _, _, _, raw in feed(piece, 0.0):
             if message_id in ids:
                 decode(message_id, payload_of(raw))
 
