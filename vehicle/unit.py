@@ -42,8 +42,8 @@ RestartSec=0.5
 # {prevents}.
 RestartPreventExitStatus={prevent}
 TimeoutStartSec=30
-# The daemon stops its motors at once; this also limits safe-stop, which a slow Pi needs 2 s to load.
-TimeoutStopSec=5
+# The daemon stops its motors at once; this also limits safe-stop, which a Pi with a busy card may be long to load.
+TimeoutStopSec=15
 StateDirectory=mavhelm
 UMask=0077
 

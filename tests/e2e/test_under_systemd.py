@@ -1,0 +1,174 @@
+"""The unit exactly as `vehicle systemd-unit` prints it, under a real systemd: driven, killed, hung and stopped.
+
+The motor controller is an emulator on a terminal line whose own timeout does not work, so that only a command stops it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from dialects.axes import Axes
+from dialects.enums import Command
+from dialects.messages import CommandLong
+from tests.e2e.systemd_machine import Machine, UnableError, booted
+from tests.vehicle.ground import Ground
+from tests.vehicle.motors.pty_controller import OnPty
+from tests.vehicle.test_safe_stop import StubbornRoboClaw
+
+pytestmark = [pytest.mark.e2e, pytest.mark.timeout(300), pytest.mark.xdist_group("systemd")]
+
+UNIT = "rover.service"
+FILE = "/etc/rover.toml"
+DIALOUT = 20
+WITHIN = 60.0
+"""s: never reached where the code is right, so it may be long."""
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
+    opened = booted(tmp_path_factory.mktemp("systemd"))
+    try:
+        machine = opened.__enter__()
+    except UnableError as error:
+        pytest.skip(str(error))
+    try:
+        yield machine
+    finally:
+        opened.__exit__(None, None, None)
+
+
+class Service:
+    """The rover as a service, its motor controller, and a ground station."""
+
+    def __init__(self, machine: Machine, ground: Ground, line: OnPty) -> None:
+        self.machine, self.ground, self._line = machine, ground, line
+        self._before = len(machine.journal(UNIT))
+        self.write(f'[motors]\ndriver = "roboclaw"\nport = "{line.path}"\nreply_time = 0.05\n')
+        code, unit = machine.run("/opt/rover/bin/python3", "-m", "vehicle", "systemd-unit", "--config", FILE)
+        assert code == 0, unit
+        machine.install(UNIT, unit)
+
+    def write(self, rest: str, endpoint: str = "") -> None:
+        """The file of settings."""
+        (self.machine.root / FILE.lstrip("/")).write_text(f'endpoints = ["{endpoint or self.ground.endpoint}"]\n{rest}')
+
+    def start(self) -> None:
+        """It runs, says systemd."""
+        code, _ = self.machine.run("systemctl", "start", UNIT)
+        assert code == 0, "\n".join(text for _, text in self.said())
+
+    def fail_to_start(self) -> None:
+        """It does not."""
+        assert self.machine.run("systemctl", "start", UNIT)[0] != 0
+
+    def property(self, name: str) -> str:
+        return self.machine.property(name, UNIT)
+
+    def turning(self) -> bool:
+        return any(self._line.controller.outputs)
+
+    def drive(self) -> int:
+        """Go ahead until the wheels turn; the daemon's process, as the machine numbers it."""
+        self.ground.wait(lambda: self.turning() or self._ahead(), "the wheels turn", WITHIN)
+        assert self.turning()
+        return int(self.property("MainPID"))
+
+    def _ahead(self) -> bool:
+        self.ground.demand = Axes(throttle=0.5) if self.ground.armed else Axes()
+        if not self.ground.armed:
+            self.ground.say(CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
+        return False
+
+    def said(self) -> list[tuple[int, str]]:
+        """Priority and text of each line in the journal, in this test."""
+        return self.machine.journal(UNIT)[self._before :]
+
+    def back(self, killed: int) -> bool:
+        """Does it run again?"""
+        return self.property("ActiveState") == "active" and self.property("MainPID") not in ("0", str(killed))
+
+
+@pytest.fixture
+def service(machine: Machine) -> Iterator[Service]:
+    with Ground() as ground, OnPty(StubbornRoboClaw()) as line:
+        os.chown(line.path, 0, DIALOUT)
+        os.chmod(line.path, 0o660)
+        service = Service(machine, ground, line)
+        yield service
+        machine.run("systemctl", "stop", UNIT)
+        machine.run("systemctl", "reset-failed", UNIT)
+
+
+def test_it_is_active_once_it_is_ready_drives_keeps_what_it_should_and_stops(service: Service) -> None:
+    service.start()
+    assert service.property("ActiveState") == "active"
+    assert service.property("StatusText") == f"system 1, {service.ground.endpoint}"
+    service.drive()
+    assert service.machine.run("systemctl", "stop", UNIT)[0] == 0
+    assert not service.turning()
+    assert service.property("Result") == "success"
+    assert (6, "vehicle: stopped by SIGTERM, motors neutral") in service.said()
+    logs = list((service.machine.root / "var/lib/private/mavhelm/logs").iterdir())
+    assert logs
+    assert all(log.stat().st_size > 0 for log in logs)
+
+
+def test_after_a_kill_safe_stop_stops_the_wheels_and_it_starts_again(service: Service) -> None:
+    service.start()
+    killed = service.drive()
+    service.machine.run("bash", "-c", f"kill -KILL {killed}")
+    stopped_by_safe_stop(service, killed)
+
+
+def test_after_a_hang_the_watchdog_does_the_same(service: Service) -> None:
+    service.start()
+    hung = service.drive()
+    service.machine.run("bash", "-c", f"kill -STOP {hung}")
+    stopped_by_safe_stop(service, hung)
+    assert any(text.startswith("rover.service: Watchdog timeout") for _, text in service.said())
+
+
+def stopped_by_safe_stop(service: Service, ended: int) -> None:
+    """Nobody else can have: the demand goes on, and a new daemon is not armed."""
+    service.ground.wait(lambda: not service.turning(), "the wheels stand", WITHIN)
+    service.ground.wait(lambda: service.back(ended), "it runs again", WITHIN)
+    assert (6, "vehicle safe-stop: roboclaw: motors neutral and without power") in service.said()
+    assert not service.turning()
+
+
+def test_a_mistake_in_the_file_is_an_error_in_the_journal_and_not_tried_again(service: Service) -> None:
+    service.write("[motors\n")
+    service.fail_to_start()
+    assert (service.property("SubState"), service.property("NRestarts")) == ("failed", "0")
+    assert (service.property("ExecMainStatus"), service.property("Result")) == ("2", "exit-code")
+    mistake = [priority for priority, text in service.said() if text.startswith(f"vehicle: {FILE}: Expected ']'")]
+    assert mistake == [3]
+
+
+def test_what_may_come_is_tried_again(service: Service) -> None:
+    service.write('[motors]\ndriver = "simulated"\n', "udpout:no-such-host.invalid:14550")
+    service.fail_to_start()
+    service.ground.wait(lambda: int(service.property("NRestarts")) > 1, "it is tried again", WITHIN)
+
+
+def test_a_damaged_parameter_file_is_said_and_forbids_to_arm(service: Service) -> None:
+    state = service.machine.root / "var/lib/private/mavhelm"
+    service.start()
+    service.machine.run("systemctl", "stop", UNIT)
+    (state / "parameters").write_text("garbage")
+    service.start()
+    service.ground.wait(lambda: any("PreArm: parameter file damaged" in text for text in tried(service)), "no", WITHIN)
+    assert not service.ground.armed
+    assert any(priority == 4 and "parameter file damaged" in text for priority, text in service.said())
+    service.machine.run("systemctl", "stop", UNIT)
+    Path(state / "parameters.damaged").unlink()
+
+
+def tried(service: Service) -> list[str]:
+    """The vehicle's texts after one more wish to arm."""
+    service.ground.say(CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
+    return service.ground.texts()
