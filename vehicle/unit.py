@@ -113,9 +113,8 @@ Description=MAVLink rover: {word}, because a ground station asked for it
 
 [Service]
 Type=oneshot
-# How the rover's daemon ended; systemd says it since version 251. After any other end nothing happens.
-ExecCondition=/usr/bin/test "${{MONITOR_EXIT_STATUS}}" = {code}
-ExecStart=/usr/bin/systemctl --no-block {word}
+# How the rover's daemon ended: systemd tells ExecStart= alone, since version 251. After any other end nothing happens.
+ExecStart=/bin/sh -c 'test "$$MONITOR_EXIT_STATUS" != {code} || exec /usr/bin/systemctl --no-block {word}'
 """
 """The daemon itself has no rights for it. Started by OnFailure= of the unit."""
 

@@ -48,9 +48,13 @@ class Service:
         self.machine, self.ground, self._line = machine, ground, line
         self._before = len(machine.journal(UNIT))
         self.write(f'[motors]\ndriver = "roboclaw"\nport = "{line.path}"\nreply_time = 0.05\n')
-        code, unit = machine.run("/opt/rover/bin/python3", "-m", "vehicle", "systemd-unit", "--config", FILE)
+        self.install(UNIT, "--config", FILE)
+
+    def install(self, name: str, *options: str) -> None:
+        """The unit as the machine's own `vehicle` prints it."""
+        code, unit = self.machine.run("/opt/rover/bin/python3", "-m", "vehicle", "systemd-unit", *options)
         assert code == 0, unit
-        machine.install(UNIT, unit)
+        self.machine.install(name, unit)
 
     def write(self, rest: str, endpoint: str = "") -> None:
         """The file of settings."""
@@ -77,10 +81,14 @@ class Service:
         assert self.turning()
         return int(self.property("MainPID"))
 
+    def ask(self, command: int, *params: float) -> None:
+        """Say it once."""
+        self.ground.say(CommandLong(1, 1, command, 0, *params, *[0.0] * (7 - len(params))))
+
     def _ahead(self) -> bool:
         self.ground.demand = Axes(throttle=0.5) if self.ground.armed else Axes()
         if not self.ground.armed:
-            self.ground.say(CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
+            self.ask(Command.COMPONENT_ARM_DISARM, 1)
         return False
 
     def said(self) -> list[tuple[int, str]]:
@@ -170,5 +178,32 @@ def test_a_damaged_parameter_file_is_said_and_forbids_to_arm(service: Service) -
 
 def tried(service: Service) -> list[str]:
     """The vehicle's texts after one more wish to arm."""
-    service.ground.say(CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
+    service.ask(Command.COMPONENT_ARM_DISARM, 1)
     return service.ground.texts()
+
+
+POWER = {"reboot": 1, "poweroff": 2}
+"""What the computer is to do -> what PREFLIGHT_REBOOT_SHUTDOWN calls it."""
+
+
+@pytest.mark.parametrize("word", POWER)
+def test_the_computer_does_what_a_ground_station_asks(service: Service, word: str) -> None:
+    """Its targets are empty here: they become active, and the machine goes on."""
+    service.write('[motors]\ndriver = "simulated"\n[params]\nREBOOT_ENABLE = 2\n')
+    service.install(UNIT, "--config", FILE)
+    for each in POWER:
+        service.machine.install(f"{each}.target", "[Unit]\nDescription=nothing\n")
+        service.machine.run("systemctl", "stop", f"{each}.target")
+        service.install(f"rover-{each}.service", "--power", each)
+    service.start()
+    service.ground.arm()
+
+    def asked() -> bool:
+        service.ask(Command.COMPONENT_ARM_DISARM, 0)
+        service.ask(Command.PREFLIGHT_REBOOT_SHUTDOWN, 0, POWER[word])
+        return service.machine.property("ActiveState", f"{word}.target") == "active"
+
+    service.ground.wait(asked, f"systemd is told to {word}", WITHIN)
+    assert service.property("ActiveState") == "failed"  # not started again
+    for each in POWER:
+        assert (service.machine.property("ActiveState", f"{each}.target") == "active") is (each == word)

@@ -111,8 +111,7 @@ def test_only_where_the_file_allows_it_the_computer_follows_the_exit_code() -> N
 def test_the_unit_that_does_it(word: str, code: int, tmp_path: Path) -> None:
     printed, out, error = said_by("systemd-unit", "--power", word)
     assert (printed, error) == (0, "")
-    assert f'\nExecCondition=/usr/bin/test "${{MONITOR_EXIT_STATUS}}" = {code}\n' in out
-    assert f"\nExecStart=/usr/bin/systemctl --no-block {word}\n" in out
+    assert f'"$$MONITOR_EXIT_STATUS" != {code} || exec /usr/bin/systemctl --no-block {word}\'\n' in out
     if shutil.which("systemd-analyze"):
         file = tmp_path / f"rover-{word}.service"
         file.write_text(out)
