@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.e2e.programs import Vehicle
+from tests.e2e.programs import PATIENCE, Vehicle
 from tests.e2e.relay import Relay
 from tests.ports import free_port
 
@@ -34,6 +34,8 @@ class Rover:
         self.second_port = free_port()
         first = relay.vehicle_port if relay else self.port
         self._truth = folder / "truth.log"
+        self._stood = 0
+        """How many outputs there were when the wheels last stood."""
         self.vehicle = Vehicle(
             folder, first, f"udpout:127.0.0.1:{self.second_port}", "--sim-truth", str(self._truth), *options
         )
@@ -54,7 +56,7 @@ class Rover:
             f"not within {within} s: {what}; {self.vehicle.outputs()[-3:]}, at {self._place()}"
         )
 
-    def is_at(self, place: tuple[float, float], within: float = 10.0) -> None:
+    def is_at(self, place: tuple[float, float], within: float = PATIENCE) -> None:
         """Wait until it really is there, whatever it believes; latitude and longitude."""
         north = (place[0] - HOME[0]) * DEGREE
         east = (place[1] - HOME[1]) * DEGREE * math.cos(math.radians(HOME[0]))
@@ -66,20 +68,21 @@ class Rover:
         _, north, east, *_ = lines[-1].split()
         return float(north), float(east)
 
-    def speaks(self, within: float = 15.0) -> None:
+    def speaks(self, within: float = PATIENCE) -> None:
         """Wait until it has started and sends."""
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ear:
             ear.bind(("127.0.0.1", self.second_port))
             ear.settimeout(within)
             ear.recv(65536)
 
-    def drives(self, within: float = 15.0) -> None:
-        """Wait until the wheels turn."""
-        self.wait(self.vehicle.turning, within, "the wheels turn")
+    def drives(self) -> None:
+        """Wait until the wheels turn, or have turned since they last stood: a short drive may be over when we look."""
+        self.wait(lambda: any(each.turning for each in self.vehicle.outputs()[self._stood :]), PATIENCE, "wheels turn")
 
-    def stands(self, within: float = 10.0) -> None:
-        """Wait until they do not."""
-        self.wait(lambda: not self.vehicle.turning(), within, "the wheels stop")
+    def stands(self) -> None:
+        """Wait until they have come to rest."""
+        self.wait(self.vehicle.stands, PATIENCE, "the wheels stop")
+        self._stood = len(self.vehicle.outputs())
 
 
 LOSS = 0.1

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-PATIENCE = 15.0
+PATIENCE = 60.0
 """s for an answer: the machine is shared."""
 
 
@@ -32,6 +32,11 @@ class Conversation:
         self._read = 0
         self._thread = threading.Thread(target=self._listen, name="conversation", daemon=True)
         self._thread.start()
+
+    @property
+    def pid(self) -> int:
+        """Of the program."""
+        return self._process.pid
 
     @property
     def transcript(self) -> str:
@@ -68,9 +73,9 @@ class Conversation:
                 assert left > 0, f"not within {within} s: {pattern!r}\n{self.transcript}"
                 self._news.wait(left)
 
-    def ask(self, line: str, pattern: str, within: float = PATIENCE, period: float = 0.5) -> None:
-        """Type a line again and again, until the answer matches: what it asks about takes its time."""
-        deadline = time.monotonic() + within
+    def ask(self, line: str, pattern: str, period: float = 0.5) -> None:
+        """Type a line each `period` s, until the answer matches: what it asks about takes its time."""
+        deadline = time.monotonic() + PATIENCE
         while True:
             self.say(line)
             try:

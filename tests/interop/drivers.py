@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from dialects import messages as m
 from dialects.enums import Command, ModeFlag, Result
 from tests.interop import mavproxy, mavsdk_process
-from tests.interop.conversation import Conversation
+from tests.interop.conversation import PATIENCE, Conversation
 from tests.interop.qgroundcontrol import JOYSTICK, QGroundControl
 from tests.interop.script import Script
 
@@ -67,10 +67,10 @@ class MavProxyDriver:
         self.system = system
 
     def arm(self) -> None:
-        self._program.ask("arm throttle", r"ARM_DISARM: ACCEPTED", 10, 1.0)
+        self._program.ask("arm throttle", r"ARM_DISARM: ACCEPTED", 1.0)
 
     def disarm(self) -> None:
-        self._program.ask("disarm", r"ARM_DISARM: ACCEPTED", 10, 1.0)
+        self._program.ask("disarm", r"ARM_DISARM: ACCEPTED", 1.0)
 
     def push(self, throttle: float) -> None:
         self._program.say("rc 3 1500")
@@ -81,13 +81,13 @@ class MavProxyDriver:
         self._program.hear(f"COMMAND_ACK.*(ACCEPTED|{int(command)}, result : 0,)")
 
     def sees_armed(self, armed: bool) -> None:
-        self._program.wait_for("(?<![A-Z_])ARMED" if armed else "DISARMED", 10)
+        self._program.wait_for("(?<![A-Z_])ARMED" if armed else "DISARMED")
 
     def sees(self, sight: str) -> None:
-        self._program.ask(*STATUS[sight], 10)
+        self._program.ask(*STATUS[sight])
 
     def reads(self, text: str) -> None:
-        self._program.wait_for(text, 10)
+        self._program.wait_for(text)
 
 
 class MavsdkDriver:
@@ -143,7 +143,7 @@ class Loop:
     def close(self) -> None:
         """Stop the thread."""
         self._running = False
-        self._thread.join(15)
+        self._thread.join(PATIENCE)
 
     def arm(self) -> None:
         self.command(Command.COMPONENT_ARM_DISARM, 1)
@@ -179,7 +179,7 @@ class Loop:
         elif kind == "STATUSTEXT":
             self._texts.append(message.text if isinstance(message.text, str) else m.text_of(message))
 
-    def call(self, job: Callable[[], bool], what: str, within: float = 10.0) -> None:
+    def call(self, job: Callable[[], bool], what: str, within: float = PATIENCE) -> None:
         """Let the thread do it, again until it is true."""
         done = threading.Event()
 
@@ -202,7 +202,7 @@ class Loop:
             self._turn()
 
     def _wait(self, condition: Callable[[], bool], what: str) -> None:
-        deadline, tick = time.monotonic() + 10, threading.Event()
+        deadline, tick = time.monotonic() + PATIENCE, threading.Event()
         while not condition():
             assert time.monotonic() < deadline, f"GCS {self.system} never saw {what}; {self._texts[-5:]}"
             tick.wait(0.02)
@@ -247,7 +247,7 @@ class GroundDriver(Loop):
 @contextmanager
 def mavproxy_driver(port: int, system: int, folder: Path) -> Iterator[Driver]:
     with mavproxy.started(port, folder, system) as program:
-        program.hear("Received .* parameters", 20)
+        program.hear("Received .* parameters")
         yield MavProxyDriver(program, system)
 
 

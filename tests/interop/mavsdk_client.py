@@ -23,6 +23,7 @@ from tests.interop.mavsdk_tools import (
     Stick,
     accepted,
     by_hand,
+    fetched,
     finished,
     first,
     following,
@@ -111,6 +112,7 @@ def guided(system: Any, folder: str) -> None:
     step("return", action.return_to_launch)
     sys.stdin.readline()
     step("hold", action.hold)
+    sys.stdin.readline()
     step("setpoint", lambda: offboard.set_velocity_body(velocity(0.5, 0.0, 0.0, 0.0)))
     step("offboard", offboard.start)
     sys.stdin.readline()
@@ -220,7 +222,7 @@ def lossy(system: Any, folder: str) -> None:
     step("set", lambda: insist(lambda: param.set_param_float("SPEED_MAX", 1.4)))
     step("get", lambda: insist(lambda: param.get_param_float("SPEED_MAX")))
     path = "/missions/mission.waypoints"
-    step("file", lambda: finished(lambda take: ftp.download_async(path, folder, True, take)))
+    step("file", lambda: insist(lambda: fetched(lambda take: ftp.download_async(path, folder, True, take))))
     north, east = here(telemetry)
     plan = [item(n, 16, 0, north + 150 * (n + 1), east) for n in range(2)]
     step("upload", lambda: insist(lambda: raw.upload_mission(plan)))
@@ -276,7 +278,7 @@ def main(port: str, scenario: str, folder: str, system_id: str) -> None:
     configuration.system_id = int(system_id)
     sdk = Mavsdk(configuration)
     step("connect", lambda: str(sdk.add_any_connection(f"udpin://127.0.0.1:{port}")))
-    system = step("discover", lambda: sdk.first_autopilot(10.0))
+    system = step("discover", lambda: sdk.first_autopilot(PATIENCE))
     SCENARIOS[scenario](system, folder)
     os._exit(0)  # its threads end when they please
 

@@ -18,9 +18,10 @@ from typing import NamedTuple
 import pytest
 
 from tests.interop.conversation import end
+from tests.waits import Waits
 
 ROOT = Path(__file__).parents[2]
-PATIENCE = 40.0
+PATIENCE = 150.0
 """s for a step: longer than MAVSDK's own limits."""
 
 needed = pytest.mark.skipif(
@@ -53,6 +54,8 @@ class Client:
                 stderr=log,
                 text=True,
             )
+        self.waits = Waits(self._process.pid)
+        """What the machine makes the script wait."""
         self.discovery = 0.0
         """s that MAVSDK took to find the vehicle."""
         self._news = threading.Condition()

@@ -12,8 +12,10 @@ from importlib import import_module
 from typing import Any
 
 Subscribe = Callable[[Callable[..., None]], Any]
-PATIENCE = 10.0
-"""s for an answer that MAVSDK brings by a callback."""
+PATIENCE = 60.0
+"""s for an answer that MAVSDK brings by a callback: the machine is shared."""
+NEUTRALS = 8
+"""Sent before the stick moves: more than a lossy link loses in a row."""
 
 
 def plugin(name: str, system: Any) -> Any:
@@ -90,9 +92,17 @@ def finished(start: Callable[[Callable[..., None]], Any]) -> str:
     return str(results[0])
 
 
+def fetched(start: Callable[[Callable[..., None]], Any]) -> str:
+    """The final result of a transfer that must succeed."""
+    result = finished(start)
+    if result != "SUCCESS":
+        raise RuntimeError(result)
+    return result
+
+
 def wait_until(condition: Callable[[], bool]) -> bool:
     """Look until it is so."""
-    deadline, pause = time.monotonic() + 2 * PATIENCE, threading.Event()
+    deadline, pause = time.monotonic() + PATIENCE, threading.Event()
     while not condition() and time.monotonic() < deadline:
         pause.wait(0.1)
     return condition()
@@ -103,7 +113,7 @@ def insist(attempt: Callable[[], Any]) -> Any:
 
     Its first HEARTBEAT may come later than its first command, which the vehicle then refuses: so arming insists, too.
     """
-    deadline, pause = time.monotonic() + 2 * PATIENCE, threading.Event()
+    deadline, pause = time.monotonic() + PATIENCE, threading.Event()
     while True:
         try:
             return attempt()
@@ -133,9 +143,10 @@ def by_hand(manual: Any, throttle: float) -> None:
         end.set()
 
     threading.Thread(target=listen, daemon=True).start()
-    begun = time.monotonic()
+    sent = 0
     while not end.wait(0.05):
-        manual.set_manual_control_input(0.0 if time.monotonic() - begun < 0.3 else throttle, 0.0, 0.0, 0.0)
+        manual.set_manual_control_input(0.0 if sent < NEUTRALS else throttle, 0.0, 0.0, 0.0)
+        sent += 1
 
 
 class Stick:
@@ -149,7 +160,7 @@ class Stick:
 
     def hold(self, throttle: float) -> None:
         """There, from now on."""
-        self._throttle, self._neutrals = throttle, 6
+        self._throttle, self._neutrals = throttle, NEUTRALS
 
     def _run(self) -> None:
         pause = threading.Event()

@@ -35,14 +35,20 @@ NOT_SELECTABLE = 2
 """MAV_MODE_PROPERTY_NOT_USER_SELECTABLE."""
 JOYSTICK = 1 / 25
 """s between two MANUAL_CONTROL."""
+NEUTRALS = 8
+"""Sent before the stick moves: more than a lossy link loses in a row."""
+PATIENCE = 60.0
+"""s for what must come: the machine is shared."""
 
 
 class QGroundControl:
-    """One connection. `haste` divides the limits for its questions: it is the stricter by it."""
+    """One connection. `haste` divides the limits for its questions: it is the stricter by it. `clicks` is how often
+    its user tries again what it has given up."""
 
-    def __init__(self, port: int, system: int = SYSTEM, haste: float = 1.0) -> None:
+    def __init__(self, port: int, system: int = SYSTEM, haste: float = 1.0, clicks: int = 1) -> None:
         self._system = system
         self._haste = haste
+        self._clicks = clicks
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind(("127.0.0.1", port))
         self._framer = Framer(stream=False)
@@ -105,14 +111,14 @@ class QGroundControl:
 
     def meet(self) -> None:
         """0: a HEARTBEAT of component 1 that is a vehicle's."""
-        beat = self.wait(m.Heartbeat, 15, lambda each: each.type not in (6, 18, 26, 27))
+        beat = self.wait(m.Heartbeat, PATIENCE, lambda each: each.type not in (6, 18, 26, 27))
         assert beat is not None
         self._beat()  # whose first one may go before it knows of a vehicle, and we answer to an address
 
     def command(self, command: int, *params: float) -> Result:
         """With its repeats."""
         full = (*params, *(0.0,) * (7 - len(params)))
-        for confirmation in range(TRIES):
+        for confirmation in range(TRIES * self._clicks):
             self.repeats += confirmation > 0
             self.send(m.CommandLong(1, 1, command, confirmation, *full))
             ack = self.wait(m.CommandAck, COMMAND_LIMIT / self._haste, lambda each: each.command == command)
@@ -122,7 +128,7 @@ class QGroundControl:
 
     def request(self, kind: type[Kind], *params: float) -> Kind:
         """REQUEST_MESSAGE: the message and the acknowledgement, in either order."""
-        for confirmation in range(TRIES):
+        for confirmation in range(TRIES * self._clicks):
             self.repeats += confirmation > 0
             full = (kind.id, *params, *(0.0,) * (6 - len(params)))
             self.send(m.CommandLong(1, 1, Command.REQUEST_MESSAGE, confirmation, *full))
@@ -167,7 +173,7 @@ class QGroundControl:
 
     def download(self, path: str) -> bytes:
         """A file, tried again where QGroundControl would go on without it."""
-        for _ in range(TRIES):
+        for _ in range(TRIES * self._clicks):
             try:
                 return Download(self, path, LIMIT / self._haste).run()
             except DownloadError:
@@ -178,7 +184,7 @@ class QGroundControl:
         """5: the whole list; what is missing is asked for by its number."""
         values: dict[int, m.ParamValue] = {}
         self.send(m.ParamRequestList(1, 0))
-        for _ in range(PARAMETER_TRIES):
+        for _ in range(PARAMETER_TRIES * self._clicks):
             limit = PARAMETERS_GAP if values else PARAMETERS_BEGIN
             while value := self.wait(m.ParamValue, limit / self._haste):
                 values[value.param_index] = value
@@ -197,9 +203,29 @@ class QGroundControl:
         for number in [number for number in range(total) if number not in values][:PARAMETER_BATCH]:
             self.send(m.ParamRequestRead(1, 1, b"", number))
 
-    def joystick(self, throttle: int, steering: int, until: Callable[[], bool], within: float) -> None:
-        """Its joystick for a while: x ahead, r turn, 25 times a second."""
+    def joystick(self, throttle: int, until: Callable[[], bool], within: float = PATIENCE) -> bool:
+        """Its joystick, 25 times a second, until `until`; False where that does not come."""
         deadline = time.monotonic() + within
-        while not until() and time.monotonic() < deadline:
-            self.send(m.ManualControl(target=1, x=throttle, y=0, z=0, r=steering, buttons=0))
-            self.wait(m.FileTransferProtocol, JOYSTICK)
+        while not until():
+            if time.monotonic() > deadline:
+                return False
+            self._stick(throttle)
+        return True
+
+    def drive(self, throttle: int, until: Callable[[], bool]) -> None:
+        """Neutral first, then the joystick, until `until`; again and in MANUAL, where a pause has ended in HOLD."""
+        deadline = time.monotonic() + PATIENCE
+        self.neutral()
+        while not self.joystick(throttle, until, 5.0):
+            assert time.monotonic() < deadline
+            self.command(Command.DO_SET_MODE, 1, 0)
+            self.neutral()
+
+    def neutral(self) -> None:
+        """The stick at rest for a moment."""
+        for _ in range(NEUTRALS):
+            self._stick(0)
+
+    def _stick(self, throttle: int) -> None:
+        self.send(m.ManualControl(target=1, x=throttle, y=0, z=0, r=0, buttons=0))
+        self.wait(m.FileTransferProtocol, JOYSTICK)

@@ -19,6 +19,10 @@ mavwp: Any = import_module("pymavlink.mavwp")
 GCS, NO_AUTOPILOT, ACTIVE = 6, 8, 4
 STICK = 0.05
 """s between two MANUAL_CONTROL."""
+NEUTRALS = 8
+"""Sent before the stick moves: more than a lossy link loses in a row."""
+PATIENCE = 60.0
+"""s for what must come: the machine is shared."""
 
 
 class Script:
@@ -30,7 +34,7 @@ class Script:
             f"udpin:127.0.0.1:{port}", source_system=system, source_component=component
         )
         self._beat_due = 0.0
-        assert self.link.wait_heartbeat(timeout=15) is not None
+        assert self.link.wait_heartbeat(timeout=PATIENCE) is not None
         self._beat()
 
     def __enter__(self) -> Script:
@@ -56,14 +60,14 @@ class Script:
         while (left := deadline - time.monotonic()) > 0:
             self.hear(within=left)
 
-    def until(self, condition: Callable[[], bool], within: float = 15.0) -> None:
+    def until(self, condition: Callable[[], bool], within: float = PATIENCE) -> None:
         """Receive until `condition`."""
         deadline = time.monotonic() + within
         while not condition():
             assert time.monotonic() < deadline
             self.hear(within=0.1)
 
-    def insist(self, act: Callable[[], object], condition: Callable[[], bool], within: float = 20.0) -> None:
+    def insist(self, act: Callable[[], object], condition: Callable[[], bool], within: float = PATIENCE) -> None:
         """Do it again each half second, until `condition`."""
         deadline = time.monotonic() + within
         while not condition():
@@ -94,10 +98,17 @@ class Script:
             self.link.mav.manual_control_send(1, throttle, 0, 0, 0, 0)
             self.hear(within=STICK)
 
-    def drive(self, throttle: int, until: Callable[[], bool], within: float = 5.0) -> None:
-        """Neutral first, then the stick."""
-        self.stick(0, lambda: False, within=0.3)
-        self.stick(throttle, until, within)
+    def drive(self, throttle: int, until: Callable[[], bool]) -> None:
+        """Neutral first, then the stick, until `until`; again and in MANUAL, where a pause has ended in HOLD."""
+        deadline = time.monotonic() + PATIENCE
+        while not until():
+            assert time.monotonic() < deadline
+            for _ in range(NEUTRALS):
+                self.link.mav.manual_control_send(1, 0, 0, 0, 0, 0)
+                self.hear(within=STICK)
+            self.stick(throttle, until)
+            if not until():
+                self.link.set_mode("MANUAL")
 
     def upload(self, loader: Any) -> int:
         """Send a plan of mavwp's; the type of the MISSION_ACK. What is not answered for a second is said again."""
@@ -122,14 +133,14 @@ class Script:
         return self._answer(ask, "MISSION_ITEM_INT", lambda item: item.seq == number)
 
     def fetch(self, path: str) -> bytes:
-        """A file, by mavftp."""
+        """A file, by mavftp; empty where it gave up."""
         ftp, came = mavftp.MAVFTP(self.link, 1, 1), list[bytes]()
         ftp.cmd_get([path], callback=lambda file: came.append(file.read() if file else b""))
-        ftp.process_ftp_reply("OpenFileRO", timeout=20)
-        return came[0]
+        ftp.process_ftp_reply("OpenFileRO", timeout=PATIENCE)
+        return came[0] if came else b""
 
     def _answer(self, ask: Callable[[], object], kind: str, good: Callable[[Any], bool] = lambda message: True) -> Any:
-        for _ in range(20):
+        for _ in range(round(PATIENCE / 0.5)):
             ask()
             message = self.hear(kind, within=0.5)
             if message is not None and good(message):

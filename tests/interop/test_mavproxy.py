@@ -13,6 +13,7 @@ from tests.interop import mavproxy as mavproxy_program
 from tests.interop.conftest import HOME, Rover
 from tests.interop.conversation import Conversation
 from tests.interop.mavproxy import plan_file
+from tests.waits import Waits
 from vehicle.params import TABLE
 
 pytestmark = [pytest.mark.interop, mavproxy_program.needed]
@@ -32,13 +33,13 @@ QUICK, ATTEMPTS = 3.0, 5
 """s for all parameters; how often it may take longer, because the machine does something else."""
 
 
-def test_it_connects_reads_all_parameters_and_sets_one(mavproxy: Conversation) -> None:
+def test_it_connects_reads_all_parameters_and_sets_one(mavproxy: Conversation, rover: Rover) -> None:
     """First as MAVProxy does by itself, then by the list that its older versions ask for."""
-    mavproxy.hear("Detected vehicle 1:1", 15)
-    assert min(fetches(mavproxy, rf"Received {len(TABLE)} parameters \(ftp\)")) < QUICK
+    mavproxy.hear("Detected vehicle 1:1")
+    assert min(fetches(mavproxy, rover, rf"Received {len(TABLE)} parameters \(ftp\)")) < QUICK
     mavproxy.say("set param_ftp False")
     mavproxy.say("param fetch")
-    assert min(fetches(mavproxy, rf"Received {len(TABLE)} parameters\s")) < QUICK
+    assert min(fetches(mavproxy, rover, rf"Received {len(TABLE)} parameters\s")) < QUICK
     mavproxy.say("param set SPEED_MAX 1.4")
     mavproxy.ask("param fetch SPEED_MAX", r"SPEED_MAX = 1\.4")
     mavproxy.say("param set SPEED_MAX 5000")
@@ -46,12 +47,13 @@ def test_it_connects_reads_all_parameters_and_sets_one(mavproxy: Conversation) -
     assert_no_error(mavproxy)
 
 
-def fetches(mavproxy: Conversation, told: str) -> Iterator[float]:
-    """s that MAVProxy takes to fetch all parameters; the first fetch is under way already. Ends with a quick one."""
+def fetches(mavproxy: Conversation, rover: Rover, told: str) -> Iterator[float]:
+    """s that MAVProxy takes to fetch all parameters, without what the machine makes it wait; the first fetch is under
+    way already. Ends with a quick one."""
     for _ in range(ATTEMPTS):
-        begun = time.monotonic()
+        waits, begun = Waits(rover.vehicle.process.pid, mavproxy.pid), time.monotonic()
         mavproxy.hear(told)
-        took = time.monotonic() - begun
+        took = time.monotonic() - begun - waits.total()
         yield took
         if took < QUICK:
             return
@@ -62,7 +64,7 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     """Lists, plans, each mode, the stick, and the way back."""
     (tmp_path / "mission.txt").write_text(plan_file(WAYPOINT, 0, [HOME, (HOME[0] + 0.00003, HOME[1])]))
     (tmp_path / "rally.txt").write_text(plan_file(RALLY_POINT, 0, [HOME, (HOME[0] + 0.00001, HOME[1])]))
-    mavproxy.hear("Received .* parameters", 15)
+    mavproxy.hear("Received .* parameters")
     for line, answer in (
         ("param show SPEED_MAX", r"SPEED_MAX +1\.5"),
         ("param fetch SPEED_MAX", r"SPEED_MAX = 1\.5"),
@@ -77,7 +79,7 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     ):
         mavproxy.say(line)
         mavproxy.hear(answer)
-    mavproxy.ask("status ESTIMATOR_STATUS", r"flags : \d\d", 10)  # knows where it is, as some modes want
+    mavproxy.ask("status ESTIMATOR_STATUS", r"flags : \d\d")  # knows where it is, as some modes want
     mavproxy.say("module load calibration")
     mavproxy.hear("Loaded module calibration")
     mavproxy.say("gyrocal")
@@ -92,7 +94,7 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     mavproxy.say("rc 3 1500")  # neutral first
     mavproxy.say("rc 3 1600")
     rover.drives()
-    left, right = rover.vehicle.outputs()[-1].throttles
+    left, right = next(each.throttles for each in reversed(rover.vehicle.outputs()) if each.turning)
     assert left == right > 0
     mavproxy.say("rc 3 1500")
     rover.stands()
@@ -148,10 +150,9 @@ def assert_no_loss(mavproxy: Conversation) -> None:
 
 
 def assert_no_error(mavproxy: Conversation) -> None:
-    """Nothing that it has said since its start is one."""
-    assert not re.search("fail|error|traceback|unknown|refused", mavproxy.transcript, re.IGNORECASE), (
-        mavproxy.transcript
-    )
+    """Nothing that it has said since its start is one; a machine that pauses may keep its stick from the vehicle."""
+    said = re.sub(r"Failsafe.*manual control lost", "", mavproxy.transcript)
+    assert not re.search("fail|error|traceback|unknown|refused", said, re.IGNORECASE), mavproxy.transcript
 
 
 def test_a_mission_inside_a_fence(mavproxy: Conversation, rover: Rover, tmp_path: Path) -> None:
@@ -159,7 +160,7 @@ def test_a_mission_inside_a_fence(mavproxy: Conversation, rover: Rover, tmp_path
     corners = [(HOME[0] + north, HOME[1] + east) for north, east in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     (tmp_path / "mission.txt").write_text(plan_file(WAYPOINT, 0, points))
     (tmp_path / "fence.txt").write_text(plan_file(POLYGON_CORNER, 4, corners))
-    mavproxy.hear("Received .* parameters", 15)
+    mavproxy.hear("Received .* parameters")
     mavproxy.say("wp load mission.txt")
     mavproxy.hear("TYPE_MISSION: ACCEPTED")
     mavproxy.say("wp list")
@@ -177,7 +178,7 @@ def test_a_mission_inside_a_fence(mavproxy: Conversation, rover: Rover, tmp_path
     mavproxy.say("long MISSION_START 0 0")
     mavproxy.hear("MISSION_START: ACCEPTED")
     rover.drives()
-    mavproxy.hear("mission complete", 20)
+    mavproxy.hear("mission complete")
     rover.stands()
     rover.is_at(points[-1])
     mavproxy.say("disarm")

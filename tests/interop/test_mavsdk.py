@@ -37,14 +37,14 @@ def client(rover: Rover, tmp_path: Path) -> Iterator[Callable[[str], Client]]:
 
 def test_what_it_is_and_where(client: Callable[[str], Client], rover: Rover) -> None:
     rover.speaks()
-    sdk = next(each for each in map(client, ["identity"] * 3) if each.discovery < 1.5)  # the machine may be busy
+    sdk = next(each for each in map(client, ["identity"] * 3) if each.discovery < 1.5 + each.waits.total())
     sdk.good("version")
     for stream in mavsdk_streams.ASKED:
         sdk.good(f"rate of {stream}")
     for stream in mavsdk_streams.UNASKED | mavsdk_streams.ASKED:
         sdk.good(stream)
     sdk.good("faster")
-    assert sdk.good("20 at 20 Hz").took < 4.0  # 5 s at the usual 4 Hz
+    assert sdk.good("20 at 20 Hz").took < 4.0 + sdk.waits.total()  # 5 s at the usual 4 Hz
 
 
 def test_parameters(client: Callable[[str], Client]) -> None:
@@ -56,7 +56,7 @@ def test_parameters(client: Callable[[str], Client]) -> None:
     for refused in ("unknown", "set unknown", "out of range"):
         step = sdk.step(refused)
         assert step.error is not None
-        assert step.took < INSTANT
+        assert step.took < INSTANT + sdk.waits.total()
 
 
 def test_it_drives_by_hand(client: Callable[[str], Client], rover: Rover) -> None:
@@ -77,7 +77,7 @@ def test_it_starts_again_and_is_turned_off(
     sdk = client("leaving")
     sdk.say(word)
     sdk.good(word)
-    assert rover.vehicle.process.wait(30) == code
+    assert rover.vehicle.process.wait(60) == code
 
 
 def test_home_and_the_origin_are_where_they_are_set(client: Callable[[str], Client]) -> None:
@@ -92,7 +92,7 @@ def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> N
     sdk.good("speed")
     sdk.good("goto")
     rover.drives()
-    rover.stands(within=15)
+    rover.stands()
     sdk.say()
     assert sdk.good("gone").value == pytest.approx(110, abs=60)  # 1.2 m, within 0.7 m
     assert 0.3 < float(str(sdk.good("fastest").value)) < 0.7  # usually 0.8
@@ -100,6 +100,8 @@ def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> N
     rover.drives()
     sdk.say()
     sdk.good("hold")
+    rover.stands()
+    sdk.say()
     sdk.good("offboard")
     rover.drives()
     sdk.say()

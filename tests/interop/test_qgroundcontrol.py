@@ -11,7 +11,9 @@ from dialects import messages as m
 from dialects.enums import Capability, Command, Result
 from tests.interop import qgc_plans
 from tests.interop.conftest import Rover
-from tests.interop.qgroundcontrol import QGroundControl
+from tests.interop.qgc_files import LIMIT
+from tests.interop.qgroundcontrol import PATIENCE, QGroundControl
+from tests.waits import Waits
 from vehicle.params import TABLE
 
 pytestmark = pytest.mark.interop
@@ -25,8 +27,8 @@ def ground(rover: Rover) -> Iterator[QGroundControl]:
         yield ground
 
 
-def test_the_connect_sequence_comes_to_its_end(ground: QGroundControl) -> None:
-    begun = time.monotonic()
+def test_the_connect_sequence_comes_to_its_end(ground: QGroundControl, rover: Rover) -> None:
+    begun, waits = time.monotonic(), Waits(rover.vehicle.process.pid)
     version = ground.request(m.AutopilotVersion)
     assert version.capabilities & Capability.MAVLINK2
     assert {"MANUAL", "HOLD"} <= set(ground.modes())
@@ -36,20 +38,17 @@ def test_the_connect_sequence_comes_to_its_end(ground: QGroundControl) -> None:
     assert set(values) == set(meaning)
     assert (meaning["SPEED_MAX"]["units"], meaning["SPEED_MAX"]["max"]) == ("m/s", 30)
     assert [qgc_plans.count(ground, kind) for kind in (0, 1, 2)] == [0, 0, 0]
-    assert time.monotonic() - begun < 15
+    assert time.monotonic() - begun < 15 + waits.total()
     for message in (m.ProtocolVersion.id, 395, 259):  # older versions' questions: each has an answer, none a time limit
         assert ground.command(Command.REQUEST_MESSAGE, message) in (Result.ACCEPTED, Result.UNSUPPORTED)
     assert ground.command(9999) is Result.UNSUPPORTED
-    assert ground.repeats == 0
+    assert ground.repeats <= waits.total() / LIMIT  # none, but where the machine made it wait so long
 
 
 def test_its_joystick_drives(ground: QGroundControl, rover: Rover) -> None:
     assert ground.command(Command.COMPONENT_ARM_DISARM, 1) is Result.ACCEPTED
-    ground.joystick(0, 0, until=lambda: False, within=0.3)
-    ground.joystick(600, 0, until=lambda: rover.vehicle.at_full(0.4), within=15)
-    assert rover.vehicle.at_full(0.4)
-    ground.joystick(0, 0, until=lambda: not rover.vehicle.turning(), within=10)
-    assert not rover.vehicle.turning()
+    ground.drive(600, until=rover.vehicle.at_full)
+    assert ground.joystick(0, until=rover.vehicle.stands)
     assert ground.command(Command.COMPONENT_ARM_DISARM, 0) is Result.ACCEPTED
 
 
@@ -58,15 +57,12 @@ def test_a_second_one_drives_only_after_it_was_given_control(ground: QGroundCont
         second.meet()
         assert second.modes()
         assert ground.command(Command.COMPONENT_ARM_DISARM, 1) is Result.ACCEPTED
-        told = second.wait(m.ControlStatus, 10, lambda status: status.gcs_main == 255)
+        told = second.wait(m.ControlStatus, PATIENCE, lambda status: status.gcs_main == 255)
         assert told is not None
         for throttle in (0, 600):
-            second.joystick(throttle, 0, until=rover.vehicle.turning, within=0.5)
-        assert not rover.vehicle.turning()
+            assert not second.joystick(throttle, until=rover.vehicle.turning, within=0.5)
         assert second.command(Command.REQUEST_OPERATOR_CONTROL, 1, 0) is Result.FAILED
         assert ground.command(Command.REQUEST_OPERATOR_CONTROL, 0, 0) is Result.ACCEPTED
         assert second.command(Command.REQUEST_OPERATOR_CONTROL, 1, 0) is Result.ACCEPTED
         assert second.command(Command.DO_SET_MODE, 1, 0) is Result.ACCEPTED
-        second.joystick(0, 0, until=lambda: False, within=0.3)
-        second.joystick(600, 0, until=rover.vehicle.turning, within=15)
-        assert rover.vehicle.turning()
+        second.drive(600, until=rover.vehicle.turning)
