@@ -162,7 +162,7 @@ class TestArticleCar:
 @pytest.mark.parametrize(
     ("settings", "says"),
     [
-        ({}, "missing required field `bridges`"),
+        ({}, "needs settings, at least bridges"),
         ({"bridges": []}, "bridges: Expected `array` of length >= 1"),
         ({"bridges": [{"wiring": "two-inputs", "forward": 10}]}, "missing required field `backward`"),
         ({"bridges": [{"wiring": "two-inputs", "forward": 10, "backward": 28}]}, "backward: Expected `int` <= 27"),
