@@ -2,8 +2,8 @@
 
 As in ArduPilot, NAV items come one after another, and the DO and CONDITION items between two of them run while the
 rover drives to the second: a condition holds up the DO items behind it, and what is left over when the second is
-reached is left out. CONDITION_YAW is the exception: turning on the spot takes the whole rover, so it is a NAV
-item here.
+reached is left out. Behind the last NAV item they run when it is done, up to a condition that does not hold yet.
+CONDITION_YAW is the exception: turning on the spot takes the whole rover, so it is a NAV item here.
 """
 
 from __future__ import annotations
