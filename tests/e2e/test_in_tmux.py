@@ -27,6 +27,8 @@ pytestmark = [
     ),
 ]
 
+PATIENCE = 60.0
+"""s for what must come: the machine is shared."""
 PAUSE = 0.04
 """s between two looks or two key repeats."""
 
@@ -95,18 +97,18 @@ def speed_shown(screen: str) -> bool:
 @pytest.mark.parametrize(("columns", "lines"), [(80, 24), (140, 45)])
 def test_the_first_drive(tmux: Callable[..., Tmux], columns: int, lines: int) -> None:
     terminal = tmux(columns, lines, "--sitl")
-    terminal.until(lambda screen: "DISARMED" in screen and "arms" in screen, 20)
+    terminal.until(lambda screen: "DISARMED" in screen and "arms" in screen, PATIENCE)
     terminal.press("r")
-    terminal.until(lambda screen: "Arm?" in screen, 5)
+    terminal.until(lambda screen: "Arm?" in screen, PATIENCE)
     terminal.press("y")
-    terminal.until(lambda screen: "hold i to drive" in screen, 10)
-    terminal.until(lambda screen: home_distance(screen) > 1.0 and speed_shown(screen), 20, holding="i")
-    stood = terminal.until(lambda screen: re.search(r"left\s.*\+0%", screen) is not None, 5)
+    terminal.until(lambda screen: "hold i to drive" in screen, PATIENCE)
+    terminal.until(lambda screen: home_distance(screen) > 1.0 and speed_shown(screen), PATIENCE, holding="i")
+    stood = terminal.until(lambda screen: re.search(r"left\s.*\+0%", screen) is not None, PATIENCE)
     assert home_distance(stood) > 1.0
     terminal.press("r")
-    terminal.until(lambda screen: "DISARMED" in screen, 5)
+    terminal.until(lambda screen: "DISARMED" in screen, PATIENCE)
     terminal.press("C-q")
-    ended = terminal.until(lambda screen: "EXIT CODE" in screen, 10)
+    ended = terminal.until(lambda screen: "EXIT CODE" in screen, PATIENCE)
     assert "EXIT CODE 0" in ended
     assert "Traceback" not in ended
 
@@ -114,7 +116,7 @@ def test_the_first_drive(tmux: Callable[..., Tmux], columns: int, lines: int) ->
 def test_waiting_offers_the_simulator(tmux: Callable[..., Tmux]) -> None:
     port = free_port()
     terminal = tmux(80, 24, f"udpin:127.0.0.1:{port}")
-    waiting = terminal.until(lambda screen: "waiting for a vehicle" in screen, 20)
+    waiting = terminal.until(lambda screen: "waiting for a vehicle" in screen, PATIENCE)
     assert str(port) in waiting
     terminal.press("F5")
-    terminal.until(lambda screen: "DISARMED" in screen, 20)
+    terminal.until(lambda screen: "DISARMED" in screen, PATIENCE)

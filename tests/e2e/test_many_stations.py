@@ -29,6 +29,7 @@ class Listener:
 
     def __init__(self, port: int, system: int) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)  # for as long as we are held up
         self.socket.connect(("127.0.0.1", port))
         self.socket.setblocking(False)
         self._framer = Framer(stream=False)
@@ -79,7 +80,7 @@ def stations(tmp_path: Path) -> Iterator[list[Listener]]:
         yield found
 
 
-def wait(stations: list[Listener], enough: int, within: float = 20.0) -> None:
+def wait(stations: list[Listener], enough: int, within: float = 60.0) -> None:
     """Until each has heard so many ATTITUDE."""
     deadline = time.monotonic() + within
     while any(each.heard.get(m.Attitude.id, 0) < enough for each in stations):

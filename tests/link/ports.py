@@ -58,7 +58,8 @@ class BaudCable(Cable):
         self._per_second = baud / 10
         self._loop = asyncio.get_running_loop()
         self._passed_until = self._loop.time()
-        self._pass()
+        self._timer: asyncio.Handle
+        self._timer = self._loop.call_soon(self._pass)
 
     @property
     def waiting(self) -> int:
@@ -66,12 +67,16 @@ class BaudCable(Cable):
         return int.from_bytes(fcntl.ioctl(self.far, termios.FIONREAD, bytes(4)), "little")
 
     def _pass(self) -> None:
+        self.pass_on()
+        self._timer = self._loop.call_later(0.001, self._pass)
+
+    def pass_on(self) -> None:
+        """What the wire has passed by now."""
         now = self._loop.time()
         room = int((now - self._passed_until) * self._per_second)
         if room:
             self._passed_until += room / self._per_second
             self.received += self.read(room)
-        self._timer = self._loop.call_later(0.001, self._pass)
 
     def unplug(self) -> None:
         self._timer.cancel()

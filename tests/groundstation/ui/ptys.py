@@ -70,10 +70,10 @@ class Terminal:
         os.close(self._master)
 
 
-async def until(wanted: Callable[[], Value]) -> Value:
-    """Wait until it is true, looking at each turn of the loop's clock; fails after PATIENCE."""
+async def until(wanted: Callable[[], Value], within: float = PATIENCE) -> Value:
+    """Wait until it is true, looking at each turn of the loop's clock; TimeoutError after so many s."""
     loop = asyncio.get_running_loop()
-    deadline = loop.time() + PATIENCE
+    deadline = loop.time() + within
     while not (value := wanted()):
         if loop.time() > deadline:
             raise TimeoutError("it did not come")
