@@ -25,7 +25,7 @@ from vehicle.assembly import build, params_of, rack_of, recorder_of
 from vehicle.ending import Cycles, Ending
 from vehicle.heard import HEARD
 from vehicle.host import Host
-from vehicle.host_facts import LoadMeter, uid_of
+from vehicle.host_facts import HostMeter, uid_of
 from vehicle.lock import state_lock
 from vehicle.machine import Machine
 from vehicle.motors import MotorError, UnknownDriverError
@@ -111,7 +111,6 @@ async def _serve(settings: Settings) -> int:
         rover = Rover(
             params,
             now=now,
-            wall_clock=time.time(),
             keeper=keeper,
             plan_keeper=plans,
             recording=recorder,
@@ -119,7 +118,7 @@ async def _serve(settings: Settings) -> int:
             told=_journal,
             rack=rack,
         )
-        meter = LoadMeter(host, lambda: loop.waited, now)
+        meter = HostMeter(host, lambda: loop.waited, time.time, now)
         cycles = Cycles(rover, notifier, meter)
         machine = build(settings, params, rover, opened, cycles.completed, rack)
         tape = recorder.tape if recorder else None

@@ -8,7 +8,7 @@ import signal
 from collections.abc import Callable
 
 from link.runner import Runner
-from vehicle.host_facts import LoadMeter
+from vehicle.host_facts import HostMeter
 from vehicle.leaving import Leave
 from vehicle.machine import Machine
 from vehicle.motors import MotorError
@@ -71,19 +71,19 @@ class Ending:
 
 
 class Cycles:
-    """What follows from a completed control cycle: the watchdog is fed, the load is measured, and a wish to leave is
+    """What follows from a completed control cycle: the watchdog is fed, the host is looked at, and a wish to leave is
     heard."""
 
-    def __init__(self, rover: Rover, notifier: Notifier, load: LoadMeter) -> None:
+    def __init__(self, rover: Rover, notifier: Notifier, meter: HostMeter) -> None:
         self.ending: Ending | None = None
         self._rover = rover
         self._notifier = notifier
-        self._load = load
+        self._meter = meter
 
     def completed(self, now: float) -> None:
         """One more."""
         self._notifier.alive(now)
-        self._load.look(now)
+        self._meter.look(now)
         leave = self._rover.leaving(now)
         if leave is not None and self.ending is not None:
             self.ending.leave(leave)

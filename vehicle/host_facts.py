@@ -1,4 +1,4 @@
-"""Finds out what vehicle/host.py tells: the computer's id, and how busy the loop is."""
+"""Finds out what vehicle/host.py tells: the computer's id and its wall clock, and how busy the loop is."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from vehicle.host import Host
 APPLICATION = bytes.fromhex("6d41a9f2c07b4c1e9d5be0a1187f3c52")
 """Ours alone, made by chance; it never changes, or every vehicle would be another one."""
 PERIOD = 1.0
-"""s between two looks at the load."""
+"""s between two looks."""
 
 
 def uid_of(root: Path = Path("/")) -> bytes:
@@ -33,14 +33,16 @@ def uid_of(root: Path = Path("/")) -> bytes:
     return bytes(uid)
 
 
-class LoadMeter:
-    """Keeps `host.load`."""
+class HostMeter:
+    """Keeps what changes of a Host: its load and its epoch."""
 
-    def __init__(self, host: Host, waited: Callable[[], float], now: float) -> None:
-        """`waited`: s that the loop has had nothing to do, so far."""
+    def __init__(self, host: Host, waited: Callable[[], float], wall_clock: Callable[[], float], now: float) -> None:
+        """`waited`: s that the loop has had nothing to do, so far; `wall_clock`: Unix time, s."""
         self._host = host
         self._waited = waited
+        self._wall_clock = wall_clock
         self._before = (now, waited())
+        host.epoch = wall_clock() - now
 
     def look(self, now: float) -> None:
         """Called in each control cycle."""
@@ -48,4 +50,5 @@ class LoadMeter:
         if now - at < PERIOD:
             return
         self._before = now, self._waited()
+        self._host.epoch = self._wall_clock() - now
         self._host.load = min(1.0, max(0.0, 1.0 - (self._before[1] - waited) / (now - at)))

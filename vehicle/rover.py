@@ -47,7 +47,6 @@ class Rover:
         params: Params,
         *,
         now: float,
-        wall_clock: float | None = None,
         keeper: Keeper | None = None,
         plan_keeper: PlanKeeper | None = None,
         recording: Recording | None = None,
@@ -55,7 +54,7 @@ class Rover:
         told: Callable[[Severity, str], None] = lambda severity, text: None,
         rack: Rack | None = None,
     ) -> None:
-        """`now` is the monotonic time of boot; `wall_clock` the Unix time at `now`, None where it is not known.
+        """`now` is the monotonic time of boot.
 
         `keeper` remembers parameters that are set, `plan_keeper` plans; without them they end with the program.
         `recording` writes logs. `host` is told of as it is. `told` hears what the driver reads. `rack` holds relays
@@ -63,7 +62,6 @@ class Rover:
         """
         self._params = params
         self._boot = now
-        self._wall_clock = wall_clock
         self._system = int(params["MAV_SYSID"])
         self._host = host or Host()
         self._readings = NO_READINGS
@@ -255,7 +253,6 @@ class Rover:
         return View(
             now=now,
             since_boot=since_boot,
-            unix_time=None if self._wall_clock is None else self._wall_clock + since_boot,
             params=self._params,
             readings=self._readings,
             safety=self._safety,

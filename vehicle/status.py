@@ -131,7 +131,8 @@ def control_status(view: View) -> m.Message:
 
 def system_time(view: View) -> m.Message:
     """SYSTEM_TIME; 0 for a wall clock nobody knows."""
-    unix = 0 if view.unix_time is None else whole(view.unix_time, (0, 2**63), 1e6)
+    seconds = view.host.unix_time(view.now)
+    unix = 0 if seconds is None else whole(seconds, (0, 2**63), 1e6)
     return m.SystemTime(time_unix_usec=unix, time_boot_ms=view.boot_ms)
 
 

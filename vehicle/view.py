@@ -22,8 +22,6 @@ class View(NamedTuple):
 
     now: float
     since_boot: float
-    unix_time: float | None
-    """s since 1970, where the computer knows it."""
     params: Params
     readings: Readings
     safety: Safety

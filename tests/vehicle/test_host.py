@@ -1,4 +1,4 @@
-"""What the vehicle tells of its computer: an id that gives nothing away, and how busy the control loop is."""
+"""What the vehicle tells of its computer: an id that gives nothing away, the time, and how busy the loop is."""
 
 from __future__ import annotations
 
@@ -11,13 +11,16 @@ from dialects.enums import Command
 from tests.vehicle.bench import Bench
 from tests.vehicle.ground import Ground, running
 from vehicle.host import Host
-from vehicle.host_facts import LoadMeter, uid_of
+from vehicle.host_facts import HostMeter, uid_of
 from vehicle.params import Params
 from vehicle.rover import Rover
 
 MACHINE = "0123456789abcdef0123456789abcdef"
 UID = "92b243149fc64d0cb6e4fa9e55479f8b"
 """As `systemd-id128 machine-id --app-specific=...` prints it."""
+
+NEW_YEAR = 1_800_000_000.0
+"""Unix time, s."""
 
 
 def computer(folder: Path, text: bytes | None) -> Path:
@@ -72,7 +75,7 @@ def test_the_load_is_in_sys_status(share: float, told: int) -> None:
 
 def test_the_load_is_what_was_not_waited() -> None:
     host, waited = Host(), 5.0
-    meter = LoadMeter(host, lambda: waited, now=100.0)
+    meter = HostMeter(host, lambda: waited, lambda: 0.0, now=100.0)
     waited += 0.5
     meter.look(100.5)
     assert host.load == 0.0  # not yet
@@ -84,6 +87,26 @@ def test_the_load_is_what_was_not_waited() -> None:
     waited += 1.1  # clocks are read one after the other
     meter.look(103.0)
     assert host.load == 0.0
+
+
+def test_the_wall_clock_is_asked_again() -> None:
+    """A Pi without a battery for its clock learns the time some seconds or minutes after boot."""
+    host, wall = Host(), 5.0
+    meter = HostMeter(host, lambda: 0.0, lambda: wall, now=100.0)
+    assert host.unix_time(100.25) == 5.25
+    wall = NEW_YEAR
+    meter.look(101.0)
+    assert host.unix_time(101.5) == NEW_YEAR + 0.5
+
+
+def test_system_time_follows_it() -> None:
+    host = Host()
+    bench = with_host(host)
+    bench.command(Command.REQUEST_MESSAGE, m.SystemTime.id)
+    assert bench.newest(m.SystemTime).time_unix_usec == 0  # nobody knows
+    host.epoch = NEW_YEAR - bench.now
+    bench.command(Command.REQUEST_MESSAGE, m.SystemTime.id)
+    assert bench.newest(m.SystemTime).time_unix_usec == pytest.approx(NEW_YEAR * 1e6, abs=1e6)
 
 
 @pytest.mark.e2e
