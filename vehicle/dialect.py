@@ -24,6 +24,16 @@ STOPS = f"{DRIVER}; what stops: {ANY}"
 TO_WHOM = {Family.COMMON: "", Family.NEWER: "who asks for newer ones", Family.ROVER: "who asks for ours"}
 """Of streams; without a word everybody."""
 
+PLANS = {
+    "mission": (MISSION, ""),
+    "fence": (
+        FENCE,
+        "RETURN_POINT, at most one, is only kept and given back: nothing drives there, FENCE_ACTION decides",
+    ),
+    "rally": (RALLY, ""),
+}
+"""Plan -> its items, and what is to be said of them."""
+
 COMMANDS: dict[Command, tuple[str, str]] = {
     Command.COMPONENT_ARM_DISARM: (STOPS, "1: 1 arm, 0 disarm; 2: 21196 or 2989 skips soft checks"),
     Command.RUN_PREARM_CHECKS: (ANY, "says what forbids to arm"),
@@ -139,9 +149,8 @@ def _commands() -> str:
 
 
 def _items() -> str:
-    plans = {"mission": MISSION, "fence": FENCE, "rally": RALLY}
-    rows = [(plan, ", ".join(_item_name(command) for command in items)) for plan, items in plans.items()]
-    return _table(("plan", "items"), rows)
+    rows = [(plan, ", ".join(_item_name(each) for each in items), words) for plan, (items, words) in PLANS.items()]
+    return _table(("plan", "items", ""), rows)
 
 
 def _item_name(command: int) -> str:

@@ -26,6 +26,7 @@ class Fence:
         """Why the kept fence is lost: where it was nobody knows, so that it is no fence that counts."""
         self._params = params
         self._items: Items = ()
+        """What draws its areas."""
         self._areas: list[Area] = []
         self._origin: Origin | None = None
 
@@ -59,7 +60,8 @@ class Fence:
 
     def load(self, items: Items, damage: str | None = None) -> None:
         """Another plan; it has passed the rules of plan.py. `damage`: why the kept one is lost."""
-        self._items, self.damage = items, damage
+        self._items = tuple(item for item in items if item.command != FenceItem.RETURN_POINT)
+        self.damage = damage
         self._origin = None
 
     def room(self, place: Point, origin: Origin | None, home: Point | None) -> float:
@@ -85,6 +87,13 @@ class Fence:
             self._origin = origin
             self._areas = _areas(self._items, origin)
         return self._areas
+
+
+def without_effect(items: Items) -> list[str]:
+    """What a fence plan holds for others, in words: as in ArduRover, nothing drives to a return point."""
+    if any(item.command == FenceItem.RETURN_POINT for item in items):
+        return ["Fence: return point kept but not driven to; FENCE_ACTION says what a breach does"]
+    return []
 
 
 def _areas(items: Items, origin: Origin) -> list[Area]:

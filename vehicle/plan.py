@@ -52,6 +52,7 @@ MISSION: dict[int, ItemRule] = {
 }
 
 FENCE: dict[int, ItemRule] = {
+    FenceItem.RETURN_POINT: ItemRule(Place.NEEDED),
     FenceItem.POLYGON_INCLUSION: ItemRule(Place.NEEDED, {1: (CORNERS_MIN, 500.0)}),
     FenceItem.POLYGON_EXCLUSION: ItemRule(Place.NEEDED, {1: (CORNERS_MIN, 500.0)}),
     FenceItem.CIRCLE_INCLUSION: ItemRule(Place.NEEDED, {1: (0.1, RADIUS_MAX)}),
@@ -73,8 +74,10 @@ def _mission_is_sane(items: Items, motors: Collection[int]) -> MissionResult:
     return MissionResult.ACCEPTED if sane else MissionResult.INVALID_PARAM1
 
 
-def _polygons_are_whole(items: Items) -> MissionResult:
-    """The corners of one polygon stand together, and each says how many there are."""
+def _fence_is_sane(items: Items) -> MissionResult:
+    """The corners of one polygon stand together, and each says how many there are. One return point at most."""
+    if sum(item.command == FenceItem.RETURN_POINT for item in items) > 1:
+        return MissionResult.INVALID
     index = 0
     while index < len(items):
         item = items[index]
@@ -94,6 +97,6 @@ def rules(motors: Collection[int]) -> dict[MissionType, PlanRules]:
     """The rules of each plan; `motors` are the servo outputs that motors are at."""
     return {
         MissionType.MISSION: PlanRules(MISSION, check=partial(_mission_is_sane, motors=motors)),
-        MissionType.FENCE: PlanRules(FENCE, capacity=200, check=_polygons_are_whole),
+        MissionType.FENCE: PlanRules(FENCE, capacity=200, check=_fence_is_sane),
         MissionType.RALLY: PlanRules(RALLY, capacity=20),
     }

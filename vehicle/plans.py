@@ -19,6 +19,7 @@ from vehicle.accessories import in_plans
 from vehicle.accessories.orders import AccessoryOrders
 from vehicle.asking import Asking, given
 from vehicle.control import Control
+from vehicle.fence import without_effect
 from vehicle.goals import mission_state
 from vehicle.navigator import Navigator, PlanIds
 from vehicle.plan import rules
@@ -150,6 +151,8 @@ class Plans:
         self._use(kind, items)
         if kind is MissionType.MISSION:
             self._news += in_plans.impossible(self._accessories, items)
+        elif kind is MissionType.FENCE:
+            self._news += without_effect(items)
 
     def stays(self, kind: MissionType, items: Items, why: str | None) -> None:
         """The disk may hold the other one, or not."""

@@ -10,7 +10,7 @@ from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result, Sensor
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, NEUTRAL, said
-from tests.vehicle.field import Field
+from tests.vehicle.field import GROUND, Field
 from tests.vehicle.test_mission import Item, finish, upload
 from vehicle.place import Point
 
@@ -106,3 +106,50 @@ class TestFence:
         field = Field()
         half = square(FenceItem.POLYGON_INCLUSION, 0, 0, 5)[:3]
         assert upload(field, *half, kind=MissionType.FENCE) == MissionResult.INVALID_PARAM1
+
+
+class TestReturnPoint:
+    POINT: Item = (FenceItem.RETURN_POINT, Point(1.0, 1.0), ())
+    WORDS = "return point kept but not driven to"
+
+    def test_it_is_kept_given_back_and_told_of_and_a_breach_holds_all_the_same(self) -> None:
+        field = Field(FENCE_ENABLE=1, FENCE_TYPE=4)
+        plan = [self.POINT, *square(FenceItem.POLYGON_INCLUSION, -5, -5, 10)]
+        assert upload(field, *plan, kind=MissionType.FENCE) == MissionResult.ACCEPTED
+        field.wait(0.1)
+        assert said(field, self.WORDS)
+        field.say(m.MissionRequestList(1, 1, MissionType.FENCE))
+        assert field.newest(m.MissionCount).count == len(plan)
+        field.say(m.MissionRequestInt(1, 1, 0, MissionType.FENCE))
+        back, (latitude, longitude) = field.newest(m.MissionItemInt), GROUND.globe(Point(1.0, 1.0))
+        assert (back.command, back.x, back.y) == (5000, round(latitude * 1e7), round(longitude * 1e7))
+        field.arm()
+        field.wait(0.2, NEUTRAL)
+        field.wait(2.0, AHEAD)
+        assert field.turning
+        field.wait(7.0, AHEAD)
+        assert field.mode is Mode.HOLD
+        assert 4.4 < field.truth.north < 7.5
+
+    def test_a_fence_without_one_says_nothing_of_it(self) -> None:
+        field = Field()
+        upload(field, *square(FenceItem.POLYGON_INCLUSION, -5, -5, 10), kind=MissionType.FENCE)
+        field.wait(0.1)
+        assert not said(field, self.WORDS)
+
+    def test_alone_it_is_no_fence(self) -> None:
+        field = Field()
+        assert upload(field, self.POINT, kind=MissionType.FENCE) == MissionResult.ACCEPTED
+        field.beat(1.2)
+        assert not field.newest(m.SysStatus).onboard_control_sensors_present & Sensor.GEOFENCE
+
+    @pytest.mark.parametrize(
+        ("plan", "verdict"),
+        [
+            ([POINT, POINT], MissionResult.INVALID),
+            ([(FenceItem.RETURN_POINT, None, ())], MissionResult.UNSUPPORTED_FRAME),
+            ([*square(FenceItem.POLYGON_INCLUSION, 0, 0, 5)[:2], POINT], MissionResult.INVALID_PARAM1),
+        ],
+    )
+    def test_two_one_nowhere_and_one_within_a_polygon_are_refused(self, plan: list[Item], verdict: int) -> None:
+        assert upload(Field(), *plan, kind=MissionType.FENCE) == verdict
