@@ -9,16 +9,17 @@ LONGEST = 5.0
 
 
 class Backoff:
-    """0.2, 0.4, 0.8, 1.6, 3.2, 5, 5 ... s."""
+    """Of a connection 0.2, 0.4, 0.8, 1.6, 3.2, 5, 5 ... s."""
 
-    def __init__(self) -> None:
-        self._next = FIRST
+    def __init__(self, first: float = FIRST, longest: float = LONGEST) -> None:
+        self._first, self._longest = first, longest
+        self._next = first
 
     def wait(self) -> float:
         """s until the next try."""
-        wait, self._next = self._next, min(LONGEST, self._next * 2)
+        wait, self._next = self._next, min(self._longest, self._next * 2)
         return wait
 
     def reset(self) -> None:
         """It works again."""
-        self._next = FIRST
+        self._next = self._first

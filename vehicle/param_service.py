@@ -7,12 +7,16 @@ from collections.abc import Callable
 from typing import Protocol
 
 from dialects.enums import Severity
+from link.backoff import Backoff
 from link.core import Outgoing, Received
 from link.services.pacing import Pacer
 from link.services.param import ParamServer
 from vehicle.control import Control
 from vehicle.params import ParamError, Params
 from vehicle.texts import Texts
+
+RETRY = (2.0, 60.0)
+"""s until what could not be saved is tried again: at first, and at most."""
 
 
 class Keeper(Protocol):
@@ -64,6 +68,9 @@ class ParamService:
         self._control = control
         self._texts = texts
         self._keeper = keeper or NoKeeper()
+        self._backoff = Backoff(*RETRY)
+        self._retry_due: float | None = None
+        """When what could not be saved is tried again; None while all is saved."""
         params.untold.clear()
         self._server = ParamServer(
             params.table,
@@ -88,10 +95,16 @@ class ParamService:
         return announced + self._server.tick(now)
 
     def observe(self, now: float) -> None:
-        """About once a second: are values kept?"""
-        if self._keeper.problem:
-            text = f"Parameters are not saved: {self._keeper.problem}"
-            self._texts.say_once(f"keeper {self._keeper.problem}", Severity.WARNING, text, now)
+        """About once a second: are values kept? Else they are tried again, ever less often: a disk gets room again."""
+        if problem := self._keeper.problem:
+            text = f"Parameters are not saved: {problem}; trying again"
+            self._texts.say_once(f"keeper {problem}", Severity.WARNING, text, now)
+            self._retry(now)
+        elif self._retry_due is not None:
+            self._retry_due = None
+            self._backoff.reset()
+            self._texts.forget("keeper ")
+            self._texts.say(Severity.NOTICE, "Parameters are saved now", now)
 
     @property
     def forgets(self) -> bool:
@@ -125,6 +138,13 @@ class ParamService:
             self._keep(each.name, each.default)
         self._params.untold = {each.name for each in changed}
         self._texts.say(Severity.NOTICE, f"Parameters: {len(changed)} back to their defaults", now)
+
+    def _retry(self, now: float) -> None:
+        if self._retry_due is not None and now >= self._retry_due and self._keeper.idle:
+            self._keeper.save()
+            self._retry_due = None
+        if self._retry_due is None:
+            self._retry_due = now + self._backoff.wait()
 
     def _changed(self, name: str, value: float) -> None:
         self._params.untold.discard(name)  # its answer tells everybody

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
+
 import pytest
 
 from dialects import messages as m
 from dialects.enums import Command, ParamFault, Result
 from link.core import LinkReport, Peer
 from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench, said
+from vehicle.param_store import ParamStore
 from vehicle.params import TABLE, Params
 from vehicle.rover import Rover
 
@@ -22,12 +26,14 @@ class Memory:
         self.kept: dict[str, float] = {}
         self.problem: str | None = None
         self.idle = True
+        self.saves = 0
 
     def keep(self, name: str, value: float) -> None:
         self.kept[name] = value
 
     def save(self) -> None:
-        """It is."""
+        """It is, unless there is a problem."""
+        self.saves += 1
 
 
 def bench_with(params: Params) -> tuple[Bench, Memory]:
@@ -241,7 +247,73 @@ def test_values_that_cannot_be_kept_are_told_once() -> None:
     for _ in range(5):
         bench.rover.observe([], bench.now)
         bench.wait(1.0)
-    assert bench.texts.count("Parameters are not saved: No space left on device") == 1
+    assert bench.texts.count("Parameters are not saved: No space left on device; trying again") == 1
+
+
+def observed(bench: Bench, seconds: int) -> None:
+    """Let time pass; the links report once a second."""
+    for _ in range(seconds):
+        bench.rover.observe([], bench.now)
+        bench.wait(1.0)
+
+
+def test_what_could_not_be_saved_is_tried_again_ever_less_often_and_told_once_when_it_is() -> None:
+    bench, memory = bench_with(Params())
+    memory.problem = "No space left on device"
+    observed(bench, 20)
+    assert memory.saves == 3  # after 2, 4 and 8 s
+    observed(bench, 580)
+    assert 10 <= memory.saves <= 14  # each minute
+    assert "Parameters are saved now" not in bench.texts
+    memory.problem = None
+    observed(bench, 5)
+    assert bench.texts.count("Parameters are saved now") == 1
+    tried = memory.saves
+    observed(bench, 120)
+    assert memory.saves == tried
+    memory.problem = "Input/output error"
+    observed(bench, 1)
+    memory.problem = "No space left on device"
+    observed(bench, 4)
+    assert memory.saves == tried + 1  # soon at first again
+    assert bench.texts.count("Parameters are not saved: No space left on device; trying again") == 2
+
+
+def test_a_disk_that_still_writes_is_not_asked_to_write_again() -> None:
+    bench, memory = bench_with(Params())
+    memory.problem, memory.idle = "No space left on device", False
+    observed(bench, 10)
+    assert memory.saves == 0
+    memory.idle = True
+    observed(bench, 1)
+    assert memory.saves == 1
+
+
+@pytest.mark.timeout(60)
+def test_a_value_that_a_full_disk_refused_is_on_the_disk_when_it_has_room(tmp_path: Path) -> None:
+    folder = tmp_path / "state"
+    store = ParamStore(folder)
+    folder.write_text("in the way")  # as little room as a full disk, for root too
+    bench = Bench()
+    bench.rover = Rover(Params(), now=bench.now, keeper=store)
+    bench.wait(CYCLE)
+    set_(bench, "MOT_THR_MAX", 50)
+    settled(store)
+    observed(bench, 1)
+    assert said(bench, "Parameters are not saved: File exists; trying again")
+    folder.unlink()
+    observed(bench, 4)
+    settled(store)
+    observed(bench, 1)
+    assert said(bench, "Parameters are saved now")
+    store.close()
+    assert ParamStore(folder).values == {"MOT_THR_MAX": 50}
+
+
+def settled(store: ParamStore) -> None:
+    """Until the thread has written; the test's own time limit ends it."""
+    while not store.idle:
+        os.sched_yield()
 
 
 @pytest.mark.parametrize("name", NAMES)
