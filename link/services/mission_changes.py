@@ -99,21 +99,19 @@ class Changes:
             return change.told(verdict, now)
         change.keepings = [self._owner.keep(kind, items) for kind, items in change.plans.items()]
         self._under_way.append(change)
-        return self.tick(now)
+        return self._settled(change, now)
 
     def tick(self, now: float) -> list[Outgoing]:
         """The answers to what is done."""
-        outgoing: list[Outgoing] = []
-        for change in list(self._under_way):
-            if self._settled(change, now):
-                self._under_way.remove(change)
-                change.verdict = self._end(change, now)
-                outgoing += change.told(change.verdict, now)
-        return outgoing
+        return [answer for change in list(self._under_way) for answer in self._settled(change, now)]
 
-    @staticmethod
-    def _settled(change: Change, now: float) -> bool:
-        return all(keeping.done for keeping in change.keepings) or now - change.began >= PATIENCE
+    def _settled(self, change: Change, now: float) -> list[Outgoing]:
+        """Its answer, where it is done or takes too long; nothing while it is under way."""
+        if not all(keeping.done for keeping in change.keepings) and now - change.began < PATIENCE:
+            return []
+        self._under_way.remove(change)
+        change.verdict = self._end(change, now)
+        return change.told(change.verdict, now)
 
     def _end(self, change: Change, now: float) -> MissionResult:
         problems = (each.problem if each.done else "the disk does not answer" for each in change.keepings)

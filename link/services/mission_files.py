@@ -115,18 +115,27 @@ class PlanFolder:
         kind = NAMES.get(name)
         if kind is None:
             return FtpError.PROTECTED
-        before, change = self._changes.pop(kind, (b"", None))
-        verdict = self._begun(kind, data) if change is None or before != data else change
-        if isinstance(verdict, FtpError):
-            return verdict
-        if verdict.verdict is None:
-            self._changes[kind] = data, verdict
+        change = self._said_before(kind, data) or self._begun(kind, data)
+        if isinstance(change, FtpError):
+            return change
+        if change.verdict is None:
+            self._changes[kind] = data, change
             raise NotYetError
-        return None if verdict.verdict is MissionResult.ACCEPTED else FtpError.FAIL
+        self._changes.pop(kind, None)
+        return None if change.verdict is MissionResult.ACCEPTED else FtpError.FAIL
 
     def remove(self, name: str) -> FtpError | None:
         """The plan is empty after this. Raises NotYetError as `store` does."""
         return self.store(name, HEADER.encode()) if name in NAMES else FtpError.NOT_FOUND
+
+    def _said_before(self, kind: MissionType, data: bytes) -> Change | None:
+        """The change that this file has begun already. Not where it came to its end unheard and the plan is another one
+        by now: that is to be made again."""
+        before, change = self._changes.get(kind, (b"", None))
+        if change is None or before != data:
+            return None
+        replaced = change.verdict is MissionResult.ACCEPTED and self._server.plan(kind) is not change.plans[kind]
+        return None if replaced else change
 
     def _begun(self, kind: MissionType, data: bytes) -> Change | FtpError:
         why = self._in_use(kind)

@@ -210,6 +210,7 @@ def test_another_file_meanwhile_is_refused() -> None:
     assert folder.store("mission.waypoints", write(OLD)) is FtpError.FAIL
     vehicle.end()
     assert plain(vehicle.plan) == plain(tuple(NEW))
+    assert folder.store("mission.waypoints", write(NEW)) is None  # who wrote first hears how that went
 
 
 def test_a_file_that_may_not_be_put_in_force_any_more_when_it_is_written_is_refused() -> None:
@@ -221,3 +222,30 @@ def test_a_file_that_may_not_be_put_in_force_any_more_when_it_is_written_is_refu
     vehicle.end()
     assert vehicle.old
     assert folder.store("mission.waypoints", write(NEW)) is FtpError.FAIL
+
+
+def test_a_file_that_nobody_heard_of_again_is_written_anew_once_the_plan_is_another() -> None:
+    vehicle = Disk()
+    folder = PlanFolder(vehicle.server)
+    with pytest.raises(NotYetError):
+        folder.store("mission.waypoints", write(NEW))
+    vehicle.end()
+    assert plain(vehicle.plan) == plain(tuple(NEW))
+    vehicle.upload(OLD)
+    vehicle.end()
+    assert vehicle.old
+    with pytest.raises(NotYetError):
+        folder.store("mission.waypoints", write(NEW))
+    vehicle.end()
+    assert folder.store("mission.waypoints", write(NEW)) is None
+    assert plain(vehicle.plan) == plain(tuple(NEW))
+
+
+def test_an_answer_that_comes_due_meanwhile_is_not_lost() -> None:
+    vehicle = Disk()
+    vehicle.upload(NEW)
+    assert vehicle.disk is not None
+    vehicle.disk[0].done = True
+    with pytest.raises(NotYetError):
+        PlanFolder(vehicle.server).store("rally.waypoints", write([waypoint(command=5100)]))
+    assert result(vehicle.tick(0.1)) == [(MissionResult.ACCEPTED, MISSION)]
