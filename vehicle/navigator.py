@@ -139,7 +139,7 @@ class Navigator:
         self._readings = readings
         estimate = self._estimator.sense(readings, now)
         if self.home is None and estimate.globe is not None:
-            self.home = Home(*estimate.globe, readings.altitude or 0.0, *estimate.place)
+            self.home = Home(*estimate.globe, self.altitude or 0.0, *estimate.place)
         self.boundary.sense(estimate, now)
 
     def rebase(self, origin: Origin, altitude: float | None, safety: Safety, now: float) -> None:
@@ -246,7 +246,7 @@ class Navigator:
             return STAND
         wanted = behaviour.step(self.estimate, self.cruise(), now)
         if isinstance(wanted, Done):
-            self.ended = wanted.why
+            self.ended = self.ended or wanted.why  # a last item may have said why by itself
             return None
         return wanted
 

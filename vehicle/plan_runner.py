@@ -114,7 +114,8 @@ class Mission:
             if self._task is None:
                 self._next(self.current, estimate, start)
             if self._task is None:
-                self._run_waiting(estimate, now)  # no NAV item follows, so what waits has all the time there is
+                if self._refused is None and self._ending is None:  # the items are done, so what waits has all the time
+                    self._run_waiting(estimate, now)
                 return self._end()
             motion = self._task.step(self._guide, estimate, speed, now)
             if motion is not None:

@@ -232,6 +232,13 @@ class TestItems:
         assert 1.0 < field.truth.north < 5.0
         assert field.rover._params["FENCE_ENABLE"] == 0
 
+    def test_why_the_last_item_is_not_done_is_told(self) -> None:
+        field = ready(way(2, 0), do(Command.DO_FENCE_ENABLE, 1))
+        field.rover._params.pinned = frozenset({"FENCE_ENABLE"})
+        start(field)
+        finish(field, 60.0)
+        assert said(field, "AUTO: the file of settings has FENCE_ENABLE 0: HOLD")
+
     def test_unlimited_means_until_somebody_ends_it(self) -> None:
         field = ready((Command.NAV_LOITER_UNLIM, Point(3, 0), ()), way(30, 0))
         start(field)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, Failsafe, MissionResult
+from dialects.enums import Command, Failsafe, FenceItem, MissionResult, MissionType
 from dialects.modes import Mode
 from tests.vehicle.bench import Equipped, said
 from tests.vehicle.field import Field
@@ -72,6 +72,29 @@ def test_what_stands_behind_the_last_place_acts_there() -> None:
     field.wait(0.1)
     assert (field.relays[0], field.servo) == (0, 1300)
     assert said(field, "mission complete")
+
+
+def test_what_stands_before_a_place_that_is_refused_does_not_act() -> None:
+    fence = (FenceItem.CIRCLE_INCLUSION, Point(0, 0), (10,))
+    field = EquippedField(FENCE_ENABLE=1)
+    assert upload(field, fence, kind=MissionType.FENCE) == MissionResult.ACCEPTED
+    assert upload(field, way(3, 0), do(RELAY, 0, 1), way(20, 0)) == MissionResult.ACCEPTED
+    field.arm()
+    start(field)
+    field.until(Point(2, 0), 30.0, 1.0)
+    finish(field, 30.0)
+    field.wait(0.5)
+    assert said(field, "AUTO: item 2: it lies beyond the fence: HOLD")
+    assert field.relays[0] == 0
+
+
+def test_jumps_in_a_circle_wear_no_relay_out() -> None:
+    field = ready(do(Command.DO_REPEAT_RELAY, 0, 1, 1), do(Command.DO_JUMP, 0, -1))
+    start(field)
+    field.wait(0.5)
+    assert said(field, "jumps go in a circle")
+    assert field.relays[0] == 0
+    assert not field.all(m.MissionItemReached)
 
 
 def test_a_repeat_goes_on_while_the_rover_drives_on() -> None:
