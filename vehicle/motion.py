@@ -172,11 +172,12 @@ def rc_channels(view: View) -> m.Message:
 
 def above_home(view: View) -> float:
     """m; 0 where one of both is not known."""
-    return real(view.readings.altitude) - (view.home.altitude if view.home else real(view.readings.altitude))
+    altitude = view.navigator.altitude
+    return 0.0 if altitude is None or view.home is None else real(altitude) - view.home.altitude
 
 
 def above_origin(view: View) -> float:
-    """m; 0 where that is not known."""
+    """m; as home where it is not known."""
     return above_home(view) + home_above_origin(view)
 
 

@@ -101,6 +101,16 @@ def test_numbers_arrive_in_their_units() -> None:
     assert bench.newest(m.VfrHud).groundspeed == pytest.approx(0.7, abs=1e-3)  # the wheels are trusted, not wholly
 
 
+@pytest.mark.parametrize("altitude", [None, math.nan, math.inf])
+def test_without_a_height_it_is_as_high_as_home(altitude: float | None) -> None:
+    bench = equipped()
+    bench.readings = replace(bench.readings, altitude=altitude)  # as when a receiver has satellites for 2D only
+    bench.wait(1.0)
+    position = bench.newest(m.GlobalPositionInt)
+    assert (position.alt, position.relative_alt) == (0, 0)
+    assert bench.newest(m.LocalPositionNed).z == 0.0
+
+
 def test_a_changed_demand_is_told_at_once_with_its_packet_number() -> None:
     bench = Bench()
     bench.drive()
