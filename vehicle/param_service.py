@@ -112,6 +112,11 @@ class ParamService:
         return isinstance(self._keeper, NoKeeper)
 
     @property
+    def damage(self) -> str | None:
+        """Why what was kept is lost, until somebody sets a parameter."""
+        return self._params.damage
+
+    @property
     def problem(self) -> str | None:
         """Why values are not kept, one line."""
         return self._keeper.problem

@@ -45,8 +45,8 @@ class Storage:
         if params not in PARAMETERS or plans not in PLANS or given(request.params[2]) not in LOGGING:
             return Result.DENIED
         wanted = [kept for kept, wish in ((self._params, params), (self._plans, plans)) if wish not in (NOTHING, READ)]
-        if any(kept.forgets for kept, wish in ((self._params, params), (self._plans, plans)) if wish == WRITE):
-            return self._asking.refuse(request, "nothing is kept in this run", now)
+        if why := self._unsavable(params == WRITE, plans == WRITE):
+            return self._asking.refuse(request, why, now)
         erased = self._plans.erase() if plans == RESET else None
         if plans == RESET and erased is None:
             return Result.TEMPORARILY_REJECTED  # somebody uploads
@@ -59,6 +59,14 @@ class Storage:
         saving = Saving(wanted, erased, partial(self._asking.refuse, request), now)
         result = saving.step(now)
         return saving if result is None else result
+
+    def _unsavable(self, params: bool, plans: bool) -> str | None:
+        """Why parameters, or plans, cannot be saved when that is asked for."""
+        if (params and self._params.forgets) or (plans and self._plans.forgets):
+            return "nothing is kept in this run"
+        if params and self._params.damage:  # a file of nothing would be a good one at the next start
+            return f"{self._params.damage}; set one to go on"
+        return None
 
 
 class Kept(Protocol):

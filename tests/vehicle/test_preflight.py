@@ -18,6 +18,7 @@ from tests.vehicle.test_mission import send, way
 from tests.vehicle.test_plan_store import SlowDisk, field_with
 from vehicle.ending import Ending
 from vehicle.leaving import Leave
+from vehicle.param_store import ParamStore
 from vehicle.params import Params
 from vehicle.place import Point
 from vehicle.rover import Rover
@@ -274,6 +275,17 @@ class TestStorage:
         assert bench.command(STORAGE, 1) is Result.FAILED
         assert keeper.saved == 2  # tried again
         assert said(bench, "PREFLIGHT_STORAGE refused: No space left on device")
+
+    def test_a_damaged_file_is_not_made_good_by_saving_nothing(self, tmp_path: Path) -> None:
+        (tmp_path / "parameters").write_text("SPEED_MAX = 2.5")
+        store, params, bench = ParamStore(tmp_path), Params(), Bench()
+        params.damage = store.damage
+        bench.rover = Rover(params, now=bench.now, keeper=store)
+        bench.wait(0.1)
+        assert bench.command(STORAGE, 1) is Result.FAILED
+        assert said(bench, "PREFLIGHT_STORAGE refused: parameter file damaged; set one to go on")
+        store.close()
+        assert ParamStore(tmp_path).damage == "parameter file damaged"
 
     @pytest.mark.parametrize("wish", [(3,), (5,), (-2,), (math.inf,), (0.5,), (0, 3), (0, 4), (2, 7), (0, 0, 100)])
     def test_what_is_not_offered_is_denied(self, wish: tuple[float, ...]) -> None:
