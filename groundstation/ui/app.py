@@ -173,6 +173,8 @@ class HelmApp(App[int]):
 
     async def on_event(self, event: events.Event) -> None:
         """Before any widget: quit works everywhere, and where no driver of ours took the key, it is taken here."""
+        if isinstance(event, events.Key) and not self.screen_stack:
+            return  # it was on its way when the app took its screens down, and Textual would fail over it
         if isinstance(event, events.Key) and not event.is_forwarded:
             if not isinstance(self._driver, HelmDriver):
                 self.gate.take([KeyPress(event.key)])
@@ -202,7 +204,8 @@ class HelmApp(App[int]):
         """Do an action by its name: what the app does itself, and what was chosen in the palette."""
         if action.id == "app.quit":
             self.end()
-        elif action.id == "app.help":
+        elif action.id == "app.help" and not any(isinstance(each, HelpScreen) for each in self.screen_stack):
+            # Of several keys in one read each asks for it, before the first one's screen takes the rest.
             self.push_screen(HelpScreen(self._keys))
 
     def choose(self, action: Action) -> None:

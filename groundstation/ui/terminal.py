@@ -51,7 +51,10 @@ LARGEST = 1000
 """Columns or rows that a terminal may claim to have: more would be drawn for minutes."""
 
 _KEY = re.compile(r"\x1b\[(\d+)((?::\d*)*)(?:;(\d*)(?::(\d*))?)?(?:;([\d:]*))?([u~ABCDEFHPQRS])")
-_REPORT = re.compile(r"\x1b\[(?:\?\d+u|\d+n)")
+_REPORT = re.compile(r"\x1b\[(?:\?\d+u|\d+n|\?[\d;]*\$p)")
+"""Answers to our questions; the last is Textual's question about a mode, as a bad line echoes it."""
+_CUT = re.compile(r"\x1b\[[0-?]*\$?[\x00-\x1a\x1c-\x20!]")
+"""A sequence without its end, then a key that is in none: Ctrl and a letter, space or "!", which are what stops."""
 _PASTE = KeyPress("paste")
 """Bound to nothing, and so a stop while driving."""
 _REPEAT, _RELEASE = "2", "3"
@@ -157,6 +160,8 @@ class KeyEventParser(XTermParser):
             # "CSI ? flags u" is swallowed and not believed: Contour answers and then tells no releases. The first
             # sub-field seen is the proof.
             return [_ignored(sequence)]
+        if _CUT.fullmatch(sequence):
+            return self._stock(sequence[-1], alt=False)  # the stock parser would wait for 0.1 s of silence
         found = _KEY.fullmatch(sequence)
         if found is None:
             return self._stock(sequence, alt)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -17,10 +18,13 @@ from groundstation.intents import (
     StartSimulator,
     Stop,
 )
+from groundstation.keymap import ACTIONS
 from groundstation.snapshot import LinkView
 from groundstation.ui.gate import Door
+from groundstation.ui.screens.help import HelpScreen
+from groundstation.ui.terminal import KeyEventParser
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting
-from tests.groundstation.ui.pilots import console
+from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
 
 DISARMED = snapshot(vehicle=vehicle(armed=False))
@@ -110,6 +114,70 @@ async def test_help_shows_every_key_and_goes_back() -> None:
         await screen.press("escape")
         await until(lambda: screen.app.gate.state is None)
         assert screen.app.screen is screen.app.drive
+
+
+def type_in(screen: Console, data: str) -> None:
+    """One read of the terminal: its keys are with the station when this returns, and the loop has had no turn yet."""
+    for event in KeyEventParser(screen.app.gate).feed(data):
+        event.set_sender(screen.app)
+        screen.app.post_message(event)
+
+
+def helps(screen: Console) -> int:
+    return sum(isinstance(each, HelpScreen) for each in screen.app.screen_stack)
+
+
+def helps_pushed(screen: Console, monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Grows with each screen that is opened from now on: how many help screens there are then."""
+    depths: list[int] = []
+    push = screen.app.push_screen
+
+    def noted(*arguments: Any, **options: Any) -> Any:
+        pushed = push(*arguments, **options)
+        depths.append(helps(screen))
+        return pushed
+
+    monkeypatch.setattr(screen.app, "push_screen", noted)
+    return depths
+
+
+async def test_several_keys_of_one_read_open_one_help_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with console() as screen:
+        depths = helps_pushed(screen, monkeypatch)
+        type_in(screen, "???")
+        await until(lambda: depths)
+        await screen.pilot.pause()
+        assert set(depths) == {1}
+
+
+async def test_the_palette_opens_no_second_help_screen() -> None:
+    async with console() as screen:
+        await screen.press("question_mark")
+        screen.app.choose(ACTIONS["app.help"])
+        await screen.pilot.pause()
+        assert helps(screen) == 1
+
+
+STORMS = {
+    "whole": "\x1b[?1u\x1b[?2048$p",
+    "without escape": "[?1u[?2048$p",
+    "cut": "\x1b[?1\x1b[?2048$",
+    "doubled": "\x1b\x1b[?1u?\x1b\x1b[?2048$p?",
+}
+"""What a terminal answers to questions about itself, as bad lines hand it over."""
+
+
+@pytest.mark.parametrize("storm", STORMS.values(), ids=STORMS)
+async def test_a_storm_of_broken_answers_piles_up_nothing_and_keeps_no_stop_waiting(
+    storm: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with console() as screen:
+        depths = helps_pushed(screen, monkeypatch)
+        type_in(screen, storm * 200 + "!")
+        assert screen.station.of(EmergencyStop)
+        type_in(screen, storm * 200 + "\x11")
+        await until(lambda: screen.app.return_value == 0)
+        assert max(depths, default=0) <= 1
 
 
 async def test_an_action_of_the_palette_is_done() -> None:

@@ -64,6 +64,11 @@ PRESS_W, REPEAT_W, RELEASE_W = "\x1b[119;1:1;119u", "\x1b[119;1:2;119u", "\x1b[1
         ("\x1b[33;2:1;33u", [KeyPress("exclamation_mark")]),
         ("\x1b[49:33;2;33u", [KeyPress("exclamation_mark")]),
         ("\x1b[200~ik\x1b[201~", [KeyPress("paste")]),
+        ("\x1b[?2048$p!", [KeyPress("exclamation_mark")]),
+        ("\x1b[?1;2!", [KeyPress("exclamation_mark")]),
+        ("\x1b[?2048$ ", [KeyPress("space")]),
+        ("\x1b[\x11", [KeyPress("ctrl+q")]),
+        ("\x1b[119;1\x03", [KeyPress("ctrl+c")]),
     ],
     ids=repr,
 )
