@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from dialects.enums import DriveType
 from link.link import LinkError, Wire
@@ -82,15 +83,18 @@ def _accessories(config: Config, params: Params) -> Iterator[Finding]:
     for problem in motors_among(outputs, DriveType(int(params["DRIVE_TYPE"]))):
         yield Finding("settings", False, problem, mistake=True)
     for output in outputs:
-        yield _tried(output.name, lambda output=output: _accessory(output))  # type: ignore[misc]
+        yield _tried(output.name, lambda output=output: _accessory(output, config.motors))  # type: ignore[misc]
 
 
-def _accessory(output: Output) -> str:
+def _accessory(output: Output, motors: Mapping[str, Any]) -> str:
     value = output.safe if output.kind == "relay" else OFF
-    try:
-        output.make(value).close()
-    except Exception as error:  # anybody's driver may raise anything
-        raise _AbsentError(str(error) or type(error).__name__) from error
+    with contextlib.ExitStack() as opened:
+        if motors:  # a board that another vehicle drives by would be set up anew under its motors
+            opened.callback(MotorLock(motors).close)
+        try:
+            output.make(value).close()
+        except Exception as error:  # anybody's driver may raise anything
+            raise _AbsentError(str(error) or type(error).__name__) from error
     return f"{output.driver}, {output.words(value)}"
 
 

@@ -19,6 +19,7 @@ from vehicle.accessories import DRIVERS
 from vehicle.accessories.outlet import Pulses
 from vehicle.accessories.settings import COMMON, outputs_of, settings_type
 from vehicle.config import ConfigError, parsed
+from vehicle.lock import MotorLock
 from vehicle.run_settings import Settings, Simulation
 from vehicle.sample import sample
 from vehicle.schema import schema
@@ -126,9 +127,9 @@ def test_other_motors_than_the_files_are_looked_at_again(caplog: pytest.LogCaptu
 # check
 
 
-def checked(folder: Path, text: str) -> tuple[int, list[str]]:
+def checked(folder: Path, text: str, motors: str = 'driver = "simulated"\n') -> tuple[int, list[str]]:
     file = folder / "rover.toml"
-    head = 'endpoints = ["udpout:127.0.0.1:9"]\n[sensors]\ncomputer = false\n[motors]\ndriver = "simulated"\n'
+    head = f'endpoints = ["udpout:127.0.0.1:9"]\n[sensors]\ncomputer = false\n[motors]\n{motors}'
     file.write_text(head + text)
     code, out, error = said_by("check", str(file), "--state", str(folder))
     assert error == ""
@@ -160,6 +161,23 @@ def test_check_says_what_does_not_answer_and_what_is_a_motor(tmp_path: Path) -> 
     code, lines = checked(tmp_path, SIMULATED.replace("9", "3"))
     assert code == 2
     assert lines[0] == "FAIL  settings: accessories: servo 3 is a motor where DRIVE_TYPE is 1; it needs another number"
+
+
+def test_check_touches_no_accessory_of_a_vehicle_that_runs(tmp_path: Path) -> None:
+    port = str(tmp_path / "port")
+    chip = FiledPca9685(tmp_path / "registers")
+    before = chip.registers[:]
+    lock = MotorLock({"driver": "roboclaw", "port": port})
+    try:
+        # Said otherwise than by the vehicle that runs: the whole board would be set up for it, motors and all.
+        code, lines = checked(
+            tmp_path, filed_servo(tmp_path) + "frequency = 60\n", f'driver = "roboclaw"\nport = "{port}"\n'
+        )
+        assert code == 1
+        assert lines[0].startswith("FAIL  servo 9: the motors are in use by another vehicle")
+        assert chip.registers[:] == before
+    finally:
+        lock.close()
 
 
 # Sample and schema
