@@ -49,7 +49,7 @@ def params_of(settings: Settings, keeper: ParamStore | None) -> Params:
     """Defaults, a known car's, what was kept, the file of settings, this run: the later wins. Raises ParamError."""
     usual = {} if settings.simulation else USUAL_PARAMS.get(settings.motors["driver"], {})
     given, kept = {**settings.pinned, **settings.params}, keeper.values if keeper else {}
-    params, left_out = in_force(given, kept=kept, usual=usual, pinned=settings.pinned.keys())
+    params, left_out = in_force(given, kept=kept, usual=usual, pinned=settings.pinned.keys(), run=settings.params)
     for problem in left_out:
         log.warning("a kept parameter is not used: %s", problem)
     params.damage = keeper.damage if keeper else None

@@ -60,7 +60,8 @@ COMMANDS: dict[Command, tuple[str, str]] = {
     Command.ACTUATOR_TEST: (DRIVER, "disarmed; 1: -1..1, NaN stops, 2: s up to 3, 0 stops, 5: motor from 1"),
     Command.PREFLIGHT_STORAGE: (
         DRIVER,
-        "disarmed; 1: 2 or 4 puts parameters back to their defaults; 2: 2 erases the plans; 1 saves either again",
+        "disarmed; 1: 2 or 4 puts parameters back to their defaults, or to what this run was given; 2: 2 erases the "
+        "plans; 1 saves either again",
     ),
     Command.PREFLIGHT_CALIBRATION: (DRIVER, "disarmed; 1: 1 the gyro, at rest for 3 s, told as progress"),
     Command.PREFLIGHT_REBOOT_SHUTDOWN: (

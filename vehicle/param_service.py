@@ -131,17 +131,21 @@ class ParamService:
         self._keeper.save()
 
     def reset(self, now: float) -> None:
-        """Defaults for all that a ground station may set; who listens is told what that changed."""
-        before = {name: self._params[name] for name in self._params}
+        """Defaults for all that a ground station may set; who listens is told what that changed.
+
+        What this run was given stays in force until its end, but only its default is kept.
+        """
+        before, run = {name: self._params[name] for name in self._params}, self._params.run
         table = [each for each in self._params.table if not each.read_only]
         for _ in range(2):  # one value may have to make room for another
             for each in table:
                 with contextlib.suppress(ParamError):
-                    self._params.set(each.name, each.default)
-        changed = [each for each in table if self._params[each.name] != before[each.name]]
-        for each in changed:
-            self._keep(each.name, each.default)
-        self._params.untold = {each.name for each in changed}
+                    self._params.set(each.name, run.get(each.name, each.default))
+        changed = {each.name for each in table if self._params[each.name] != before[each.name]}
+        for each in table:
+            if each.name in changed or each.name in run:
+                self._keep(each.name, each.default)
+        self._params.untold = changed
         self._texts.say(Severity.NOTICE, f"Parameters: {len(changed)} back to their defaults", now)
 
     def _retry(self, now: float) -> None:

@@ -181,12 +181,16 @@ class Params:
         *,
         pinned: Collection[str] = (),
         usual: Mapping[str, float] | None = None,
+        run: Mapping[str, float] | None = None,
     ) -> None:
         """Defaults, with `values` in their place. Raises ParamError.
 
-        No ground station changes the `pinned`; a reset goes back to what is `usual` for this car.
+        No ground station changes the `pinned`; a reset goes back to what this `run` was given, else to what is `usual`
+        for this car.
         """
         self.pinned = frozenset(pinned)
+        self.run = dict(run or {})
+        """What the command line says; it ends with the program."""
         self._usual = dict(usual or {})
         self.changes = 0
         """Grows with each value that is put in force: what was derived from values may be kept until then."""
@@ -238,16 +242,22 @@ class Params:
 
 
 def in_force(
-    given: Mapping[str, float], *, kept: Mapping[str, float], usual: Mapping[str, float], pinned: Collection[str] = ()
+    given: Mapping[str, float],
+    *,
+    kept: Mapping[str, float],
+    usual: Mapping[str, float],
+    pinned: Collection[str] = (),
+    run: Mapping[str, float] | None = None,
 ) -> tuple[Params, list[str]]:
-    """Defaults, what is `usual` for this car, what was `kept`, what is `given` now: the later wins.
+    """Defaults, what is `usual` for this car, what was `kept`, what is `given` now: the later wins. `run` is what of
+    the given ends with the program.
 
     Raises ParamError for what is given. What was kept and does not fit is left out, a line each: it comes from another
     version of this program, or the file of settings has changed since, and no ground station could mend it.
     """
     Params({**usual, **given})  # they fit each other, whatever is kept
     first = {name: value for name, value in usual.items() if name not in kept}
-    params = Params({**first, **given}, pinned=pinned, usual=usual)
+    params = Params({**first, **given}, pinned=pinned, usual=usual, run=run)
     left_out = []
     for name, value in kept.items():
         if name not in given:

@@ -209,6 +209,7 @@ def test_what_wins(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     params = params_of(settings, ParamStore(tmp_path))
     assert [params[name] for name in ("SPEED_MAX", "TRACK_WIDTH", "WHEELBASE", "MAN_TIMEOUT")] == [2.0, 2.0, 3.0, 0.45]
     assert params.pinned == {"TRACK_WIDTH"}
+    assert params.run == {"WHEELBASE": 3.0}
     assert [record.levelname for record in caplog.records] == ["WARNING", "WARNING"]
     assert params.damage is None
 

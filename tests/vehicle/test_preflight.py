@@ -19,7 +19,7 @@ from tests.vehicle.test_plan_store import SlowDisk, field_with
 from vehicle.ending import Ending
 from vehicle.leaving import Leave
 from vehicle.param_store import ParamStore
-from vehicle.params import Params
+from vehicle.params import Params, in_force
 from vehicle.place import Point
 from vehicle.rover import Rover
 
@@ -260,6 +260,21 @@ class TestStorage:
         bench.wait(0.1)
         assert bench.command(STORAGE, 2) is Result.ACCEPTED
         assert (params["MOT1_MIN"], params["MOT1_MAX"]) == (50, 80)
+
+    def test_reset_leaves_what_this_run_was_given_and_keeps_its_default(self) -> None:
+        """FS_LOOP_TIMEOUT of a simulation, which runs on a desktop."""
+        keeper, given = Kept(), {"FS_LOOP_TIMEOUT": 1.0, "WP_SPEED": 2.0}
+        keeper.values = {"WP_SPEED": 1.5}
+        params, _ = in_force(given, kept=keeper.values, usual={}, run=given)
+        bench = Bench()
+        bench.rover = Rover(params, now=bench.now, keeper=keeper)
+        bench.wait(0.1)
+        params.set("FS_LOOP_TIMEOUT", 0.5)
+        params.set("MAN_DEADBAND", 10)
+        assert bench.command(STORAGE, 2) is Result.ACCEPTED
+        assert (params["FS_LOOP_TIMEOUT"], params["WP_SPEED"], params["MAN_DEADBAND"]) == (1.0, 2.0, 3.0)
+        assert keeper.values == {"FS_LOOP_TIMEOUT": 0.2, "WP_SPEED": 0.8, "MAN_DEADBAND": 3.0}
+        assert said(bench, "Parameters: 2 back to their defaults")
 
     def test_what_is_set_is_kept_already(self) -> None:
         keeper = Kept()
