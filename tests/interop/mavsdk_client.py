@@ -32,6 +32,7 @@ from tests.interop.mavsdk_tools import (
     refused,
     step,
     twenty,
+    unless_busy,
     wait_until,
     watch,
 )
@@ -147,19 +148,19 @@ def mission(system: Any, folder: str) -> None:
     action, raw, telemetry = (plugin(name, system) for name in ("action", "mission_raw", "telemetry"))
     north, east = here(telemetry)
     plan = [item(n, 16, 0, north + 200 * (n + 1), east) for n in range(2)]
-    step("upload", lambda: raw.upload_mission(plan))
-    step("download", lambda: shape(raw.download_mission()) == shape(plan))
-    step("refused", lambda: raw.upload_mission([item(0, 22, 0, north, east)]))
+    step("upload", lambda: unless_busy(lambda: raw.upload_mission(plan)))
+    step("download", lambda: shape(unless_busy(raw.download_mission)) == shape(plan))
+    step("refused", lambda: unless_busy(lambda: raw.upload_mission([item(0, 22, 0, north, east)])))
     fence = [item(n, 5001, 3, north + (n == 1) * 90000, east + (n == 2) * 90000, kind=1) for n in range(3)]
-    step("fence", lambda: raw.upload_geofence(fence))
-    step("fence back", lambda: len(raw.download_geofence()))
+    step("fence", lambda: unless_busy(lambda: raw.upload_geofence(fence)))
+    step("fence back", lambda: len(unless_busy(raw.download_geofence)))
     step("arm", lambda: insist(action.arm))
     step("start", raw.start_mission)
     step("progress", lambda: first(raw.subscribe_mission_progress, lambda value: value.current >= 1))
     step("finished", lambda: wait_until(lambda: raw.is_mission_finished()))
     step("disarm", action.disarm)
-    step("clear", raw.clear_mission)
-    step("empty", lambda: len(raw.download_mission()))
+    step("clear", lambda: unless_busy(raw.clear_mission))
+    step("empty", lambda: len(unless_busy(raw.download_mission)))
 
 
 def plan(system: Any, folder: str) -> None:
@@ -176,8 +177,9 @@ def plan(system: Any, folder: str) -> None:
 
     photo = kinds.MissionPlan([place(1, camera.TAKE_PHOTO)])
     step("refused", lambda: insist(lambda: refused(partial(missions.upload_mission, photo), "UNSUPPORTED")))
-    step("upload", lambda: missions.upload_mission(kinds.MissionPlan([place(1, camera.NONE), place(2, camera.NONE)])))
-    step("download", lambda: len(missions.download_mission().mission_items))
+    there = kinds.MissionPlan([place(1, camera.NONE), place(2, camera.NONE)])
+    step("upload", lambda: unless_busy(lambda: missions.upload_mission(there)))
+    step("download", lambda: len(unless_busy(missions.download_mission).mission_items))
     step("arm", lambda: insist(action.arm))
     step("start", missions.start_mission)
     step("progress", lambda: first(missions.subscribe_mission_progress, lambda value: value.current == value.total))

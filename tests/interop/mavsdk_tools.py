@@ -123,6 +123,18 @@ def insist(attempt: Callable[[], Any]) -> Any:
         pause.wait(0.2)
 
 
+def unless_busy(attempt: Callable[[], Any]) -> Any:
+    """Try it, again where MAVSDK is busy: it tells the end of a transfer a moment before it begins another."""
+    deadline, pause = time.monotonic() + PATIENCE, threading.Event()
+    while True:
+        try:
+            return attempt()
+        except Exception as error:
+            if "BUSY" not in str(error) or time.monotonic() > deadline:
+                raise
+        pause.wait(0.05)
+
+
 def refused(attempt: Callable[[], Any], why: str) -> None:
     """Raises where it is not refused for that."""
     try:
