@@ -6,7 +6,11 @@ set -euo pipefail
 root=$1 tree=$2 site=$3 base=$4
 python=$(basename "$(dirname "$site")")
 
-if [[ ${5:-} != inside ]]; then # a control group for all of it, which the last line takes away
+umask 022 # services without rights read what is made here
+
+if [[ ${5:-} != inside ]]; then # a control group for all of it, which the last lines take away; SIGTERM ends it
+    inside=
+    trap '[[ -z $inside ]] || kill -KILL "$inside" 2> /dev/null || true' TERM
     mount --make-rprivate /
     mount -t cgroup2 cgroup2 "$root"
     group=$root/mavhelm-test-$$
@@ -15,7 +19,9 @@ if [[ ${5:-} != inside ]]; then # a control group for all of it, which the last 
         echo "$BASHPID" > "$group/cgroup.procs"
         exec setpriv --pdeathsig KILL unshare --pid --cgroup --mount --uts --ipc --fork --kill-child \
             bash "$0" "$root" "$tree" "$site" "$base" inside
-    ) || true
+    ) &
+    inside=$!
+    while kill -0 "$inside" 2> /dev/null; do wait "$inside" || true; done # a trap ends `wait` before its time
     for attempt in {1..100}; do # who was killed is gone a moment later
         find "$group" -depth -type d -exec rmdir {} + 2> /dev/null && break
         sleep 0.05

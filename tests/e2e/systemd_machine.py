@@ -15,27 +15,42 @@ from typing import Any
 
 TREE = Path(__file__).resolve().parents[2]
 SYSTEMD = Path("/usr/lib/systemd/systemd")
-BOOT = 60.0
-"""s until it must have started; 2 on an idle machine."""
+CHILDREN = Path("/proc/thread-self/children")
+BOOT = 12.0
+"""s until it has started and runs a service, else it is left alone; 1 on an idle machine."""
+WITHIN = 120.0
+"""s for one program in it."""
 
 ABLE = """\
 [Service]
 Type=oneshot
-ExecStart=/opt/rover/bin/python3 -c "import gpiozero, msgspec"
+ExecStart=/opt/rover/bin/python3 -c "import gpiozero, msgspec; open('/opt/tree/pyproject.toml')"
 DynamicUser=yes
 SupplementaryGroups=dialout
 StateDirectory=able
 PrivateTmp=yes
+PrivateMounts=yes
 ProtectHome=yes
 ProtectSystem=strict
 ProtectProc=invisible
+ProtectKernelTunables=yes
+ProtectKernelModules=yes
+ProtectKernelLogs=yes
+ProtectControlGroups=yes
+ProtectClock=yes
+ProtectHostname=yes
+RestrictNamespaces=yes
+MemoryDenyWriteExecute=yes
+KeyringMode=private
 DevicePolicy=closed
 IPAddressDeny=any
+IPAddressAllow=localhost
 SystemCallFilter=@system-service
 CPUSchedulingPolicy=fifo
 CPUSchedulingPriority=20
 OOMScoreAdjust=-900
-TimeoutStartSec=60
+MemoryMax=256M
+TasksMax=64
 """
 """What any service like ours needs of the machine, with nothing of ours in it."""
 
@@ -47,19 +62,21 @@ class UnableError(Exception):
 class Machine:
     """The running one. `root` is its file system as we see it."""
 
-    def __init__(self, init: int) -> None:
+    def __init__(self, init: int, booted_by: float) -> None:
         self.root = Path(f"/proc/{init}/root")
+        self.booted_by: float | None = booted_by
+        """When the patience with it ends while it is not known to work, monotonic, s."""
         self._enter = ["nsenter", "--target", str(init), "--mount", "--pid", "--ipc", "--uts", "--wd=/"]
 
     def run(self, *words: str) -> tuple[int, str]:
-        """Run a program in it: exit code, what it said."""
+        """Run a program in it: exit code, what it said. Raises subprocess.TimeoutExpired."""
         done = subprocess.run(
             [*self._enter, *words],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
             check=False,
-            timeout=120,
+            timeout=WITHIN if self.booted_by is None else max(0.0, self.booted_by - time.monotonic()),
         )
         return done.returncode, done.stdout
 
@@ -69,8 +86,19 @@ class Machine:
 
     def install(self, name: str, unit: str) -> None:
         """Write a unit and have systemd read it."""
-        (self.root / "etc/systemd/system" / name).write_text(unit)
+        self.write(f"/etc/systemd/system/{name}", unit)
         self.run("systemctl", "daemon-reload")
+
+    def path(self, file: str) -> Path:
+        """A file of its, as we see it."""
+        return self.root / file.lstrip("/")
+
+    def write(self, file: str, text: str) -> None:
+        """Write a file of its, that all may read."""
+        path = self.path(file)
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+        path.chmod(0o644)
 
     def journal(self, unit: str) -> list[tuple[int, str]]:
         """Priority and text of each line since the start of the machine, systemd's own about the unit too."""
@@ -87,43 +115,46 @@ def booted(folder: Path) -> Iterator[Machine]:
         raise UnableError("systemd as PID 1 needs root")
     if not SYSTEMD.exists():
         raise UnableError(f"there is no {SYSTEMD} (Debian: systemd)")
+    if not CHILDREN.exists():
+        raise UnableError(f"the kernel has no {CHILDREN}")
     said = folder / "boot.log"
     root = folder / "root"
     root.mkdir()
-    words = ["setpriv", "--pdeathsig", "KILL", "unshare", "--mount", "bash", str(TREE / "tests/e2e/boot_systemd.sh")]
+    words = ["setpriv", "--pdeathsig", "TERM", "unshare", "--mount", "bash", str(TREE / "tests/e2e/boot_systemd.sh")]
     words += [str(root), str(TREE), sysconfig.get_path("purelib"), sys.base_prefix]
     try:
         with said.open("wb") as log:
             outer = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
-    except FileNotFoundError as error:
-        raise UnableError(f"there is no {error.filename}") from error
+    except OSError as error:
+        raise UnableError(f"{error.filename}: {error.strerror}") from error
     try:
-        machine = _started(outer, said)
-        _able(machine)
-        yield machine
+        yield _started(outer, said)
     finally:
-        for init in _inits(outer.pid):
-            os.kill(init, 9)  # and with it everything inside; the script then clears up
-        try:
-            outer.wait(30)
-        except subprocess.TimeoutExpired:
-            outer.kill()
-            outer.wait(30)
+        _end(outer)
 
 
 def _started(outer: subprocess.Popen[bytes], said: Path) -> Machine:
     deadline = time.monotonic() + BOOT
     told = ""
-    while time.monotonic() < deadline:
-        if outer.poll() is not None:
-            raise UnableError(f"no systemd of our own here: {said.read_text(errors='replace').strip()[-200:]}")
-        for init in _inits(outer.pid):
-            machine = Machine(init)
-            told = machine.run("systemctl", "is-system-running")[1].strip()
-            if told == "running":
-                return machine
-        time.sleep(0.05)
-    raise UnableError(f"systemd did not start here within {BOOT:g} s: {told} {said.read_text(errors='replace')[-200:]}")
+    try:
+        while time.monotonic() < deadline:
+            if outer.poll() is not None:
+                raise UnableError(f"no systemd of our own here: {_last(said)}")
+            for machine in (Machine(init, deadline) for init in _inits(outer.pid)):
+                told = machine.run("systemctl", "is-system-running")[1].strip()
+                if told == "running":
+                    _able(machine)
+                    return machine
+            time.sleep(0.05)
+    except subprocess.TimeoutExpired as error:
+        told = f"it waits for {' '.join(error.cmd[-2:])}"
+    except OSError as error:  # no nsenter, or it has ended under our hands
+        raise UnableError(f"no systemd of our own here: {error} {_last(said)}".rstrip()) from error
+    raise UnableError(f"no systemd of our own within {BOOT:g} s: {told} {_last(said)}".rstrip())
+
+
+def _last(said: Path) -> str:
+    return said.read_text(errors="replace").strip()[-200:]
 
 
 def _able(machine: Machine) -> None:
@@ -132,6 +163,18 @@ def _able(machine: Machine) -> None:
     if code != 0:
         why = [text for _, text in machine.journal("able.service")] or [told.strip()]
         raise UnableError(f"systemd starts no confined service here: {'; '.join(why)[-300:]}")
+    machine.booted_by = None
+
+
+def _end(outer: subprocess.Popen[bytes]) -> None:
+    """Everything inside ends with its systemd; the script then clears up."""
+    for _ in range(10):  # one that it gets before it is ready for it may be lost
+        outer.terminate()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            outer.wait(1)
+            return
+    outer.kill()  # and by the kernel all that it has started
+    outer.wait(30)
 
 
 def _inits(outer: int) -> list[int]:
