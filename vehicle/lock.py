@@ -7,7 +7,9 @@ The locks are the kernel's, which forgets them with the process, however that en
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
+import hashlib
 import os
 import socket
 from collections.abc import Iterator, Mapping
@@ -15,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.motors import DRIVERS, MotorError
+from vehicle.motors.settings import port_name
 from vehicle.run_settings import SettingsError
 
 SIMULATED = "simulated"
@@ -28,7 +31,7 @@ class MotorLock:
     """Held until `close`, or until the process ends."""
 
     def __init__(self, motors: Mapping[str, Any]) -> None:
-        """`motors` is the table of settings. Raises InUseError."""
+        """`motors` is the table of settings. Raises InUseError, and MotorError where there are no locks."""
         self._socket: socket.socket | None = None
         name = _name(motors)
         if name is None:
@@ -38,6 +41,8 @@ class MotorLock:
             holder.bind(name)
         except OSError as error:
             holder.close()
+            if error.errno != errno.EADDRINUSE:
+                raise MotorError(f"the lock of the motors: {error}") from error
             words = "the motors are in use by another vehicle; end it first, a service by: sudo systemctl stop rover"
             raise InUseError(words) from error
         self._socket = holder
@@ -50,14 +55,16 @@ class MotorLock:
 
 
 def _name(motors: Mapping[str, Any]) -> str | None:
-    """The same for all names of one driver, and apart for each serial port.
+    """The same for all names of one driver and of one serial port, and apart for each port.
 
     Simulated motors may run as often as you like, and a driver of your own may know better.
     """
     driver = motors["driver"]
     if driver == SIMULATED or driver not in DRIVERS:
         return None
-    return f"\0mavhelm motors {DRIVERS[driver]} {motors.get('port', '')}"
+    port = port_name(str(motors["port"])) if "port" in motors else ""
+    # Hashed: the kernel takes 107 bytes, and a name in /dev/serial/by-id has 60 and more.
+    return f"\0mavhelm motors {hashlib.sha256(f'{DRIVERS[driver]} {port}'.encode()).hexdigest()}"
 
 
 @contextlib.contextmanager

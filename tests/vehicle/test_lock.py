@@ -32,6 +32,17 @@ def test_another_port_is_another_controller() -> None:
     second.close()
 
 
+def test_a_port_has_one_lock_by_all_its_names_however_long(tmp_path: Path) -> None:
+    port, name = tmp_path / "ttyUSB0", tmp_path / f"usb-{'x' * 200}-if00-port0"
+    port.touch()
+    name.symlink_to(port)
+    first = MotorLock({**MINE, "port": str(name)})
+    with pytest.raises(InUseError):
+        MotorLock({**MINE, "port": str(port)})
+    first.close()
+    MotorLock({**MINE, "port": str(port)}).close()
+
+
 @pytest.mark.parametrize("driver", ["simulated", "my_car:Motors"])
 def test_simulated_motors_and_those_of_others_are_not_locked(driver: str) -> None:
     first, second = MotorLock({"driver": driver}), MotorLock({"driver": driver})
