@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from link import journal, standard_streams
+from link import standard_streams
 from link.command_line import MISTAKE, Parser
 from link.toml_file import TomlError, read_toml
 
@@ -38,7 +37,7 @@ def run(words: Sequence[str]) -> int:
     try:
         code = VERBS[words[0]].run(asked)
         sys.stdout.flush()
-    except VerbError as error:
+    except (VerbError, TomlError) as error:
         parser.exit(MISTAKE, f"{parser.prog}: {error}\n")
     except (
         OSError
@@ -123,68 +122,10 @@ def _config_option(parser: argparse.ArgumentParser) -> None:
 
 
 def _safe_stop(asked: argparse.Namespace) -> int:
-    """Stops what a killed vehicle drove, and what the file names now, where that is something else."""
-    from vehicle.motor_copy import left_behind
+    from vehicle.safe_stop import stop_all
 
-    driven = left_behind(Path(asked.config))
-    try:
-        named: Mapping[str, Any] = {**_tables(asked.config), "motors": _motor_table(asked.config)}
-    except VerbError as error:
-        if driven is None:
-            raise
-        named = driven
-        _told(journal.ERROR, f"{error}; so only what the vehicle drove is stopped")
-    both = [named] if driven is None else [driven, named]
-    for motors in _different([parts["motors"] for parts in both]):
-        _stop(motors)
-    for accessories in _different([parts.get("accessories") or {} for parts in both]):
-        _make_safe(accessories)
+    stop_all(asked.config)
     return DONE
-
-
-def _different(tables: Sequence[Any]) -> list[Any]:
-    return [table for index, table in enumerate(tables) if table not in tables[:index]]
-
-
-def _make_safe(accessories: Any) -> None:
-    """After the motors, which are more urgent."""
-    from vehicle.accessories.safe_stop import safe_stop
-
-    for well, words in safe_stop(accessories):
-        _told(journal.INFO if well else journal.ERROR, words)
-
-
-def _stop(motors: Mapping[str, Any]) -> None:
-    from vehicle.motors import safe_stop
-
-    driver = str(motors["driver"])
-    problems = safe_stop(driver, {key: value for key, value in motors.items() if key != "driver"})
-    for problem in problems:
-        _told(journal.ERROR, problem)
-    if problems:
-        _told(journal.CRITICAL, f"{driver}: motors may still turn, cut their power")
-    else:
-        _told(journal.INFO, f"{driver}: motors neutral and without power")
-
-
-def _told(severity: int, text: str) -> None:
-    sys.stderr.write(f"{journal.mark(severity)}vehicle safe-stop: {text}\n")
-
-
-def _tables(path: str) -> dict[str, Any]:
-    """A file as it stands there. Raises VerbError."""
-    try:
-        return read_toml(path)
-    except TomlError as error:
-        raise VerbError(str(error)) from error
-
-
-def _motor_table(path: str) -> dict[str, Any]:
-    """[motors] of a file, as it stands there. Raises VerbError."""
-    table = _tables(path).get("motors")
-    if not isinstance(table, dict) or "driver" not in table:
-        raise VerbError(f"{path}: no driver in [motors]; `vehicle check {path}` says more")
-    return table
 
 
 def _unit_options(parser: argparse.ArgumentParser) -> None:
@@ -198,15 +139,16 @@ def _unit_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _systemd_unit(asked: argparse.Namespace) -> int:
+    from vehicle.safe_stop import motor_table
     from vehicle.unit import Place, existing_groups, owner, power_unit, unit
 
     if asked.power:
         sys.stdout.write(power_unit(asked.power))
         return DONE
     config, python = Path(asked.config).absolute(), Path(sys.executable)
-    table = _motor_table(asked.config)
+    table = motor_table(asked.config)
     user = asked.user or owner(config, python)
-    params = _tables(asked.config).get("params")
+    params = read_toml(asked.config).get("params")
     power = isinstance(params, dict) and params.get("REBOOT_ENABLE") == 2
     place = Place(config, python, existing_groups(), user, str(table["driver"]), power)
     sys.stdout.write(unit(place))
@@ -226,6 +168,7 @@ def _motor_test(asked: argparse.Namespace) -> int:
     from vehicle.config import ConfigError, load
     from vehicle.motor_test import RefusedError, turn, wish
     from vehicle.motors import MotorError
+    from vehicle.safe_stop import motor_table
     from vehicle.settled import settled
 
     try:
@@ -236,7 +179,7 @@ def _motor_test(asked: argparse.Namespace) -> int:
         for problem in known.left_out:
             sys.stderr.write(f"vehicle motor-test: a kept parameter is not used: {problem}\n")
         wanted = wish(asked.motor, asked.throttle, asked.time, known.params)
-        _motor_table(asked.config)
+        motor_table(asked.config)
         if not asked.yes:
             _ask(
                 f"Motor {asked.motor} at {asked.throttle:+.0%} for {asked.time:g} s. Are the wheels in the air? [y/N] "

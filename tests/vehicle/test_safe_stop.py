@@ -245,11 +245,14 @@ def test_a_file_without_motors_is_a_mistake(tmp_path: Path, text: str) -> None:
     code, out, error = said_by("safe-stop", "--config", str(file))
     assert (code, out, error.count("\n")) == (2, "", 1)
     assert str(file) in error
+    assert error.endswith("; nothing is stopped: cut the power of motors that turn, and mend it\n")
 
 
 def test_no_file_is_a_mistake(tmp_path: Path) -> None:
     code, _, error = said_by("safe-stop", "--config", str(tmp_path / "none"))
-    assert (code, error) == (2, f"vehicle safe-stop: {tmp_path / 'none'}: No such file or directory\n")
+    what_to_do = "nothing is stopped: cut the power of motors that turn, and mend it"
+    assert code == 2
+    assert error == f"vehicle safe-stop: {tmp_path / 'none'}: No such file or directory; {what_to_do}\n"
 
 
 def test_it_needs_neither_the_loop_nor_the_dialect(tmp_path: Path) -> None:
