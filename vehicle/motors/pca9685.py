@@ -106,9 +106,11 @@ class Pca9685Motors:
             self.disable()
 
     def _calm(self) -> None:
-        """What `idle` says, on every channel that gives pulses; one that gives none is left so."""
+        """What `idle` says, on every channel that gives pulses; one that gives none is left so. A board that was set up
+        otherwise, as before its `frequency` was changed, would make another width of neutral: its pulses end."""
+        neutral = self._settings.idle == "neutral" and self._board.ready
         for channel in self._settings.channels:
-            if self._board.pulsing(channel.channel) and self._settings.idle == "neutral":
+            if neutral and self._board.pulsing(channel.channel):
                 self._board.give(channel.channel, channel.pulse.width(0.0))
             else:
                 self._board.stop(channel.channel)

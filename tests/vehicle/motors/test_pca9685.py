@@ -104,6 +104,34 @@ def test_disabled_and_closed_is_neutral_or_nothing(settings: Pca9685Settings, af
     assert fake.closed
 
 
+class Watched(FakePca9685):
+    """Remembers what comes out of channel 0 after each write."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.seen: list[float | None] = []
+
+    def _write(self, register: int, value: int) -> None:
+        super()._write(register, value)
+        if register != 8:  # the low byte of a width: the chip takes both together, at the end of the transfer
+            self.seen.append(self.pulse(0))
+
+
+@pytest.mark.parametrize("frequency", [60, 100])
+def test_another_frequency_in_the_file_makes_no_other_width_of_neutral(frequency: float) -> None:
+    fake = Watched()
+    before = Pca9685Motors(SETTINGS, bus=fake)
+    before.enable()
+    before.close()
+    assert fake.pulse(0) == pytest.approx(1.5e-3, abs=STEP)
+    fake.seen, fake.closed = [], False
+    motors = Pca9685Motors(Pca9685Settings(channels=SETTINGS.channels, frequency=frequency), bus=fake)
+    motors.enable()
+    assert fake.frequency == pytest.approx(frequency, rel=0.01)
+    assert all(width is None or width == pytest.approx(1.5e-3, abs=STEP) for width in fake.seen)
+    assert fake.pulse(0) is not None
+
+
 @pytest.mark.parametrize("idle", ["neutral", "off"])
 def test_safe_stop_ends_the_pulses_of_a_killed_process(idle: str, monkeypatch: pytest.MonkeyPatch) -> None:
     fake = FakePca9685()
