@@ -1,9 +1,14 @@
-"""Stops, with one line, where a thousand tests would fail for one reason; and how hypothesis looks for examples."""
+"""Stops, with one line, where a thousand tests would fail for one reason; how hypothesis looks for examples; and where
+vehicles keep what is to be kept.
+"""
 
 from __future__ import annotations
 
+import importlib
 import os
+import tempfile
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 from dialects.fingerprint import fault
@@ -18,3 +23,15 @@ settings.load_profile("mavhelm")
 
 if reason := fault():
     raise SystemExit(reason)  # here and not in a hook: the other conftest.py files import the dialect
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """A folder of each worker's own, and not yours: a vehicle locks it."""
+    state = tempfile.TemporaryDirectory(prefix="mavhelm-tests-")
+    os.environ["XDG_STATE_HOME"] = state.name
+    config.add_cleanup(state.cleanup)
+
+
+def pytest_collection_finish() -> None:
+    """Hypothesis takes numbers and words from all modules that are loaded: the same ones, whichever test was first."""
+    importlib.import_module("vehicle.check")  # the one that no test imports by itself
