@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import socket
 from collections.abc import Hashable
@@ -13,6 +14,7 @@ from link.connection import Connection
 from link.endpoint import Endpoint
 from link.link import Arrived, Gone, LinkError
 from link.troubles import CONNECTING
+from link.worker import Worker
 
 MAX_CONNECTIONS = 16
 """To one `tcpin`; more are closed at once."""
@@ -90,7 +92,8 @@ class TcpClient:
         self.stream = True
         self.fixed: Hashable | None = endpoint.text
         self.capacity: float | None = None
-        self._address, self._family = address, family
+        self._target = address, family
+        self._names = Worker("names", limit=1)
         self._connection: Connection | None = None
         self._trying: socket.socket | None = None
         self._timer: asyncio.TimerHandle | None = None
@@ -119,15 +122,17 @@ class TcpClient:
     def close(self) -> None:
         """End it, and try no more."""
         self._give_up_trying()
+        self._names.close(patience=0.0)
         if self._connection:
             self._connection.close()
 
     def _connect(self, loop: asyncio.AbstractEventLoop) -> None:
-        sock = self._trying = socket.socket(self._family, socket.SOCK_STREAM)
+        address, family = self._target
+        sock = self._trying = socket.socket(family, socket.SOCK_STREAM)
         sock.setblocking(False)
         self._timer = loop.call_later(CONNECT_WITHIN, self._refused, loop, "no answer")
         try:
-            sock.connect(self._address)
+            sock.connect(address)
         except BlockingIOError:
             loop.add_writer(sock, self._connected, loop, sock)
         except OSError as error:
@@ -161,7 +166,14 @@ class TcpClient:
 
     def _again(self, loop: asyncio.AbstractEventLoop, what: str) -> None:
         self.problem = f"{self.endpoint.text}: {what}; trying again"
+        if self._target[0][0] != self.endpoint.host:  # a name, which may have another address by now
+            self._names.put(self._look_up)
         self._timer = loop.call_later(self._backoff.wait(), self._connect, loop)
+
+    def _look_up(self) -> None:
+        """In a thread, and no try waits for it: the name server may be what is away. Unknown: the last one stays."""
+        with contextlib.suppress(LinkError):
+            self._target = resolve(self.endpoint, socket.SOCK_STREAM)
 
     def _give_up_trying(self) -> None:
         if self._timer:

@@ -17,7 +17,10 @@ BUFFER = 65536
 
 
 class UdpWire:
-    """One UDP socket: `udpin` waits on an address, `udpout` speaks to one first and hears only that one."""
+    """One UDP socket: `udpin` waits on an address, `udpout` speaks to one first and hears only that one.
+
+    The name of that one is looked up at the start and never again: UDP knows no end after which it could be.
+    """
 
     def __init__(self, endpoint: Endpoint, sock: socket.socket) -> None:
         self.endpoint = endpoint

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import threading
 from collections.abc import Iterator
 
 import pytest
@@ -206,3 +207,61 @@ async def test_it_does_not_talk_to_itself() -> None:
     wire._connected(asyncio.get_running_loop(), own)
     assert refused == ["nobody listens"]
     own.close()
+
+
+class Names:
+    """A name server: what it says can change, and it can be slow or away."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.address: str | None = "127.0.0.1"
+        self.asked = 0
+        self.answers = threading.Event()
+        self.answers.set()
+        monkeypatch.setattr(socket, "getaddrinfo", self._answer)
+
+    def _answer(self, host: str, port: int, *_: object, **__: object) -> list[tuple[object, ...]]:
+        assert host == "rover.example"
+        self.asked += 1
+        assert self.answers.wait(60)
+        if self.address is None:
+            raise socket.gaierror(socket.EAI_AGAIN, "Temporary failure in name resolution")
+        return [(socket.AF_INET, socket.SOCK_STREAM, 6, "", (self.address, port))]
+
+
+async def taken(address: str, port: int, wire: TcpClient) -> None:
+    """A connection that comes to an address, and ends."""
+    with socket.create_server((address, port)):
+        await until(lambda: wire.problem is None)
+    await until(lambda: wire.problem is not None)
+
+
+async def test_a_name_that_moves_is_followed(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = Names(monkeypatch)
+    wire = open_tcpout(parse(f"tcpout:rover.example:{port}"))
+    Heard(wire)
+    await taken("127.0.0.1", port, wire)
+    names.address = "127.0.0.2"
+    await taken("127.0.0.2", port, wire)
+    names.address = None  # where the name is not known any more, the last address counts
+    await taken("127.0.0.2", port, wire)
+    wire.close()
+
+
+async def test_a_name_server_that_hangs_delays_no_connection(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = Names(monkeypatch)
+    wire = open_tcpout(parse(f"tcpout:rover.example:{port}"))
+    names.answers.clear()
+    Heard(wire)
+    await until(lambda: names.asked == 2)  # the first was at the start
+    await taken("127.0.0.1", port, wire)
+    wire.close()
+    names.answers.set()
+
+
+async def test_a_number_is_not_looked_up(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    wire = client(port)
+    names = Names(monkeypatch)
+    Heard(wire)
+    await taken("127.0.0.1", port, wire)
+    wire.close()
+    assert names.asked == 0
