@@ -18,7 +18,7 @@ from vehicle.params import TABLE
 
 pytestmark = [pytest.mark.interop, mavproxy_program.needed]
 
-WAYPOINT, RALLY_POINT, POLYGON_CORNER = 16, 5100, 5001
+WAYPOINT, RALLY_POINT, POLYGON_CORNER, RETURN_POINT = 16, 5100, 5001, 5000
 """MAV_CMD"""
 
 
@@ -159,7 +159,8 @@ def test_a_mission_inside_a_fence(mavproxy: Conversation, rover: Rover, tmp_path
     points = [(HOME[0] + north, HOME[1]) for north in (0.00002, 0.00003)]
     corners = [(HOME[0] + north, HOME[1] + east) for north, east in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     (tmp_path / "mission.txt").write_text(plan_file(WAYPOINT, 0, points))
-    (tmp_path / "fence.txt").write_text(plan_file(POLYGON_CORNER, 4, corners))
+    return_point = f"4\t0\t3\t{RETURN_POINT}\t0\t0\t0\t0\t{HOME[0]:.7f}\t{HOME[1]:.7f}\t0\t1\n"
+    (tmp_path / "fence.txt").write_text(plan_file(POLYGON_CORNER, 4, corners) + return_point)
     mavproxy.hear("Received .* parameters")
     mavproxy.say("wp load mission.txt")
     mavproxy.hear("TYPE_MISSION: ACCEPTED")
@@ -168,7 +169,7 @@ def test_a_mission_inside_a_fence(mavproxy: Conversation, rover: Rover, tmp_path
     mavproxy.say("fence load fence.txt")
     mavproxy.hear("TYPE_FENCE: ACCEPTED")
     mavproxy.say("fence list")
-    mavproxy.hear("Saved 4 fence items")
+    mavproxy.hear("Saved 5 fence items")
     mavproxy.say("fence enable")
     mavproxy.hear("DO_FENCE_ENABLE: ACCEPTED")
     mavproxy.say("arm throttle")
