@@ -31,6 +31,7 @@ class Rig:
         """Arm and hold `i` until the wheels turn: what they do now is watched."""
         programs.drive(self.station, self.vehicle, self.relay.armed)
         self.watch()
+        self.station.hold("i", self.vehicle.at_full)  # counting took its time: what follows, follows at once
 
     def watch(self) -> None:
         """From now on the machine's part in being late counts."""
