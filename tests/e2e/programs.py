@@ -88,20 +88,20 @@ class Vehicle:
         return any(each.turning for each in self.outputs() if each.at >= at)
 
     def falls_and_stops_after(self, at: float) -> tuple[float, float]:
-        """When, counted from `at`, the outputs first got smaller and when they were neutral and stayed so, s."""
-        outputs = [each for each in self.outputs() if each.at > at]
-        before = [each for each in self.outputs() if each.at <= at][-1]
-        power = max(map(abs, before.throttles))
-        falling = None
+        """When, counted from `at`, the outputs first got smaller and when they were neutral and stayed so, s.
+
+        Not above 0 where they stood before: who paused between the key and the clock has seen the end only.
+        """
+        outputs = self.outputs()
+        assert not outputs[-1].turning, f"still turning: {outputs[-1]}"
+        power, falls = 0.0, outputs[-1].at
         for each in outputs:
             now = max(map(abs, each.throttles))
-            if now < power and falling is None:
-                falling = each.at
-            power = max(power, now) if falling is None else power
-        assert outputs, "the outputs never changed again"
-        assert not outputs[-1].turning, f"still turning: {outputs[-1]}"
-        assert falling is not None
-        return falling - at, outputs[-1].at - at
+            if each.at > at and now < power:
+                falls = each.at
+                break
+            power = now if each.at <= at else max(power, now)
+        return falls - at, outputs[-1].at - at
 
     def end(self) -> None:
         """End it, whatever state it is in."""
