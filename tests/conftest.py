@@ -4,7 +4,6 @@ vehicles keep what is to be kept.
 
 from __future__ import annotations
 
-import importlib
 import os
 import tempfile
 
@@ -30,8 +29,3 @@ def pytest_configure(config: pytest.Config) -> None:
     state = tempfile.TemporaryDirectory(prefix="mavhelm-tests-")
     os.environ["XDG_STATE_HOME"] = state.name
     config.add_cleanup(state.cleanup)
-
-
-def pytest_collection_finish() -> None:
-    """Hypothesis takes numbers and words from all modules that are loaded: the same ones, whichever test was first."""
-    importlib.import_module("vehicle.check")  # the one that no test imports by itself

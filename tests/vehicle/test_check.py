@@ -92,8 +92,10 @@ def test_a_timeout_that_nobody_has_proven_is_found(tmp_path: Path) -> None:
 
 def test_motors_that_turned_stand_after_it(tmp_path: Path) -> None:
     chip = FiledPca9685(tmp_path / "registers")
+    chip.write_byte_data(0x40, 0xFE, 121)  # 50 Hz, as the file says
     chip.write_byte_data(0x40, 0, 0x20)
     chip.write_i2c_block_data(0x40, 6, [0, 0, 0x99, 0x01])
+    assert chip.pulse(0) == pytest.approx(2e-3, abs=5e-6)
     words = f'driver = "{NAME}:Pca9685"\nregisters = "{tmp_path / "registers"}"'
     channels = "channels = [{channel = 0}, {channel = 1}]"
     code, _ = checked(tmp_path, f"{FREE}[motors]\n{words}\n{channels}\n{QUIET}")
