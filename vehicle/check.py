@@ -19,6 +19,7 @@ from vehicle.accessories.outlet import Output
 from vehicle.accessories.settings import outputs_of
 from vehicle.clashes import motors_among
 from vehicle.config import Config, ConfigError, load
+from vehicle.faults import in_one_line
 from vehicle.lock import MotorLock
 from vehicle.mixer import MIXERS
 from vehicle.motors import MotorError, open_motors, proof
@@ -94,7 +95,7 @@ def _accessory(output: Output, motors: Mapping[str, Any]) -> str:
         try:
             output.make(value).close()
         except Exception as error:  # anybody's driver may raise anything
-            raise _AbsentError(str(error) or type(error).__name__) from error
+            raise _AbsentError(in_one_line(error)) from error
     return f"{output.driver}, {output.words(value)}"
 
 
@@ -119,7 +120,7 @@ def _tried(item: str, attempt: Callable[[], str]) -> Finding:
     try:
         return Finding(item, True, attempt())
     except (MotorError, OSError, ImportError, LinkError, _AbsentError) as error:
-        return Finding(item, False, " ".join(str(error).split()))
+        return Finding(item, False, in_one_line(error))
 
 
 def _links(config: Config) -> Iterator[Finding]:

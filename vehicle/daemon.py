@@ -15,6 +15,7 @@ import time
 from collections.abc import Sequence
 
 from dialects.enums import Severity
+from link.command_line import MISTAKE
 from link.endpoint import EndpointError
 from link.link import LinkError
 from link.loop import run_loop, running_loop
@@ -53,9 +54,12 @@ LEVELS: dict[Severity, int] = {
 }
 """Of STATUSTEXT -> of the log."""
 
-FAULT, MISTAKE = 1, 2
-"""Exit codes, beside those of vehicle/ending.py. The unit starts nothing again after MISTAKE, so whatever may be
-otherwise later is FAULT: a host name that is not known yet at boot, a port that a program still has."""
+FAULT = 1
+"""Exit code, beside MISTAKE and those of vehicle/ending.py.
+
+The unit starts nothing again after MISTAKE, so whatever may be otherwise later is FAULT: a host name that is not known
+yet at boot, a port that a program still has.
+"""
 
 
 def run(settings: Settings) -> int:

@@ -39,9 +39,8 @@ def run(words: Sequence[str]) -> int:
         sys.stdout.flush()
     except (VerbError, TomlError) as error:
         parser.exit(MISTAKE, f"{parser.prog}: {error}\n")
-    except (
-        OSError
-    ) as error:  # the verbs name those of their own files: this is the output, full or closed by its reader
+    except OSError as error:
+        # The verbs name those of their own files: this is the output, full or closed by its reader.
         standard_streams.let_go_of_output()
         parser.exit(FAULT, f"{parser.prog}: {error.strerror or error}\n")
     return code

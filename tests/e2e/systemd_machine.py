@@ -18,6 +18,8 @@ SYSTEMD = Path("/usr/lib/systemd/systemd")
 CHILDREN = Path("/proc/thread-self/children")
 BOOT = 12.0
 """s until it has started and runs a service, else it is left alone; 1 on an idle machine."""
+LOOK = 0.05
+"""s between two looks whether it has; its end is seen at once."""
 WITHIN = 120.0
 """s for one program in it."""
 
@@ -138,14 +140,14 @@ def _started(outer: subprocess.Popen[bytes], said: Path) -> Machine:
     told = ""
     try:
         while time.monotonic() < deadline:
-            if outer.poll() is not None:
-                raise UnableError(f"no systemd of our own here: {_last(said)}")
             for machine in (Machine(init, deadline) for init in _inits(outer.pid)):
                 told = machine.run("systemctl", "is-system-running")[1].strip()
                 if told == "running":
                     _able(machine)
                     return machine
-            time.sleep(0.05)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                outer.wait(LOOK)
+                raise UnableError(f"no systemd of our own here: {_last(said)}")
     except subprocess.TimeoutExpired as error:
         told = f"it waits for {' '.join(error.cmd[-2:])}"
     except OSError as error:  # no nsenter, or it has ended under our hands

@@ -16,11 +16,12 @@ import pytest
 
 from dialects.enums import State
 from dialects.messages import Heartbeat, LocalPositionNed, ManualControl
+from link.command_line import MISTAKE
 from link.runner import Runner
 from tests.vehicle.ground import Ground, drive, running
 from tests.vehicle.script import driving
 from vehicle import daemon
-from vehicle.daemon import FAULT, MISTAKE
+from vehicle.daemon import FAULT
 from vehicle.ending import Ending
 from vehicle.motors import MotorError
 from vehicle.run_settings import Settings, Simulation

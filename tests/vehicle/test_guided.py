@@ -109,17 +109,8 @@ class TestVelocity:
         assert said(field, "a value is no number")
         assert not field.turning
 
-    def test_a_quaternion_is_a_heading(self) -> None:
-        field = Field()
-        field.begin(Mode.GUIDED)
-        half = math.pi / 4
-        for _ in range(60):
-            field.say(m.SetAttitudeTarget(0, 1, 1, 1 | 2 | 4, [math.cos(half), 0, 0, math.sin(half)], 0, 0, 0, 0.5))
-            field.wait(0.06)
-        assert wrap(field.yaw - math.pi / 2) == pytest.approx(0.0, abs=0.1)
-
-    @pytest.mark.parametrize("length", [0.9, 1.1, 3.0])
-    def test_a_quaternion_of_another_length_is_the_same_heading(self, length: float) -> None:
+    @pytest.mark.parametrize("length", [1.0, 0.9, 1.1, 3.0])
+    def test_a_quaternion_of_any_length_is_a_heading(self, length: float) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
         q = [length * math.cos(math.pi / 4), 0, 0, length * math.sin(math.pi / 4)]

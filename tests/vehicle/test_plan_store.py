@@ -24,7 +24,7 @@ from tests.link.mission_vehicle import plain
 from tests.vehicle.bench import said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, running
-from tests.vehicle.test_mission import do, send, upload, way
+from tests.vehicle.test_mission import Item, do, send, upload, way
 from vehicle.plan_store import PlanStore
 
 FORCE = 21196
@@ -102,6 +102,16 @@ def field_with(keeper: Memory, **params: float) -> Field:
         plans = keeper
 
     return Keeping(**params)  # type: ignore[arg-type]
+
+
+def field_that_kept(item: Item, disk: SlowDisk) -> tuple[Field, MissionItem]:
+    """A mission of one item, in force and on the disk."""
+    field = field_with(disk)
+    send(field, item)
+    disk.end()
+    field.wait(0.1)
+    (kept,) = disk.plans[MISSION]
+    return field, kept
 
 
 # ---- the store ----
@@ -203,11 +213,7 @@ def test_a_slow_disk_delays_the_answer_and_the_plan() -> None:
 
 
 def test_a_disk_that_refuses_leaves_the_old_plan_in_force_and_on_the_disk() -> None:
-    field = field_with(disk := SlowDisk())
-    send(field, way(5, 0))
-    disk.end()
-    field.wait(0.1)
-    (first,) = disk.plans[MISSION]
+    field, first = field_that_kept(way(5, 0), disk := SlowDisk())
     send(field, way(7, 0))
     disk.end("No space left on device")
     field.wait(0.1)
@@ -219,11 +225,7 @@ def test_a_disk_that_refuses_leaves_the_old_plan_in_force_and_on_the_disk() -> N
 
 
 def test_who_sets_off_by_the_old_plan_while_the_new_one_is_written_goes_on_by_it() -> None:
-    field = field_with(disk := SlowDisk())
-    send(field, way(30, 0))
-    disk.end()
-    field.wait(0.1)
-    (first,) = disk.plans[MISSION]
+    field, first = field_that_kept(way(30, 0), disk := SlowDisk())
     send(field, way(0, 30))
     field.begin(Mode.AUTO)
     disk.end()

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from link.command_line import MISTAKE
 from tests.vehicle.words import said_by
-from vehicle import daemon
 from vehicle.unit import Place, owner, unit
 
 PYTHON = Path(sys.executable)
@@ -97,7 +97,7 @@ def test_what_is_linked_to_from_elsewhere_may_live_in_a_home(tmp_path: Path, mon
 
 
 def test_a_mistake_is_the_code_that_ends_the_restarts() -> None:
-    assert service(PLACES["of nobody"])["RestartPreventExitStatus"] == str(daemon.MISTAKE)
+    assert service(PLACES["of nobody"])["RestartPreventExitStatus"] == str(MISTAKE)
 
 
 def test_only_where_the_file_allows_it_the_computer_follows_the_exit_code() -> None:

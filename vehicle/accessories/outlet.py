@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 from vehicle.accessories import OFF, Accessory
+from vehicle.faults import in_one_line
 
 RETRY = 1.0
 """s after a failure until an accessory is tried again."""
@@ -138,7 +139,7 @@ class Outlet:
         try:
             step(*values)
         except Exception as error:  # anybody's driver may raise anything
-            self.fault = _line(error)
+            self.fault = in_one_line(error)
 
     def _go_on(self, now: float) -> None:
         repeat = self._repeat
@@ -149,7 +150,3 @@ class Outlet:
         repeat.due = now + repeat.period
         if not repeat.left:
             self._repeat = None
-
-
-def _line(error: Exception) -> str:
-    return " ".join(str(error).split()) or type(error).__name__

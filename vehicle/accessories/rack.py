@@ -11,24 +11,23 @@ class Rack:
     """Opened when the motors are; before that nothing is given."""
 
     def __init__(self, outputs: Iterable[Output] = ()) -> None:
-        self._outlets = {(output.kind, output.number): Outlet(output) for output in outputs}
+        self._outlets: dict[tuple[str, float], Outlet] = {
+            (output.kind, output.number): Outlet(output) for output in outputs
+        }
 
     def __iter__(self) -> Iterator[Outlet]:
         return iter(self._outlets.values())
 
     def find(self, kind: str, number: float) -> Outlet | None:
         """The one of this number; None where there is none."""
-        for (each, own), outlet in self._outlets.items():
-            if (each, own) == (kind, number):
-                return outlet
-        return None
+        return self._outlets.get((kind, number))
 
     def values(self, kind: str) -> dict[int, int]:
         """Number -> what the hardware has, of those that are open."""
         return {
-            number: outlet.given
-            for (each, number), outlet in self._outlets.items()
-            if each == kind and outlet.given is not None
+            outlet.output.number: outlet.given
+            for outlet in self
+            if outlet.output.kind == kind and outlet.given is not None
         }
 
     def open(self) -> None:

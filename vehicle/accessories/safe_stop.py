@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from vehicle.accessories.settings import COMMON, Kind, understood
+from vehicle.faults import in_one_line
 
 
 def safe_stop(tables: Any) -> Iterator[tuple[bool, str]]:
@@ -15,8 +16,8 @@ def safe_stop(tables: Any) -> Iterator[tuple[bool, str]]:
             try:
                 yield True, _made_safe(kind, table)
             except Exception as error:  # whatever it is, the caller has nothing better to do than to say it
-                text = " ".join(str(error).split()) or type(error).__name__
-                yield False, f"accessories.{kind}s[{index}]: may have its last value still: {text}"
+                why = in_one_line(error)
+                yield False, f"accessories.{kind}s[{index}]: may have its last value still: {why}"
 
 
 def _listed(tables: Any, name: str) -> list[Any]:

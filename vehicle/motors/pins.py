@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from importlib import import_module
 
 from vehicle.extras import HOW
+from vehicle.faults import in_one_line
 from vehicle.motors import MotorError
 
 
@@ -56,7 +57,7 @@ HINTS = {
 
 
 def _in_words(error: BaseException) -> str:
-    words = " ".join(str(error).split()) or type(error).__name__
+    words = in_one_line(error)
     return "; ".join([words, *(hint for start, hint in HINTS.items() if words.startswith(start))])
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Generic, Protocol, TypeVar
 
+from vehicle.faults import in_one_line
+
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 
@@ -38,7 +40,7 @@ class Latest(Generic[T]):
 
     def missed(self, error: Exception) -> None:
         """No new value this time."""
-        self.fault = " ".join(str(error).split()) or type(error).__name__
+        self.fault = in_one_line(error)
 
     def at(self, now: float) -> T | None:
         """The value, while it counts."""

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from msgspec.structs import fields
 
+from link.command_line import MISTAKE
 from tests.vehicle.accessories.across_processes import NAME
 from tests.vehicle.motors.across_processes import FiledPca9685
 from tests.vehicle.words import said_by
@@ -112,7 +113,7 @@ def test_a_servo_with_a_motors_number_is_refused_at_the_start(caplog: pytest.Log
         Settings(("udpout:127.0.0.1:9",), accessories=accessories, params={"DRIVE_TYPE": 4}, simulation=Simulation()),
     ):
         caplog.clear()
-        assert daemon.run(settings) == daemon.MISTAKE
+        assert daemon.run(settings) == MISTAKE
         assert "servo 2 is a motor where DRIVE_TYPE is 4; it needs another number" in caplog.text
 
 
@@ -120,7 +121,7 @@ def test_other_motors_than_the_files_are_looked_at_again(caplog: pytest.LogCaptu
     """`--motors` comes after the file was found right."""
     accessories = parsed(RELAY.replace("16", "10"), "f").accessories
     settings = Settings(("udpout:127.0.0.1:9",), motors={"driver": "article-car"}, accessories=accessories)
-    assert daemon.run(settings) == daemon.MISTAKE
+    assert daemon.run(settings) == MISTAKE
     assert "accessories.relays[0]: GPIO 10 is taken by motors already" in caplog.text
 
 
