@@ -1,6 +1,6 @@
 """Payload bytes <-> messages, and the bytes of a whole frame to send, on the functions that build.py generates.
 
-Finding frames in received bytes is link/framer.py's work; sequence numbers are link/channel.py's.
+Finding frames in received bytes is link/protocol/framer.py's work; sequence numbers are link/protocol/channel.py's.
 """
 
 from __future__ import annotations

@@ -13,9 +13,9 @@ from pathlib import Path
 import msgspec
 
 from groundstation.intents import AnyIntent, Quit
+from groundstation.ipc import MAX_PACKET, NEVER_LATE, SOCKET_BUFFER, Batch, Failure, Hello, clock, decode_up, encode
 from groundstation.processes import end_process, start_module
 from groundstation.snapshot import Snapshot
-from groundstation.wire import MAX_PACKET, NEVER_LATE, SOCKET_BUFFER, Batch, Failure, Hello, clock, decode_up, encode
 
 HELLO_TIMEOUT = 15.0
 """How long the station may take to open its links: Python's start on a slow Pi (3 s) and a name to resolve (10 s)."""
@@ -128,7 +128,7 @@ class StationClient:
 def _spawn(descriptor: int, options: Sequence[str], endpoints: Sequence[str]) -> subprocess.Popen[bytes]:
     try:
         arguments = [f"--fd={descriptor}", *options, "--", *endpoints]
-        return start_module("groundstation.helm", arguments, pass_fds=[descriptor])
+        return start_module("groundstation.station_process", arguments, pass_fds=[descriptor])
     except OSError as error:
         raise StationError(f"the station process did not start: {error.strerror}") from error
 

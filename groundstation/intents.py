@@ -1,6 +1,6 @@
 """What the operator wants: the values that travel from the keys to the station, and nothing else does.
 
-They are msgspec structs because the keys live in the terminal's process and the station in another one (helm.py).
+They are msgspec structs because the keys live in the terminal's process and the station in another one (station_process.py).
 """
 
 from __future__ import annotations

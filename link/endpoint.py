@@ -81,7 +81,7 @@ SCHEMES: dict[str, Scheme] = {
     "tcpout": Scheme("tcpout:HOST:PORT", "connect to this address, again and again", _host_port),
     "serial": Scheme("serial:PATH:BAUD", "serial port or USB radio; unplugged, it is waited for", _path_baud),
 }
-"""Scheme -> its parser and help. link/openers.py holds what opens each."""
+"""Scheme -> its parser and help. link/transport/transports.py holds what opens each."""
 
 
 def parse(text: str) -> Endpoint:

@@ -11,13 +11,13 @@ from typing import Protocol, runtime_checkable
 from dialects.codec import EncodeError, encode_payload
 from dialects.enums import Severity
 from dialects.messages import Message
-from link.channel import Channel
 from link.core import Core, LinkReport, Outgoing, Received
-from link.link import Link
-from link.openers import open_wires
-from link.router import Delivery, Router
-from link.tape import Tape
-from link.troubles import Troubles
+from link.protocol.channel import Channel
+from link.protocol.link_events import Troubles
+from link.protocol.log_tap import Tape
+from link.routing.router import Delivery, Router
+from link.transport.transport import Link
+from link.transport.transports import open_wires
 
 log = logging.getLogger(__name__)
 
@@ -58,7 +58,7 @@ def open_links(
 class Runner:
     """Drives `core`: messages in at once, messages out at once, a tick every `period` s at absolute deadlines.
 
-    With several links it also forwards between them (router.py), as MAVLink asks of every system that has more than
+    With several links it also forwards between them (link/routing/router.py), as MAVLink asks of every system that has more than
     one: two ground stations on two links of a vehicle hear each other. `route` false leaves that out.
 
     `broken` takes what goes wrong inside instead of run(): who names it may say last words over links that still work,

@@ -6,15 +6,15 @@ import pytest
 
 from dialects.messages import ManualControl, RoverDriveStatus, RoverOperatorPresence
 from groundstation.snapshot import VehicleView
-from link.channel import PEER_SILENCE
+from link.protocol.channel import PEER_SILENCE
 from tests.test_stops import Drive
 from tests.world import Host
-from vehicle.machine import Machine
+from vehicle.control_loop import Machine
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
 from vehicle.rover import Rover
+from vehicle.safety.states import State
 from vehicle.sensors import NoSensors
-from vehicle.states import State
 
 
 def view(drive: Drive) -> VehicleView | None:

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from groundstation import __main__ as station_main
+from groundstation.cli import main as station_main
 from link.bridge import __main__ as bridge_main
-from vehicle import command_line, verbs
+from vehicle.cli import options, subcommands
 from vehicle.params import PARAMETERS
 
 ROOT = Path(__file__).parents[1]
@@ -74,10 +74,10 @@ SHOWN = [(doc.name, program, words) for doc in DOCS for program, words in comman
 
 @pytest.mark.parametrize(("doc", "program", "words"), SHOWN, ids=lambda value: str(value))
 def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, words: list[str]) -> None:
-    if program == "vehicle" and words[0] in verbs.VERBS:
-        verbs.parser_of(words[0]).parse_args(words[1:])
+    if program == "vehicle" and words[0] in subcommands.VERBS:
+        subcommands.parser_of(words[0]).parse_args(words[1:])
     elif program == "vehicle":
-        command_line.new_parser().parse_intermixed_args(command_line.joined(words))
+        options.new_parser().parse_intermixed_args(options.joined(words))
     else:
         {"bridge": bridge_main, "groundstation": station_main}[program]._parser().parse_args(words)
 

@@ -14,18 +14,18 @@ from hypothesis import strategies as st
 from dialects.messages import SetPositionTargetLocalNed
 from dialects.modes import Mode
 from groundstation import intents as i
-from groundstation.station import Station
+from groundstation.station.station import Station
 from link.core import Outgoing
-from link.memory import LossyPipe
+from link.transport.memory import LossyPipe
 from tests.world import World
-from vehicle.machine import Machine
+from vehicle.control_loop import Machine
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
 from vehicle.rover import Rover
+from vehicle.safety.states import State
 from vehicle.sim.battery import Battery
 from vehicle.sim.body import Home, SimulatedBody
 from vehicle.sim.chassis import Frame, SkidChassis
-from vehicle.states import State
 
 FALLS_WITHIN = 0.5
 NEUTRAL_WITHIN = 1.0

@@ -6,10 +6,10 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from dialects.messages import Message
-from link.channel import Channel
 from link.core import Core, Outgoing
-from link.memory import LossyPipe
+from link.protocol.channel import Channel
 from link.runner import REPORT_PERIOD, HearsOfSending
+from link.transport.memory import LossyPipe
 
 
 @dataclass

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from dialects.modes import Mode
-from vehicle.asking import given
+from link.services.command.server import given
 
 
 class Need(Enum):

@@ -35,7 +35,7 @@ MOTORS = 4
 
 
 def _motor(number: int) -> tuple[Parameter, ...]:
-    """What fits one motor to its wheel (vehicle/fit.py); in the order of vehicle/mixer.py, `Mixer.motors`."""
+    """What fits one motor to its wheel (vehicle/drive/output_scaling.py); in the order of vehicle/drive/mixer.py, `Mixer.motors`."""
     name = f"MOT{number}"
     return (
         Parameter(f"{name}_REVERSED", 0, 0, 1, "", f"Motor {number} is wired or mounted the other way round",
@@ -173,7 +173,7 @@ class ParamError(ValueError):
 
 
 class Params:
-    """The settings in force. They live in memory; vehicle/param_store.py keeps what is set."""
+    """The settings in force. They live in memory; vehicle/storage/param_store.py keeps what is set."""
 
     def __init__(
         self,
@@ -197,7 +197,7 @@ class Params:
         self.damage: str | None = None
         """Why saved values could not be had; nobody arms before somebody has set one anew."""
         self.untold: set[str] = set()
-        """What was put in force and ground stations were not told of (param_service.py)."""
+        """What was put in force and ground stations were not told of (vehicle/commands/params.py)."""
         self._values = {parameter.name: float(parameter.default) for parameter in TABLE}
         for name, value in (values or {}).items():
             self.set(name, value)

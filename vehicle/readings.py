@@ -1,6 +1,6 @@
 """What the sensors say, raw, as one value a cycle; reading them is vehicle/sensors' and vehicle/sim's work.
 
-What is believed of them is vehicle/estimator.py's.
+What is believed of them is vehicle/navigation/estimator.py's.
 """
 
 from __future__ import annotations

@@ -8,35 +8,35 @@ from dialects import messages as m
 from dialects.enums import Severity
 from dialects.modes import Mode
 from link.core import LinkReport, Outgoing, Received
-from vehicle import status
-from vehicle.accessories.rack import Rack
-from vehicle.actuator_test import ActuatorTest
-from vehicle.answers import COMPONENT, Answers, Keepers
-from vehicle.bandwidth import Bandwidth
-from vehicle.buttons import Buttons
-from vehicle.complaints import Complaints, of_fence, of_sensors
-from vehicle.control import Control
-from vehicle.demand import Demand
-from vehicle.drive import Drive
-from vehicle.failsafe import Action
-from vehicle.host import Host
-from vehicle.leaving import Leave
-from vehicle.links import Links
-from vehicle.logbook import Recording
+from vehicle.accessories.accessory_set import Rack
+from vehicle.autonomy.navigator import Navigator
+from vehicle.commands.actuator_test import ActuatorTest
+from vehicle.commands.buttons import Buttons
+from vehicle.commands.dispatch import COMPONENT, Answers, Keepers
+from vehicle.commands.params import Keeper
+from vehicle.commands.reboot import Leave
+from vehicle.drive.control import Control
+from vehicle.drive.demand import Demand
+from vehicle.drive.drive import Drive
+from vehicle.drive.gate import Outputs, Permit
 from vehicle.modes import OFFERED
-from vehicle.navigator import Navigator
-from vehicle.outputs import Outputs, Permit
-from vehicle.param_service import Keeper
 from vehicle.params import Params
-from vehicle.plan_keeping import PlanKeeper
 from vehicle.readings import NO_READINGS, Readings
-from vehicle.safety import Safety
-from vehicle.states import State
-from vehicle.streams import Family
-from vehicle.telemetry import Telemetry
-from vehicle.texts import Texts
-from vehicle.view import View
-from vehicle.watch import Watch
+from vehicle.safety.failsafe import Action
+from vehicle.safety.health_notices import Complaints, of_fence, of_sensors
+from vehicle.safety.monitor import Watch
+from vehicle.safety.state_machine import Safety
+from vehicle.safety.states import State
+from vehicle.statustext import Texts
+from vehicle.storage.logbook import Recording
+from vehicle.storage.plan_keeping import PlanKeeper
+from vehicle.telemetry import build_status as status
+from vehicle.telemetry.bandwidth import Bandwidth
+from vehicle.telemetry.host import Host
+from vehicle.telemetry.link_status import Links
+from vehicle.telemetry.streams import Family
+from vehicle.telemetry.telemetry import Telemetry
+from vehicle.telemetry.view import View
 
 
 class Rover:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from groundstation.keymap import CONFIRM_KEY, Action, Keymap
+from groundstation.input.keymap import CONFIRM_KEY, Action, Keymap
 from groundstation.snapshot import Snapshot
-from groundstation.ui.gate import Shut
+from groundstation.ui.key_gate import Shut
 from groundstation.ui.keynames import key_name, main_key
 
 MAX_SILENCE = 99.0

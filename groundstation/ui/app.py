@@ -16,18 +16,18 @@ from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 
+from groundstation.input.keymap import Action, Keymap, KeyPress
 from groundstation.intents import AnyIntent, Lease
-from groundstation.keymap import Action, Keymap, KeyPress
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import THEME
-from groundstation.ui.ending import orderly_end
-from groundstation.ui.gate import Client, Door, KeyGate, Shut
-from groundstation.ui.output import TerminalFile, only_the_screen
+from groundstation.ui.exit import orderly_end
+from groundstation.ui.key_gate import Client, Door, KeyGate, Shut
 from groundstation.ui.palette import Actions
-from groundstation.ui.ping import PERIOD
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.help import HelpScreen
 from groundstation.ui.terminal import PING, HelmDriver, KeyRepeat, KeyUp, TerminalClosed
+from groundstation.ui.tty_output import TerminalFile, only_the_screen
+from groundstation.ui.tty_ping import PERIOD
 
 TICK = 0.1
 """s between renewals of the lease: a third of what the station allows."""

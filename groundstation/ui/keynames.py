@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from groundstation.keyfile import PUNCTUATION
-from groundstation.keymap import Keymap
+from groundstation.input.keymap import Keymap
+from groundstation.input.keymap_file import PUNCTUATION
 
 _MARKS = {name: character for character, name in PUNCTUATION.items() if character != " "} | {
     "space": "SPACE", "tab": "TAB", "enter": "ENTER", "escape": "ESC", "up": "↑", "down": "↓", "left": "←",

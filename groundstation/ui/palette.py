@@ -7,8 +7,8 @@ from typing import Protocol, cast
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
+from groundstation.input.keymap import ACTIONS, Action
 from groundstation.intents import Push
-from groundstation.keymap import ACTIONS, Action
 
 
 class Chooser(Protocol):

@@ -24,8 +24,8 @@ from textual.drivers.linux_driver import LinuxDriver
 from textual.keys import Keys, _character_to_key
 from textual.message import Message
 
-from groundstation.keymap import KeyPress
-from groundstation.ui.output import TerminalFile
+from groundstation.input.keymap import KeyPress
+from groundstation.ui.tty_output import TerminalFile
 
 ASK_RELEASES = "\x1b[=31;1u\x1b[?u"
 """Kitty keyboard protocol: 1 disambiguate, 2 event types, 4 alternate keys, 8 all keys, 16 text; then "what holds?".

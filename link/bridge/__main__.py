@@ -13,16 +13,16 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from link import standard_streams
 from link.bridge.bridge import Bridge
 from link.bridge.recorder import RecorderError, record_to
 from link.bridge.screens import Screen, Teller, print_json
 from link.bridge.status import Status
-from link.command_line import Parser
 from link.endpoint import EndpointError, endpoint_help, parse
-from link.link import LinkError, Wire
-from link.openers import open_wires
-from link.recorder import Recorder
+from link.runtime import stdio
+from link.runtime.command_line import Parser
+from link.tlog.recorder import Recorder
+from link.transport.transport import LinkError, Wire
+from link.transport.transports import open_wires
 
 log = logging.getLogger(__name__)
 
@@ -54,7 +54,7 @@ class _Version(argparse.Action):
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the bridge; the exit code."""
-    standard_streams.secure()
+    stdio.secure()
     parser = _parser()
     asked = parser.parse_args(parser.checked(sys.argv[1:] if argv is None else argv))
     _check(asked.endpoints, parser)

@@ -1,4 +1,4 @@
-"""Wires joined by the router: what arrives on one goes out on others, at once. It decides nothing; router.py does."""
+"""Wires joined by the router: what arrives on one goes out on others, at once. It decides nothing; link/routing/router.py does."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from functools import partial
 from itertools import accumulate
 
 from link.bridge.status import Status, StatusMeter
-from link.link import Wire
-from link.recorder import Recorder
-from link.router import Delivery, Router
+from link.routing.router import Delivery, Router
+from link.tlog.recorder import Recorder
+from link.transport.transport import Wire
 
 TICK = 0.05
 """s between two looks at half frames and silent peers: half of what a framer waits (framer.PARTIAL_DEADLINE)."""

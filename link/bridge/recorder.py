@@ -6,7 +6,7 @@ import datetime
 import os
 from pathlib import Path
 
-from link.recorder import RawFile, Recorder
+from link.tlog.recorder import RawFile, Recorder
 
 
 class RecorderError(Exception):

@@ -17,7 +17,7 @@ from collections.abc import Callable
 
 from dialects.enums import Severity
 from link.bridge.status import Status
-from link.troubles import UpsAndDowns
+from link.protocol.link_events import UpsAndDowns
 
 log = logging.getLogger(__name__)
 

@@ -6,10 +6,10 @@ from collections.abc import Hashable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from link.frame import noise_hint
-from link.link import Wire
-from link.router import Router
-from link.traffic import PortReport, RouteReport
+from link.protocol.frame import noise_hint
+from link.routing.route_report import PortReport, RouteReport
+from link.routing.router import Router
+from link.transport.transport import Wire
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from dialects import messages as m
-from link.services.ftp import crc32
-from link.services.param import Setting
+from link.services.ftp.protocol import crc32
+from link.services.param.server import Setting
 
 GENERAL_FILE, PARAMETER_FILE = "general.json.xz", "parameter.json.xz"
 PARAMETER_TYPE = 1

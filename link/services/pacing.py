@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 from dialects import codec
 from link.core import Peer
-from link.rate import TokenBucket
+from link.protocol.rate import TokenBucket
 
 DEFAULT_RATE = 400_000.0
-"""bytes/s to a peer on a network: 1600 file frames a second, two thirds of what link/channel.py takes from a peer."""
+"""bytes/s to a peer on a network: 1600 file frames a second, two thirds of what link/protocol/channel.py takes from a peer."""
 MOST_FRAMES = 1600.0
 """frames/s to any peer, however short: what decodes them takes as long for a short one. MAVProxy lost one in six of
 3700 LOG_DATA a second, which its socket could not hold."""

@@ -18,9 +18,9 @@ from typing import TypeVar
 from dialects import codec
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.frame import payload_of
-from link.framer import Framer
-from link.services.ftp import MAX_DATA, FtpPacket, Op, parse
+from link.protocol.frame import payload_of
+from link.protocol.framer import Framer
+from link.services.ftp.protocol import MAX_DATA, FtpPacket, Op, parse
 from tests.benchmarks.figures import BenchmarkError
 from tests.benchmarks.traffic import framed
 

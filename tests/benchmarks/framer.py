@@ -10,9 +10,9 @@ from typing import Any
 from dialects import codec, rover
 from dialects import messages as m
 from dialects.axes import Axes, manual_control
-from link.channel import Channel
-from link.frame import payload_of
-from link.framer import Framer
+from link.protocol.channel import Channel
+from link.protocol.frame import payload_of
+from link.protocol.framer import Framer
 from tests.benchmarks.figures import BenchmarkError, Goal, Options, Report, Row, Table
 from tests.benchmarks.rates import Work, rates
 from tests.benchmarks.traffic import chopped, framed, joined, mix, telemetry_log
@@ -29,7 +29,7 @@ DRIVE_SCREEN = frozenset(
         *(m.BatteryStatus, m.ServoOutputRaw, m.StatusText, m.CommandAck, m.Timesync),
     )
 )
-"""What the Drive screen reads (groundstation/vehicle_state.py, station.py)."""
+"""What the Drive screen reads (groundstation/vehicles/vehicle_state.py, groundstation/station/station.py)."""
 
 PYMAVLINK = "pymavlink parse_buffer"
 FRAMER = "framer"

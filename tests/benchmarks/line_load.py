@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects.enums import Autopilot, State, Type
 from dialects.messages import Heartbeat, Message, ParamRequestList
-from link.services.ftp import FtpPacket, Op
+from link.services.ftp.protocol import FtpPacket, Op
 from tests.benchmarks.traffic import framed
 
 SYSTEM, COMPONENT = 254, 190

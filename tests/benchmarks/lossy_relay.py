@@ -11,7 +11,7 @@ import socket
 import sys
 import time
 
-from link.memory import LossyPipe
+from link.transport.memory import LossyPipe
 
 STEP = 0.0005
 """s between two looks at what is under way: small beside the delay, and only while something is."""

@@ -16,13 +16,13 @@ from pathlib import Path
 from dialects import messages as m
 from dialects.enums import Command, MissionType
 from dialects.modes import Mode
-from link.services.mission_items import MissionItem
+from link.services.mission.items import MissionItem
 from tests.benchmarks.figures import Goal, Options, Report, Row, Table, quantile
 from tests.benchmarks.programs import free_port, on_pipe, python, scratch
 from tests.benchmarks.station import Station, connected
 from tests.benchmarks.watch import Watch
-from vehicle.guidance import Leg
-from vehicle.place import Origin, Point
+from vehicle.navigation.geo import Origin, Point
+from vehicle.navigation.guidance import Leg
 
 HOME = Origin(50.0, 8.0)
 RELATIVE_ALTITUDE, NO_PLACE = 6, 2

@@ -14,10 +14,10 @@ from dialects import rover as dialect
 from dialects.axes import Axes, manual_control
 from dialects.enums import Autopilot, Command, State, Type
 from dialects.messages import CommandLong, Heartbeat, Message, RoverOperatorPresence
-from link.channel import Channel
+from link.protocol.channel import Channel
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Spread, Table, spread
 from tests.benchmarks.traffic import framed
-from vehicle.machine import Machine
+from vehicle.control_loop import Machine
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
 from vehicle.rover import Rover

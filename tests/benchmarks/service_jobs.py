@@ -10,8 +10,8 @@ from contextlib import contextmanager
 
 from dialects import messages as m
 from dialects.enums import Command, MissionResult, MissionType
-from link.services.ftp import MAX_DATA, FtpPacket, Op
-from link.services.mission_items import MissionItem, to_message
+from link.services.ftp.protocol import MAX_DATA, FtpPacket, Op
+from link.services.mission.items import MissionItem, to_message
 from tests.benchmarks import bare_services
 from tests.benchmarks.bare_services import GROUND, VEHICLE
 from tests.benchmarks.figures import BenchmarkError

@@ -32,7 +32,7 @@ ARDUROVER = 30.9
 SLOWER = 1.25
 """Times the log's own time at the pace of link/services/pacing.py: what opening, control cycles and timers add."""
 LEAST = {jobs.FILE: 50.0, ARMED: 25.0, jobs.UPLOAD: 60.0, jobs.DOWNLOAD: 60.0}
-"""% of the wire: what vehicle/bandwidth.py gives bulk while nobody can drive and while somebody can, less its steps; an
+"""% of the wire: what vehicle/telemetry/bandwidth.py gives bulk while nobody can drive and while somebody can, less its steps; an
 item of a mission waits for the one before it."""
 
 

@@ -10,9 +10,9 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, ModeFlag, Result, State, Type
 from link.core import LinkReport, Outgoing, Received
 from link.runner import Runner, open_links
-from link.services.ftp_client import FtpClient
-from link.services.mission_client import MissionClient
-from link.services.param_client import ParamClient
+from link.services.ftp.client import FtpClient
+from link.services.mission.client import MissionClient
+from link.services.param.client import ParamClient
 from tests.benchmarks.figures import BenchmarkError
 
 SYSTEM, COMPONENT = 255, 190

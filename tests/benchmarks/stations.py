@@ -17,8 +17,8 @@ from statistics import median
 from dialects import messages as m
 from dialects.axes import Axes, manual_control
 from dialects.enums import Autopilot, Command, ModeFlag, State, Type
-from link.frame import payload_of
-from link.framer import Framer
+from link.protocol.frame import payload_of
+from link.protocol.framer import Framer
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table
 from tests.benchmarks.procfs import cpu_seconds, family, memory
 from tests.benchmarks.programs import Program, free_port, on_pipe, python

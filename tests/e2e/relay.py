@@ -13,9 +13,9 @@ from dialects import codec
 from dialects.axes import demand
 from dialects.enums import ModeFlag
 from dialects.messages import Heartbeat, LocalPositionNed, ManualControl, Message, StatusText, text_of
-from link.frame import payload_of
-from link.framer import Framer
-from link.memory import LossyPipe
+from link.protocol.frame import payload_of
+from link.protocol.framer import Framer
+from link.transport.memory import LossyPipe
 from tests.ports import free_port
 
 STEP = 0.005

@@ -14,8 +14,8 @@ import pytest
 from dialects import codec
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Type
-from link.framer import Framer
-from link.source import Source
+from link.protocol.framer import Framer
+from link.protocol.sequence import Source
 from tests.ports import free_port
 from tests.vehicle.ground import running
 

@@ -11,8 +11,8 @@ import pytest
 
 from groundstation import client as client_module
 from groundstation.client import StationClient
+from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents import SetStyle
-from groundstation.keymap import KEYMAPS, Keymap
 from groundstation.processes import start_module
 from groundstation.ui.app import HelmApp
 from tests.groundstation.broken_helm import ORDER

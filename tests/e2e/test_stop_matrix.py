@@ -25,7 +25,7 @@ FALLS_WITHIN = 0.5
 NEUTRAL_WITHIN = 1.0
 NOISE = 0.4
 HOLD_TIMEOUT = 0.25
-"""s after the last auto-repeat at which a held key counts as let go (groundstation/sticks.py, over ssh)."""
+"""s after the last auto-repeat at which a held key counts as let go (groundstation/input/sticks.py, over ssh)."""
 
 Build = Callable[..., Rig]
 

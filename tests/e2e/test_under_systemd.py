@@ -17,9 +17,9 @@ from dialects.axes import Axes
 from dialects.enums import Command
 from dialects.messages import CommandLong
 from tests.e2e.systemd_machine import Machine, UnableError, booted
+from tests.vehicle.cli.test_safe_stop import StubbornSabertooth
 from tests.vehicle.ground import Ground
 from tests.vehicle.motors.pty_controller import OnPty
-from tests.vehicle.test_safe_stop import StubbornSabertooth
 
 pytestmark = [pytest.mark.e2e, pytest.mark.timeout(300), pytest.mark.xdist_group("systemd")]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from groundstation import helm
+from groundstation import station_process
 from groundstation.intents import AnyIntent, SetStyle
-from groundstation.station import Station
+from groundstation.station.station import Station
 
 ORDER = "fail in "
 
@@ -42,5 +42,5 @@ for _name in ("receive", "tick", "observe", "messages_to_send", "sent", "snapsho
     setattr(BrokenStation, _name, _with_bug(_name))
 
 if __name__ == "__main__":
-    vars(helm)["Station"] = BrokenStation
-    raise SystemExit(helm.main())
+    vars(station_process)["Station"] = BrokenStation
+    raise SystemExit(station_process.main())

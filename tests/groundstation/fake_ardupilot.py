@@ -8,7 +8,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, DataStream, Result
 from dialects.messages import INVALID_AXIS, boot_ms
 from dialects.modes import Mode
-from groundstation.streams import WANTED
+from groundstation.vehicles.stream_requests import WANTED
 from link.core import Received
 from tests.groundstation.fake_vehicle import FakeVehicle
 

@@ -9,12 +9,12 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, ModeFlag, Result, State, Type
 from dialects.messages import boot_ms
 from dialects.modes import Mode, base_mode
-from groundstation.farewell import Farewell
 from groundstation.intents import AnyIntent, Gate, Lease
 from groundstation.snapshot import HelmView, Snapshot, VehicleView
-from groundstation.station import Station
+from groundstation.station.crash_neutral import Farewell
+from groundstation.station.station import Station
 from link.core import LinkReport, Outgoing, Received
-from link.memory import LossyPipe
+from link.transport.memory import LossyPipe
 from tests.world import World
 
 OURS = 255

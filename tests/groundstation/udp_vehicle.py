@@ -8,7 +8,7 @@ import time
 from types import TracebackType
 
 from dialects import messages as m
-from link.channel import Channel
+from link.protocol.channel import Channel
 from tests.groundstation.fake_vehicle import FakeVehicle
 
 

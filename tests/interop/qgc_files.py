@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dialects import messages as m
-from link.services.ftp import MAX_DATA, SEQUENCE, FtpError, FtpPacket, Op, parse
+from link.services.ftp.protocol import MAX_DATA, SEQUENCE, FtpError, FtpPacket, Op, parse
 
 if TYPE_CHECKING:
     from tests.interop.qgroundcontrol import QGroundControl

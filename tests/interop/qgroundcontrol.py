@@ -17,9 +17,9 @@ from typing import TypeVar
 from dialects import codec
 from dialects import messages as m
 from dialects.enums import Command, Result
-from link.frame import payload_of
-from link.framer import Framer
-from link.services.ftp import crc32
+from link.protocol.frame import payload_of
+from link.protocol.framer import Framer
+from link.services.ftp.protocol import crc32
 from tests.interop.qgc_files import LIMIT, Download, DownloadError
 
 Kind = TypeVar("Kind", bound=m.Message)

@@ -14,16 +14,16 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Capability, Command, MissionResult, Result
-from link.services import mission_files
-from link.services.mission_items import from_message
+from link.services.mission import files
+from link.services.mission.items import from_message
 from tests.e2e.relay import Relay
 from tests.interop import mavproxy, mavsdk_process, qgc_plans
 from tests.interop.conftest import HOME, Rover
 from tests.interop.conversation import PATIENCE, Conversation
 from tests.interop.qgroundcontrol import QGroundControl
 from tests.interop.script import Script, mavparm, mavwp
+from vehicle.autonomy.mission.executor import Progress
 from vehicle.params import TABLE
-from vehicle.plan_runner import Progress
 
 pytestmark = pytest.mark.interop
 
@@ -49,7 +49,7 @@ def long_plan(far_rover: Rover) -> bytes:
     with QGroundControl(far_rover.second_port, system=254) as near:
         near.meet()
         eventually(lambda: written(near, items))
-    return mission_files.write([from_message(item) for item in items])
+    return files.write([from_message(item) for item in items])
 
 
 @pytest.fixture(autouse=True)

@@ -11,7 +11,7 @@ import pytest
 from tests.interop import mavsdk_process, mavsdk_streams
 from tests.interop.conftest import HOME, Rover
 from tests.interop.mavsdk_process import Client
-from vehicle.leaving import Leave
+from vehicle.commands.reboot import Leave
 from vehicle.params import TABLE
 
 pytestmark = [pytest.mark.interop, mavsdk_process.needed]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from link.services.ftp import FtpError, FtpPacket, Op, parse
-from link.services.ftp_files import Content, Entry, Folder, MadeFiles, MemoryFolder, Query, Tree
-from link.services.ftp_server import FtpServer
+from link.services.ftp.files import Content, Entry, Folder, MadeFiles, MemoryFolder, Query, Tree
+from link.services.ftp.protocol import FtpError, FtpPacket, Op, parse
+from link.services.ftp.server import FtpServer
 from link.services.pacing import Pacer
 from tests.link.services_world import from_gcs, messages
 

@@ -9,9 +9,9 @@ from typing import Any
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Received
-from link.services.mission import MissionServer
-from link.services.mission_changes import Forgotten, Keeping
-from link.services.mission_items import ItemRule, Items, MissionItem, Place, PlanRules
+from link.services.mission.commit import Forgotten, Keeping
+from link.services.mission.items import ItemRule, Items, MissionItem, Place, PlanRules
+from link.services.mission.server import MissionServer
 from link.services.pacing import Pacer
 from tests.link.services_world import from_gcs, messages
 

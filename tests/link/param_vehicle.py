@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 from dialects import messages as m
 from link.services.pacing import Pacer
-from link.services.param import ParamServer
-from link.services.param_values import REAL32, shortest
+from link.services.param.server import ParamServer
+from link.services.param.values import REAL32, shortest
 from tests.link.services_world import from_gcs, messages
 
 

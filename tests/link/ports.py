@@ -11,7 +11,7 @@ import tty
 from collections.abc import Callable, Hashable, Sequence
 from pathlib import Path
 
-from link.link import Wire
+from link.transport.transport import Wire
 
 
 class Cable:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from link.endpoint import SCHEMES, Endpoint, EndpointError, endpoint_help, parse
-from link.openers import OPENERS
+from link.transport.transports import OPENERS
 
 
 @pytest.mark.parametrize(

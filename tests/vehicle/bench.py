@@ -12,16 +12,16 @@ from dialects.axes import Axes, manual_control
 from dialects.enums import Autopilot, Command, Result, Type
 from dialects.modes import Mode
 from link.core import Peer, Received
-from vehicle.accessories.outlet import Output, Pulses
-from vehicle.accessories.rack import Rack
+from vehicle.accessories.accessory_set import Rack
+from vehicle.accessories.output import Output, Pulses
 from vehicle.accessories.simulated import SimulatedAccessory
-from vehicle.heard import HEARD
-from vehicle.logbook import Recording
+from vehicle.commands.inbound import HEARD
 from vehicle.params import Params
-from vehicle.plan_keeping import PlanKeeper
 from vehicle.readings import Computer, Readings
 from vehicle.rover import Rover
-from vehicle.states import State
+from vehicle.safety.states import State
+from vehicle.storage.logbook import Recording
+from vehicle.storage.plan_keeping import PlanKeeper
 
 M = TypeVar("M", bound=m.Message)
 

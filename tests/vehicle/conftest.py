@@ -1,3 +1,3 @@
 """Hypothesis takes numbers and words from all modules that are loaded: the same ones, whichever test comes first."""
 
-import vehicle.check  # noqa: F401  the one that no test imports by itself
+import vehicle.cli.check  # noqa: F401  the one that no test imports by itself

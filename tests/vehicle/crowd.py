@@ -13,9 +13,9 @@ from dialects.enums import Command
 from link.core import LinkReport, Outgoing, Peer, Received
 from link.services.pacing import OVERHEAD
 from tests.vehicle.bench import BEAT, CYCLE, EVERYTHING
-from vehicle.logbook import Recording
 from vehicle.params import Params
 from vehicle.rover import Rover
+from vehicle.storage.logbook import Recording
 
 M = TypeVar("M", bound=m.Message)
 REPORT = 1.0

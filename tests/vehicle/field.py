@@ -8,8 +8,8 @@ from dialects import messages as m
 from dialects.enums import Command, DriveType, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import CYCLE, DRIVER, Bench
-from vehicle.estimate import Estimate
-from vehicle.place import Origin, Point
+from vehicle.navigation.estimate import Estimate
+from vehicle.navigation.geo import Origin, Point
 from vehicle.sim.body import Home, SimulatedBody
 from vehicle.sim.chassis import CHASSIS, Frame
 from vehicle.sim.noise import Noise

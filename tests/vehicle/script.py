@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 
 from dialects.messages import Heartbeat
 from link.core import LinkReport, Outgoing, Peer, Received
-from vehicle.machine import Machine
+from vehicle.control_loop import Machine
+from vehicle.drive.gate import Outputs
 from vehicle.motors.simulated import SimulatedMotors
-from vehicle.outputs import Outputs
 from vehicle.readings import Readings
 from vehicle.sensors import NoSensors
 

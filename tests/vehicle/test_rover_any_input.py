@@ -19,11 +19,11 @@ from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.core import Peer, Received
 from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench
-from vehicle import states
-from vehicle.failsafe import Action
 from vehicle.modes import OFFERED
 from vehicle.params import Params
-from vehicle.watch import LATE
+from vehicle.safety import states
+from vehicle.safety.failsafe import Action
+from vehicle.safety.monitor import LATE
 
 TIMEOUT = Params()["MAN_TIMEOUT"]
 STOP_TIME = 100 / Params()["MOT_DECEL"] + 3 * CYCLE + LATE

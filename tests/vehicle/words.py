@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 
-from vehicle.__main__ import main
+from vehicle.cli.main import main
 
 
 def said_by(*words: str) -> tuple[int, str, str]:

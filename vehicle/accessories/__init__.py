@@ -1,7 +1,7 @@
 """What a rover has beside its motors: relays and servos, one protocol for all, and the table of their drivers.
 
 Numbers are ArduPilot's: relays from 0, servos by the number of their output, 1 to 16. An accessory is never a motor:
-numbers, pins and channels of motors are refused before anything is opened (vehicle/clashes.py, vehicle/assembly.py).
+numbers, pins and channels of motors are refused before anything is opened (vehicle/config/conflicts.py, vehicle/runtime/factory.py).
 
 To add a driver, write a class that fits `Accessory`, add one line to DRIVERS, and test it with
 tests/vehicle/accessories/contract.py. A driver of your own needs no line: name it "module:Class".

@@ -6,7 +6,7 @@ a fault that only a restart mends, because setting it up stops and starts all it
 
 from __future__ import annotations
 
-from vehicle.i2c import Bus
+from vehicle.hardware.i2c import Bus
 from vehicle.motors import MotorError
 from vehicle.motors.pca9685_board import Board, BoardSettings, Number
 from vehicle.motors.settings import channel_name

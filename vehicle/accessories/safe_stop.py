@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from vehicle.accessories.settings import COMMON, Kind, understood
-from vehicle.faults import in_one_line
+from vehicle.hardware.error_text import in_one_line
 
 
 def safe_stop(tables: Any) -> Iterator[tuple[bool, str]]:

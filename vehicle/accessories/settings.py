@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
+from link.runtime.toml_errors import explained
 from vehicle.accessories import DRIVERS, LARGEST_RELAY, LARGEST_SERVO, OFF, Accessory
-from vehicle.accessories.outlet import Output, Pulses, Until
-from vehicle.explain import explained
+from vehicle.accessories.output import Output, Pulses, Until
 from vehicle.motors import MotorError, MotorSettingsError, UnknownDriverError, driver_class
 from vehicle.motors.settings import NoSettings, parsed
 

@@ -13,9 +13,9 @@ from typing import Annotated
 
 import msgspec
 
-from vehicle.i2c import Bus
+from vehicle.hardware.i2c import Bus
 from vehicle.motors import MotorError, checked
-from vehicle.motors.patience import Patience
+from vehicle.motors.error_budget import Patience
 from vehicle.motors.pca9685_board import Board, BoardSettings, Number
 from vehicle.motors.pulses import Idle, Pulse
 from vehicle.motors.settings import channel_name, i2c_pins, refuse_doubles

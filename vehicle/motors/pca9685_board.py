@@ -11,7 +11,7 @@ from typing import Annotated
 
 import msgspec
 
-from vehicle.i2c import Bus, in_words, open_bus
+from vehicle.hardware.i2c import Bus, in_words, open_bus
 from vehicle.motors import MotorError
 from vehicle.motors.settings import chip_name
 
@@ -43,7 +43,7 @@ class BoardSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_
 
     @property
     def chip(self) -> str:
-        """As vehicle/clashes.py knows it."""
+        """As vehicle/config/conflicts.py knows it."""
         return chip_name(self.bus, self.address)
 
     @property

@@ -8,8 +8,8 @@ import tempfile
 from collections.abc import Iterator
 from importlib import import_module
 
-from vehicle.extras import HOW
-from vehicle.faults import in_one_line
+from vehicle.hardware.error_text import in_one_line
+from vehicle.hardware.install_hints import HOW
 from vehicle.motors import MotorError
 
 

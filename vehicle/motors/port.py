@@ -10,7 +10,7 @@ from typing import Any
 
 import serial
 
-from link.serial_faults import in_words
+from link.transport.serial_faults import in_words
 
 QUEUE = 64
 """Bytes that may wait in the kernel: about eight frames. More are old demands, and the newest must not stand behind."""

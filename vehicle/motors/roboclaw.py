@@ -16,8 +16,8 @@ import msgspec
 from fastcrc.crc16 import xmodem
 
 from vehicle.motors import checked
+from vehicle.motors.serial_controller import Wire, tenths
 from vehicle.motors.settings import port_name, uart_pins
-from vehicle.motors.wire import Wire, tenths
 
 SET_TIMEOUT, READ_TIMEOUT, READ_VERSION, DRIVE_BOTH = 14, 15, 21, 34
 ACK = 0xFF

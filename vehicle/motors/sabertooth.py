@@ -16,8 +16,8 @@ from typing import Annotated, Literal
 import msgspec
 
 from vehicle.motors import checked
+from vehicle.motors.serial_controller import Wire, tenths
 from vehicle.motors.settings import port_name, uart_pins
-from vehicle.motors.wire import Wire, tenths
 
 BAUDING = bytes([170])
 """First byte after power-up for models that measure the baud rate; others drop it."""

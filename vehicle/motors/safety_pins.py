@@ -2,7 +2,7 @@
 
 The stop is a normally closed contact to ground: pressed, unplugged and broken are the same. While it is open no motor
 can be enabled, `set` raises, and the enable pin is off at the edge already, from gpiozero's own thread. The rover asks
-for it each cycle and latches its emergency stop (vehicle/safety.py): closing the contact starts and releases nothing.
+for it each cycle and latches its emergency stop (vehicle/safety/state_machine.py): closing the contact starts and releases nothing.
 """
 
 from __future__ import annotations

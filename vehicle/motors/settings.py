@@ -19,22 +19,22 @@ T = TypeVar("T")
 
 
 def pin_name(number: int) -> str:
-    """As vehicle/clashes.py knows a pin."""
+    """As vehicle/config/conflicts.py knows a pin."""
     return f"GPIO {number}"
 
 
 def chip_name(bus: int, address: int) -> str:
-    """As vehicle/clashes.py knows a chip."""
+    """As vehicle/config/conflicts.py knows a chip."""
     return f"address 0x{address:02x} on I2C bus {bus}"
 
 
 def channel_name(number: int, chip: str) -> str:
-    """As vehicle/clashes.py knows an output of a chip."""
+    """As vehicle/config/conflicts.py knows an output of a chip."""
     return f"channel {number} at {chip}"
 
 
 def port_name(path: str) -> str:
-    """As vehicle/clashes.py knows a serial port: /dev/serial0 is another name of one."""
+    """As vehicle/config/conflicts.py knows a serial port: /dev/serial0 is another name of one."""
     return os.path.realpath(path)
 
 
@@ -109,7 +109,7 @@ RETIRED = {
     "shape": "is parameters now; in [params], for each motor: MOT1_REVERSED = 1, MOT1_MIN and MOT1_MAX in %",
     "limits": "is parameters now; in [params]: MOT1_MAX and MOT2_MAX in % for driving, MOT_PIVOT_MAX for turning",
 }
-"""Keys of older files -> what to write instead. vehicle/config.py refuses them; here they are passed over, because
+"""Keys of older files -> what to write instead. vehicle/config/config.py refuses them; here they are passed over, because
 safe-stop must stop the motors with any file."""
 
 

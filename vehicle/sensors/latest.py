@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Generic, Protocol, TypeVar
 
-from vehicle.faults import in_one_line
+from vehicle.hardware.error_text import in_one_line
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)

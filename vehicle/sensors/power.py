@@ -1,4 +1,4 @@
-"""Voltage and current of the battery from an INA219 or INA260 on the I2C bus; what they mean is vehicle/battery.py's.
+"""Voltage and current of the battery from an INA219 or INA260 on the I2C bus; what they mean is vehicle/safety/battery.py's.
 
 Registers as in Texas Instruments' data sheets (SBOS448G, SBOS656C). No calibration register is used: the current comes
 from the shunt voltage itself, so a chip that lost its power gives right values again at once.
@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from vehicle.i2c import Bus, in_words, open_bus
+from vehicle.hardware.i2c import Bus, in_words, open_bus
 from vehicle.motors.settings import chip_name
 
 PERIOD, MAX_AGE = 0.2, 2.0

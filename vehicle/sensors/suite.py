@@ -9,8 +9,8 @@ from typing import Any
 
 import msgspec
 
-from vehicle.battery import SILENT
 from vehicle.readings import Computer, Readings, SensorFault
+from vehicle.safety.battery import SILENT
 from vehicle.sensors.encoders import Encoders, EncoderSettings
 from vehicle.sensors.gps import Gpsd, GpsReading, GpsSettings
 from vehicle.sensors.latest import Source

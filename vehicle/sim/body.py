@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from vehicle.place import Origin, Point
+from vehicle.navigation.geo import Origin, Point
 from vehicle.readings import Computer, Readings
 from vehicle.sim.battery import NOMINAL_VOLTAGE, Battery
 from vehicle.sim.chassis import Chassis, Motion, SkidChassis

@@ -10,17 +10,18 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 from textual.widgets import Static
 
+from groundstation.input.keymap import CONFIRM_KEY, Action, Keymap
 from groundstation.intents import AnyIntent, StartSimulator
-from groundstation.keymap import CONFIRM_KEY, Action, Keymap
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.alerts import Situation, alerts
 from groundstation.ui.colours import BLUE, GREEN
-from groundstation.ui.gate import Shut
+from groundstation.ui.key_gate import Shut
 from groundstation.ui.keynames import key_name
 from groundstation.ui.terminal import KeyRepeat
 from groundstation.ui.widgets.alert import AlertLine
 from groundstation.ui.widgets.chart import Chart, Series
 from groundstation.ui.widgets.footer import KeyFooter
+from groundstation.ui.widgets.heading_tape import Tape, degrees
 from groundstation.ui.widgets.horizon import Attitude, Horizon
 from groundstation.ui.widgets.keycaps import Keycaps, KeycapsValue
 from groundstation.ui.widgets.links import Links
@@ -29,7 +30,6 @@ from groundstation.ui.widgets.rates import Rates
 from groundstation.ui.widgets.speed import Speed, figures
 from groundstation.ui.widgets.status import Status, StatusValue
 from groundstation.ui.widgets.sticks import Sticks, bars
-from groundstation.ui.widgets.tape import Tape, degrees
 from groundstation.ui.widgets.track import Track, TrackValue
 from groundstation.ui.widgets.waiting import Waiting
 

@@ -11,7 +11,7 @@ from textual.content import Content
 from textual.screen import Screen
 from textual.widgets import Static
 
-from groundstation.keymap import ACTIONS, CONFIRM_KEY, Keymap
+from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, Keymap
 from groundstation.ui.colours import BLUE, DIM, RED, YELLOW
 from groundstation.ui.keynames import key_name
 

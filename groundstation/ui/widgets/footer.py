@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from textual.strip import Strip
 
-from groundstation.keymap import ACTIONS, Keymap
+from groundstation.input.keymap import ACTIONS, Keymap
 from groundstation.ui.colours import DIM, PANEL, RED, TEXT, YELLOW, style
 from groundstation.ui.keynames import key_name, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
+from groundstation.input.keymap import Keymap
 from groundstation.intents import Push, Stop
-from groundstation.keymap import Keymap
 from groundstation.snapshot import HelmView
 from groundstation.ui.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
 from groundstation.ui.keynames import key_name, main_key

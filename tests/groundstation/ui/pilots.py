@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import msgspec
 from textual.pilot import Pilot
 
-from groundstation.keymap import KEYMAPS, Keymap
+from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import Snapshot
 from groundstation.ui.app import HelmApp
-from groundstation.ui.gate import STARTING
+from groundstation.ui.key_gate import STARTING
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
 from tests.groundstation.ui.ptys import until

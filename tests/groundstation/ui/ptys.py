@@ -14,9 +14,9 @@ from collections.abc import AsyncIterator, Callable, Iterable
 from threading import Thread
 from typing import TypeVar
 
-from groundstation.keymap import KEYMAPS, Keymap
+from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.ui.app import HelmApp
-from groundstation.ui.output import TerminalFile
+from groundstation.ui.tty_output import TerminalFile
 from tests.groundstation.ui.examples import Recorder
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])

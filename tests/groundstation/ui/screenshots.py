@@ -17,7 +17,7 @@ from pathlib import Path
 from textual.pilot import Pilot
 
 from groundstation.client import StationClient
-from groundstation.keymap import KEYMAPS, Keymap
+from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.ui.app import HelmApp
 from tests.groundstation.ui import frames
 

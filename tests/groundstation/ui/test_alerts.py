@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from groundstation.keymap import ACTIONS
+from groundstation.input.keymap import ACTIONS
 from groundstation.snapshot import LinkView, Snapshot
 from groundstation.ui.alerts import LIMITS, Level, Situation, alerts
-from groundstation.ui.gate import Shut
+from groundstation.ui.key_gate import Shut
 from tests.groundstation.ui.examples import helm, snapshot, vehicle, waiting
 from tests.groundstation.ui.ptys import STANDARD
 

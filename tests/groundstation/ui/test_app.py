@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from groundstation.input.keymap import ACTIONS
 from groundstation.intents import (
     Arm,
     ClearEmergencyStop,
@@ -18,9 +19,8 @@ from groundstation.intents import (
     StartSimulator,
     Stop,
 )
-from groundstation.keymap import ACTIONS
 from groundstation.snapshot import LinkView
-from groundstation.ui.gate import Door
+from groundstation.ui.key_gate import Door
 from groundstation.ui.screens.help import HelpScreen
 from groundstation.ui.terminal import KeyEventParser
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting

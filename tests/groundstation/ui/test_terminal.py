@@ -9,9 +9,9 @@ import pytest
 from textual import events
 from textual.message import Message
 
+from groundstation.input.keymap import KeyPress
 from groundstation.intents import EmergencyStop, ExactKeys, Gate, Push, Release, Stop
-from groundstation.keymap import KeyPress
-from groundstation.ui.gate import Shut
+from groundstation.ui.key_gate import Shut
 from groundstation.ui.terminal import KeyEventParser, KeyRepeat, KeyUp
 from tests.groundstation.ui.ptys import app_on_a_pty, until
 

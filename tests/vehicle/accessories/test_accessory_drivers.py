@@ -10,7 +10,7 @@ from gpiozero.pins.mock import MockFactory
 from tests.vehicle.accessories.contract import AccessoryContract, Bench
 from tests.vehicle.motors.fake_pca9685 import FakePca9685
 from vehicle.accessories.gpio import GpioRelay, GpioRelaySettings
-from vehicle.accessories.outlet import Outlet, Output
+from vehicle.accessories.output import Outlet, Output
 from vehicle.accessories.pca9685 import Pca9685Servo, Pca9685ServoSettings
 from vehicle.accessories.simulated import SimulatedAccessory
 from vehicle.motors import MotorError

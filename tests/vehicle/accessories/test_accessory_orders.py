@@ -10,10 +10,10 @@ from dialects import messages as m
 from dialects.enums import Command, DriveType, Failsafe, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, NEUTRAL, OTHER, Bench, Equipped, said
-from vehicle.accessories.outlet import Output, Pulses
+from vehicle.accessories.output import Output, Pulses
 from vehicle.accessories.simulated import SimulatedAccessory
-from vehicle.mixer import MIXERS
-from vehicle.states import State
+from vehicle.drive.mixer import MIXERS
+from vehicle.safety.states import State
 
 SET_RELAY, REPEAT_RELAY = Command.DO_SET_RELAY, Command.DO_REPEAT_RELAY
 SET_SERVO, REPEAT_SERVO = Command.DO_SET_SERVO, Command.DO_REPEAT_SERVO

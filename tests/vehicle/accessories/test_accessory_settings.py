@@ -11,19 +11,19 @@ from typing import Any
 import pytest
 from msgspec.structs import fields
 
-from link.command_line import MISTAKE
+from link.runtime.command_line import MISTAKE
 from tests.vehicle.accessories.across_processes import NAME
 from tests.vehicle.motors.across_processes import FiledPca9685
 from tests.vehicle.words import said_by
-from vehicle import daemon
 from vehicle.accessories import DRIVERS
-from vehicle.accessories.outlet import Pulses
+from vehicle.accessories.output import Pulses
 from vehicle.accessories.settings import COMMON, outputs_of, settings_type
-from vehicle.config import ConfigError, parsed
-from vehicle.lock import MotorLock
-from vehicle.run_settings import Settings, Simulation
-from vehicle.sample import sample
-from vehicle.schema import schema
+from vehicle.config.config import ConfigError, parsed
+from vehicle.config.run_settings import Settings, Simulation
+from vehicle.config.schema import schema
+from vehicle.config.template import sample
+from vehicle.runtime import daemon
+from vehicle.runtime.lock import MotorLock
 
 RELAY = '[[accessories.relays]]\nnumber = 0\ndriver = "gpio"\npin = 16\n'
 SERVO = '[[accessories.servos]]\nnumber = 9\ndriver = "pca9685"\nchannel = 4\n'

@@ -12,13 +12,13 @@ from dialects import messages as m
 from dialects.enums import Command, Failsafe, ModeFlag, Result, State
 from link.core import Received
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, OTHER, Bench, said
-from vehicle import states
-from vehicle.machine import RETRY, Machine
+from vehicle.control_loop import RETRY, Machine
+from vehicle.drive.gate import Outputs
 from vehicle.motors import MotorError, open_motors, stop_input
 from vehicle.motors.safety_pins import PRESSED, GuardedMotors, SafetyPins
 from vehicle.motors.settings import Safety
 from vehicle.motors.simulated import SimulatedMotors
-from vehicle.outputs import Outputs
+from vehicle.safety import states
 from vehicle.sensors import NoSensors
 
 ESTOP, ENABLE = 17, 22

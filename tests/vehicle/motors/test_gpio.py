@@ -9,8 +9,9 @@ from gpiozero.exc import PinUnknownPi
 from gpiozero.pins.mock import MockFactory, MockPWMPin
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
-from vehicle.demand import Demand
-from vehicle.drive import Drive
+from vehicle.drive.demand import Demand
+from vehicle.drive.drive import Drive
+from vehicle.drive.gate import Clearance
 from vehicle.motors import (
     DRIVERS,
     USUAL_PARAMS,
@@ -22,7 +23,6 @@ from vehicle.motors import (
 )
 from vehicle.motors.gpio import GpioMotors, GpioSettings, PhaseEnable, TwoInputs
 from vehicle.motors.pins import translated
-from vehicle.outputs import Clearance
 from vehicle.params import in_force
 
 TWO_INPUTS = GpioSettings(bridges=(TwoInputs(10, 9), TwoInputs(8, 7)))

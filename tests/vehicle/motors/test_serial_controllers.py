@@ -21,11 +21,11 @@ from tests.vehicle.motors.contract import Bench, MotorsContract
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty, recorded
 from tests.waits import Waits
-from vehicle.machine import Machine
+from vehicle.control_loop import Machine
 from vehicle.motors import MotorError, Motors, MotorSettingsError, open_motors, proof, safe_stop
 from vehicle.motors.roboclaw import RoboClawMotors, RoboClawSettings
 from vehicle.motors.sabertooth import SabertoothMotors, SabertoothSettings
-from vehicle.motors.wire import tenths
+from vehicle.motors.serial_controller import tenths
 from vehicle.sensors import NoSensors
 
 MARGIN = 0.25

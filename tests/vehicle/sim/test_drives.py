@@ -12,9 +12,9 @@ from dialects import messages as m
 from dialects.enums import DriveType
 from tests.vehicle.bench import CYCLE
 from tests.vehicle.field import Field
-from vehicle.demand import Demand
-from vehicle.drive import Drive
-from vehicle.outputs import Clearance
+from vehicle.drive.demand import Demand
+from vehicle.drive.drive import Drive
+from vehicle.drive.gate import Clearance
 from vehicle.params import Params
 from vehicle.sim.chassis import CHASSIS, Frame, Motion
 

@@ -9,13 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from textual.strip import Strip
 
-from groundstation.keymap import KEYMAPS, Keymap
+from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import MessageRate, TextLine
 from groundstation.ui.colours import style
 from groundstation.ui.keynames import key_name, main_key
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.chart import Chart, Series
 from groundstation.ui.widgets.footer import KeyFooter
+from groundstation.ui.widgets.heading_tape import tape
 from groundstation.ui.widgets.horizon import Attitude, Horizon, ground
 from groundstation.ui.widgets.keycaps import lit
 from groundstation.ui.widgets.log import Log
@@ -23,7 +24,6 @@ from groundstation.ui.widgets.rates import Rates
 from groundstation.ui.widgets.speed import figures
 from groundstation.ui.widgets.status import Status, StatusValue
 from groundstation.ui.widgets.sticks import Bar, bars, cells
-from groundstation.ui.widgets.tape import tape
 from groundstation.ui.widgets.track import Track, TrackValue, fit
 from tests.groundstation.ui.examples import RATES, helm, snapshot, vehicle
 

@@ -1,0 +1,1 @@
+"""From keys to stick positions: key map, key repeat, control styles."""

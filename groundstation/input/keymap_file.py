@@ -1,0 +1,128 @@
+"""Finds a key map by name, or reads one from a TOML file; the only place that judges a user's key map."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, KEYMAPS, Keymap, KeymapError
+from link.runtime.toml_file import TomlError, read_toml
+
+PUNCTUATION = {
+    "!": "exclamation_mark", '"': "quotation_mark", "#": "number_sign", "$": "dollar_sign", "%": "percent_sign",
+    "&": "ampersand", "'": "apostrophe", "(": "left_parenthesis", ")": "right_parenthesis", "*": "asterisk",
+    "+": "plus", ",": "comma", "-": "minus", ".": "full_stop", "/": "slash", ":": "colon", ";": "semicolon",
+    "<": "less_than_sign", "=": "equals_sign", ">": "greater_than_sign", "?": "question_mark", "@": "at",
+    "[": "left_square_bracket", "\\": "backslash", "]": "right_square_bracket", "^": "circumflex_accent",
+    "_": "underscore", "`": "grave_accent", "{": "left_curly_bracket", "|": "vertical_line",
+    "}": "right_curly_bracket", "~": "tilde", " ": "space",
+}  # fmt: skip
+"""Character -> Textual's name for its key. A file may use either."""
+
+NAMED_KEYS = frozenset(
+    {
+        "up",
+        "down",
+        "left",
+        "right",
+        "home",
+        "end",
+        "pageup",
+        "pagedown",
+        "insert",
+        "delete",
+        "backspace",
+        "enter",
+        "tab",
+    }
+    | {"escape", *PUNCTUATION.values()}
+    | {f"f{number}" for number in range(1, 25)}
+)
+
+VITAL = ("drive.stop", "stop.emergency", "app.quit")
+"""Actions that no key map may leave without a key. Escape does not count: a plain terminal tells it 0.1 s late."""
+
+_MODIFIERS = re.compile(r"^(?:(?:ctrl|alt|shift|super)\+)+")
+
+FILE_HELP = """A key map file is TOML: base = "standard" or "teleop", and a table [keys] with lines such as
+"drive.forward" = ["e", "up"], which replace all keys of that action."""
+
+
+def load_keymap(name_or_path: str) -> Keymap:
+    """The key map of a name in KEYMAPS or of a TOML file. Raises KeymapError."""
+    if name_or_path in KEYMAPS:
+        return Keymap(name_or_path, KEYMAPS[name_or_path])
+    path = Path(os.path.expanduser(name_or_path))
+    if path.suffix != ".toml" and not os.path.isfile(path):
+        raise KeymapError(f"unknown key map {name_or_path!r}: choose {', '.join(KEYMAPS)} or the path of a .toml file")
+    try:
+        content = read_toml(path)
+    except TomlError as error:
+        raise KeymapError(f"key map {error}") from error
+    return keymap_of(content, path.stem, str(path))
+
+
+def keymap_of(content: Mapping[str, object], name: str, where: str) -> Keymap:
+    """The key map that a TOML file's content describes. Raises KeymapError with `where` in its line."""
+    unknown = set(content) - {"base", "keys"}
+    if unknown:
+        raise KeymapError(f"key map {where}: unknown entry {min(unknown)!r}: choose base, keys")
+    base = content.get("base", "standard")
+    if not isinstance(base, str) or base not in KEYMAPS:
+        raise KeymapError(f"key map {where}: unknown base {base!r}: choose {', '.join(KEYMAPS)}")
+    keys = content.get("keys", {})
+    if not isinstance(keys, dict):
+        raise KeymapError(f"key map {where}: 'keys' must be a table")
+    bindings = _rebind(KEYMAPS[base], _rebindings(keys, where))
+    _check(bindings, where)
+    return Keymap(name, bindings)
+
+
+def _rebindings(keys: Mapping[str, object], where: str) -> dict[str, str]:
+    """Key -> action id for everything the file binds."""
+    bound: dict[str, str] = {}
+    for action_id, value in keys.items():
+        if action_id not in ACTIONS:
+            raise KeymapError(f"key map {where}: unknown action {action_id!r}: choose {', '.join(ACTIONS)}")
+        for key in value if isinstance(value, list) else [value]:
+            name = key_name(key, where)
+            if bound.setdefault(name, action_id) != action_id:
+                raise KeymapError(f"key map {where}: key {key!r} is bound to {bound[name]} and to {action_id}")
+    for action_id in keys:
+        bound.setdefault(f"nothing for {action_id}", action_id)  # an empty list takes all keys away
+    return bound
+
+
+def _rebind(base: Mapping[str, str], bound: Mapping[str, str]) -> dict[str, str]:
+    """The base map, in which each action of the file has the file's keys only."""
+    changed = set(bound.values())
+    kept = {key: action_id for key, action_id in base.items() if action_id not in changed and key not in bound}
+    return kept | {key: action_id for key, action_id in bound.items() if not key.startswith("nothing for ")}
+
+
+def key_name(key: object, where: str) -> str:
+    """Textual's name of a key as a user may write it: "e", ",", "comma", "ctrl+x", "f9". Raises KeymapError."""
+    if not isinstance(key, str) or not key:
+        raise KeymapError(f"key map {where}: a key must be a string, not {key!r}")
+    match = _MODIFIERS.match(key)
+    modifiers = match.group() if match and len(match.group()) < len(key) else ""
+    plain = key[len(modifiers) :]
+    plain = PUNCTUATION.get(plain, plain)
+    if plain not in NAMED_KEYS and not (len(plain) == 1 and plain.isprintable()):
+        raise KeymapError(
+            f"key map {where}: unknown key {key!r}: choose a character, up, down, left, right, space, comma, "
+            "full_stop, plus, minus, enter, tab, home, end, pageup, pagedown, insert, delete, backspace, "
+            "f1 to f24, ctrl+..."
+        )
+    return modifiers + plain
+
+
+def _check(bindings: Mapping[str, str], where: str) -> None:
+    if CONFIRM_KEY in bindings:
+        raise KeymapError(f"key map {where}: key {CONFIRM_KEY!r} confirms and cannot be bound")
+    for action_id in VITAL:
+        keys = {key for key, bound in bindings.items() if bound == action_id}
+        if not keys - {"escape"}:
+            raise KeymapError(f"key map {where}: {action_id} needs a key other than escape")

@@ -1,0 +1,1 @@
+"""The ground station without a screen: operator, commands, arming, emergency stop."""

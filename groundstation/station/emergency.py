@@ -1,0 +1,69 @@
+"""The emergency stop of one vehicle: asked for until the vehicle has answered AND its heartbeat says disarmed.
+
+Two commands, because vehicles differ: the safety switch (ours locks itself by it) and a forced disarm (ArduPilot, PX4).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from dialects.enums import Command
+from groundstation.vehicles.vehicle_state import VehicleState
+from link.services.command.server import CommandClient, Outcome
+
+SAFE, DANGEROUS = 0, 1
+"""SAFETY_SWITCH_STATE: motors off and locked; motors may run."""
+
+FORCE = 21196
+"""Parameter 2 of COMPONENT_ARM_DISARM: also while it moves (common.xml)."""
+
+AGAIN = 0.5
+"""s between rounds of asking; each command is repeated in between by the command client (0.35 s)."""
+
+
+@dataclass(slots=True)
+class EmergencyLock:
+    """One emergency stop, from the key until it is cleared."""
+
+    vehicle: VehicleState
+    due: float
+    switched: bool = False
+    """The safety switch command was answered, with whatever result."""
+    disarmed: bool = False
+    """The forced disarm was answered."""
+    clearing: bool = False
+    """The operator has asked to release it; asking for the opposite meanwhile would race with that."""
+
+    def tick(self, client: CommandClient, now: float) -> None:
+        """Ask again for what is not answered, or answered and not true."""
+        if self.clearing or now < self.due:
+            return
+        self.due = now + AGAIN
+        if not self.switched:
+            self._send(client, now, Command.DO_SET_SAFETY_SWITCH_STATE, SAFE)
+        if not self.disarmed or self.vehicle.armed:
+            self._send(client, now, Command.COMPONENT_ARM_DISARM, 0, FORCE)
+
+    def clear(self, client: CommandClient, now: float) -> None:
+        """Ask the vehicle to release the lock."""
+        self.clearing = True
+        self._send(client, now, Command.DO_SET_SAFETY_SWITCH_STATE, DANGEROUS)
+
+    def answered(self, outcome: Outcome) -> None:
+        """An answer of this vehicle came, or none after all repeats."""
+        if outcome.command == Command.DO_SET_SAFETY_SWITCH_STATE:
+            if outcome.params[0] == DANGEROUS:
+                self.clearing = False
+            elif outcome.result is not None:
+                self.switched = True
+        elif outcome.command == Command.COMPONENT_ARM_DISARM and outcome.result is not None:
+            self.disarmed = True
+
+    def _send(self, client: CommandClient, now: float, command: Command, *params: float) -> None:
+        client.send(
+            command,
+            *params,
+            target_system=self.vehicle.system,
+            target_component=self.vehicle.component,
+            now=now,
+        )

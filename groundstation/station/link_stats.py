@@ -1,0 +1,81 @@
+"""What the links say of themselves, as the screen shows it: rates and losses out of counters."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from groundstation.snapshot import LinkView
+from link.core import LinkReport, SourceCount
+from link.protocol.link_events import problem
+
+LOSS_WINDOW = 5.0
+"""s over which the loss is counted: 27 messages/s of ArduPilot's defaults make that one lost frame = 0.7 %."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Sample:
+    time: float
+    report: LinkReport
+    vehicle: SourceCount
+
+
+class LinkBook:
+    """The reports of the last seconds, by link."""
+
+    def __init__(self) -> None:
+        self._samples: dict[int, deque[_Sample]] = {}
+
+    def observe(self, reports: Sequence[LinkReport], system: int | None, now: float) -> None:
+        """Take the reports; `system` is the vehicle whose loss is meant."""
+        for report in reports:
+            samples = self._samples.setdefault(report.index, deque())
+            samples.append(_Sample(now, report, _count(report, system)))
+            while now - samples[0].time > LOSS_WINDOW:
+                samples.popleft()
+
+    def views(self, round_trip: float | None) -> tuple[LinkView, ...]:
+        """The links as the screen shows them."""
+        return tuple(_view(samples, round_trip) for _, samples in sorted(self._samples.items()))
+
+    def capacity(self, link: int) -> float | None:
+        """Bytes/s that a link takes now; None where nobody knows."""
+        samples = self._samples.get(link)
+        report = samples[-1].report if samples else None
+        return None if report is None or report.capacity is None else report.capacity * report.headroom
+
+    @property
+    def hears_bytes(self) -> bool:
+        """Did any link receive anything in the window?"""
+        return any(_delta(samples, "bytes_received") > 0 for samples in self._samples.values())
+
+
+def _count(report: LinkReport, system: int | None) -> SourceCount:
+    counts = [count for (source, _), count in report.sources.items() if source == system]
+    return SourceCount(sum(count.received for count in counts), sum(count.lost for count in counts))
+
+
+def _delta(samples: deque[_Sample], name: str) -> float:
+    first, last = samples[0].report, samples[-1].report
+    return float(getattr(last, name) - getattr(first, name))
+
+
+def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
+    newest, oldest = samples[-1], samples[0]
+    seconds = newest.time - oldest.time
+    received = newest.vehicle.received - oldest.vehicle.received
+    # Frames of ids that we do not know (a quarter of ArduPilot's) arrive, and leave gaps in the numbers all the same.
+    unknown = newest.report.unknown - oldest.report.unknown
+    gaps = newest.vehicle.lost - oldest.vehicle.lost
+    lost = max(0, gaps - unknown)
+    carries = newest.vehicle.received > 0
+    return LinkView(
+        name=newest.report.name,
+        loss=lost / (lost + received) if received > 0 and gaps >= 0 else None,
+        round_trip=round_trip if carries else None,
+        rate=max(0.0, _delta(samples, "frames") / seconds) if seconds else 0.0,
+        bytes_per_second=max(0.0, _delta(samples, "bytes_received") / seconds) if seconds else 0.0,
+        crc_errors=newest.report.crc_errors,
+        problem=problem(newest.report),
+    )

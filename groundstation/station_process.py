@@ -1,0 +1,287 @@
+"""The station process: joins the station with its links and the screen's pipe. It has no terminal itself."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import gc
+import logging
+import logging.handlers
+import secrets
+import signal
+import socket
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from dialects.enums import Severity
+from dialects.messages import printable
+from groundstation.input.style import Style
+from groundstation.intents import Lease, Quit, StartSimulator, Stop
+from groundstation.ipc import MAX_PACKET, NEVER_LATE, TOO_LATE, Failure, Hello, decode_down, encode
+from groundstation.sitl import Simulator, free_port
+from groundstation.snapshot import HelmView, Snapshot, TextLine
+from groundstation.station.crash_neutral import Farewell
+from groundstation.station.station import COMPONENT, Station
+from groundstation.vehicles.message_log import MAX_LENGTH
+from link.endpoint import EndpointError, parse
+from link.runner import Runner, open_links
+from link.runtime.event_loop import run_loop
+from link.transport.transport import Link, LinkError
+
+log = logging.getLogger(__name__)
+
+TICK = 0.025
+"""s: a held key's end and a due demand are noticed within it; half of the demands' period, so that they keep it."""
+
+SNAPSHOT_PERIOD = 0.1
+"""s: what a person can read; the screen draws no faster."""
+
+END_WITHIN = 1.0
+"""s for the last neutral frames (0.25 s are needed), then the process ends in any case."""
+
+EVERY_ADDRESS = ("0.0.0.0", "::")
+"""Hosts that mean "all addresses of this machine" and cannot be sent to."""
+
+LOG_SIZE = 1 << 20
+LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
+
+
+class Helm:
+    """One station, its links, its pipe to the screen, and the simulator where it started one."""
+
+    def __init__(self, station: Station, links: Sequence[Link], pipe: socket.socket) -> None:
+        self._station = station
+        self._links = links
+        self._pipe = pipe
+        self._core = Farewell(station)
+        self._runner = Runner(self._core, links, period=TICK, broken=self._broke)
+        self._simulator: Simulator | None = None
+        self._picture = Snapshot()
+        self._broken = self._ending = False
+
+    async def run(self) -> int:
+        """Run until the screen is gone or says so. The exit code: 1 where something broke inside."""
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(self._broke_outside)
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            loop.add_signal_handler(number, self._end)
+        loop.add_reader(self._pipe, self._listen)
+        show = loop.create_task(self._show())
+        try:
+            await self._runner.run()
+        finally:
+            show.cancel()
+            loop.remove_reader(self._pipe)
+            if self._simulator is not None:
+                self._simulator.close()
+        return 1 if self._broken else 0
+
+    def start_simulator(self, now: float) -> None:
+        """Start a simulator that speaks to the first of our links that listens on this machine."""
+        endpoint = next((link.endpoint for link in self._links if link.endpoint.scheme == "udpin"), None)
+        if self._simulator is not None and self._simulator.running:
+            return
+        if endpoint is None:
+            self._say(now, "the simulator needs a link that listens, such as udpin:127.0.0.1:14550")
+            return
+        try:
+            host = "127.0.0.1" if endpoint.host in EVERY_ADDRESS else endpoint.host
+            self._simulator = Simulator(host, endpoint.port)
+        except OSError as error:
+            self._say(now, f"the simulator did not start: {error.strerror}")
+
+    # ---- the pipe ----
+
+    def _listen(self) -> None:
+        now = asyncio.get_running_loop().time()
+        while (packet := self._packet()) is not None:
+            if not packet:  # the screen is gone, whatever became of it
+                asyncio.get_running_loop().remove_reader(self._pipe)
+                self._end()
+                break
+            self._take(packet, now)
+        self._runner.wake()
+
+    def _packet(self) -> bytes | None:
+        try:
+            return self._pipe.recv(MAX_PACKET)
+        except BlockingIOError:
+            return None
+        except OSError:
+            return b""
+
+    def _take(self, packet: bytes, now: float) -> None:
+        try:
+            batch = decode_down(packet)
+        except msgspec.DecodeError:
+            log.exception("the screen sent what is no intent")
+            return
+        late = now - batch.time > TOO_LATE
+        for intent in batch.intents:
+            if late and not isinstance(intent, NEVER_LATE):
+                if not isinstance(intent, Lease):
+                    self._say(now, f"{type(intent).__name__} came {now - batch.time:.1f} s late and was dropped")
+            elif isinstance(intent, StartSimulator):
+                self.start_simulator(now)
+            elif isinstance(intent, Quit):
+                self._end()
+            else:
+                self._station.intend(intent, now)
+
+    async def _show(self) -> None:
+        """Snapshots at absolute deadlines, and the simulator's end."""
+        loop = asyncio.get_running_loop()
+        due = loop.time()
+        while not self._broken:
+            try:
+                self._draw(loop.time())
+            except Exception as error:  # nobody waits for this task: it would go unseen
+                self._broke(error)
+            due = max(due + SNAPSHOT_PERIOD, loop.time())
+            await asyncio.sleep(due - loop.time())
+
+    def _draw(self, now: float) -> None:
+        self._watch_simulator(now)
+        self._picture = self._station.snapshot(now, time.time())
+        self._send(self._picture)
+
+    def _send(self, message: msgspec.Struct) -> None:
+        """Now or never: a screen that does not read gets a newer picture later."""
+        try:
+            self._pipe.send(encode(message))
+        except BlockingIOError:
+            log.debug("the screen does not read")
+        except OSError:
+            log.debug("the screen is gone")  # its end of the pipe tells _listen
+
+    def _watch_simulator(self, now: float) -> None:
+        if self._simulator is None:
+            return
+        state = f"simulator {self._simulator.state}"
+        if not self._simulator.running and self._station.simulator != self._simulator.state:
+            self._say(now, state)
+            log.error("the simulator said:\n%s", self._simulator.said)
+        self._station.simulator = self._simulator.state
+
+    def _say(self, now: float, text: str) -> None:
+        log.warning(text)
+        self._station.log.add(now, "station", text, Severity.WARNING)
+
+    # ---- the end ----
+
+    def _end(self) -> None:
+        """Neutral several times, then end."""
+        if self._ending:
+            return
+        self._ending = True
+        loop = asyncio.get_running_loop()
+        self._station.intend(Stop("ending"), loop.time())
+        self._station.intend(Quit(), loop.time())
+        self._runner.wake()
+        self._end_when_finished(loop.time() + END_WITHIN)
+
+    def _end_when_finished(self, deadline: float) -> None:
+        loop = asyncio.get_running_loop()
+        if self._core.finished or loop.time() >= deadline:
+            self._runner.stop()
+        else:
+            loop.call_later(TICK, self._end_when_finished, deadline)
+
+    def _broke(self, error: BaseException) -> None:
+        """A bug of ours, anywhere: neutral several times, then the end. What half works must not look alive."""
+        if self._broken:
+            return
+        self._broken = self._ending = True
+        now = asyncio.get_running_loop().time()
+        what = printable(f"the station broke ({type(error).__name__}: {error}): neutral, and the end")
+        log.critical(what, exc_info=error)
+        self._core.begin(now)
+        self._runner.wake()
+        self._send(last_picture(self._picture, what, time.time()))
+        self._end_when_finished(now + END_WITHIN)
+
+    def _broke_outside(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """In a callback of the loop that is not the runner's."""
+        self._broke(context.get("exception") or RuntimeError(str(context.get("message"))))
+
+
+def last_picture(picture: Snapshot, what: str, wall: float) -> Snapshot:
+    """The newest picture that there is, with the reason why no other comes."""
+    line = TextLine(time=wall, severity=Severity.CRITICAL, label="station", text=what[:MAX_LENGTH])
+    stopped = HelmView(style=picture.helm.style, exact=picture.helm.exact, gate_reason="the station broke")
+    return msgspec.structs.replace(picture, number=picture.number + 1, helm=stopped, texts=(*picture.texts, line))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a station for the screen at the other end of --fd. Exit code 2: it could not start, and has said why."""
+    options = _parser().parse_args(arguments)
+    for number in (signal.SIGINT, signal.SIGTSTP):  # the terminal's keys are for the screen's process
+        signal.signal(number, signal.SIG_IGN)
+    pipe = socket.socket(fileno=options.fd)
+    pipe.setblocking(False)
+    endpoints = [*options.endpoints, *([f"udpin:127.0.0.1:{free_port()}"] if options.sitl else [])]
+    try:
+        _log_to(options.log_file)
+        links = open_links(endpoints, system=options.system, component=COMPONENT)
+        known = tuple(parse(text).text for text in endpoints)
+    except (EndpointError, LinkError, OSError) as error:
+        pipe.send(encode(Failure(_one_line(error))))
+        return 2
+    pipe.send(encode(Hello(known)))
+    return _run(options, known, links, pipe)
+
+
+def _run(options: argparse.Namespace, endpoints: tuple[str, ...], links: list[Link], pipe: socket.socket) -> int:
+    started = time.monotonic()  # the loop's clock
+    session = secrets.randbits(32)
+    style = Style(options.style)
+    station = Station(
+        endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started
+    )  # fmt: skip
+    helm = Helm(station, links, pipe)
+    if options.sitl:
+        helm.start_simulator(started)
+    gc.collect()
+    gc.freeze()  # what is imported lives as long as we do; without it a full pass stops the sender for 30 ms
+    try:
+        return run_loop(helm.run())
+    except Exception:
+        log.exception("the station broke")
+        return 1
+
+
+def _log_to(path: Path | None) -> None:
+    """Everything that a library says goes to the file, or nowhere."""
+    handler: logging.Handler = logging.NullHandler()
+    if path is not None:
+        handler = logging.handlers.RotatingFileHandler(path, maxBytes=LOG_SIZE, backupCount=1, encoding="utf-8")
+    logging.basicConfig(level=logging.INFO, handlers=[handler], format=LOG_FORMAT)
+    logging.captureWarnings(True)
+
+
+def _one_line(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return str(error)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="groundstation.station_process", description="Started by `groundstation`, not by hand."
+    )
+    parser.add_argument("--fd", type=int, required=True, help="the station's end of the pipe")
+    parser.add_argument("--system", type=int, default=255)
+    parser.add_argument("--style", choices=list(Style), default=Style.HOLD)
+    parser.add_argument("--speed", type=float, default=0.6)
+    parser.add_argument("--sitl", action="store_true")
+    parser.add_argument("--log-file", type=Path)
+    parser.add_argument("endpoints", nargs="*")
+    return parser
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,1 @@
+"""What the ground station knows of each vehicle, and what it asks of it."""

@@ -1,0 +1,260 @@
+"""What each message does to our picture of one vehicle; it sends nothing and decides nothing.
+
+To understand another message, write a method and add a line to _TABLE.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from dialects import messages as m
+from dialects.enums import Autopilot, Failsafe, Limit, ModeFlag, State, Type
+from dialects.modes import mode_name
+from groundstation.snapshot import VehicleView
+from groundstation.vehicles.latency import LatencyMeter
+from groundstation.vehicles.track import LocalFrame, Track
+from link.core import Received
+from link.protocol.heartbeat import HeartbeatMonitor
+
+LOST_AFTER = 2.5
+"""Silence after which a vehicle counts as lost, s: two and a half heartbeats, so that one lost one is no alarm."""
+
+FRESH = 1.5
+"""s for which a reading is preferred to the same one from a coarser message, and a ROVER_DRIVE_STATUS is shown."""
+
+UNKNOWN_U16 = 0xFFFF
+
+_AUTOPILOTS: dict[int, str] = {Autopilot.ARDUPILOT: "ArduPilot ", Autopilot.PX4: "PX4 "}
+_KINDS: dict[int, str] = {Type.GROUND_ROVER: "rover", Type.SURFACE_BOAT: "boat"}
+_MOTOR_CHANNELS: dict[int, tuple[str, ...]] = {Autopilot.ARDUPILOT: ("servo1_raw", "servo3_raw")}
+"""Steering and throttle of ArduRover's default outputs, for vehicles that tell nothing better."""
+
+
+class VehicleState:
+    """One vehicle as its messages tell it. `system` and `component` are those of its HEARTBEAT."""
+
+    def __init__(self, system: int, component: int) -> None:
+        self.system = system
+        self.component = component
+        self.monitor = HeartbeatMonitor(LOST_AFTER)
+        self.latency = LatencyMeter()
+        self.autopilot: int = Autopilot.GENERIC
+        self.kind: int = Type.GROUND_ROVER
+        self.mode = "unknown"
+        self.armed = False
+        self.status: int = State.UNINIT
+        self.driver: int | None = None
+        self.drive_info: m.RoverDriveInfo | None = None
+        self.boot_time: int | None = None
+        """Newest time_boot_ms that the vehicle told."""
+        self._times: dict[type[m.Message], float] = {}
+        self._drive: m.RoverDriveStatus | None = None
+        self._failsafe: m.RoverFailsafeStatus | None = None
+        self._frame = LocalFrame()
+        self._track = Track()
+        self._velocity: tuple[float, float] | None = None
+        self._ground_speed: float | None = None
+        self._motors: tuple[float, ...] = ()
+        self._values: dict[str, Any] = {}
+        """Fields of VehicleView that are one reading and no more."""
+
+    def receive(self, received: Received, now: float) -> None:
+        """Take a message of this system."""
+        self.monitor.heard(now)
+        message = received.message
+        if received.component != self.component:
+            return
+        self.boot_time = getattr(message, "time_boot_ms", self.boot_time)
+        method = _TABLE.get(type(message))
+        if method is not None:
+            method(self, message, now)
+            self._times[type(message)] = now
+
+    @property
+    def speaks_ours(self) -> bool:
+        """It knows the private messages of our dialect."""
+        return self._drive is not None or self.drive_info is not None
+
+    def tells_ours(self, now: float) -> bool:
+        """ROVER_DRIVE_STATUS comes."""
+        return self._fresh(m.RoverDriveStatus, now)
+
+    @property
+    def emergency_stop(self) -> bool:
+        """The vehicle says that its motors are locked."""
+        return self.status == State.EMERGENCY or bool(self._drive and self._drive.limits & Limit.ESTOP)
+
+    @property
+    def name(self) -> str:
+        """What a driver calls it."""
+        text = f"{_AUTOPILOTS.get(self.autopilot, '')}{_KINDS.get(self.kind, 'vehicle')} {self.system}"
+        return text[0].upper() + text[1:]
+
+    def view(self, now: float, **station: Any) -> VehicleView:
+        """The picture now; `station` are the fields that only the station knows."""
+        drive = self._drive if self._fresh(m.RoverDriveStatus, now) else None
+        return VehicleView(
+            system=self.system,
+            name=self.name,
+            autopilot=self.autopilot,
+            mode=self.mode,
+            armed=self.armed,
+            status=self.status,
+            alive=self.monitor.alive(now),
+            silence=self.monitor.silence(now),
+            driver=self.driver,
+            track=self._track.points,
+            speed=self._speed(),
+            demand=_demand(drive),
+            outputs=_outputs(drive, self.drive_info) if drive else self._motors,
+            limits=flag_words(Limit, drive.limits) if drive else (),
+            command_age=drive.demand_age_ms / 1000 if drive and drive.demand_age_ms != UNKNOWN_U16 else None,
+            latency=self.latency.newest,
+            failsafes=flag_words(Failsafe, self._failsafe.active) if self._failsafe else (),
+            failsafe_in=self._failsafe_in(now),
+            **self._values,
+            **station,
+        )
+
+    # ---- one method a message ----
+
+    def _heartbeat(self, message: m.Heartbeat, now: float) -> None:
+        self.autopilot = message.autopilot
+        self.kind = message.type
+        self.status = message.system_status
+        self.armed = bool(message.base_mode & ModeFlag.ARMED)
+        self.mode = mode_name(message.custom_mode, message.autopilot)
+
+    def _control_status(self, message: m.ControlStatus, now: float) -> None:
+        self.driver = message.gcs_main
+
+    def _drive_status(self, message: m.RoverDriveStatus, now: float) -> None:
+        self._drive = message
+
+    def _failsafe_status(self, message: m.RoverFailsafeStatus, now: float) -> None:
+        self._failsafe = message
+
+    def _drive_information(self, message: m.RoverDriveInfo, now: float) -> None:
+        self.drive_info = message
+
+    def _attitude(self, message: m.Attitude, now: float) -> None:
+        self._read(roll=message.roll, pitch=message.pitch, heading=message.yaw % (2 * math.pi))
+
+    def _hud(self, message: m.VfrHud, now: float) -> None:
+        self._ground_speed = message.groundspeed if math.isfinite(message.groundspeed) else None
+        if not self._fresh(m.Attitude, now):
+            self._read(heading=math.radians(message.heading % 360))
+
+    def _local_position(self, message: m.LocalPositionNed, now: float) -> None:
+        if _finite(message.x, message.y, message.vx, message.vy):
+            self._velocity = (message.vx, message.vy)
+            self._move(message.x, message.y)
+
+    def _global_position(self, message: m.GlobalPositionInt, now: float) -> None:
+        if self._fresh(m.LocalPositionNed, now) or (message.lat == 0 and message.lon == 0):  # 0, 0: no fix yet
+            return
+        self._velocity = (message.vx / 100, message.vy / 100)
+        self._move(*self._frame.metres(message.lat / 1e7, message.lon / 1e7))
+
+    def _home(self, message: m.HomePosition, now: float) -> None:
+        if m.LocalPositionNed in self._times and _finite(message.x, message.y):
+            self._values["home"] = (message.x, message.y)
+        else:
+            self._values["home"] = self._frame.metres(message.latitude / 1e7, message.longitude / 1e7)
+
+    def _gps(self, message: m.GpsRawInt, now: float) -> None:
+        self._values["gps_fix"] = message.fix_type
+        self._values["gps_satellites"] = None if message.satellites_visible == 255 else message.satellites_visible
+
+    def _system(self, message: m.SysStatus, now: float) -> None:
+        if m.BatteryStatus not in self._times:
+            volts = None if message.voltage_battery == UNKNOWN_U16 else message.voltage_battery / 1000
+            self._battery(volts, message.current_battery, message.battery_remaining)
+
+    def _battery_status(self, message: m.BatteryStatus, now: float) -> None:
+        if message.id == 0:
+            cells = [cell / 1000 for cell in message.voltages if cell != UNKNOWN_U16]
+            self._battery(sum(cells) if cells else None, message.current_battery, message.battery_remaining)
+
+    def _servos(self, message: m.ServoOutputRaw, now: float) -> None:
+        channels = _MOTOR_CHANNELS.get(self.autopilot, ())
+        self._motors = tuple(_pulse(getattr(message, channel)) for channel in channels)
+
+    # ---- readings ----
+
+    def _read(self, **values: float) -> None:
+        self._values.update({name: value for name, value in values.items() if math.isfinite(value)})
+
+    def _battery(self, volts: float | None, centiamperes: int, percent: int) -> None:
+        self._values["battery_voltage"] = volts
+        self._values["battery_current"] = centiamperes / 100 if centiamperes >= 0 else None
+        self._values["battery_remaining"] = percent / 100 if 0 <= percent <= 100 else None
+
+    def _move(self, north: float, east: float) -> None:
+        self._values["position"] = (north, east)
+        self._track.add((north, east))
+
+    def _fresh(self, kind: type[m.Message], now: float) -> bool:
+        at = self._times.get(kind)
+        return at is not None and now - at <= FRESH
+
+    def _speed(self) -> float | None:
+        heading = self._values.get("heading")
+        if self._velocity is None or heading is None:
+            return self._ground_speed
+        north, east = self._velocity
+        return float(north * math.cos(heading) + east * math.sin(heading))
+
+    def _failsafe_in(self, now: float) -> float | None:
+        status = self._failsafe
+        if status is None or status.action_in_ms == UNKNOWN_U16:
+            return None
+        return max(0.0, status.action_in_ms / 1000 - (now - self._times[m.RoverFailsafeStatus]))
+
+
+def flag_words(flags: type[Limit] | type[Failsafe], value: int) -> tuple[str, ...]:
+    """The names of the flags in `value`, as words; unknown bits are left out."""
+    return tuple(str(flag.name).replace("_", " ").lower() for flag in flags if value & flag)
+
+
+def _demand(drive: m.RoverDriveStatus | None) -> tuple[float, float] | None:
+    return (_within(drive.demand_throttle / 10_000), _within(drive.demand_steering / 10_000)) if drive else None
+
+
+def _outputs(drive: m.RoverDriveStatus, info: m.RoverDriveInfo | None) -> tuple[float, ...]:
+    count = min(4, info.motor_count) if info else 2
+    return tuple(_within(value / 10_000) for value in drive.output[:count])
+
+
+def _pulse(microseconds: int) -> float:
+    """1000 to 2000 us as -1..1. An output that is not used (0), or that the vehicle does not know, moves nothing."""
+    return _within((microseconds - 1500) / 500) if microseconds not in (0, UNKNOWN_U16) else 0.0
+
+
+def _within(value: float) -> float:
+    return max(-1.0, min(1.0, value))
+
+
+def _finite(*values: float) -> bool:
+    return all(math.isfinite(value) for value in values)
+
+
+_TABLE: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
+    m.Heartbeat: VehicleState._heartbeat,
+    m.ControlStatus: VehicleState._control_status,
+    m.RoverDriveStatus: VehicleState._drive_status,
+    m.RoverFailsafeStatus: VehicleState._failsafe_status,
+    m.RoverDriveInfo: VehicleState._drive_information,
+    m.Attitude: VehicleState._attitude,
+    m.VfrHud: VehicleState._hud,
+    m.LocalPositionNed: VehicleState._local_position,
+    m.GlobalPositionInt: VehicleState._global_position,
+    m.HomePosition: VehicleState._home,
+    m.GpsRawInt: VehicleState._gps,
+    m.SysStatus: VehicleState._system,
+    m.BatteryStatus: VehicleState._battery_status,
+    m.ServoOutputRaw: VehicleState._servos,
+}
+"""Message -> what it changes."""

@@ -1,0 +1,1 @@
+"""MAVLink framing, sequence numbers, peers and the channel that joins them."""

@@ -1,0 +1,294 @@
+"""One live conversation: bytes of peers to messages and back, with sequence, loss, peers and rate limits. No I/O here.
+
+Rules: nothing without a right frame makes a peer; nobody is sent telemetry before they have shown a HEARTBEAT; a frame
+is never answered with more than was asked; every table has a cap. A repeated frame has no second effect, and of state
+messages (all but dialects.messages.ACKNOWLEDGED) one that was overtaken is dropped: the newest wins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator
+from itertools import count
+
+from dialects import codec
+from dialects.messages import (
+    ACKNOWLEDGED,
+    MESSAGES,
+    CommandInt,
+    CommandLong,
+    Heartbeat,
+    ManualControl,
+    RadioStatus,
+    RcChannelsOverride,
+    RoverOperatorPresence,
+    SetMode,
+    is_stop,
+)
+from link.core import LinkReport, Outgoing, Peer, Received, SourceCount
+from link.protocol.flow_control import FlowControl
+from link.protocol.frame import Counts, Frame, noise_hint, payload_of
+from link.protocol.framer import Framer
+from link.protocol.log_tap import Tape
+from link.protocol.peer import PeerState
+from link.protocol.sequence import NEW, Order
+
+MAX_PEERS = 24
+"""Sixteen ground stations on one port, and room for half of them to restart: a program that comes back has a new port,
+and its old place is not free before PEER_SILENCE. More are no more expensive than they look: its tables are capped, and
+what the vehicle streams to all peers of a link has one budget (vehicle/telemetry/telemetry.py)."""
+PEER_SILENCE = 10.0
+"""s after which a silent peer gives up its place; twice the longest usual heartbeat timeout."""
+MISMATCH_AFTER = 3
+"""So many whole frames with a foreign checksum are another dialect; one may be an accident."""
+
+_RADIO_STATUS: int = RadioStatus.id
+_DEMANDS = frozenset(each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence))
+_COMMANDS = frozenset(each.id for each in (CommandLong, CommandInt, SetMode))
+
+
+class Channel:
+    """Turns what arrives on one link into Received, and Outgoing into bytes.
+
+    `system` and `component` (1..255) are ours; `stream` says that bytes have no datagram borders; `wanted` are the
+    message ids that the core reads (None: all), others are counted and not decoded; `target` is the address that the
+    user named, for links that speak first; `capacity` is what the wire takes in bytes/s, where that is known.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        index: int,
+        *,
+        system: int,
+        component: int,
+        stream: bool = False,
+        wanted: frozenset[int] | None = None,
+        target: Hashable | None = None,
+        capacity: float | None = None,
+    ) -> None:
+        self.name = name
+        self.index = index
+        self.ids = (system, component)
+        self.tape: Tape | None = None
+        """Takes every frame that arrives."""
+        self._capacity = capacity
+        self._flow = FlowControl()
+        self._stream = stream
+        self._wanted = wanted
+        self._strangers = Framer(stream=False)
+        self._peers: dict[Hashable, PeerState] = {}
+        self._conversations = count()
+        self._gone = Counts()
+        self._bytes_received = self._bytes_sent = 0
+        self._duplicates = self._late = self._rate_limited = self._refused_peers = 0
+        self._own_id = False
+        if target is not None:
+            self._peers[target] = self._new_peer(target, 0.0, fixed=True)
+
+    # ---- receiving ----
+
+    def receive(self, data: bytes, address: Hashable, now: float) -> list[Received]:
+        """The messages in `data` from `address`; a new connection comes without any. `now` in s, monotonic."""
+        self._bytes_received += len(data)
+        state = self._peers.get(address)
+        if state is not None:
+            return self._accept(state, state.framer.feed(data, now), now)
+        frames = self._strangers.feed(data, now)
+        if not frames and not self._stream:
+            return []
+        state = self._admit(address, now)
+        if state is None:
+            self._refused_peers += 1
+            return []
+        return self._accept(state, state.framer.feed(data, now) if self._stream else frames, now)
+
+    def tick(self, now: float) -> list[Received]:
+        """Give up overdue partial frames; returns what was hidden behind them."""
+        if not self._stream:
+            return []
+        found: list[Received] = []
+        for state in list(self._peers.values()):
+            found += self._accept(state, state.framer.expire(now), now)
+        return found
+
+    def _admit(self, address: Hashable, now: float) -> PeerState | None:
+        """A place for a new address: a free one, or that of a peer who is silent or never introduced itself."""
+        if len(self._peers) >= MAX_PEERS:
+            leaving = min(
+                (each for each in self._peers.values() if not each.fixed and self._dispensable(each, now)),
+                key=lambda each: each.heard,
+                default=None,
+            )
+            if leaving is None:
+                return None
+            self._forget(leaving)
+        state = self._peers[address] = self._new_peer(address, now)
+        state.connected = state.silent = self._stream
+        return state
+
+    def _dispensable(self, state: PeerState, now: float) -> bool:
+        return not state.systems or now - state.heard > PEER_SILENCE
+
+    def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
+        return PeerState(self._name(address), Framer(stream=self._stream), now, fixed, silent=fixed)
+
+    def _name(self, address: Hashable) -> Peer:
+        """Of a new conversation."""
+        return Peer(self.index, address, next(self._conversations))
+
+    def gone(self, address: Hashable) -> None:
+        """The connection to `address` has ended: half a frame is lost, and who comes next must introduce itself."""
+        state = self._peers.get(address)
+        if state is None:
+            return
+        self._forget(state)
+        if state.fixed:
+            successor = self._peers[address] = self._new_peer(address, state.heard, fixed=True)
+            successor.sequence = state.sequence
+
+    def _forget(self, state: PeerState) -> None:
+        del self._peers[state.peer.address]
+        self._gone.add(state.framer.counts)
+
+    def _accept(self, state: PeerState, frames: list[Frame], now: float) -> list[Received]:
+        accepted: list[Received] = []
+        if self.tape is not None and frames:
+            self.tape.heard(frames, now)
+        for frame in frames:
+            number, system, component, sequence, _ = frame
+            sender = (system, component)
+            if not system or sender == self.ids:  # component 0 is what pymavlink sends unless told otherwise
+                self._own_id |= sender == self.ids
+                continue
+            state.heard, state.silent = now, False
+            source = state.sources.get(sender)
+            order = source.accept(sequence, number) if source else state.first_of(frame)
+            if order is not NEW and self._is_old(order, number):
+                continue
+            received = self._decode(state, frame, now)
+            if received is not None:
+                accepted.append(received)
+        return accepted
+
+    def _hear_radio(self, raw: bytes, now: float) -> None:
+        status = codec.decode(RadioStatus.id, payload_of(raw))
+        if isinstance(status, RadioStatus):
+            self._flow.radio_status(status.txbuf, now)
+
+    def _is_old(self, order: Order, number: int) -> bool:
+        """A repeated frame, or state that a newer one has overtaken; what must be acknowledged is never too old."""
+        if order is Order.DUPLICATE:
+            self._duplicates += 1
+            return True
+        self._late += 1
+        return number not in ACKNOWLEDGED
+
+    def _decode(self, state: PeerState, frame: Frame, now: float) -> Received | None:
+        number, system, component, sequence, raw = frame
+        if number == _RADIO_STATUS:
+            self._hear_radio(raw, now)
+        if self._wanted is not None and number not in self._wanted:
+            return None
+        kind = "demand" if number in _DEMANDS else "command" if number in _COMMANDS else "rest"
+        room = state.buckets[kind].take(now)
+        if not room and kind != "command":
+            self._rate_limited += 1
+            return None
+        message = codec.decode(number, payload_of(raw))
+        if not room and not is_stop(message):  # a stop passes however much noise its sender makes
+            self._rate_limited += 1
+            return None
+        if number == Heartbeat.id:
+            state.systems.add(system)
+        return Received(message, system, component, sequence, state.peer, system in state.systems, state.asked_for)
+
+    # ---- sending ----
+
+    def send(self, outgoing: Outgoing, payload: bytes | None = None) -> Iterator[tuple[bytes, Hashable, int]]:
+        """The frames to put on the wire: bytes, address, packet sequence. Each peer has its own sequence, so that what
+        one of them does not get is no loss to it. `payload` is the message's where it is encoded already, as for
+        another link. Raises codec.EncodeError."""
+        message = outgoing.message
+        number = type(message).id
+        payload = codec.encode_payload(message) if payload is None else payload
+        for state in self._recipients(outgoing):
+            sequence = state.sequence
+            state.sequence = (sequence + 1) & 0xFF
+            data = codec.frame(number, payload, sequence, *self.ids)
+            self._bytes_sent += len(data)
+            yield data, state.peer.address, sequence
+
+    def _recipients(self, outgoing: Outgoing) -> list[PeerState]:
+        message, peer, among = outgoing
+        if peer is not None:
+            return self._known((peer,))
+        if among is not None:
+            return self._known(among)
+        target = getattr(message, "target_system", getattr(message, "target", 0))
+        return [state for state in self._peers.values() if state.hears(target)]
+
+    def _known(self, peers: tuple[Peer, ...]) -> list[PeerState]:
+        """Those that are on this link, in the conversation that is meant."""
+        found = []
+        for peer in peers:
+            state = self._peers.get(peer.address) if peer.link == self.index else None
+            if state is not None and state.peer == peer:
+                found.append(state)
+        return found
+
+    # ---- telling ----
+
+    def forget_silent(self, now: float) -> None:
+        """Drop peers that have been silent for PEER_SILENCE; the one the user named stays, and connections do, for a
+        new conversation."""
+        for state in list(self._peers.values()):
+            if state.silent or now - state.heard <= PEER_SILENCE:
+                continue
+            if state.asked_for:
+                state.peer, state.silent = self._name(state.peer.address), True
+            else:
+                self._forget(state)
+
+    def report(self, down: str | None = None, *, now: float = 0.0, dropped: int = 0) -> LinkReport:
+        """What this channel has counted. `down` and `dropped` come from the shell."""
+        counts = Counts()
+        for each in (self._gone, self._strangers.counts, *(state.framer.counts for state in self._peers.values())):
+            counts.add(each)
+        return LinkReport(
+            name=self.name,
+            index=self.index,
+            peers=sum(1 for state in self._peers.values() if state.systems),
+            frames=counts.frames,
+            bytes_received=self._bytes_received,
+            bytes_sent=self._bytes_sent,
+            crc_errors=counts.crc_errors,
+            resync_bytes=counts.resync_bytes,
+            unknown=counts.unknown,
+            duplicates=self._duplicates,
+            late=self._late,
+            rate_limited=self._rate_limited,
+            refused_peers=self._refused_peers,
+            dialect_mismatch=tuple(
+                sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER)
+            ),
+            own_id=self._own_id,
+            down=down or self._nothing_but_noise(counts),
+            capacity=self._capacity,
+            headroom=self._flow.headroom(now) if self._capacity is not None else 1.0,
+            dropped=dropped,
+            sources=self._source_counts(),
+            audience=tuple(state.peer for state in self._peers.values() if state.hears(0)),
+        )
+
+    def _nothing_but_noise(self, counts: Counts) -> str | None:
+        if self._capacity is None:
+            return None
+        return noise_hint(self.name, self._bytes_received, counts.frames + counts.unknown)
+
+    def _source_counts(self) -> dict[tuple[int, int], SourceCount]:
+        totals: dict[tuple[int, int], SourceCount] = {}
+        for state in self._peers.values():
+            for key, source in state.sources.items():
+                before = totals.get(key, SourceCount(0, 0))
+                totals[key] = SourceCount(before.received + source.received, before.lost + source.lost)
+        return totals

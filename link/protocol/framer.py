@@ -1,0 +1,273 @@
+"""Bytes -> frames: finds them, checks length and checksum, resynchronises by one byte, drops and counts the rest.
+
+Rules: a frame counts only when its id is in the dialect and its checksum is right; anything else moves the search on by
+ONE byte, so that a stray start byte costs nothing (pymavlink throws the whole claimed length away: 12 frames, 0.65 s at
+20 Hz). Input from the wire never raises. Payloads are not decoded here.
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+from enum import Enum, auto
+from typing import NamedTuple
+
+from fastcrc.crc16 import mcrf4xx
+
+from dialects.codec import (
+    BASE_SIZE,
+    CRC_EXTRA,
+    CRC_SIZE,
+    HEADER_V1,
+    HEADER_V2,
+    INCOMPAT_SIGNED,
+    MAGIC_V1,
+    MAGIC_V2,
+    SIGNATURE_SIZE,
+)
+from link.protocol.frame import Counts, Frame, read_header
+
+PARTIAL_DEADLINE = 0.1
+"""s that a stream may owe the rest of a frame. Longer than the longest frame takes at 57600 baud (280 bytes, 49 ms),
+shorter than the vehicle's patience with a driver (0.45 s): a forged header must not hide the frames behind it."""
+
+MISMATCHES_KEPT = 64
+_SHORTEST = HEADER_V2 + CRC_SIZE
+_MAGIC = re.compile(b"[\xfd\xfe]")
+_HEAD = struct.Struct("<BBBxBBBI")
+"""Start byte, length, flags that must be known, sequence, system, component, and the id's three bytes with one more."""
+_ID = 0xFFFFFF
+
+
+class _Missing(Enum):
+    """Why there is no frame at a place."""
+
+    MAGIC = auto()
+    """No start byte here."""
+    BYTES = auto()
+    """It may be one, but its end has not come yet."""
+    FRAME = auto()
+    """It cannot be one."""
+
+
+class _Doubt(NamedTuple):
+    """A failed frame whose claimed end may yet prove that it was a whole one: then it was foreign and not noise."""
+
+    end: int
+    message_id: int
+    known: bool
+
+
+class Framer:
+    """Frames of one sender's bytes.
+
+    With `stream` false each feed() is one datagram: a frame never goes on in the next one. With `stream` true bytes
+    are kept until a frame is whole, but no longer than PARTIAL_DEADLINE. With `unknown` true it also gives frames of
+    ids outside the dialect, for routers: where a sound frame ended one may start, and it must end where the bytes end
+    or another one starts.
+    """
+
+    def __init__(self, *, stream: bool, unknown: bool = False) -> None:
+        self.counts = Counts()
+        self._stream = stream
+        self._unknown = unknown
+        self._at_border = True
+        """The buffer starts where a frame may start: nothing before it was noise."""
+        self._buffer = b""
+        self._waiting_since: float | None = None
+        self._doubt: _Doubt | None = None
+
+    def feed(self, data: bytes, now: float) -> list[Frame]:
+        """All frames that are whole now. `now` in s, monotonic.
+
+        The usual case first, found fast: a datagram that is one unsigned MAVLink 2 frame and nothing else.
+        """
+        if self._stream:
+            return self._feed_stream(data, now)
+        if len(data) < _SHORTEST:
+            return self._scan(data, final=True)[0]
+        magic, length, flags, sequence, system, component, number = _HEAD.unpack_from(data)
+        if length + _SHORTEST == len(data) and magic == MAGIC_V2 and not flags:
+            message_id = number & _ID
+            extra = CRC_EXTRA.get(message_id)
+            if extra is None and not self._unknown:  # by its borders one frame: it is not looked into
+                self.counts.unknown += 1
+                return []
+            if extra is not None and mcrf4xx(data[1:-2] + extra) == data[-2] | data[-1] << 8:
+                self.counts.frames += 1
+                return [(message_id, system, component, sequence, data)]
+        return self._scan(data, final=True)[0]
+
+    def expire(self, now: float) -> list[Frame]:
+        """Give up a partial frame that is overdue and look behind its first byte; call it when nothing arrives, too."""
+        frames: list[Frame] = []
+        while self._waiting_since is not None and now - self._waiting_since >= PARTIAL_DEADLINE:
+            self._skip_first_byte()
+            found = self._take(now)
+            frames += found
+            if not found and self._waiting_since is not None:
+                self._waiting_since = now - PARTIAL_DEADLINE  # what follows has waited as long
+        return frames
+
+    def _feed_stream(self, data: bytes, now: float) -> list[Frame]:
+        frames = self.expire(now)
+        self._buffer += data
+        frames += self._take(now)
+        return frames
+
+    def _skip_first_byte(self) -> None:
+        self._buffer = self._buffer[1:]
+        self._at_border = False
+        self._doubt = None
+        self.counts.resync_bytes += 1
+
+    def _take(self, now: float) -> list[Frame]:
+        frames, used = self._scan(self._buffer, final=False)
+        self._buffer = self._buffer[used:]
+        self._doubt = self._doubt and self._doubt._replace(end=self._doubt.end - used)
+        if not self._buffer:
+            self._waiting_since = None
+        elif used or self._waiting_since is None:
+            self._waiting_since = now
+        return frames
+
+    def _scan(self, data: bytes, *, final: bool) -> tuple[list[Frame], int]:  # noqa: C901 - calls cost more here
+        """Frames in `data` and how many bytes are done with. `final`: no more bytes will come.
+
+        The hot path of all reception: a sound unsigned MAVLink 2 frame costs no call here but the checksum's (the rest
+        is in _frame_at, which knows every case).
+        """
+        frames: list[Frame] = []
+        position, size = 0, len(data)
+        border = 0 if self._at_border else -1
+        while position < size:
+            if position + _SHORTEST <= size:
+                magic, length, flags, sequence, system, component, number = _HEAD.unpack_from(data, position)
+                message_id = number & _ID
+                extra = CRC_EXTRA.get(message_id)
+                end = position + length + _SHORTEST
+                if extra is not None and magic == MAGIC_V2 and not flags and end <= size:
+                    raw = data[position:end]
+                    if mcrf4xx(raw[1:-2] + extra) == raw[-2] | raw[-1] << 8:
+                        if self._doubt is not None:
+                            self._settle(position)
+                        frames.append((message_id, system, component, sequence, raw))
+                        position = border = end
+                        continue
+            after, border = self._slow(data, position, size, frames, border)
+            if after == position:
+                if not final:
+                    break  # the rest of the frame may still come
+                self.counts.resync_bytes += 1
+                after += 1
+            position = after
+        self.counts.frames += len(frames)
+        if not final:
+            self._at_border = border == position
+            return frames, position
+        self._settle(size)
+        return frames, position
+
+    def _slow(self, data: bytes, position: int, size: int, frames: list[Frame], border: int) -> tuple[int, int]:
+        """Any case at `position`; returns where to go on, `position` itself where a frame's end has not come yet, and
+        where the last frame ended."""
+        found = self._frame_at(data, position, size)
+        if found is _Missing.FRAME and position == border and self._unknown:
+            found = self._unknown_at(data, position, size)
+        if isinstance(found, tuple):
+            self._settle(position)
+            frames.append(found)
+            end = position + len(found[4])
+            return end, end
+        if found is _Missing.BYTES:
+            return position, border
+        if found is _Missing.MAGIC:
+            return self._next_magic(data, position, size), border
+        self.counts.resync_bytes += 1
+        return position + 1, border
+
+    def _unknown_at(self, data: bytes, start: int, size: int) -> Frame | _Missing:
+        """The frame of an id outside the dialect at `start`, as far as its borders can tell."""
+        header = read_header(data, start)
+        if header is None or header.message_id in CRC_EXTRA or not header.system:
+            return _Missing.FRAME
+        end = start + header.size
+        if end > size:
+            return _Missing.BYTES
+        if end < size and data[end] not in (MAGIC_V1, MAGIC_V2):
+            return _Missing.FRAME
+        self._doubt = None
+        self.counts.unknown += 1
+        self.counts.frames -= 1  # _scan counts it with those it has checked
+        return (header.message_id, header.system, header.component, header.sequence, data[start:end])
+
+    def _next_magic(self, data: bytes, position: int, size: int) -> int:
+        match = _MAGIC.search(data, position)
+        end = match.start() if match else size
+        self.counts.resync_bytes += end - position
+        return end
+
+    def _frame_at(self, data: bytes, start: int, size: int) -> Frame | _Missing:
+        """The frame at `start`, or what it lacks."""
+        if data[start] != MAGIC_V2:
+            return self._frame_v1(data, start, size) if data[start] == MAGIC_V1 else _Missing.MAGIC
+        if size - start < HEADER_V2 + CRC_SIZE:
+            return _Missing.BYTES
+        length, flags, _, sequence, system, component, low, middle, high = data[start + 1 : start + HEADER_V2]
+        message_id = low | middle << 8 | high << 16
+        crc_at = start + HEADER_V2 + length
+        end = crc_at + CRC_SIZE + (SIGNATURE_SIZE if flags else 0)
+        extra = CRC_EXTRA.get(message_id)
+        if flags > INCOMPAT_SIGNED or extra is None:
+            return self._foreign(start, end, flags, message_id)
+        if end > size:
+            return _Missing.BYTES
+        if mcrf4xx(data[start + 1 : crc_at] + extra) != data[crc_at] | data[crc_at + 1] << 8:
+            return self._bad_crc(start, end, message_id)
+        return (message_id, system, component, sequence, data[start:end])
+
+    def _foreign(self, start: int, end: int, flags: int, message_id: int) -> _Missing:
+        """Flags that we may not ignore (MAVLink serialization: drop it), or an id outside the dialect."""
+        if flags > INCOMPAT_SIGNED:
+            self.counts.refused += 1
+        else:
+            self._suspect(start, _Doubt(end, message_id, known=False))
+        return _Missing.FRAME
+
+    def _frame_v1(self, data: bytes, start: int, size: int) -> Frame | _Missing:
+        if size - start < HEADER_V1 + CRC_SIZE:
+            return _Missing.BYTES
+        length, sequence, system, component, message_id = data[start + 1 : start + HEADER_V1]
+        if BASE_SIZE.get(message_id) != length:
+            self.counts.refused += message_id in BASE_SIZE
+            return _Missing.FRAME
+        crc_at = start + HEADER_V1 + length
+        end = crc_at + CRC_SIZE
+        if end > size:
+            return _Missing.BYTES
+        if mcrf4xx(data[start + 1 : crc_at] + CRC_EXTRA[message_id]) != data[crc_at] | data[crc_at + 1] << 8:
+            return self._bad_crc(start, end, message_id)
+        return (message_id, system, component, sequence, data[start:end])
+
+    def _bad_crc(self, start: int, end: int, message_id: int) -> _Missing:
+        self.counts.crc_errors += 1
+        self._suspect(start, _Doubt(end, message_id, known=True))
+        return _Missing.FRAME
+
+    def _suspect(self, start: int, doubt: _Doubt) -> None:
+        """Remember a failed frame, unless it lies inside an earlier one that may still prove whole."""
+        if self._doubt is not None and self._doubt.end <= start:
+            self._settle(start)
+        if self._doubt is None:
+            self._doubt = doubt
+
+    def _settle(self, position: int) -> None:
+        """A frame starts, or the datagram ends, at `position`: was the failed frame before it a whole foreign one?"""
+        doubt = self._doubt
+        self._doubt = None
+        if doubt is None or doubt.end != position:
+            return
+        if not doubt.known:
+            self.counts.unknown += 1
+        elif doubt.message_id in self.counts.mismatches or len(self.counts.mismatches) < MISMATCHES_KEPT:
+            self.counts.mismatches[doubt.message_id] = self.counts.mismatches.get(doubt.message_id, 0) + 1

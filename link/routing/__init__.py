@@ -1,0 +1,1 @@
+"""Forwards frames between links by system and component id."""

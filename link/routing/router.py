@@ -1,0 +1,203 @@
+"""Frames between wires by system and component id, as MAVLink's routing rules say, without decoding or changing one.
+
+Rules (mavlink.io/en/guide/routing.html): a frame for everybody goes to every other peer, a frame for one system only
+where that system was heard; never back to where it came from, nor to where its sender is at home; SETUP_SIGNING and
+RADIO_STATUS stay where they are; what cannot be verified (unknown ids, signatures) is forwarded all the same, but only
+verified frames teach routes. A frame that arrives over two redundant links goes on once. Every table has a cap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from typing import NamedTuple
+
+from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V2, MAGIC_V2
+from dialects.messages import RadioStatus, SystemTime
+from dialects.targets import TARGETS, target_of
+from link.protocol.frame import Frame, payload_of
+from link.routing.routes import Key, Recent, RoutedPeer, RouteTable, Source
+
+SETUP_SIGNING = 256
+KEPT = frozenset({SETUP_SIGNING, RadioStatus.id})
+"""Never forwarded: a key, and what concerns one radio only."""
+
+REDUNDANT_WITHIN = 1.0
+"""s in which the same frame over another link is the same frame: more than the slowest radio adds, and less than 256
+frames of one sender take, unless it sends more of them than redundant links carry."""
+MAX_FOLLOWED = 256
+"""Systems and components whose frames are compared between redundant links."""
+MAX_TARGETS = 256
+"""Targets of one source whose destinations are remembered."""
+
+_EVERYBODY: Key = (0, 0)
+_LOOKED_AT = KEPT | {SystemTime.id}
+_NOT_FOR_ALL = _LOOKED_AT | TARGETS.keys()
+"""Any other message goes to everybody, whatever is in it."""
+
+
+class Delivery(NamedTuple):
+    """Frames to send to one address of one wire, in this order."""
+
+    port: int
+    address: Hashable
+    frames: list[bytes]
+
+
+class Router:
+    """What the table decides for each frame. `ports`: see RouteTable.
+
+    `own` are the ids of the host that routes beside its own work: what is for it alone ends here, and its own frames
+    that come back are dropped.
+    """
+
+    def __init__(self, ports: Sequence[tuple[bool, Hashable | None]], *, own: Key | None = None) -> None:
+        self.table = RouteTable(ports)
+        self.duplicates = 0
+        """Frames that redundant links brought again."""
+        self.tape: list[bytes] | None = None
+        """Where it is a list: every frame that arrives, in order, for a recorder to take away."""
+        self._own = own
+        self._recent: dict[Key, Recent] = {}
+        """One for all peers of a source, so that they can be compared."""
+        self._boot_times: dict[Key, int] = {}
+        self._loaded: list[RoutedPeer] = []
+
+    def receive(self, port: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
+        """Take what arrived on a wire; returns what to send where. `now` in s, monotonic."""
+        peers = self.table.peers_of(port)
+        for data, address in pieces:
+            peer = peers.get(address)
+            if peer is None:
+                self._hear_stranger(port, data, address, now)
+                continue
+            peer.bytes_in += len(data)
+            frames = peer.framer.feed(data, now)
+            if frames:
+                self._forward(peer, frames, now)
+        return self._collect()
+
+    def tick(self, now: float) -> list[Delivery]:
+        """Give up half frames that are overdue (call it every 50 ms or so) and forget who is silent."""
+        for peer in list(self.table.everybody()):
+            frames = peer.framer.expire(now)
+            if frames:
+                self._forward(peer, frames, now)
+        self.table.expire(now)
+        known = self.table.known()
+        for followed in (self._recent, self._boot_times):
+            for key in followed.keys() - known:
+                del followed[key]
+        return self._collect()
+
+    # ---- the way of a frame ----
+
+    def _hear_stranger(self, port: int, data: bytes, address: Hashable, now: float) -> None:
+        """Noise makes no peer: on UDP only a verified frame does. A connection is one as it is."""
+        peer = self.table.stranger(port, address, now)
+        if peer is None:
+            return
+        peer.bytes_in += len(data)
+        frames = peer.framer.feed(data, now)
+        if self.table.is_stream(port) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
+            self.table.admit(peer, now)
+            self._forward(peer, frames, now)
+        else:
+            self.table.dismiss(peer)
+
+    def _forward(self, peer: RoutedPeer, frames: list[Frame], now: float) -> None:  # noqa: C901 - calls cost more here
+        """The hot path: a usual frame of a known source costs no call here but list.append, dict.get and target_of."""
+        peer.heard = now
+        sources, loaded, table = peer.sources, self._loaded, self.table
+        known: Source | None = None
+        if self.tape is not None:
+            self.tape += [raw for _, _, _, _, raw in frames]
+        for frame in frames:
+            message_id, system, component, sequence, raw = frame
+            if known is None or known.system != system or known.component != component:
+                known = sources.get((system, component))
+            source = known or self._learn(peer, frame, now)
+            if source is None:
+                continue
+            if sequence == source.next:
+                source.received += 1
+                source.heard, source.next = now, (sequence + 1) & 0xFF
+            else:
+                source.count(sequence, now)
+            recent = source.recent
+            if recent is not None:
+                before = recent[sequence]
+                if before is not None and before[1] is not peer and self._came_before(before, raw, now):
+                    continue
+                recent[sequence] = (now, peer, raw)
+            target = _EVERYBODY
+            if message_id in _NOT_FOR_ALL:
+                if message_id in _LOOKED_AT and self._stays(source, message_id, raw):
+                    continue
+                target = target_of(message_id, raw)
+            found = source.destinations.get(target) if source.epoch == table.epoch else None
+            for destination in self._destinations(peer, source, target) if found is None else found:
+                if not destination.waiting:
+                    loaded.append(destination)
+                destination.waiting.append(raw)
+
+    def _learn(self, peer: RoutedPeer, frame: Frame, now: float) -> Source | None:
+        """The entry of a source that is new here; None for frames that go nowhere."""
+        message_id, system, component, sequence, _ = frame
+        key = (system, component)
+        if not system or key == self._own:  # component 0 is what pymavlink sends unless told otherwise
+            return None
+        source = Source(key, sequence, now)
+        source.recent = self._recent.get(key)
+        if message_id not in CRC_EXTRA or not self.table.learn(peer, source):
+            return source  # this frame goes its way, but it teaches nothing
+        if source.recent is None and len(self._recent) < MAX_FOLLOWED:
+            source.recent = self._recent[key] = [None] * 256
+        return source
+
+    def _came_before(self, before: tuple[float, RoutedPeer, bytes], raw: bytes, now: float) -> bool:
+        """Is it one that another link has brought already?"""
+        again = now - before[0] < REDUNDANT_WITHIN and _same(before[2], raw)
+        self.duplicates += again
+        return again
+
+    def _stays(self, source: Source, message_id: int, raw: bytes) -> bool:
+        """Messages that are more than freight: two stay here, SYSTEM_TIME tells of a restart and goes on."""
+        if message_id in KEPT:
+            return True
+        boot_time = int.from_bytes(payload_of(raw)[8:12], "little")
+        if boot_time < self._boot_times.get(source.key, 0):
+            self.table.keep_only(source)
+        if source.key in self._boot_times or len(self._boot_times) < MAX_FOLLOWED:
+            self._boot_times[source.key] = boot_time
+        return False
+
+    def _destinations(self, origin: RoutedPeer, source: Source, target: Key) -> tuple[RoutedPeer, ...]:
+        """Where a frame for `target` goes; remembered until the table changes."""
+        if source.epoch != self.table.epoch or len(source.destinations) > MAX_TARGETS:
+            source.destinations, source.epoch = {}, self.table.epoch
+        found = source.destinations.get(target)
+        if found is None:
+            found = source.destinations[target] = tuple(
+                peer
+                for peer in (() if target == self._own else self.table.candidates(target))
+                if peer is not origin and source.key not in peer.sources and (peer.sources or peer.fixed)
+            )
+        return found
+
+    def _collect(self) -> list[Delivery]:
+        deliveries: list[Delivery] = []
+        for peer in self._loaded:
+            frames, peer.waiting = peer.waiting, []
+            peer.frames_out += len(frames)
+            peer.bytes_out += sum(map(len, frames))
+            deliveries.append(Delivery(peer.port, peer.address, frames))
+        self._loaded = []
+        return deliveries
+
+
+def _same(one: bytes, other: bytes) -> bool:
+    """Are two frames the same but for their signatures, which differ from link to link?"""
+    if one == other:
+        return True
+    end = HEADER_V2 + one[1] + CRC_SIZE
+    return one[0] == MAGIC_V2 and one[:end] == other[:end]

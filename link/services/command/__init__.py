@@ -1,0 +1,1 @@
+"""The command protocol: COMMAND_LONG, COMMAND_INT, COMMAND_ACK, COMMAND_CANCEL."""

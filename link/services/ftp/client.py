@@ -1,0 +1,290 @@
+"""The ground station's half of MAVLink FTP, only reading: downloads a file or lists a folder, until it is certain.
+
+A file comes as bursts; what got lost is asked for piece by piece. What the vehicle says of a file's size is believed
+only as an upper bound, because ArduPilot only estimates it for the files that it makes when they are opened.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from dialects import messages as m
+from link.core import Outgoing, Received
+from link.services.ftp.files import Entry
+from link.services.ftp.protocol import MAX_DATA, SEQUENCE, FtpError, FtpPacket, Op, parse
+from link.services.ftp.reassembly import Assembly
+
+REPEAT_AFTER = 0.7
+"""s without an answer before a question is repeated: more than a round trip on a loaded 57600 baud radio (0.4 s)."""
+QUIET = 1.0
+"""s without data before a burst is asked for again: at 40 % of a 57600 baud radio a message takes 0.12 s."""
+TRIES = 16
+"""Questions without an answer before nobody is there: 11 s."""
+WINDOW = 8
+"""Missing pieces asked for at once: 2 kB, a third of a second of a 57600 baud radio."""
+MAX_SIZE = 32 * 1024 * 1024
+"""Bytes of a download: a day's log; more is an attack on our memory."""
+MAX_ENTRIES = 10_000
+END = bytes([FtpError.END_OF_FILE])
+
+
+class FtpJob(Enum):
+    """What the client is at."""
+
+    DOWNLOAD = "download"
+    LIST = "list"
+
+
+@dataclass(frozen=True, slots=True)
+class FtpOutcome:
+    """How a job ended."""
+
+    job: FtpJob
+    path: str
+    done: bool
+    data: bytes = b""
+    entries: tuple[Entry, ...] = ()
+    error: int | None = None
+    """MAV_FTP_ERR of the vehicle; None where it succeeded or nobody answered."""
+
+
+class _Phase(Enum):
+    ASKED = 0
+    """One question is out: to open, to list or to close."""
+    BURST = 1
+    FILL = 2
+
+
+@dataclass(slots=True)
+class _Work:
+    """The job under way."""
+
+    job: FtpJob
+    path: str
+    session: int
+    phase: _Phase = _Phase.ASKED
+    asked: FtpPacket | None = None
+    due: float = 0.0
+    tries: int = 0
+    file: Assembly = field(default_factory=lambda: Assembly(MAX_SIZE))
+    entries: list[Entry] = field(default_factory=list)
+
+
+class FtpClient:
+    """Talks to one vehicle, one job at a time; a new job replaces the one under way."""
+
+    def __init__(self, system: int, component: int, *, target_system: int, target_component: int = 1) -> None:
+        self._ids = (system, component)
+        self._target = (target_system, target_component)
+        self._sequence = 0
+        self._session = 0
+        self._work: _Work | None = None
+        self._outbox: list[Outgoing] = []
+        self._outcomes: list[FtpOutcome] = []
+
+    def download(self, path: str, now: float) -> None:
+        """Fetch a file. `path` is ASCII, e.g. "/logs/1.bin" or "@PARAM/param.pck"."""
+        self._begin(FtpJob.DOWNLOAD, Op.OPEN, path, now)
+
+    def list_folder(self, path: str, now: float) -> None:
+        """List a folder."""
+        self._begin(FtpJob.LIST, Op.LIST, path, now)
+
+    def cancel(self) -> None:
+        """Give up the job under way without an outcome."""
+        if self._work and self._work.job is FtpJob.DOWNLOAD:
+            self._send(self._packet(Op.TERMINATE, self._work.session))
+        self._work = None
+
+    @property
+    def busy(self) -> bool:
+        """Is a job under way?"""
+        return self._work is not None
+
+    @property
+    def progress(self) -> tuple[int, int | None]:
+        """Bytes that are here, and of at most how many."""
+        work = self._work
+        if work is None or work.phase is _Phase.ASKED:
+            return 0, None
+        return work.file.here.bytes, work.file.end
+
+    def receive(self, received: Received, now: float) -> None:
+        """Take an answer of the vehicle; others are ignored."""
+        message, work = received.message, self._work
+        if work is None or received.system != self._target[0] or not isinstance(message, m.FileTransferProtocol):
+            return
+        if message.target_system != self._ids[0] or message.target_component not in (0, self._ids[1]):
+            return
+        packet = parse(message)
+        match packet.asked:
+            case Op.OPEN if self._answers(work, packet):
+                self._opened(work, packet, now)
+            case Op.LIST if self._answers(work, packet):
+                self._listed(work, packet, now)
+            case Op.BURST if work.phase is not _Phase.ASKED and packet.session == work.session:
+                self._burst(work, packet, now)
+            case Op.READ if work.phase is _Phase.FILL:
+                self._piece(work, packet, now)
+
+    def tick(self, now: float) -> None:
+        """Repeat what is overdue, and give up at last."""
+        work = self._work
+        if work is None or now < work.due:
+            return
+        if work.tries >= TRIES:
+            self._fail(work, None)
+        elif work.phase is _Phase.ASKED and work.asked:
+            self._repeat(work, work.asked, now, REPEAT_AFTER)
+        elif work.phase is _Phase.BURST:
+            self._ask_burst(work, now)
+        else:
+            self._fill(work, now)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """What to send now; empties what it returns."""
+        outbox, self._outbox = self._outbox, []
+        return outbox
+
+    def outcomes(self) -> list[FtpOutcome]:
+        """Jobs that ended since the last call."""
+        outcomes, self._outcomes = self._outcomes, []
+        return outcomes
+
+    # ---- beginning and ending ----
+
+    def _begin(self, job: FtpJob, op: Op, path: str, now: float) -> None:
+        self.cancel()
+        self._session = (
+            self._session + 1
+        ) & 0xFF  # a fresh one, so that late data of the last job is not taken for ours
+        work = self._work = _Work(job, path, self._session)
+        self._repeat(
+            work, self._packet(op, work.session, path.encode("ascii", "replace")[:MAX_DATA]), now, REPEAT_AFTER
+        )
+
+    def _opened(self, work: _Work, packet: FtpPacket, now: float) -> None:
+        if packet.op != Op.ACK:
+            self._fail(work, packet)
+            return
+        work.session = packet.session
+        announced = int.from_bytes(packet.data[:4], "little") if len(packet.data) >= 4 else MAX_SIZE
+        if announced > MAX_SIZE:
+            self._fail(work, None)
+            return
+        work.file, work.tries = Assembly(announced), 0
+        self._ask_burst(work, now)
+
+    def _finish(self, work: _Work) -> None:
+        self._work = None
+        if work.job is FtpJob.DOWNLOAD:
+            self._send(self._packet(Op.TERMINATE, work.session))
+        data = work.file.data if work.job is FtpJob.DOWNLOAD else b""
+        self._outcomes.append(FtpOutcome(work.job, work.path, True, data, tuple(work.entries)))
+
+    def _fail(self, work: _Work, packet: FtpPacket | None) -> None:
+        self._work = None
+        if work.phase is not _Phase.ASKED:
+            self._send(self._packet(Op.TERMINATE, work.session))
+        error = (packet.data[0] if packet.data else FtpError.FAIL) if packet else None
+        self._outcomes.append(FtpOutcome(work.job, work.path, False, error=error))
+
+    # ---- listing ----
+
+    def _listed(self, work: _Work, packet: FtpPacket, now: float) -> None:
+        ended = packet.op == Op.NAK and packet.data[:1] == END
+        if packet.op != Op.ACK and not ended:
+            self._fail(work, packet)
+            return
+        lines = [] if ended else [line for line in packet.data.split(b"\0") if line]
+        work.entries += [entry for entry in map(_entry, lines) if entry]
+        if not lines or len(work.entries) >= MAX_ENTRIES:
+            self._finish(work)
+            return
+        work.tries = 0
+        offset = (work.asked.offset if work.asked else 0) + len(lines)
+        path = work.path.encode("ascii", "replace")[:MAX_DATA]
+        self._repeat(work, self._packet(Op.LIST, work.session, path, offset), now, REPEAT_AFTER)
+
+    # ---- downloading ----
+
+    def _burst(self, work: _Work, packet: FtpPacket, now: float) -> None:
+        if packet.op == Op.NAK:
+            if packet.data[:1] == END:
+                self._start_filling(work, now)
+            elif work.phase is _Phase.BURST:
+                self._fail(work, packet)
+            return
+        work.file.take(packet.offset, packet.data)
+        if work.phase is not _Phase.BURST:
+            return
+        work.tries, work.due = 0, now + QUIET
+        if work.file.here.end >= work.file.end:
+            self._start_filling(work, now)
+        elif packet.burst_complete:
+            self._ask_burst(work, now)
+
+    def _start_filling(self, work: _Work, now: float) -> None:
+        if work.phase is not _Phase.FILL:
+            work.phase, work.tries = _Phase.FILL, 0
+            self._fill(work, now)
+
+    def _piece(self, work: _Work, packet: FtpPacket, now: float) -> None:
+        offset = work.file.answered(packet.sequence)
+        if offset is None:
+            return
+        if packet.op == Op.ACK and packet.data:
+            work.file.take(packet.offset, packet.data)
+        elif packet.op == Op.ACK or packet.data[:1] == END:
+            work.file.ended(offset)
+        else:
+            self._fail(work, packet)
+            return
+        work.tries = 0
+        self._fill(work, now)
+
+    def _fill(self, work: _Work, now: float) -> None:
+        """Ask for what is missing, a few pieces at a time; done when nothing is."""
+        if work.file.complete:
+            self._finish(work)
+            return
+        work.tries += work.file.forget_overdue(now)
+        for offset, size in work.file.wanted(WINDOW, MAX_DATA):
+            packet = self._packet(Op.READ, work.session, b"", offset, size)
+            work.file.asked((packet.sequence + 1) & SEQUENCE, offset, now + REPEAT_AFTER)
+            self._send(packet)
+        work.due = work.file.next_due(now + REPEAT_AFTER)
+
+    def _ask_burst(self, work: _Work, now: float) -> None:
+        work.phase = _Phase.BURST
+        self._repeat(work, self._packet(Op.BURST, work.session, b"", work.file.here.end, MAX_DATA), now, QUIET)
+
+    # ---- words ----
+
+    def _answers(self, work: _Work, packet: FtpPacket) -> bool:
+        asked = work.asked
+        return asked is not None and packet.asked == asked.op and packet.sequence == (asked.sequence + 1) & SEQUENCE
+
+    def _packet(self, op: Op, session: int, data: bytes = b"", offset: int = 0, size: int | None = None) -> FtpPacket:
+        self._sequence = (self._sequence + 1) & SEQUENCE
+        return FtpPacket(self._sequence, op, session, data, offset, size=size)
+
+    def _repeat(self, work: _Work, packet: FtpPacket, now: float, patience: float) -> None:
+        work.asked, work.due = packet, now + patience
+        work.tries += 1
+        self._send(packet)
+
+    def _send(self, packet: FtpPacket) -> None:
+        self._outbox.append(Outgoing(packet.message(*self._target)))
+
+
+def _entry(line: bytes) -> Entry | None:
+    """A line of a listing; None for one that is neither file nor folder. Names are made fit for a terminal."""
+    name, _, size = line[1:].decode("ascii", "replace").partition("\t")
+    match line[:1]:
+        case b"D":
+            return Entry(m.printable(name), None)
+        case b"F" if size.isdigit():
+            return Entry(m.printable(name), int(size))
+    return None

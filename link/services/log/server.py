@@ -1,0 +1,170 @@
+"""The log protocol of a vehicle: lists, sends and erases the files of a folder, by number.
+
+MAVLink FTP serves the same folder faster; this is for clients that know only LOG_REQUEST_LIST (MAVSDK, MAVProxy,
+QGroundControl). Numbers begin at 0, as QGroundControl expects of all but ArduPilot, and mean for each client what they
+meant in the last list that it asked for: the folder may have changed since.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from dialects import messages as m
+from link.core import Outgoing, Peer, Received
+from link.services.ftp.files import Content, Entry, Folder, NotYetError
+from link.services.pacing import OVERHEAD, Pacer
+
+DATA_SIZE = 90
+"""Bytes of log in one LOG_DATA."""
+MAX_CLIENTS = 8
+MAX_WISHES = 8
+"""Pieces a client may ask for at once: MAVProxy fills holes five at a time."""
+MAX_LOGS = 1000
+LIST_FRAME = m.LogEntry.unpacker.size + OVERHEAD
+DATA_FRAME = m.LogData.unpacker.size + OVERHEAD
+
+
+class _Wish(NamedTuple):
+    """A part of a log that a client asked for."""
+
+    log: int
+    start: int
+    end: int
+
+
+@dataclass(slots=True)
+class _Client:
+    """What is on its way to one peer."""
+
+    logs: list[Entry] | None = None
+    """As it was told; None before it has asked."""
+    list_from: int | None = None
+    """Where the list begins that it waits for, and where it ends."""
+    list_to: int = 0
+    listing: deque[m.LogEntry] = field(default_factory=deque)
+    wishes: deque[_Wish] = field(default_factory=deque)
+    content: Content | None = None
+    at: int = 0
+    """The next byte of the first wish."""
+
+    @property
+    def idle(self) -> bool:
+        """Is nothing on its way?"""
+        return self.list_from is None and not self.listing and not self.wishes
+
+
+class LogServer:
+    """Answers for one system and component. `when` gives a log's Unix time in s, 0 where it is not known; `erase` is
+    handed every wish to erase all logs."""
+
+    def __init__(
+        self,
+        logs: Folder,
+        *,
+        system: int,
+        component: int,
+        pacer: Pacer,
+        when: Callable[[str], int] = lambda name: 0,
+        erase: Callable[[Received, float], None] = lambda received, now: None,
+    ) -> None:
+        self._logs = logs
+        self._ids = (system, component)
+        self._pacer = pacer
+        self._when = when
+        self._erase = erase
+        self._clients: dict[Peer, _Client] = {}
+
+    def receive(self, received: Received, now: float) -> list[Outgoing]:
+        """Take one message; nothing where it is not for us or its sender may not ask. All answers come by tick()."""
+        message = received.message
+        if not received.may_ask or getattr(message, "target_system", 0) != self._ids[0]:
+            return []
+        if getattr(message, "target_component", 0) not in (0, self._ids[1]):
+            return []
+        match message:
+            case m.LogRequestList() if client := self._client(received.peer):
+                client.list_from, client.list_to = message.start, message.end
+            case m.LogRequestData() if client := self._client(received.peer):
+                wish = _Wish(message.id, message.ofs, message.ofs + message.count)
+                if wish not in client.wishes and len(client.wishes) < MAX_WISHES:
+                    client.wishes.append(wish)
+            case m.LogRequestEnd() if client := self._clients.get(received.peer):
+                self._clients[received.peer] = _Client(client.logs)
+            case m.LogErase():
+                self._erase(received, now)
+        return []
+
+    def tick(self, now: float) -> list[Outgoing]:
+        """The next entries and data of all clients, as far as the disk has brought them and the links have room."""
+        outgoing: list[Outgoing] = []
+        for peer, client in self._clients.items():
+            if not client.idle:
+                outgoing += [Outgoing(message, peer) for message in self._next_messages(peer, client, now)]
+        return outgoing
+
+    def _next_messages(self, peer: Peer, client: _Client, now: float) -> Iterator[m.Message]:
+        with suppress(NotYetError):
+            self._make_list(client)
+            while client.listing and self._pacer.take(peer, LIST_FRAME, now):
+                yield client.listing.popleft()
+            while client.wishes and (data := self._next_data(client)) and self._pacer.take(peer, DATA_FRAME, now):
+                yield self._sent(client, data)
+
+    def _entries(self) -> list[Entry]:
+        return [entry for entry in self._logs.entries() if entry.size is not None][:MAX_LOGS]
+
+    def _client(self, peer: Peer) -> _Client | None:
+        """The known one, or a new one in the place of one that wants nothing; None where all want something."""
+        if peer not in self._clients and len(self._clients) >= MAX_CLIENTS:
+            leaving = next((each for each, client in self._clients.items() if client.idle), None)
+            if leaving is None:
+                return None
+            del self._clients[leaving]
+        return self._clients.setdefault(peer, _Client())
+
+    def _make_list(self, client: _Client) -> None:
+        """What it asked for. Only a list from its beginning is a new numbering: a part fills what got lost of one."""
+        start = client.list_from
+        if start is None:
+            return
+        logs = client.logs = self._entries() if start == 0 or client.logs is None else client.logs
+        client.list_from = None
+        last = max(0, len(logs) - 1)
+        chosen = range(start, min(client.list_to, last) + 1) if logs else range(0)
+        client.listing = deque(
+            m.LogEntry(number, len(logs), last, self._when(logs[number].name), logs[number].size or 0)
+            for number in chosen
+        )
+        if not logs:
+            client.listing.append(m.LogEntry(0, 0, 0, 0, 0))
+
+    def _next_data(self, client: _Client) -> m.LogData | None:
+        """The next data of the first wish; None while the disk has not brought it. Raises NotYetError."""
+        wish = client.wishes[0]
+        if client.content is None:
+            client.content, client.at = self._open(client, wish.log), wish.start
+        if client.content is None:
+            return _data(wish.log, wish.start, b"")
+        data = client.content.read(client.at, max(0, min(DATA_SIZE, wish.end - client.at)))
+        return None if data is None else _data(wish.log, client.at, data)
+
+    def _open(self, client: _Client, number: int) -> Content | None:
+        logs = client.logs = self._entries() if client.logs is None else client.logs
+        return self._logs.open(logs[number].name, {}) if number < len(logs) else None
+
+    @staticmethod
+    def _sent(client: _Client, data: m.LogData) -> m.LogData:
+        """Go on behind `data`; data that is not full ends a log, and where the last was full an empty one does."""
+        client.at = data.ofs + data.count
+        if data.count < DATA_SIZE or client.at >= client.wishes[0].end:
+            client.wishes.popleft()
+            client.content = None
+        return data
+
+
+def _data(log: int, offset: int, data: bytes) -> m.LogData:
+    return m.LogData(log, offset, len(data), data.ljust(DATA_SIZE, b"\0"))

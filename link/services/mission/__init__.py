@@ -1,0 +1,1 @@
+"""The mission protocol, for missions, fences and rally points."""

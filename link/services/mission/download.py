@@ -1,0 +1,88 @@
+"""Reading the plans of a vehicle: item by item as the client asks, or a part of one, told without more questions.
+
+MISSION_REQUEST_PARTIAL_LIST has no sequence in the specification, only the words of its definition: "if start and end
+index are the same, just send one waypoint". So its answer is the items; what gets lost is asked for by number.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+
+from dialects import messages as m
+from dialects.enums import MissionResult, MissionType
+from link.core import Outgoing, Peer, Received
+from link.services.mission.items import to_message
+from link.services.mission.plans import Shelf
+from link.services.mission.upload import Sender, ack, sender_of
+from link.services.pacing import OVERHEAD, Pacer
+
+MAX_CLIENTS = 8
+ITEM_FRAME = m.MissionItemInt.unpacker.size + OVERHEAD
+TO_THE_END = -1
+"""`end_index` that means the last item."""
+
+
+class Downloads:
+    """Answers who reads. `current` gives the index of the mission's item under way."""
+
+    def __init__(self, shelf: Shelf, pacer: Pacer, current: Callable[[], int]) -> None:
+        self._shelf = shelf
+        self._pacer = pacer
+        self._current = current
+        self._under_way: dict[Peer, deque[Outgoing]] = {}
+
+    def receive(self, received: Received) -> list[Outgoing] | None:
+        """The answer to a question; None where the message is none."""
+        sender = sender_of(received)
+        match received.message:
+            case m.MissionRequestList() as message:
+                return [self._count(message, sender)]
+            case m.MissionRequestInt() | m.MissionRequest() as message:
+                return [self._item(message, sender)]
+            case m.MissionRequestPartialList() as message:
+                return self._part(message, sender)
+        return None
+
+    def tick(self, now: float) -> list[Outgoing]:
+        """The next items of parts, as far as the links have room."""
+        outgoing: list[Outgoing] = []
+        for peer, items in list(self._under_way.items()):
+            while items and self._pacer.take(peer, ITEM_FRAME, now):
+                outgoing.append(items.popleft())
+            if not items:
+                del self._under_way[peer]
+        return outgoing
+
+    def _count(self, message: m.MissionRequestList, sender: Sender) -> Outgoing:
+        kind = self._shelf.kind(message.mission_type)
+        if kind is None:
+            return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
+        count, plan_id = len(self._shelf[kind]), self._shelf.id_of(kind)
+        return Outgoing(m.MissionCount(sender.system, sender.component, count, kind, plan_id), sender.peer)
+
+    def _item(self, message: m.MissionRequestInt | m.MissionRequest, sender: Sender) -> Outgoing:
+        kind = self._shelf.kind(message.mission_type)
+        if kind is None:
+            return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
+        if message.seq >= len(self._shelf[kind]):
+            return ack(sender, kind, MissionResult.INVALID_SEQUENCE)
+        return self._told(message.seq, kind, sender)
+
+    def _part(self, message: m.MissionRequestPartialList, sender: Sender) -> list[Outgoing]:
+        kind = self._shelf.kind(message.mission_type)
+        if kind is None:
+            return [ack(sender, message.mission_type, MissionResult.UNSUPPORTED)]
+        count, first = len(self._shelf[kind]), message.start_index
+        last = count - 1 if message.end_index == TO_THE_END else message.end_index
+        if not 0 <= first <= last < count:
+            return [ack(sender, kind, MissionResult.INVALID_SEQUENCE)]
+        if sender.peer not in self._under_way and len(self._under_way) >= MAX_CLIENTS:
+            return [ack(sender, kind, MissionResult.DENIED)]
+        self._under_way[sender.peer] = deque(self._told(index, kind, sender) for index in range(first, last + 1))
+        return []
+
+    def _told(self, index: int, kind: MissionType, sender: Sender) -> Outgoing:
+        current = kind is MissionType.MISSION and self._current() == index
+        target = (sender.system, sender.component)
+        return Outgoing(to_message(self._shelf[kind][index], index, kind, target, current=current), sender.peer)

@@ -1,0 +1,53 @@
+"""The plans in force and their ids, by which a ground station sees that a plan is not the one it knows.
+
+The id of a plan is the CRC-32 of its items, 0 for an empty one, as MISSION_COUNT, MISSION_ACK and MISSION_CURRENT tell
+it: the same plan has the same id after a restart, and on another vehicle (mavlink.io/en/services/mission.html,
+"Detecting Mission/Plan Changes").
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+import zlib
+from collections.abc import Iterable, Sequence
+
+from dialects.enums import MissionType
+from link.services.mission.items import Items, MissionItem
+
+_ITEM = struct.Struct("<HB?4fiif")
+
+
+class Shelf:
+    """One plan of each kind that is offered, empty at first."""
+
+    def __init__(self, kinds: Iterable[MissionType]) -> None:
+        self._plans: dict[MissionType, Items] = dict.fromkeys(kinds, ())
+        self._ids = dict.fromkeys(self._plans, 0)
+
+    def __getitem__(self, kind: MissionType) -> Items:
+        return self._plans[kind]
+
+    def id_of(self, kind: MissionType) -> int:
+        """uint32; 0: the plan is empty."""
+        return self._ids[kind]
+
+    def kind(self, number: int) -> MissionType | None:
+        """The kind of plan with this MAV_MISSION_TYPE, where it is offered."""
+        return next((kind for kind in self._plans if kind == number), None)
+
+    def put(self, kind: MissionType, items: Sequence[MissionItem]) -> None:
+        """Another plan in the place of the one before."""
+        self._plans[kind] = tuple(items)
+        self._ids[kind] = plan_id(items)
+
+
+def plan_id(items: Sequence[MissionItem]) -> int:
+    """uint32, 0 only for an empty plan. Values are those of the wire: float32, and one NaN is as good as another."""
+    data = b"".join(_bytes(item) for item in items)
+    return zlib.crc32(data) or 1 if data else 0
+
+
+def _bytes(item: MissionItem) -> bytes:
+    params = [math.nan if math.isnan(value) else value for value in (*item.params, item.z)]
+    return _ITEM.pack(item.command, item.frame, item.autocontinue, *params[:4], item.x, item.y, params[4])

@@ -1,0 +1,55 @@
+"""All parameters as one file, `@PARAM/param.pck`: ArduPilot's packed format, which MAVProxy and Mission Planner ask for
+first because it is a fifth of the messages.
+
+Header: magic, number of parameters inside, number of all, each uint16. Each parameter: a byte of type (low) and flags
+(high; 1: its default follows), a byte of how many characters it shares with the name before (low) and how many more
+there are less one (high), those characters, the value, the default where flagged. All little endian.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping, Sequence
+
+from link.services.param.server import Setting, Values
+from link.services.param.values import same
+
+PATH = "@PARAM/param.pck"
+MAGIC, MAGIC_DEFAULTS = 0x671B, 0x671C
+FLOAT = 4
+"""ArduPilot's AP_PARAM_FLOAT: all our parameters are."""
+HAS_DEFAULT = 1
+MAX_SHARED = 15
+
+
+def pack(table: Sequence[Setting], values: Values, query: Mapping[str, str] | None = None) -> bytes | None:
+    """The file; None for a bad `query`, which is what stood behind the `?` of its path: withdefaults, start, count."""
+    try:
+        options = {key: int(text) for key, text in (query or {}).items()}
+    except ValueError:
+        return None
+    defaults, start, count = options.get("withdefaults", 0), options.get("start", 0), options.get("count", 0)
+    if defaults not in (0, 1) or not 0 <= start < max(1, len(table)) or count < 0:
+        return None
+    chosen = table[start : start + count] if count else table[start:]
+    packed = bytearray(struct.pack("<HHH", MAGIC_DEFAULTS if defaults else MAGIC, len(chosen), len(table)))
+    before = ""
+    for setting in chosen:
+        packed += _one(setting, values[setting.name], before, with_default=bool(defaults))
+        before = setting.name
+    return bytes(packed)
+
+
+def _one(setting: Setting, value: float, before: str, *, with_default: bool) -> bytes:
+    shared = _shared(before, setting.name)
+    rest = setting.name[shared:].encode("ascii")
+    flagged = with_default and not same(value, setting.default)
+    head = bytes([FLOAT | (HAS_DEFAULT << 4 if flagged else 0), shared | (len(rest) - 1) << 4])
+    default = struct.pack("<f", setting.default) if flagged else b""
+    return head + rest + struct.pack("<f", value) + default
+
+
+def _shared(before: str, name: str) -> int:
+    """How many characters both begin with, leaving at least one of `name`."""
+    longest = min(len(before), len(name) - 1, MAX_SHARED)
+    return next((at for at in range(longest) if before[at] != name[at]), longest)

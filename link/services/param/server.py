@@ -1,0 +1,225 @@
+"""The parameter protocol of a vehicle: list, read and set over a table; saving what is set is the vehicle's work.
+
+Rules (mavlink.io/en/services/parameter.html): a set is always answered; what is refused is answered by PARAM_ERROR and
+by the value that stays, in this order, because MAVSDK takes the first answer that names the parameter. Every value is
+REAL32, the only type that all ground stations read alike. The other half is client.py.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from dialects import messages as m
+from dialects.enums import ParamFault
+from link.core import Outgoing, Peer, Received
+from link.services.pacing import OVERHEAD, Pacer
+from link.services.param.values import NAME_SIZE, REAL32, same, shortest
+
+RUN_PERIOD = 1.0
+"""s between the starts of two lists to one peer: less than the 2 s after which MAVProxy asks again."""
+MAX_RUNS = 16
+VALUE_FRAME = m.ParamValue.unpacker.size + OVERHEAD
+
+
+class Setting(Protocol):
+    """One line of the parameter table."""
+
+    @property
+    def name(self) -> str:
+        """At most 16 ASCII characters."""
+
+    @property
+    def default(self) -> float:
+        """Its value until it is set."""
+
+    @property
+    def low(self) -> float:
+        """Smallest value allowed."""
+
+    @property
+    def high(self) -> float:
+        """Largest value allowed."""
+
+    @property
+    def unit(self) -> str:
+        """As people write it, e.g. "m/s"; empty where there is none."""
+
+    @property
+    def description(self) -> str:
+        """One sentence."""
+
+    @property
+    def whole(self) -> bool:
+        """Only whole numbers."""
+
+    @property
+    def safety(self) -> bool:
+        """Never changed while armed."""
+
+    @property
+    def needs_reboot(self) -> bool:
+        """Counts only after a restart."""
+
+    @property
+    def read_only(self) -> bool:
+        """Never set by a ground station."""
+
+
+class Values(Protocol):
+    """The settings in force."""
+
+    def __getitem__(self, name: str, /) -> float:
+        """The value now."""
+
+    def set(self, name: str, value: float) -> None:
+        """Put a checked value in force. Raises ValueError, one line, where it contradicts another."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why a value is not taken."""
+
+    fault: ParamFault
+    reason: str
+    """One line for the driver."""
+
+
+@dataclass(slots=True)
+class _Run:
+    """A list on its way to one peer."""
+
+    start: float
+    next: int = 0
+
+
+class ParamServer:
+    """Answers for one system and component.
+
+    `allowed` says who may set, `armed` whether safety settings are locked, `changed` is told every value that was set,
+    `say` gets a line for the driver when one was refused.
+    """
+
+    def __init__(
+        self,
+        table: Sequence[Setting],
+        values: Values,
+        *,
+        system: int,
+        component: int,
+        pacer: Pacer,
+        allowed: Callable[[Received], bool] = lambda received: True,
+        armed: Callable[[], bool] = lambda: False,
+        changed: Callable[[str, float], None] = lambda name, value: None,
+        say: Callable[[str, float], None] = lambda text, now: None,
+    ) -> None:
+        self._table = tuple(table)
+        self._index = {setting.name: index for index, setting in enumerate(self._table)}
+        self._values = values
+        self._ids = (system, component)
+        self._pacer = pacer
+        self._allowed, self._armed, self._changed, self._say = allowed, armed, changed, say
+        self._runs: dict[Peer, _Run] = {}
+
+    def receive(self, received: Received, now: float) -> list[Outgoing]:
+        """Answer one message; nothing where it is not for us or its sender may not ask."""
+        message = received.message
+        if not isinstance(message, m.ParamRequestList | m.ParamRequestRead | m.ParamSet) or not received.may_ask:
+            return []
+        if message.target_system != self._ids[0] or message.target_component not in (0, self._ids[1]):
+            return []
+        match message:
+            case m.ParamRequestList():
+                self._begin(received.peer, now)
+                return []
+            case m.ParamRequestRead():
+                return self._read(message, received)
+            case _:
+                return self._set(message, received, now) if received.introduced else []
+
+    def tick(self, now: float) -> list[Outgoing]:
+        """The next values of every list under way, as far as the links have room."""
+        outgoing: list[Outgoing] = []
+        for peer, run in list(self._runs.items()):
+            while run.start <= now and run.next < len(self._table) and self._pacer.take(peer, VALUE_FRAME, now):
+                outgoing.append(Outgoing(self._value(run.next), peer))
+                run.next += 1
+            if run.next >= len(self._table) and now - run.start >= RUN_PERIOD:
+                del self._runs[peer]
+        return outgoing
+
+    def announce(self, names: Iterable[str]) -> list[Outgoing]:
+        """Tell everybody the values of parameters that the vehicle itself has changed."""
+        return [Outgoing(self._value(self._index[name])) for name in names]
+
+    def _begin(self, peer: Peer, now: float) -> None:
+        """One run a peer: asked again while one is under way, it goes on; asked again soon after, it waits its turn."""
+        run = self._runs.get(peer)
+        if run is None and len(self._runs) < MAX_RUNS:
+            self._runs[peer] = _Run(now)
+        elif run is not None and run.next >= len(self._table):
+            self._runs[peer] = _Run(run.start + RUN_PERIOD)
+
+    def _read(self, message: m.ParamRequestRead, received: Received) -> list[Outgoing]:
+        index = self._index.get(message.param_id, -1) if message.param_index == -1 else message.param_index
+        if not 0 <= index < len(self._table):
+            return [self._fault(message._param_id_raw, message.param_index, ParamFault.DOES_NOT_EXIST, received)]
+        return [Outgoing(self._value(index), received.peer)]
+
+    def _set(self, message: m.ParamSet, received: Received, now: float) -> list[Outgoing]:
+        name, index = message.param_id, self._index.get(message.param_id)
+        if index is None:
+            self._say(f"No parameter {m.printable(name)}", now)
+            return [self._fault(message._param_id_raw, -1, ParamFault.DOES_NOT_EXIST, received)]
+        refusal = self._refusal(self._table[index], message, received) or self._put(name, message.param_value)
+        if refusal:
+            self._say(f"{name} not changed: {refusal.reason}", now)
+            fault = self._fault(message._param_id_raw, index, refusal.fault, received)
+            return [fault, Outgoing(self._value(index), received.peer)]
+        return [Outgoing(self._value(index))]
+
+    def _put(self, name: str, received: float) -> Refusal | None:
+        value = shortest(received)
+        if same(value, self._values[name]):
+            return None
+        try:
+            self._values.set(name, value)
+        except ValueError as error:
+            return Refusal(ParamFault.VALUE_OUT_OF_RANGE, str(error))
+        self._changed(name, value)
+        return None
+
+    def _refusal(self, setting: Setting, message: m.ParamSet, received: Received) -> Refusal | None:
+        if not self._allowed(received):
+            return Refusal(ParamFault.PERMISSION_DENIED, "you are not in control")
+        if setting.read_only:
+            return Refusal(ParamFault.READ_ONLY, "it is read only")
+        if message.param_type != REAL32:
+            return Refusal(ParamFault.TYPE_MISMATCH, "its type is REAL32")
+        unchanged = same(message.param_value, self._values[setting.name])
+        if setting.safety and self._armed() and not unchanged:
+            return Refusal(ParamFault.PERMISSION_DENIED, "disarm first")
+        return check(setting, message.param_value)
+
+    def _value(self, index: int) -> m.ParamValue:
+        name = self._table[index].name
+        return m.ParamValue(name.encode(), self._values[name], REAL32, len(self._table), index)
+
+    def _fault(self, name: bytes, index: int, fault: ParamFault, received: Received) -> Outgoing:
+        return Outgoing(
+            m.ParamError(received.system, received.component, name[:NAME_SIZE], index, fault), received.peer
+        )
+
+
+def check(setting: Setting, value: float) -> Refusal | None:
+    """Why `value` is not one for `setting`, or None. Bounds count as float32, for that is how values arrive."""
+    if not math.isfinite(value):
+        return Refusal(ParamFault.VALUE_OUT_OF_RANGE, f"{value} is no number")
+    value = shortest(value)
+    if not setting.low <= value <= setting.high:
+        return Refusal(ParamFault.VALUE_OUT_OF_RANGE, f"{value:g} is not in {setting.low:g} to {setting.high:g}")
+    if setting.whole and value != int(value):
+        return Refusal(ParamFault.VALUE_OUT_OF_RANGE, f"{value:g} is no whole number")
+    return None

@@ -1,0 +1,1 @@
+"""Telemetry logs (tlog): format, and a recorder that writes them in a thread."""

@@ -1,0 +1,66 @@
+"""Telemetry logs: each frame behind its time, as MAVProxy, QGroundControl and pymavlink's tools read and write them.
+
+A record is 8 bytes, Unix time in us, big-endian, then the frame as it was on the wire. There is no header and no
+index: a file that was cut off is whole up to there, and a damaged one is read on from the next sound frame.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from dialects.codec import CRC_EXTRA, MAGIC_V1, MAGIC_V2
+from link.protocol.frame import read_header
+from link.protocol.framer import Framer
+
+STAMP = 8
+_STAMP = struct.Struct(">Q")
+_MAGIC_V2, _SETUP_SIGNING = bytes([MAGIC_V2]), (256).to_bytes(3, "little")
+_LEAST = STAMP + 8  # and the shortest frame
+_DAY = 86_400_000_000
+
+
+class Record(NamedTuple):
+    """One frame and when it was on the wire."""
+
+    microseconds: int
+    """Unix time."""
+    raw: bytes
+
+
+def record(microseconds: int, raw: bytes) -> bytes:
+    """The bytes of one record; none for SETUP_SIGNING, because its key belongs into no file."""
+    if raw[:1] == _MAGIC_V2 and raw[7:10] == _SETUP_SIGNING:
+        return b""
+    return _STAMP.pack(microseconds) + raw
+
+
+def read(data: bytes) -> Iterator[Record]:
+    """All whole records of a log, in order. What is damaged is skipped and never raises."""
+    at, last, sure = 0, 0, True
+    while at + _LEAST <= len(data):
+        raw = _frame_at(data, at + STAMP, trust_unknown=sure)
+        if raw is None:
+            at, sure = at + 1, False
+            continue
+        (stamp,) = _STAMP.unpack_from(data, at)
+        if not sure and not last <= stamp <= last + _DAY:
+            stamp = last  # the frame is sound, but the damage reached its time
+        yield Record(stamp, raw)
+        at, last, sure = at + STAMP + len(raw), stamp, True
+
+
+def _frame_at(data: bytes, start: int, *, trust_unknown: bool) -> bytes | None:
+    """The frame there. One that nobody can check counts only right behind a sound record, and before another."""
+    if data[start] not in (MAGIC_V1, MAGIC_V2):
+        return None
+    header = read_header(data, start)
+    if header is None or start + header.size > len(data):
+        return None
+    end = start + header.size
+    raw = data[start:end]
+    if header.message_id not in CRC_EXTRA:
+        followed = end + STAMP >= len(data) or data[end + STAMP] in (MAGIC_V1, MAGIC_V2)
+        return raw if trust_unknown and followed else None
+    return raw if Framer(stream=False).feed(raw, 0.0) else None

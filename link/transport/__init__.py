@@ -1,0 +1,1 @@
+"""UDP, TCP, serial and in-memory transports, and their send queues."""

@@ -1,0 +1,83 @@
+"""One open TCP connection: a stream both ways that never blocks, and notices when the other end is gone."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Callable, Hashable
+
+from link.transport.priority_queue import TransmitQueue
+from link.transport.stream_writer import Outlet
+from link.transport.transport import Arrived
+
+BULK = 65536
+"""Bytes of telemetry that may wait for one connection, then the oldest is dropped."""
+SEND_BUFFER = 32768
+"""Bytes that the kernel keeps, where nothing can overtake; its own default grows to megabytes."""
+READ = 65536
+DEAD_AFTER = 10
+"""s without an acknowledgement after which the other end counts as gone; twice the vehicle's patience with its GCS."""
+
+
+class Connection:
+    """One open connection. `ended` hears why it ended; whoever calls close() knows it already."""
+
+    def __init__(
+        self, sock: socket.socket, address: Hashable, arrived: Arrived, ended: Callable[[Connection, str], None]
+    ) -> None:
+        _prepare(sock)
+        self.address = address
+        self.queue = TransmitQueue(BULK)
+        self._socket = sock
+        self._arrived = arrived
+        self._ended = ended
+        self._outlet = Outlet(sock.fileno(), self.queue, sock.send, self._failed)
+        self._loop = asyncio.get_running_loop()
+        self._loop.add_reader(sock, self._readable)
+
+    def send(self, data: bytes) -> None:
+        """One frame, now or soon."""
+        self._outlet.send(data)
+
+    def close(self) -> None:
+        """Hand over what is taken at once, and end it."""
+        self._ended = lambda *_: None
+        self._outlet.finish()
+        self._release()
+
+    def _readable(self) -> None:
+        try:
+            data = self._socket.recv(READ)
+        except BlockingIOError:
+            return
+        except OSError as error:
+            self._failed(error)
+            return
+        if data:
+            self._arrived([(data, self.address)])
+        else:
+            self._end("closed by the other end")
+
+    def _failed(self, error: OSError) -> None:
+        self._end(error.strerror or str(error))
+
+    def _end(self, why: str) -> None:
+        self._outlet.close()
+        self._release()
+        self._ended(self, why)
+
+    def _release(self) -> None:
+        if self._socket.fileno() >= 0:
+            self._loop.remove_reader(self._socket)
+            self._socket.close()
+
+
+def _prepare(sock: socket.socket) -> None:
+    sock.setblocking(False)
+    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, DEAD_AFTER // 2)
+    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, 1)
+    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPCNT, DEAD_AFTER // 2)
+    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, DEAD_AFTER * 1000)

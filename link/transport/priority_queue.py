@@ -1,0 +1,167 @@
+"""What waits for a slow wire, and who goes first: frames that control overtake telemetry. No I/O here.
+
+Rules: control before bulk, each in its own order; of demands and heartbeats only the newest waits; when bulk is full
+the oldest is dropped; what has waited too long is dropped, because an old demand is a wrong one; a stop never is.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from dialects import codec
+from dialects.messages import (
+    CommandAck,
+    CommandInt,
+    CommandLong,
+    Heartbeat,
+    ManualControl,
+    RcChannelsOverride,
+    RoverOperatorPresence,
+    SetAttitudeTarget,
+    SetMode,
+    SetPositionTargetGlobalInt,
+    SetPositionTargetLocalNed,
+    is_stop,
+)
+from dialects.targets import target_of
+from link.protocol.frame import read_header
+
+SETPOINTS = (SetPositionTargetLocalNed, SetPositionTargetGlobalInt, SetAttitudeTarget)
+NEWEST_ONLY = frozenset(
+    each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence, Heartbeat, *SETPOINTS)
+)
+"""State that control depends on: a newer frame of the same sender and target replaces the one that waits."""
+URGENT = NEWEST_ONLY | {each.id for each in (CommandLong, CommandInt, CommandAck, SetMode)}
+"""Frames that overtake all others."""
+STALE = 0.5
+"""s after which a waiting frame is worth less than none: about the vehicle's own patience with a demand (0.45 s)."""
+MAX_URGENT = 64
+"""Control frames that may wait: 0.4 s of them at 57600 baud."""
+AHEAD = 0.020
+"""s of wire time that may lie in the driver's buffer, where nothing can overtake."""
+AHEAD_LEAST = 0.004
+"""s: below this any frame may go, however long it is, or the wire would run dry."""
+
+
+class _Entry:
+    __slots__ = ("at", "data", "key")
+
+    def __init__(self, data: bytes, at: float, key: tuple[int, ...] | None) -> None:
+        self.data = data
+        self.at = at
+        self.key = key
+
+
+class TransmitQueue:
+    """Frames on their way to one wire. `limit` is how many bytes of bulk may wait."""
+
+    def __init__(self, limit: int) -> None:
+        self.dropped = 0
+        """Frames that were given up."""
+        self._limit = limit
+        self._urgent: deque[_Entry] = deque()
+        self._bulk: deque[_Entry] = deque()
+        self._bulk_size = 0
+        self._newest: dict[tuple[int, ...], _Entry] = {}
+
+    def put(self, data: bytes, now: float) -> None:
+        """Add one whole frame."""
+        header = read_header(data)
+        if header is None or header.message_id not in URGENT:
+            self._put_bulk(data, now)
+        elif header.message_id in NEWEST_ONLY:
+            target = target_of(header.message_id, data)
+            self._put_newest(data, now, (header.message_id, header.system, header.component, *target))
+        else:
+            self._put_urgent(_Entry(data, now, None))
+
+    def next_size(self, now: float) -> int:
+        """Bytes of the frame that goes next; 0 when none waits."""
+        while self._urgent and self._is_stale(self._urgent[0], now):
+            self._give_up(self._urgent.popleft())
+        if self._urgent:
+            return len(self._urgent[0].data)
+        while self._bulk and self._is_stale(self._bulk[0], now):
+            self._drop_bulk()
+        return len(self._bulk[0].data) if self._bulk else 0
+
+    def take(self, now: float) -> bytes:
+        """The frame that goes next; empty when none waits."""
+        if not self.next_size(now):
+            return b""
+        if self._urgent:
+            entry = self._urgent.popleft()
+            if entry.key is not None:
+                del self._newest[entry.key]
+            return entry.data
+        entry = self._bulk.popleft()
+        self._bulk_size -= len(entry.data)
+        return entry.data
+
+    def clear(self) -> None:
+        """Forget all that waits: the wire it waited for is gone."""
+        self._urgent.clear()
+        self._bulk.clear()
+        self._newest.clear()
+        self._bulk_size = 0
+
+    def _put_bulk(self, data: bytes, now: float) -> None:
+        self._bulk.append(_Entry(data, now, None))
+        self._bulk_size += len(data)
+        while self._bulk_size > self._limit:
+            self._drop_bulk()
+
+    def _put_newest(self, data: bytes, now: float, key: tuple[int, ...]) -> None:
+        waiting = self._newest.get(key)
+        if waiting is not None:
+            waiting.data, waiting.at = data, now  # it keeps its place in the queue
+            self.dropped += 1
+            return
+        entry = self._newest[key] = _Entry(data, now, key)
+        self._put_urgent(entry)
+
+    def _put_urgent(self, entry: _Entry) -> None:
+        self._urgent.append(entry)
+        if len(self._urgent) > MAX_URGENT:
+            leaving = next((each for each in self._urgent if not _stops(each.data)), self._urgent[0])
+            self._urgent.remove(leaving)
+            self._give_up(leaving)
+
+    def _drop_bulk(self) -> None:
+        self._bulk_size -= len(self._bulk.popleft().data)
+        self.dropped += 1
+
+    def _give_up(self, entry: _Entry) -> None:
+        if entry.key is not None:
+            del self._newest[entry.key]
+        self.dropped += 1
+
+    def _is_stale(self, entry: _Entry, now: float) -> bool:
+        return now - entry.at > STALE and not _stops(entry.data)
+
+
+def _stops(data: bytes) -> bool:
+    """Is this a frame of a command that only ever stops?"""
+    header = read_header(data)
+    if header is None or header.message_id not in (CommandLong.id, CommandInt.id):
+        return False
+    start = codec.HEADER_V2 if data[0] == codec.MAGIC_V2 else codec.HEADER_V1
+    return is_stop(codec.decode(header.message_id, data[start : start + data[1]]))
+
+
+class Pacer:
+    """Says when a wire of `capacity` bytes/s has room, so that no long queue forms in the driver behind it."""
+
+    def __init__(self, capacity: float) -> None:
+        self._capacity = capacity
+        self._free_at = 0.0
+        """When the wire will have sent what it was given."""
+
+    def wait(self, size: int, in_driver: int, now: float) -> float:
+        """s until a frame of `size` bytes may go; `in_driver` bytes are there by its own word (0: it does not know)."""
+        ahead = max(self._free_at - now, in_driver / self._capacity)
+        return max(0.0, min(ahead + size / self._capacity - AHEAD, ahead - AHEAD_LEAST))
+
+    def wrote(self, size: int, now: float) -> None:
+        """`size` bytes went to the driver."""
+        self._free_at = max(self._free_at, now) + size / self._capacity

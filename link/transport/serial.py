@@ -1,0 +1,192 @@
+"""A serial port: pyserial opens and configures it, the event loop reads and writes it. It never blocks, and a port
+that is missing or unplugged is waited for."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import fcntl
+import os
+import stat
+import struct
+import termios
+from collections.abc import Hashable
+
+import serial
+
+from link.endpoint import Endpoint
+from link.transport.backoff import Backoff
+from link.transport.priority_queue import Pacer, TransmitQueue
+from link.transport.serial_faults import ABSENT, in_words
+from link.transport.stream_writer import Outlet
+from link.transport.transport import Arrived, Gone, LinkError
+
+BITS_PER_BYTE = 10
+"""8 data bits, one start and one stop bit."""
+BULK_WAIT = 0.25
+"""s of wire time that telemetry may wait: longer than any burst of ours, and then the oldest is not worth sending."""
+BULK_LEAST = 600
+"""Bytes, for slow ports: two of the longest frames."""
+READ = 4096
+
+
+class SerialWire:
+    """One serial port, by its path. `port` is open, or None when it must be waited for."""
+
+    def __init__(self, endpoint: Endpoint, port: serial.Serial | None) -> None:
+        self.endpoint = endpoint
+        self.problem = None if port else _waiting(endpoint)
+        self.stream = True
+        self.fixed: Hashable | None = endpoint.text
+        self.capacity: float | None = endpoint.baud / BITS_PER_BYTE
+        self._queue = TransmitQueue(max(BULK_LEAST, int(endpoint.baud / BITS_PER_BYTE * BULK_WAIT)))
+        self._port = port
+        self._outlet: Outlet | None = None
+        self._backoff = Backoff()
+        self._timer: asyncio.TimerHandle | None = None
+        self._closed = False
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._arrived: Arrived = lambda _: None
+        self._gone: Gone = lambda _: None
+
+    @property
+    def dropped(self) -> int:
+        """Frames that the port had no room for."""
+        return self._queue.dropped
+
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+        """Hand over what arrives, and wait for the port where it is missing."""
+        self._loop, self._arrived, self._gone = loop, arrived, gone
+        if self._port:
+            self._use(loop, self._port)
+        else:
+            self._try_later(loop)
+
+    def send(self, data: bytes, address: Hashable) -> None:
+        """One frame into the queue; into nothing while the port is away, because it would be old when it returns."""
+        if self._outlet:
+            self._outlet.send(data)
+
+    def close(self) -> None:
+        """Hand the last frames to the driver and free the port."""
+        self._closed = True
+        if self._timer:
+            self._timer.cancel()
+        if self._outlet:
+            self._outlet.finish()
+        self._release()
+
+    def _use(self, loop: asyncio.AbstractEventLoop, port: serial.Serial) -> None:
+        self._port, self.problem = port, None
+        descriptor = port.fileno()
+        self._outlet = Outlet(
+            descriptor,
+            self._queue,
+            lambda data: os.write(descriptor, data),
+            lambda error: self._lose(error.strerror or str(error)),
+            pacer=Pacer(self.endpoint.baud / BITS_PER_BYTE),
+            in_driver=lambda: _in_driver(descriptor),
+        )
+        loop.add_reader(descriptor, self._readable, descriptor)
+
+    def _readable(self, descriptor: int) -> None:
+        try:
+            data = os.read(descriptor, READ)
+        except BlockingIOError:
+            return
+        except OSError as error:
+            self._lose(error.strerror or str(error))
+            return
+        if not data:
+            self._lose("hung up")
+            return
+        self._backoff.reset()
+        self._arrived([(data, self.endpoint.text)])
+
+    def _lose(self, why: str) -> None:
+        """Unplugged, or broken: what waits is old by the time it returns, and half a frame is no frame."""
+        if self._closed or self._port is None or self._loop is None:
+            return
+        self.problem = f"{self.endpoint.text}: lost the port ({why}); waiting for it"
+        if self._outlet:
+            self._outlet.close()
+        with contextlib.suppress(termios.error, OSError):
+            termios.tcflush(self._port.fileno(), termios.TCIOFLUSH)  # or close() may wait 30 s for bytes to leave
+        self._release()
+        self._gone(self.endpoint.text)
+        self._try_later(self._loop)
+
+    def _release(self) -> None:
+        port, self._port, self._outlet = self._port, None, None
+        if port is None:
+            return
+        if self._loop:
+            self._loop.remove_reader(port.fileno())
+        with contextlib.suppress(OSError):
+            port.close()
+
+    def _try_later(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._timer = loop.call_later(self._backoff.wait(), self._try, loop)
+
+    def _try(self, loop: asyncio.AbstractEventLoop) -> None:
+        try:
+            port = _open(self.endpoint)
+        except LinkError as error:
+            self.problem = f"{error}; trying again"
+        else:
+            if port:
+                self._use(loop, port)
+                return
+            self.problem = _waiting(self.endpoint)
+        self._try_later(loop)
+
+
+def open_serial(endpoint: Endpoint) -> SerialWire:
+    """Open the port, or wait for it where it is missing. Raises LinkError for what waiting does not mend."""
+    return SerialWire(endpoint, _open(endpoint))
+
+
+def _waiting(endpoint: Endpoint) -> str:
+    return f"{endpoint.text}: waiting for {endpoint.path}, it is not there; is it plugged in?"
+
+
+def _open(endpoint: Endpoint) -> serial.Serial | None:
+    """The port, configured; None when there is none. Raises LinkError."""
+    try:
+        if not stat.S_ISCHR(os.stat(endpoint.path).st_mode):
+            raise LinkError(f"{endpoint.text}: {endpoint.path} is no serial port but a file or folder")
+        port = serial.Serial(endpoint.path, endpoint.baud, timeout=0, exclusive=True)
+        try:
+            _configure(port)
+        except BaseException:
+            port.close()
+            raise
+    except (OSError, termios.error) as error:  # SerialException is an OSError; termios's own is none
+        fault = OSError(*error.args)
+        if fault.errno in ABSENT:
+            return None
+        raise LinkError(f"{endpoint.text}: {in_words(endpoint.path, fault)}") from error
+    except (ValueError, OverflowError) as error:
+        raise LinkError(f"{endpoint.text}: the port does not take {endpoint.baud} baud; try 57600") from error
+    return port
+
+
+def _configure(port: serial.Serial) -> None:
+    """What pyserial leaves open."""
+    descriptor = port.fileno()
+    os.set_blocking(descriptor, False)
+    settings = termios.tcgetattr(descriptor)
+    settings[2] &= ~termios.HUPCL  # DTR stays as it is when we close: many boards reset when it falls
+    settings[6][termios.VMIN] = 1  # or "nothing to read" would look like "unplugged"
+    termios.tcsetattr(descriptor, termios.TCSANOW, settings)
+    with contextlib.suppress(ValueError, OSError, AttributeError):
+        port.set_low_latency_mode(True)  # FTDI: 1 ms instead of 16; drivers without it refuse
+
+
+def _in_driver(descriptor: int) -> int:
+    """Bytes that the driver has not sent yet, as far as it knows."""
+    try:
+        (waiting,) = struct.unpack("i", fcntl.ioctl(descriptor, termios.TIOCOUTQ, b"\0\0\0\0"))
+    except OSError:
+        return 0
+    return int(waiting)

@@ -1,0 +1,110 @@
+"""Feeds a descriptor that does not block from a queue: at the pace of its wire where that is known."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from link.transport.priority_queue import Pacer, TransmitQueue
+
+JOINED = 4096
+"""Bytes handed over in one call where no pace is known: fewer calls behind a backlog, and a short one at that."""
+
+
+class Outlet:
+    """The sending half of a stream. `write` puts bytes on it and returns how many it took, `failed` hears its OSError,
+    `in_driver` tells how many bytes wait behind it."""
+
+    def __init__(
+        self,
+        descriptor: int,
+        queue: TransmitQueue,
+        write: Callable[[bytes], int],
+        failed: Callable[[OSError], None],
+        *,
+        pacer: Pacer | None = None,
+        in_driver: Callable[[], int] = lambda: 0,
+    ) -> None:
+        self._descriptor = descriptor
+        self._queue = queue
+        self._write = write
+        self._failed = failed
+        self._pacer = pacer
+        self._in_driver = in_driver
+        self._loop = asyncio.get_running_loop()
+        self._rest = b""
+        """The frame that is half on the wire: it must end before any other begins."""
+        self._timer: asyncio.TimerHandle | None = None
+        self._blocked = False
+
+    def send(self, frame: bytes) -> None:
+        """One frame, now or as soon as there is room."""
+        self._queue.put(frame, self._loop.time())
+        if not self._blocked and self._timer is None:
+            self._pump()
+
+    def finish(self) -> None:
+        """Hand over what waits, without regard to the pace, as far as it is taken at once; then close()."""
+        self._pacer = None
+        if not self._blocked:
+            self._pump()
+        self.close()
+
+    def close(self) -> None:
+        """Send no more; what waits is forgotten."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        self._unblock()
+        self._queue.clear()
+
+    def _pump(self) -> None:
+        self._timer = None
+        try:
+            while self._has_next():
+                taken = self._write(self._rest)
+                self._rest = self._rest[taken:]
+                if self._pacer is not None:
+                    self._pacer.wrote(taken, self._loop.time())
+        except BlockingIOError:
+            self._block()
+        except OSError as error:
+            self._failed(error)
+        else:
+            self._unblock()
+
+    def _has_next(self) -> bool:
+        """Bytes to write now, in `_rest`? Where the pace says "later", sets a timer."""
+        if self._rest:
+            return True
+        now = self._loop.time()
+        if self._pacer is None:
+            self._rest = self._joined(now)
+            return bool(self._rest)
+        size = self._queue.next_size(now)
+        if not size:
+            return False
+        wait = self._pacer.wait(size, self._in_driver(), now)
+        if wait > 0:
+            self._timer = self._loop.call_later(wait, self._pump)
+            return False
+        self._rest = self._queue.take(now)
+        return True
+
+    def _joined(self, now: float) -> bytes:
+        frames: list[bytes] = []
+        size = 0
+        while size < JOINED and (frame := self._queue.take(now)):
+            frames.append(frame)
+            size += len(frame)
+        return b"".join(frames)
+
+    def _block(self) -> None:
+        if not self._blocked:
+            self._blocked = True
+            self._loop.add_writer(self._descriptor, self._pump)
+
+    def _unblock(self) -> None:
+        if self._blocked:
+            self._blocked = False
+            self._loop.remove_writer(self._descriptor)

@@ -1,0 +1,205 @@
+"""TCP: a stream for each connection. `tcpin` takes several and answers each, `tcpout` connects again and again."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import socket
+from collections.abc import Hashable
+
+from link.endpoint import Endpoint
+from link.protocol.link_events import CONNECTING
+from link.runtime.worker import Worker
+from link.transport.address import reason, resolve
+from link.transport.backoff import Backoff
+from link.transport.connection import Connection
+from link.transport.transport import Arrived, Gone, LinkError
+
+MAX_CONNECTIONS = 16
+"""To one `tcpin`; more are closed at once."""
+CONNECT_WITHIN = 5.0
+"""s, then the next try."""
+
+
+class TcpServer:
+    """`tcpin`: each connection is a peer of its own."""
+
+    def __init__(self, endpoint: Endpoint, sock: socket.socket) -> None:
+        self.endpoint = endpoint
+        self.problem: str | None = None
+        self.stream = True
+        self.fixed: Hashable | None = None
+        self.capacity: float | None = None
+        self._socket = sock
+        self._connections: dict[Hashable, Connection] = {}
+        self._dropped = 0
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._arrived: Arrived = lambda _: None
+        self._gone: Gone = lambda _: None
+
+    @property
+    def dropped(self) -> int:
+        """Frames that no connection had room for."""
+        return self._dropped + sum(each.queue.dropped for each in self._connections.values())
+
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+        """Take connections."""
+        self._loop, self._arrived, self._gone = loop, arrived, gone
+        loop.add_reader(self._socket, self._accept)
+
+    def send(self, data: bytes, address: Hashable) -> None:
+        """One frame to one connection; nothing happens when that has ended."""
+        connection = self._connections.get(address)
+        if connection:
+            connection.send(data)
+
+    def close(self) -> None:
+        """End all connections and free the port."""
+        if self._loop:
+            self._loop.remove_reader(self._socket)
+        for connection in list(self._connections.values()):
+            connection.close()
+        self._socket.close()
+
+    def _accept(self) -> None:
+        try:
+            sock, address = self._socket.accept()
+        except BlockingIOError:
+            return
+        except OSError as error:
+            self.problem = f"{self.endpoint.text}: {error.strerror}"
+            return
+        self.problem = None
+        if len(self._connections) >= MAX_CONNECTIONS:
+            sock.close()
+            return
+        self._connections[address] = Connection(sock, address, self._arrived, self._ended)
+        self._arrived([(b"", address)])  # mavutil and MAVSDK wait for a HEARTBEAT before they say theirs
+
+    def _ended(self, connection: Connection, why: str) -> None:
+        del self._connections[connection.address]
+        self._dropped += connection.queue.dropped
+        self._gone(connection.address)
+
+
+class TcpClient:
+    """`tcpout`: one connection, tried until it stands, and again when it has ended."""
+
+    def __init__(self, endpoint: Endpoint, address: tuple[str, int], family: socket.AddressFamily) -> None:
+        self.endpoint = endpoint
+        self.problem: str | None = f"{endpoint.text}: {CONNECTING}"
+        self.stream = True
+        self.fixed: Hashable | None = endpoint.text
+        self.capacity: float | None = None
+        self._target = address, family
+        self._names = Worker("names", limit=1)
+        self._connection: Connection | None = None
+        self._trying: socket.socket | None = None
+        self._timer: asyncio.TimerHandle | None = None
+        self._backoff = Backoff()
+        self._dropped = 0
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._arrived: Arrived = lambda _: None
+        self._gone: Gone = lambda _: None
+
+    @property
+    def dropped(self) -> int:
+        """Frames that the connection had no room for."""
+        return self._dropped + (self._connection.queue.dropped if self._connection else 0)
+
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+        """Begin to connect."""
+        self._loop = loop
+        self._arrived, self._gone = arrived, gone
+        self._connect(loop)
+
+    def send(self, data: bytes, address: Hashable) -> None:
+        """One frame; into nothing while there is no connection, because it would be old when there is one."""
+        if self._connection:
+            self._connection.send(data)
+
+    def close(self) -> None:
+        """End it, and try no more."""
+        self._give_up_trying()
+        self._names.close(patience=0.0)
+        if self._connection:
+            self._connection.close()
+
+    def _connect(self, loop: asyncio.AbstractEventLoop) -> None:
+        address, family = self._target
+        sock = self._trying = socket.socket(family, socket.SOCK_STREAM)
+        sock.setblocking(False)
+        self._timer = loop.call_later(CONNECT_WITHIN, self._refused, loop, "no answer")
+        try:
+            sock.connect(address)
+        except BlockingIOError:
+            loop.add_writer(sock, self._connected, loop, sock)
+        except OSError as error:
+            self._refused(loop, error.strerror or str(error))
+        else:
+            self._connected(loop, sock)
+
+    def _connected(self, loop: asyncio.AbstractEventLoop, sock: socket.socket) -> None:
+        error = sock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
+        # On one machine a port that nobody listens on can be our own end: the two would talk to themselves.
+        if error or sock.getsockname() == sock.getpeername():
+            self._refused(loop, os.strerror(error) if error else "nobody listens")
+            return
+        self._trying = None
+        self._give_up_trying()
+        loop.remove_writer(sock)
+        self.problem = None
+        self._backoff.reset()
+        self._connection = Connection(sock, self.fixed, self._arrived, self._ended)
+
+    def _refused(self, loop: asyncio.AbstractEventLoop, why: str) -> None:
+        self._give_up_trying()
+        self._again(loop, f"not connected ({why})")
+
+    def _ended(self, connection: Connection, why: str) -> None:
+        self._dropped += connection.queue.dropped
+        self._connection = None
+        self._gone(connection.address)
+        if self._loop:
+            self._again(self._loop, f"connection lost ({why})")
+
+    def _again(self, loop: asyncio.AbstractEventLoop, what: str) -> None:
+        self.problem = f"{self.endpoint.text}: {what}; trying again"
+        if self._target[0][0] != self.endpoint.host:  # a name, which may have another address by now
+            self._names.put(self._look_up)
+        self._timer = loop.call_later(self._backoff.wait(), self._connect, loop)
+
+    def _look_up(self) -> None:
+        """In a thread, and no try waits for it: the name server may be what is away. Unknown: the last one stays."""
+        with contextlib.suppress(LinkError):
+            self._target = resolve(self.endpoint, socket.SOCK_STREAM)
+
+    def _give_up_trying(self) -> None:
+        if self._timer:
+            self._timer.cancel()
+        sock, self._trying = self._trying, None
+        if sock:
+            if self._loop:
+                self._loop.remove_writer(sock)
+            sock.close()
+
+
+def open_tcpin(endpoint: Endpoint) -> TcpServer:
+    """Open the port. Raises LinkError with one line that says what is wrong and what to do."""
+    address, family = resolve(endpoint, socket.SOCK_STREAM)
+    sock = socket.socket(family, socket.SOCK_STREAM)
+    sock.setblocking(False)
+    sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # or a restart waits a minute for its own port
+    try:
+        sock.bind(address)
+        sock.listen(MAX_CONNECTIONS)
+    except OSError as error:
+        sock.close()
+        raise LinkError(reason(endpoint, error)) from error
+    return TcpServer(endpoint, sock)
+
+
+def open_tcpout(endpoint: Endpoint) -> TcpClient:
+    """Ready to connect; that nobody listens yet is no error. Raises LinkError where the name is not known."""
+    return TcpClient(endpoint, *resolve(endpoint, socket.SOCK_STREAM))

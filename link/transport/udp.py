@@ -1,0 +1,88 @@
+"""UDP: datagrams in, datagrams out. Never blocks; what the network will not take now is dropped, the newest wins."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Hashable
+
+from link.endpoint import Endpoint
+from link.transport.address import reason, resolve
+from link.transport.transport import Arrived, Gone, LinkError
+
+BATCH = 64
+"""Datagrams read before the loop gets its turn again: a flood must not starve the control loop (about 1 ms)."""
+BUFFER = 65536
+"""Bytes of the largest datagram."""
+
+
+class UdpWire:
+    """One UDP socket: `udpin` waits on an address, `udpout` speaks to one first and hears only that one.
+
+    The name of that one is looked up at the start and never again: UDP knows no end after which it could be.
+    """
+
+    def __init__(self, endpoint: Endpoint, sock: socket.socket) -> None:
+        self.endpoint = endpoint
+        self.problem: str | None = None
+        self.stream = False
+        self.fixed: Hashable | None = endpoint.text if endpoint.scheme == "udpout" else None
+        self.capacity: float | None = None
+        self.dropped = 0
+        self._socket = sock
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+        """Hand arriving datagrams to `arrived` in batches; UDP knows no end of a connection."""
+        self._loop = loop
+        loop.add_reader(self._socket, self._readable, arrived)
+
+    def send(self, data: bytes, address: Hashable) -> None:
+        """One datagram, now or never."""
+        try:
+            if self.fixed is not None:
+                self._socket.send(data)
+            else:
+                self._socket.sendto(data, address)  # type: ignore[call-overload]
+        except (BlockingIOError, ConnectionRefusedError):
+            self.dropped += 1  # full, or nobody listens yet: as if the network had lost it
+        except OSError as error:
+            self.problem = f"{self.endpoint.text}: {error.strerror}"
+        else:
+            self.problem = None
+
+    def close(self) -> None:
+        """Stop listening and free the port."""
+        if self._loop:
+            self._loop.remove_reader(self._socket)
+        self._socket.close()
+
+    def _readable(self, arrived: Arrived) -> None:
+        batch: list[tuple[bytes, Hashable]] = []
+        for _ in range(BATCH):
+            try:
+                data, address = self._socket.recvfrom(BUFFER)
+            except (BlockingIOError, ConnectionRefusedError):
+                break
+            except OSError as error:
+                self.problem = f"{self.endpoint.text}: {error.strerror}"
+                break
+            batch.append((data, self.fixed or address))
+        if batch:
+            arrived(batch)
+
+
+def open_udp(endpoint: Endpoint) -> UdpWire:
+    """Open the socket. Raises LinkError with one line that says what is wrong and what to do."""
+    address, family = resolve(endpoint, socket.SOCK_DGRAM)
+    sock = socket.socket(family, socket.SOCK_DGRAM)
+    sock.setblocking(False)
+    try:
+        if endpoint.scheme == "udpout":
+            sock.connect(address)
+        else:
+            sock.bind(address)
+    except OSError as error:
+        sock.close()
+        raise LinkError(reason(endpoint, error)) from error
+    return UdpWire(endpoint, sock)

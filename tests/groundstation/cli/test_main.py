@@ -1,0 +1,136 @@
+"""The command line: what is told before the screen opens. Exit code 2, one line, no traceback."""
+
+from __future__ import annotations
+
+import os
+import pty
+import socket
+import struct
+import subprocess
+import sys
+from collections.abc import Sequence
+from fcntl import ioctl
+from pathlib import Path
+from termios import TIOCSWINSZ
+
+import pytest
+
+from groundstation.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """Run in this process; the line on stderr."""
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.count("\n") == 1
+    assert captured.err.startswith("groundstation: ")
+    return captured.err
+
+
+def in_terminal(
+    arguments: Sequence[str], *, columns: int = 80, rows: int = 24, timeout: float = 60.0
+) -> tuple[int, str]:
+    """Run in a terminal of this size; exit code and everything that was shown."""
+    ours, theirs = pty.openpty()
+    ioctl(theirs, TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+    environment = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "LINES")}
+    command = [sys.executable, "-m", "groundstation", *arguments]
+    with subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs, cwd=ROOT, env=environment) as process:
+        os.close(theirs)
+        code = process.wait(timeout)
+        shown = os.read(ours, 65536)
+    os.close(ours)
+    return code, shown.decode().replace("\r\n", "\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["carrier:pigeon"], "udpin:HOST:PORT"),
+        (["udpin:127.0.0.1:0"], "port '0' is not a number from 1 to 65535"),
+        (["--keys", "emacs"], "unknown key map 'emacs': choose standard, teleop"),
+        (["--keys", "/nowhere/keys.toml"], "No such file"),
+        (["udpin:127.0.0.1:14999"], "is not a terminal"),
+    ],
+)
+def test_mistakes_are_one_line(capsys: pytest.CaptureFixture[str], arguments: list[str], words: str) -> None:
+    assert words in told(capsys, *arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--fly"], "unrecognized arguments: --fly"),
+        (["--style", "wild"], "invalid choice: 'wild'"),
+        (["--speed", "2"], "'2' is not a number from 0.1 to 1.0"),
+        (["--speed", "nan"], "'nan' is not a number from 0.1 to 1.0"),
+        (["--speed", "fast"], "'fast' is not a number"),
+        (["--system", "256"], "'256' is not a number from 1 to 255"),
+        (["--system", "-1"], "'-1' is not a number from 1 to 255"),
+    ],
+)
+def test_wrong_options(capsys: pytest.CaptureFixture[str], arguments: list[str], words: str) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+    error = capsys.readouterr().err
+    assert words in error
+    assert error.startswith("groundstation: ")
+    assert error.count("\n") == 1
+
+
+def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(["--help"])
+    assert caught.value.code == 0
+    text = capsys.readouterr().out
+    for word in (
+        "groundstation --sitl",
+        "udpin:HOST:PORT",
+        "teleop",
+        "`r` then `y` arms",
+        '"drive.forward" = ["e", "up"]',
+    ):
+        assert word in text
+
+
+def test_version(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert capsys.readouterr().out.startswith("groundstation 0.")
+
+
+@pytest.mark.e2e
+def test_a_terminal_that_is_far_too_small() -> None:
+    code, shown = in_terminal(["udpin:127.0.0.1:14999"], columns=30, rows=8)
+    assert code == 2
+    assert shown == "groundstation: the terminal is 30x8: make it at least 40x10, better 80x24\n"
+
+
+@pytest.mark.e2e
+def test_a_port_in_use_is_told_before_the_screen_opens() -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        code, shown = in_terminal([f"udpin:127.0.0.1:{taken.getsockname()[1]}"])
+    assert code == 2
+    assert "is in use" in shown
+    assert shown.count("\n") == 1
+    assert "\x1b" not in shown
+
+
+@pytest.mark.e2e
+def test_a_log_file_that_cannot_be_written() -> None:
+    code, shown = in_terminal(["--log-file", "/nowhere/station.log"])
+    assert code == 2
+    assert shown == "groundstation: log file /nowhere/station.log: No such file or directory\n"
+
+
+@pytest.mark.e2e
+def test_a_pipe_for_a_log_file_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "station.log")
+    code, shown = in_terminal(["--log-file", str(tmp_path / "station.log")])
+    assert code == 2
+    assert shown == f"groundstation: log file {tmp_path}/station.log: a pipe; name a file\n"

@@ -1,0 +1,159 @@
+"""Keys to intents, one read at a time."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, KEYMAPS, Keymap, KeyPress
+from groundstation.intents import (
+    AnyIntent,
+    ChangeSpeed,
+    Disarm,
+    EmergencyStop,
+    Push,
+    Release,
+    RequestControl,
+    SetMode,
+    SetStyle,
+    Stop,
+)
+
+STANDARD = Keymap("standard", KEYMAPS["standard"])
+TELEOP = Keymap("teleop", KEYMAPS["teleop"])
+
+
+def read(*keys: str, keymap: Keymap = STANDARD, armed: bool = True, driving: bool = False) -> list[AnyIntent]:
+    return keymap.intents([KeyPress(key) for key in keys], armed=armed, driving=driving)
+
+
+def directions(*keys: str, keymap: Keymap = STANDARD) -> list[tuple[int, int]]:
+    pushes = read(*keys, keymap=keymap)
+    assert all(isinstance(push, Push) for push in pushes)
+    return [(push.throttle, push.steering) for push in pushes if isinstance(push, Push)]
+
+
+@pytest.mark.parametrize("keymap", [STANDARD, TELEOP], ids=lambda keymap: keymap.name)
+def test_the_articles_keys(keymap: Keymap) -> None:
+    assert directions("u", "i", "o", keymap=keymap) == [(1, -1), (1, 0), (1, 1)]
+    assert directions("j", "l", keymap=keymap) == [(0, -1), (0, 1)]
+    assert directions("m", "comma", "full_stop", keymap=keymap) == [(-1, 1), (-1, 0), (-1, -1)]
+    assert read("k", keymap=keymap) == read("space", keymap=keymap) == [Stop()]
+
+
+def test_arrows_and_wasd_drive() -> None:
+    assert directions("up", "down", "left", "right") == directions("w", "s", "a", "d")
+    assert directions("up", "down", "left", "right") == [(1, 0), (-1, 0), (0, -1), (0, 1)]
+
+
+def test_teleop_speed_keys() -> None:
+    assert read("q", "w", "e", keymap=TELEOP) == [ChangeSpeed(1.1, 1.1), ChangeSpeed(1.1, 1.0), ChangeSpeed(1.0, 1.1)]
+    assert read("z", "x", "c", keymap=TELEOP) == [ChangeSpeed(0.9, 0.9), ChangeSpeed(0.9, 1.0), ChangeSpeed(1.0, 0.9)]
+
+
+def test_a_push_carries_the_key_and_whether_it_repeats() -> None:
+    presses = [KeyPress("up"), KeyPress("up", repeat=True), KeyPress("up", release=True)]
+    assert STANDARD.intents(presses, armed=True, driving=True) == [
+        Push(key="up", throttle=1, steering=0),
+        Push(key="up", throttle=1, steering=0, repeat=True),
+        Release(key="up"),
+    ]
+
+
+@pytest.mark.parametrize(
+    "keys", [("i", "k"), ("k", "i"), ("i", "space", "i", "j"), ("space",), ("i", "i", "k", "u", "w")]
+)
+def test_a_stop_key_in_a_read_wins(keys: tuple[str, ...]) -> None:
+    assert read(*keys) == [Stop()]
+
+
+def test_emergency_stop_comes_first_and_no_drive_key_is_left() -> None:
+    assert read("i", "space", "exclamation_mark", "plus", "j") == [EmergencyStop(), Stop()]
+    assert read("f9") == [EmergencyStop(), Stop()]
+
+
+def test_releases_survive_a_stop_so_that_no_key_stays_down() -> None:
+    presses = [KeyPress("i", release=True), KeyPress("space")]
+    assert STANDARD.intents(presses, armed=True, driving=True) == [Stop(), Release(key="i")]
+
+
+def test_disarming_survives_a_stop() -> None:
+    assert read("space", "r", armed=True) == [Stop(), Disarm()]
+
+
+@pytest.mark.parametrize("key", ["x", "F", "f1", "escape", "enter", "question_mark", "tab", "y", "left_shift", "g"])
+def test_any_key_that_drives_nothing_stops_while_driving(key: str) -> None:
+    assert read(key, driving=True)[0] == Stop()
+    assert not any(isinstance(intent, Stop) for intent in read(key, driving=False))
+
+
+def test_an_unknown_key_in_the_read_of_a_drive_key_stops() -> None:
+    assert read("i", "x") == [Stop()]
+
+
+def test_a_release_is_no_stop() -> None:
+    assert STANDARD.intents([KeyPress("x", release=True)], armed=True, driving=True) == []
+
+
+def test_speed_keys_neither_stop_nor_drive() -> None:
+    assert read("plus", driving=True) == [ChangeSpeed(1.1, 1.1)]
+    assert read("i", "minus") == [Push(key="i", throttle=1, steering=0), ChangeSpeed(0.9, 0.9)]
+
+
+def test_arming_is_left_to_the_screen_and_disarming_is_one_key() -> None:
+    assert read("r", armed=False) == []
+    assert ACTIONS["vehicle.arm"].confirm
+    assert read("r", armed=True) == [Disarm()]
+    assert read("t", armed=False) == []
+
+
+def test_a_held_r_does_not_disarm_again_and_again() -> None:
+    assert STANDARD.intents([KeyPress("r", repeat=True)], armed=True, driving=False) == []
+
+
+def test_orders() -> None:
+    assert read("1", "2", "g", "tab") == [SetMode("MANUAL"), SetMode("HOLD"), RequestControl(), SetStyle("next")]
+
+
+def test_every_binding_names_an_action_and_none_takes_the_confirming_key() -> None:
+    for bindings in KEYMAPS.values():
+        assert set(bindings.values()) <= set(ACTIONS)
+        assert CONFIRM_KEY not in bindings
+
+
+def test_actions_name_themselves() -> None:
+    assert all(key == action.id and action.label and action.help for key, action in ACTIONS.items())
+    assert STANDARD.keys("drive.stop") == ("k", "space")
+    action = STANDARD.action("i")
+    assert action is not None
+    assert action.id == "drive.forward"
+    assert STANDARD.action("nonsense") is None
+
+
+_PRESSES = st.lists(
+    st.builds(
+        KeyPress,
+        key=st.sampled_from([*KEYMAPS["standard"], "x", "escape", "F3"]),
+        repeat=st.booleans(),
+        release=st.booleans(),
+    ),
+    max_size=30,
+)
+
+
+@given(_PRESSES, st.booleans(), st.booleans())
+def test_a_read_with_a_stop_in_it_never_drives(presses: list[KeyPress], armed: bool, driving: bool) -> None:
+    intents = STANDARD.intents(presses, armed=armed, driving=driving)
+    stops = [press for press in presses if press.key in {"k", "space", "f9", "exclamation_mark"} and not press.release]
+    assert not stops or Stop() in intents
+    if Stop() in intents:
+        assert not any(isinstance(intent, (Push, ChangeSpeed)) for intent in intents)
+        assert isinstance(intents[0], (Stop, EmergencyStop))
+
+
+@given(_PRESSES)
+def test_no_drive_key_is_lost_in_a_read_without_stops(presses: list[KeyPress]) -> None:
+    drive = [press for press in presses if isinstance(getattr(STANDARD.action(press.key), "intent", None), Push)]
+    intents = STANDARD.intents(drive, armed=True, driving=True)
+    assert [intent.key for intent in intents if isinstance(intent, (Push, Release))] == [press.key for press in drive]

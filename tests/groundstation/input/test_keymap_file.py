@@ -1,0 +1,102 @@
+"""Key maps of a user: what is taken, and what is told in one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from groundstation.input.keymap import KEYMAPS, KeymapError
+from groundstation.input.keymap_file import PUNCTUATION, keymap_of, load_keymap
+
+
+def write(folder: Path, text: str) -> str:
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def test_names() -> None:
+    assert load_keymap("standard").bindings == KEYMAPS["standard"]
+    assert load_keymap("teleop").name == "teleop"
+
+
+def test_a_file_replaces_the_keys_of_the_actions_it_names(tmp_path: Path) -> None:
+    keymap = load_keymap(write(tmp_path, '[keys]\n"drive.forward" = ["e", ";", "f2"]\n"speed.faster" = "ctrl+up"\n'))
+    assert keymap.name == "mine"
+    assert keymap.keys("drive.forward") == ("e", "semicolon", "f2")
+    assert keymap.keys("speed.faster") == ("ctrl+up",)
+    assert keymap.action("i") is None
+    assert keymap.keys("drive.backward") == ("down", "comma", "s")
+
+
+def test_a_key_moves_from_the_action_that_had_it(tmp_path: Path) -> None:
+    keymap = load_keymap(write(tmp_path, '[keys]\n"drive.forward" = ["s"]\n'))
+    assert keymap.keys("drive.backward") == ("down", "comma")
+
+
+def test_an_empty_list_takes_all_keys_away(tmp_path: Path) -> None:
+    keymap = load_keymap(write(tmp_path, 'base = "teleop"\n[keys]\n"speed.faster" = []\n'))
+    assert keymap.keys("speed.faster") == ()
+    assert keymap.action("q") is None
+
+
+def test_every_punctuation_name_is_textuals() -> None:
+    textual_keys = pytest.importorskip("textual.keys")
+    for character, name in PUNCTUATION.items():
+        if character != " ":
+            assert textual_keys._character_to_key(character) == name
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('[keys]\n"drive.up" = ["e"]', ["unknown action 'drive.up'", "drive.forward", "app.quit"]),
+        ('[keys]\n"drive.forward" = ["hyperspace"]', ["unknown key 'hyperspace'", "space", "f1 to f24"]),
+        ('[keys]\n"drive.forward" = [7]', ["a key must be a string, not 7"]),
+        ('[keys]\n"drive.forward" = ["e"]\n"drive.left" = ["e"]', ["'e' is bound to drive.forward and to drive.left"]),
+        ('[keys]\n"drive.stop" = []', ["drive.stop needs a key other than escape"]),
+        ('[keys]\n"stop.emergency" = ["escape"]', ["stop.emergency needs a key other than escape"]),
+        ('[keys]\n"app.help" = ["y"]', ["'y' confirms and cannot be bound"]),
+        ('base = "emacs"', ["unknown base 'emacs'", "standard, teleop"]),
+        ("speed = 1", ["unknown entry 'speed'", "base, keys"]),
+        ("keys = 1", ["'keys' must be a table"]),
+        ("[keys", ["mine.toml"]),
+        (f"base = {'9' * 5000}", ["mine.toml", "a number of thousands of digits"]),
+        (f"base = {'[' * 3000}{']' * 3000}", ["mine.toml", "too deep to be meant"]),
+    ],
+)
+def test_mistakes_are_told_in_one_line_with_the_choices(tmp_path: Path, text: str, words: list[str]) -> None:
+    with pytest.raises(KeymapError) as caught:
+        load_keymap(write(tmp_path, text))
+    line = str(caught.value)
+    assert "\n" not in line
+    for word in words:
+        assert word in line
+
+
+def test_a_missing_file_and_an_unknown_name() -> None:
+    with pytest.raises(KeymapError, match=r"key map nowhere\.toml: No such file"):
+        load_keymap("nowhere.toml")
+    with pytest.raises(KeymapError, match=r"unknown key map 'vim': choose standard, teleop or the path"):
+        load_keymap("vim")
+    with pytest.raises(KeymapError, match=r"unknown key map 'aaaa"):
+        load_keymap("a" * 300)
+    with pytest.raises(KeymapError, match=r"key map ~nobody-of-this-name/keys\.toml: No such file"):
+        load_keymap("~nobody-of-this-name/keys.toml")
+
+
+def test_the_mark_of_a_windows_editor_is_no_mistake(tmp_path: Path) -> None:
+    assert load_keymap(write(tmp_path, '\ufeffbase = "teleop"\r\n')).bindings == KEYMAPS["teleop"]
+
+
+def test_a_file_that_is_no_text(tmp_path: Path) -> None:
+    path = tmp_path / "noise.toml"
+    path.write_bytes(bytes(range(256)))
+    with pytest.raises(KeymapError):
+        load_keymap(str(path))
+
+
+def test_the_example_of_the_help_works() -> None:
+    keymap = keymap_of({"base": "standard", "keys": {"drive.forward": ["e", "up"]}}, "example", "here")
+    assert keymap.keys("drive.forward") == ("e", "up")

@@ -1,0 +1,83 @@
+"""Rates and losses out of the links' counters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from groundstation.station.link_stats import LinkBook
+from link.core import LinkReport, SourceCount
+
+
+def report(received: int, lost: int = 0, **changes: Any) -> LinkReport:
+    counts = {(1, 1): SourceCount(received, lost), (7, 1): SourceCount(1000 * received, 0)}
+    return LinkReport("udpin:127.0.0.1:14550", frames=received, bytes_received=20 * received, sources=counts, **changes)
+
+
+def test_loss_and_rates_over_the_window_of_one_vehicle() -> None:
+    book = LinkBook()
+    for second in range(20):
+        book.observe([report(30 * second, 10 * second)], 1, float(second))
+    (view,) = book.views(0.02)
+    assert view.loss == pytest.approx(0.25)
+    assert view.rate == pytest.approx(30.0)
+    assert view.bytes_per_second == pytest.approx(600.0)
+    assert view.round_trip == 0.02
+
+
+def test_old_loss_is_forgotten() -> None:
+    book = LinkBook()
+    for second in range(20):
+        book.observe([report(30 * second, min(10 * second, 50))], 1, float(second))
+    assert book.views(None)[0].loss == 0.0
+
+
+def test_frames_of_unknown_ids_are_not_lost() -> None:
+    book = LinkBook()
+    for second in range(20):
+        book.observe([report(30 * second, 10 * second, unknown=9 * second)], 1, float(second))
+    assert book.views(None)[0].loss == pytest.approx(1 / 31)
+
+
+def test_noise_that_looks_like_unknown_frames_makes_no_negative_loss() -> None:
+    book = LinkBook()
+    for second in range(20):
+        book.observe([report(30 * second, second, unknown=9 * second)], 1, float(second))
+    assert book.views(None)[0].loss == 0.0
+
+
+def test_nothing_is_known_of_a_silent_link() -> None:
+    book = LinkBook()
+    book.observe([report(0)], None, 0.0)
+    (view,) = book.views(0.5)
+    assert (view.loss, view.round_trip, view.rate) == (None, None, 0.0)
+    assert not book.hears_bytes
+
+
+def test_counters_that_start_again_make_no_nonsense() -> None:
+    book = LinkBook()
+    book.observe([report(1000, 500)], 1, 0.0)
+    book.observe([report(10, 0)], 1, 1.0)
+    (view,) = book.views(None)
+    assert view.loss is None
+    assert view.rate == 0.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"down": "cable out"}, "cable out"),
+        ({"own_id": True}, "another program sends with our system"),
+        (
+            {"dialect_mismatch": ("HEARTBEAT", "ATTITUDE")},
+            "another dialect's checksum and are dropped: HEARTBEAT, ATTITUDE",
+        ),
+    ],
+)
+def test_problems_in_words(changes: dict[str, Any], words: str) -> None:
+    book = LinkBook()
+    book.observe([report(1, **changes)], 1, 0.0)
+    problem = book.views(None)[0].problem
+    assert problem is not None
+    assert words in problem

@@ -1,0 +1,195 @@
+"""A real ArduRover 4.7, as recorded, through channel and station in virtual time; bare pymavlink says what is in it.
+
+Not ours: unknown ids, another ground station at work, every stream there is, parameters, files, texts.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega
+
+from dialects.messages import MESSAGES
+from groundstation.intents import Gate, Lease
+from groundstation.ipc import encode
+from groundstation.snapshot import Snapshot
+from groundstation.station.station import COMPONENT, Station
+from link.core import LinkReport
+from link.protocol.channel import Channel
+from link.tlog.tlog import Record, read
+
+RECORDING = Path(__file__).resolve().parents[4] / "shared" / "data" / "ardurover.tlog"
+OURS = 254
+"""The recorded station is 255."""
+STEP = 0.1
+LARGEST = 60_000
+"""Bytes of a snapshot: what groundstation/ipc.py promises to the pipe."""
+
+
+class Moment(NamedTuple):
+    """What the station shows, and the newest recorded message of each kind by then."""
+
+    at: float
+    snapshot: Snapshot
+    recorded: dict[str, Any]
+
+
+class Replay(NamedTuple):
+    """The whole drive."""
+
+    moments: list[Moment]
+    sizes: list[int]
+    report: LinkReport
+    recorded: dict[str, list[Any]]
+
+
+def seconds(records: list[Record]) -> Iterator[tuple[float, bytes]]:
+    start = records[0].microseconds
+    for record in records:
+        yield (record.microseconds - start) / 1e6, record.raw
+
+
+@cache
+def replay() -> Replay:
+    """Played once for all tests."""
+    if not RECORDING.exists():
+        pytest.skip(f"the recording is not there: {RECORDING}")
+    station = Station(["udpin:127.0.0.1:14550"], system=OURS)
+    channel = Channel("recording", 0, system=OURS, component=COMPONENT)
+    bare = ardupilotmega.MAVLink(None)
+    station.intend(Gate(open=True), 0.0)
+    moments: list[Moment] = []
+    sizes: list[int] = []
+    newest: dict[str, Any] = {}
+    everything: dict[str, list[Any]] = {}
+    due = 0.0
+    for now, raw in seconds(list(read(RECORDING.read_bytes()))):
+        while now >= due:
+            station.intend(Lease(), due)
+            if len(sizes) % 10 == 0:
+                station.observe([channel.report(now=due)], due)
+            station.tick(due)
+            station.messages_to_send()
+            snapshot = station.snapshot(due, 1e9 + due)
+            sizes.append(len(encode(snapshot)))
+            moments.append(Moment(due, snapshot, dict(newest)))
+            due = len(sizes) * STEP
+        for received in channel.receive(raw, "recording", now):
+            station.receive(received, now)
+        message = bare.decode(bytearray(raw))
+        if message.get_srcSystem() == 1:
+            newest[message.get_type()] = message
+            everything.setdefault(message.get_type(), []).append(message)
+    return Replay(moments, sizes, channel.report(), everything)
+
+
+def test_it_is_known_for_what_it_is() -> None:
+    last = replay().moments[-1].snapshot
+    assert last.vehicle is not None
+    assert last.vehicle.name == "ArduPilot rover 1"
+    assert last.vehicles == (1,), "the other ground station is no vehicle"
+    assert not last.vehicle.in_control
+    assert last.helm.gate_reason == "not in control"
+    assert len(replay().moments) == 1300
+
+
+def test_mode_and_arming_are_those_of_the_heartbeats() -> None:
+    seen = set()
+    for moment in replay().moments:
+        beat, vehicle = moment.recorded.get("HEARTBEAT"), moment.snapshot.vehicle
+        assert (beat is None) == (vehicle is None)
+        if beat is not None and vehicle is not None:
+            armed = bool(beat.base_mode & ardupilotmega.MAV_MODE_FLAG_SAFETY_ARMED)
+            mode = {0: "MANUAL", 16: "INITIALISING"}[beat.custom_mode]
+            assert (vehicle.armed, vehicle.mode, vehicle.status) == (armed, mode, beat.system_status)
+            seen.add((armed, mode))
+    assert seen == {(False, "INITIALISING"), (False, "MANUAL"), (True, "MANUAL")}
+
+
+def test_attitude_and_position_are_those_recorded() -> None:
+    compared = 0
+    for moment in replay().moments:
+        attitude, local = moment.recorded.get("ATTITUDE"), moment.recorded.get("LOCAL_POSITION_NED")
+        vehicle = moment.snapshot.vehicle
+        if vehicle is None or attitude is None or local is None or vehicle.heading is None:
+            continue
+        assert vehicle.roll == pytest.approx(attitude.roll)
+        assert vehicle.pitch == pytest.approx(attitude.pitch)
+        assert math.remainder(vehicle.heading - attitude.yaw, 2 * math.pi) == pytest.approx(0.0, abs=1e-6)
+        assert vehicle.position == pytest.approx((local.x, local.y))
+        along = local.vx * math.cos(attitude.yaw) + local.vy * math.sin(attitude.yaw)
+        assert vehicle.speed == pytest.approx(along, abs=1e-6)
+        compared += 1
+    assert compared > 1000
+
+
+def test_battery_gps_and_servos_are_those_recorded() -> None:
+    compared = 0
+    for moment in replay().moments:
+        battery, gps = moment.recorded.get("BATTERY_STATUS"), moment.recorded.get("GPS_RAW_INT")
+        servos, vehicle = moment.recorded.get("SERVO_OUTPUT_RAW"), moment.snapshot.vehicle
+        if vehicle is None or battery is None or gps is None or servos is None:
+            continue
+        assert vehicle.battery_voltage == pytest.approx(battery.voltages[0] / 1000)
+        assert vehicle.battery_remaining == pytest.approx(battery.battery_remaining / 100)
+        assert (vehicle.gps_fix, vehicle.gps_satellites) == (gps.fix_type, gps.satellites_visible)
+        pulses = (servos.servo1_raw, servos.servo3_raw)
+        assert vehicle.outputs == pytest.approx([(pulse - 1500) / 500 if pulse else 0.0 for pulse in pulses])
+        compared += 1
+    assert compared > 1000
+    assert any(max(map(abs, moment.snapshot.vehicle.outputs), default=0) > 0.5
+               for moment in replay().moments if moment.snapshot.vehicle)  # fmt: skip
+
+
+def test_unknown_ids_are_counted_and_are_no_loss() -> None:
+    ours = {message.msgname for message in MESSAGES.values()}
+    unknown = sum(len(messages) for name, messages in replay().recorded.items() if name not in ours)
+    report = replay().report
+    assert unknown > 10_000
+    assert report.unknown == unknown
+    assert (report.crc_errors, report.dialect_mismatch) == (0, ())
+    losses = [moment.snapshot.links[0].loss for moment in replay().moments if moment.snapshot.links]
+    assert max(loss or 0.0 for loss in losses) < 0.01
+
+
+def test_every_text_is_shown_and_repeats_are_counted() -> None:
+    shown = [line for line in replay().moments[-1].snapshot.texts if line.label == "vehicle"]
+    texts = [message.text for message in replay().recorded["STATUSTEXT"]]
+    assert sum(line.count for line in shown) == len(texts)
+    assert "Throttle armed" in {line.text for line in shown}
+    assert all((one.text, one.severity) != (two.text, two.severity) for one, two in itertools.pairwise(shown))
+
+
+def test_its_dangerous_settings_are_warned_of() -> None:
+    vehicle = replay().moments[-1].snapshot.vehicle
+    assert vehicle is not None
+    assert set(vehicle.warnings) >= {
+        "RC_OVERRIDE_TIME 3: it drives on for 3 s when the link is cut",
+        "FS_GCS_ENABLE 0: no failsafe when the ground station is lost",
+    }
+
+
+def test_every_snapshot_fits_the_pipe() -> None:
+    assert max(replay().sizes) < LARGEST
+
+
+def test_the_same_texts_fifty_times_a_second_stay_one_line_each() -> None:
+    """What a wrong setting of ArduPilot does ("WheelEncoder: wheel offset not set!")."""
+    station = Station(["memory"])
+    channel = Channel("flood", 0, system=OURS, component=COMPONENT)
+    bare = ardupilotmega.MAVLink(None, srcSystem=1, srcComponent=1)
+    beat = ardupilotmega.MAVLink_heartbeat_message(10, 3, 0, 0, 4, 3)
+    text = ardupilotmega.MAVLink_statustext_message(4, b"WheelEncoder: wheel offset not set!")
+    for number in range(3000):
+        message = beat if number % 50 == 0 else text
+        for received in channel.receive(message.pack(bare), "vehicle", number / 50):
+            station.receive(received, number / 50)
+        bare.seq = (bare.seq + 1) % 256
+    lines = [line for line in station.snapshot(60.0, 60.0).texts if line.label == "vehicle"]
+    assert [(line.text, line.count) for line in lines] == [("WheelEncoder: wheel offset not set!", 2940)]

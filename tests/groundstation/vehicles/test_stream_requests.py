@@ -1,0 +1,187 @@
+"""Telemetry that a foreign vehicle is asked for: which, how often, and what when it does not want to."""
+
+from __future__ import annotations
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Autopilot, Command, DataStream, Result
+from groundstation.station.link_stats import LinkBook
+from groundstation.vehicles.stream_requests import FRAME, LOAD, SHARE, WANTED, StreamRequests, rate
+from link.core import LinkReport
+from tests.groundstation.fake_ardupilot import FakeArduPilot
+from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+
+INTERVAL = Command.SET_MESSAGE_INTERVAL
+EXPECTED = {
+    "ATTITUDE", "VFR_HUD", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT",
+    "SYS_STATUS", "GPS_RAW_INT", "SERVO_OUTPUT_RAW", "BATTERY_STATUS",
+}  # fmt: skip
+
+
+def asked(vehicle: FakeVehicle) -> dict[int, float]:
+    """Message -> Hz, as it was asked for last by SET_MESSAGE_INTERVAL."""
+    return {int(command.param1): 1e6 / command.param2 for command in vehicle.commands(INTERVAL)}
+
+
+def groups(vehicle: FakeVehicle) -> dict[int, int]:
+    return {message.req_stream_id: message.req_message_rate for _, message in vehicle.all(m.RequestDataStream)}
+
+
+def test_all_that_the_drive_screen_needs_is_wanted() -> None:
+    assert {m.MESSAGES[number].msgname for number in WANTED} == EXPECTED
+
+
+@pytest.mark.parametrize("autopilot", [Autopilot.ARDUPILOT, Autopilot.PX4])
+def test_a_foreign_vehicle_is_asked_at_once_one_message_after_the_other(autopilot: Autopilot) -> None:
+    vehicle = FakeArduPilot(autopilot=autopilot)
+    cockpit = Cockpit(vehicle)
+    cockpit.run(2.0)
+    assert asked(vehicle) == {number: pytest.approx(wanted.rate) for number, wanted in WANTED.items()}
+    assert len(vehicle.commands(INTERVAL)) == len(WANTED), "each once: they were acknowledged"
+    assert groups(vehicle) == {}
+    cockpit.run(3.0)
+    rates = {each.name: each.rate for each in cockpit.snapshot.messages if not each.sent}
+    assert rates["ATTITUDE"] == pytest.approx(10.0, abs=1.0)
+    assert not any("command" in text or "accepted" in text for text in cockpit.texts), "nobody needs to read of it"
+
+
+def test_our_own_rover_is_never_asked() -> None:
+    vehicle = FakeVehicle()
+    cockpit = Cockpit(vehicle)
+    cockpit.run(0.1)
+    vehicle.say(m.RoverDriveStatus(1, 0, 0, 0, [0, 0, 0, 0], 0, 0, 0))
+    cockpit.run(10.0)
+    assert vehicle.commands(INTERVAL) == []
+    assert groups(vehicle) == {}
+
+
+def test_a_vehicle_of_no_known_kind_is_asked_for_what_does_not_come() -> None:
+    vehicle = FakeVehicle(driver=None)
+    cockpit = Cockpit(vehicle)
+    cockpit.run(0.1)
+    vehicle.say(m.Attitude(1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    cockpit.run(2.5)
+    assert vehicle.commands(INTERVAL) == []
+    cockpit.run(3.0)
+    assert set(asked(vehicle)) == set(WANTED) - {m.Attitude.id}
+
+
+def test_a_vehicle_that_does_not_know_the_command_is_asked_for_groups() -> None:
+    vehicle = FakeArduPilot()
+    vehicle.answers[INTERVAL] = Result.UNSUPPORTED
+    cockpit = Cockpit(vehicle)
+    cockpit.run(6.0)
+    assert len(vehicle.commands(INTERVAL)) == 1
+    assert groups(vehicle) == {
+        DataStream.EXTRA1: 10, DataStream.POSITION: 5, DataStream.RC_CHANNELS: 5, DataStream.EXTRA2: 4,
+        DataStream.EXTENDED_STATUS: 1, DataStream.EXTRA3: 1,
+    }  # fmt: skip
+    assert len(vehicle.all(m.RequestDataStream)) == 3 * 6, "nothing acknowledges them, so each is said three times"
+    assert vehicle.rates[m.Attitude.id] == 10.0
+
+
+def test_a_vehicle_that_does_not_answer_is_asked_for_groups() -> None:
+    vehicle = FakeArduPilot()
+    vehicle.silent_on.add(INTERVAL)
+    cockpit = Cockpit(vehicle)
+    cockpit.run(8.0)
+    assert {int(command.param1) for command in vehicle.commands(INTERVAL)} == {m.Attitude.id}
+    assert len(groups(vehicle)) == 6
+    assert cockpit.view.refusal is None
+
+
+def test_one_refused_message_is_asked_for_by_its_group_alone() -> None:
+    class Picky(FakeArduPilot):
+        def _command(self, message: m.CommandLong, source: int) -> None:
+            refuses = message.command == INTERVAL and message.param1 == m.ServoOutputRaw.id
+            self.answers[INTERVAL] = Result.DENIED if refuses else Result.ACCEPTED
+            super()._command(message, source)
+
+    vehicle = Picky()
+    Cockpit(vehicle).run(5.0)
+    assert set(asked(vehicle)) == set(WANTED)
+    assert groups(vehicle) == {DataStream.RC_CHANNELS: 5}
+
+
+def test_it_is_asked_again_when_it_was_lost_and_is_back() -> None:
+    vehicle = FakeArduPilot()
+    cockpit = Cockpit(vehicle)
+    cockpit.run(3.0)
+    first = len(vehicle.commands(INTERVAL))
+    cockpit.run(20.0)
+    assert len(vehicle.commands(INTERVAL)) == first, "who is there is not asked again"
+    vehicle.reboot()
+    cockpit.world.cut()
+    cockpit.run(5.0)
+    cockpit.world.cut(False)
+    cockpit.run(4.0)
+    assert len(vehicle.commands(INTERVAL)) == 2 * first
+    assert vehicle.rates[m.Attitude.id] == 10.0
+
+
+def test_nobody_is_asked_while_lost() -> None:
+    vehicle = FakeArduPilot()
+    vehicle.silent_on.add(INTERVAL)
+    cockpit = Cockpit(vehicle)
+    cockpit.run(1.0)
+    cockpit.world.cut()
+    cockpit.run(3.0)
+    assert not cockpit.view.alive
+    lost = cockpit.now
+    cockpit.run(10.0)
+    asked = (m.RequestDataStream, m.ParamRequestRead, m.CommandLong)
+    assert [message for at, message in cockpit.world.near.sent if at > lost and isinstance(message, asked)] == []
+
+
+def test_nobody_is_asked_while_the_screen_is_frozen() -> None:
+    vehicle = FakeArduPilot()
+    vehicle.silent_on.add(INTERVAL)
+    cockpit = Cockpit(vehicle)
+    cockpit.leasing = False
+    cockpit.run(5.0)
+    assert len(vehicle.all(m.RequestDataStream)) == 0
+
+
+def test_a_clock_that_starts_anew_is_a_reboot() -> None:
+    requests = StreamRequests((1, 1), 0.0)
+    while requests.next(Autopilot.ARDUPILOT, 1.0) is not None:
+        requests.receive(m.Attitude(60_000, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1.0)
+    requests.receive(m.Attitude(59_900, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 2.0)
+    assert requests.next(Autopilot.ARDUPILOT, 2.0) is None
+    requests.receive(m.Attitude(1_000, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 3.0)
+    assert requests.next(Autopilot.ARDUPILOT, 3.0) is not None
+
+
+# ---- the link ----
+
+
+def total(capacity: float | None) -> float:
+    return sum((m.MESSAGES[number].unpacker.size + FRAME) * rate(number, capacity) for number in WANTED)
+
+
+@pytest.mark.parametrize("baud", [9600, 19200, 57600, 921600])
+def test_together_they_leave_room_on_the_link(baud: int) -> None:
+    assert total(baud / 10) <= max(SHARE * baud / 10, 1.0) + 1e-6
+    assert total(baud / 10) <= total(None) == LOAD
+
+
+def test_a_slow_link_gets_less_and_a_usual_one_everything() -> None:
+    assert rate(m.Attitude.id, 960.0) == pytest.approx(10 * SHARE * 960 / LOAD)
+    assert rate(m.Attitude.id, 5760.0) == 10.0
+    assert rate(m.Attitude.id, None) == 10.0
+    assert rate(m.GpsRawInt.id, 1.0) == 0.1
+
+
+def test_the_capacity_is_that_of_the_vehicles_link() -> None:
+    vehicle = FakeArduPilot()
+    cockpit = Cockpit(vehicle)
+    cockpit.world.near.channel._capacity = 960.0
+    cockpit.run(2.0)
+    assert asked(vehicle)[m.Attitude.id] == pytest.approx(10 * SHARE * 960 / LOAD, rel=0.01)
+
+
+def test_a_radio_that_is_full_makes_less_of_the_capacity() -> None:
+    book = LinkBook()
+    book.observe([LinkReport("serial:/dev/ttyUSB0:57600", 0, capacity=5760.0, headroom=0.5)], None, 100.0)
+    assert (book.capacity(0), book.capacity(1)) == (2880.0, None)

@@ -1,0 +1,327 @@
+"""One conversation: who is heard, who is answered, what is counted and what is too much."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from dialects.messages import Attitude, CommandAck, CommandLong, Heartbeat, ManualControl, Message, StatusText
+from link.core import Outgoing, Peer, Received
+from link.protocol.channel import MAX_PEERS, PEER_SILENCE, Channel
+from link.protocol.framer import Framer
+from link.protocol.sequence import RESTART_AFTER
+from tests.link.frames import demand, frame, heartbeat
+
+HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
+ARM = CommandLong(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0)
+DISARM = CommandLong(1, 1, 400, 0, 0, 0, 0, 0, 0, 0, 0)
+
+
+def vehicle(**options: object) -> Channel:
+    return Channel("udpin:127.0.0.1:14550", 0, system=1, component=1, **options)  # type: ignore[arg-type]
+
+
+def sent(channel: Channel, message: Message, **to: object) -> list[tuple[object, int]]:
+    outgoing = Outgoing(message, **to)  # type: ignore[arg-type]
+    return [(address, sequence) for _, address, sequence in channel.send(outgoing)]
+
+
+def numbers(received: list[Received]) -> list[int]:
+    return [each.sequence for each in received]
+
+
+# ---- who is heard ----
+
+
+def test_a_message_tells_who_sent_it() -> None:
+    found = vehicle().receive(heartbeat(3), HERE, 0.0)[0]
+    assert (found.system, found.component, found.sequence, found.peer.address) == (255, 190, 3, HERE)
+    assert found.introduced
+
+
+def test_a_new_address_must_introduce_itself_before_it_may_control() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), HERE, 0.0)
+    assert not channel.receive(demand(1), THERE, 0.1)[0].introduced
+    channel.receive(heartbeat(2), THERE, 0.2)
+    assert channel.receive(demand(3), THERE, 0.3)[0].introduced
+
+
+def test_a_heartbeat_of_another_system_introduces_only_that_one() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0, system=254), HERE, 0.0)
+    assert not channel.receive(demand(1), HERE, 0.1)[0].introduced
+
+
+def test_system_0_and_our_own_ids_are_dropped() -> None:
+    channel = vehicle()
+    for system, component in ((0, 190), (0, 0), (1, 1)):
+        assert channel.receive(heartbeat(0, system, component), HERE, 0.0) == []
+    assert channel.report().own_id
+    assert channel.receive(heartbeat(0, system=1, component=2), HERE, 0.0) != []
+
+
+def test_only_wanted_messages_are_decoded() -> None:
+    channel = vehicle(wanted=frozenset({Heartbeat.id}))
+    assert channel.receive(demand(0), HERE, 0.0) == []
+    assert len(channel.receive(heartbeat(1), HERE, 0.0)) == 1
+    assert channel.report().frames == 2
+
+
+# ---- order ----
+
+
+def test_a_repeated_frame_has_no_second_effect() -> None:
+    channel = vehicle()
+    assert numbers(channel.receive(demand(5) * 3, HERE, 0.0)) == [5]
+    assert channel.report().duplicates == 2
+
+
+def test_an_overtaken_demand_is_dropped_and_an_overtaken_command_is_not() -> None:
+    channel = vehicle()
+    channel.receive(demand(10), HERE, 0.0)
+    assert channel.receive(demand(9), HERE, 0.0) == []
+    assert numbers(channel.receive(frame(ARM, 12), HERE, 0.0)) == [12]
+    assert numbers(channel.receive(frame(DISARM, 11), HERE, 0.0)) == [11]
+    assert channel.report().late == 2
+
+
+def test_a_sender_that_restarts_is_heard_again() -> None:
+    channel = vehicle()
+    channel.receive(demand(200), HERE, 0.0)
+    assert numbers(channel.receive(demand(0), HERE, 0.1)) == [0]  # 56 on: plainly new
+    channel.receive(demand(20), HERE, 0.2)
+    heard = [numbers(channel.receive(demand(number), HERE, 0.3)) for number in range(RESTART_AFTER + 2)]
+    assert heard[-1] == [RESTART_AFTER + 1]
+    assert heard.count([]) == RESTART_AFTER
+
+
+def test_loss_is_counted_by_source() -> None:
+    channel = vehicle()
+    for number in (0, 1, 4, 5):
+        channel.receive(demand(number), HERE, 0.0)
+    channel.receive(heartbeat(9, system=254), HERE, 0.0)
+    sources = channel.report().sources
+    assert (sources[255, 190].received, sources[255, 190].lost) == (4, 2)
+    assert (sources[254, 190].received, sources[254, 190].lost) == (1, 0)
+
+
+@given(st.lists(st.integers(0, 255), max_size=300))
+def test_demands_never_go_back_in_order(order: list[int]) -> None:
+    channel = vehicle()
+    newest: int | None = None
+    backward = 0
+    for now, number in enumerate(order):
+        for found in channel.receive(demand(number), HERE, float(now)):
+            backward = backward + 1 if newest is not None and ((found.sequence - newest) & 0xFF) > 223 else 0
+            newest = found.sequence
+            assert backward <= 1  # only a restart steps back, and then counts on from there
+
+
+# ---- who is answered ----
+
+
+def test_nobody_gets_telemetry_before_a_heartbeat() -> None:
+    channel = vehicle()
+    channel.receive(demand(0), HERE, 0.0)
+    beat = Heartbeat(10, 0, 0, 0, 3, 3)
+    assert sent(channel, beat) == []
+    channel.receive(heartbeat(1), HERE, 0.0)
+    assert sent(channel, beat) == [(HERE, 0)]
+
+
+def test_an_address_that_the_user_named_is_sent_to_at_once() -> None:
+    channel = vehicle(target="udpout:127.0.0.1:14550")
+    assert sent(channel, Heartbeat(10, 0, 0, 0, 3, 3)) == [("udpout:127.0.0.1:14550", 0)]
+    assert sent(channel, CommandAck(400, 0, target_system=255, target_component=190)) != []
+
+
+def test_each_peer_has_its_own_sequence() -> None:
+    channel = vehicle()
+    one = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
+    channel.receive(heartbeat(0, system=254), THERE, 0.0)
+    assert sent(channel, CommandAck(400, 0), peer=one) == [(HERE, 0)]
+    assert sent(channel, Attitude(1, 0, 0, 0, 0, 0, 0)) == [(HERE, 1), (THERE, 0)]
+
+
+def test_a_message_for_one_system_goes_where_that_system_is() -> None:
+    channel = Channel("udpin:127.0.0.1:14550", 0, system=255, component=190)
+    channel.receive(heartbeat(0, system=1, component=1), HERE, 0.0)
+    channel.receive(heartbeat(0, system=2, component=1), THERE, 0.0)
+    assert sent(channel, ManualControl(target=2, x=0, y=0, z=0, r=0, buttons=0)) == [(THERE, 0)]
+    assert sent(channel, ARM) == [(HERE, 0)]
+
+
+def test_a_message_with_a_field_called_id_goes_out_as_what_it_is() -> None:
+    channel = vehicle(target="there")
+    data, _, _ = next(iter(channel.send(Outgoing(StatusText(severity=4, text=b"hello", id=7)))))
+    assert Framer(stream=False).feed(data, 0.0)[0][0] == StatusText.id
+
+
+def test_a_message_for_some_goes_to_those_alone() -> None:
+    channel = vehicle()
+    here = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
+    channel.receive(heartbeat(0, system=254), THERE, 0.0)
+    third = channel.receive(heartbeat(0, system=253), ("127.0.0.1", 5003), 0.0)[0].peer
+    elsewhere = here._replace(link=1)
+    attitude = Attitude(1, 0, 0, 0, 0, 0, 0)
+    assert [address for address, _ in sent(channel, attitude, among=(third, elsewhere, here))] == [third.address, HERE]
+    assert sent(channel, attitude, among=()) == []
+
+
+# ---- conversations ----
+
+
+def audience(channel: Channel) -> tuple[Peer, ...]:
+    return channel.report().audience
+
+
+def test_the_audience_is_who_has_shown_a_heartbeat_and_whom_the_user_named() -> None:
+    channel = vehicle(target=THERE)
+    assert [peer.address for peer in audience(channel)] == [THERE]
+    channel.receive(demand(0), HERE, 0.0)
+    assert [peer.address for peer in audience(channel)] == [THERE]
+    here = channel.receive(heartbeat(1), HERE, 0.0)[0].peer
+    assert audience(channel)[1:] == (here,)
+    everybody = [address for address, _ in sent(channel, Attitude(1, 0, 0, 0, 0, 0, 0))]
+    assert everybody == [peer.address for peer in audience(channel)]
+
+
+def test_who_was_silent_for_long_and_is_back_is_another_peer() -> None:
+    channel = vehicle()
+    first = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
+    channel.forget_silent(PEER_SILENCE + 0.1)
+    assert audience(channel) == ()
+    second = channel.receive(heartbeat(1), HERE, 20.0)[0].peer
+    assert second != first
+    assert sent(channel, CommandAck(400, 0), peer=first) == [], "an answer to who is gone"
+    assert sent(channel, CommandAck(400, 0), peer=second) == [(HERE, 0)]
+
+
+def test_a_named_address_that_was_silent_for_long_is_another_peer_once() -> None:
+    channel = vehicle(target=HERE)
+    first = audience(channel)
+    channel.forget_silent(100.0)
+    assert audience(channel) == first, "nobody has spoken yet"
+    channel.receive(heartbeat(0), HERE, 100.0)
+    assert audience(channel) == first
+    channel.forget_silent(100.0 + PEER_SILENCE + 0.1)
+    second = audience(channel)
+    assert second != first
+    channel.forget_silent(200.0)
+    assert audience(channel) == second
+    assert channel.receive(demand(1), HERE, 201.0)[0].peer == second[0]
+
+
+def test_a_connection_that_ends_ends_the_conversation() -> None:
+    channel = vehicle(stream=True, target="serial")
+    channel.receive(heartbeat(0), "serial", 0.0)
+    first = audience(channel)
+    channel.gone("serial")
+    assert [peer.address for peer in audience(channel)] == ["serial"]
+    assert audience(channel) != first
+
+
+def test_a_connection_is_sent_to_before_it_has_spoken_and_while_it_lasts() -> None:
+    channel = vehicle(stream=True)
+    assert channel.receive(b"", HERE, 0.0) == []
+    [peer] = audience(channel)
+    channel.forget_silent(1000.0)
+    assert audience(channel) == (peer,), "a program that only listens"
+    [question] = channel.receive(demand(0), HERE, 1000.0)
+    assert (question.may_ask, question.introduced) == (True, False)
+    channel.gone(HERE)
+    assert audience(channel) == ()
+
+
+def test_a_datagram_without_anything_in_it_makes_no_peer() -> None:
+    channel = vehicle()
+    channel.receive(b"", HERE, 0.0)
+    assert audience(channel) == ()
+
+
+def test_a_connection_that_says_nothing_keeps_no_place_that_another_needs() -> None:
+    channel = vehicle(stream=True)
+    for port in range(MAX_PEERS):
+        channel.receive(b"", ("10.0.0.1", port), 0.001 * port)
+    assert channel.receive(heartbeat(0), HERE, 1.0) != []
+    assert len(audience(channel)) == MAX_PEERS
+
+
+# ---- too much ----
+
+
+def test_22_peers_are_limited_and_a_real_one_keeps_its_place() -> None:
+    channel = vehicle()
+    real = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
+    for port in range(5000):
+        channel.receive(demand(port % 256), ("10.0.0.1", port), 0.001 * port)
+    assert len(channel._peers) <= MAX_PEERS
+    assert sent(channel, CommandAck(400, 0), peer=real) == [(HERE, 0)]
+    assert channel.receive(heartbeat(1), HERE, 5.0) != []
+
+
+def test_a_crowd_of_introduced_peers_refuses_the_next_until_one_is_silent() -> None:
+    channel = vehicle()
+    for port in range(MAX_PEERS + 1):
+        channel.receive(heartbeat(0, system=100 + port), ("10.0.0.1", port), 0.0)
+    assert channel.report().refused_peers == 1
+    assert channel.receive(heartbeat(0), HERE, PEER_SILENCE + 0.1) != []
+
+
+def test_a_silent_peer_is_forgotten_but_not_its_count() -> None:
+    channel = vehicle()
+    channel.receive(b"noise" + heartbeat(0), HERE, 0.0)
+    channel.receive(b"noise" + heartbeat(1), HERE, 0.0)
+    channel.forget_silent(PEER_SILENCE + 0.1)
+    report = channel.report()
+    assert (report.peers, report.frames, report.resync_bytes) == (0, 2, 10)
+
+
+def test_a_flood_is_limited_and_a_stop_still_passes() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), HERE, 0.0)
+    flood = [channel.receive(frame(ARM, number % 256), HERE, number / 50_000) for number in range(1, 5001)]
+    assert 1 <= sum(map(len, flood)) < 150
+    assert channel.report().rate_limited > 4000
+    assert len(channel.receive(frame(DISARM, 5001 % 256), HERE, 0.1)) == 1
+
+
+def test_a_script_that_asks_as_fast_as_it_is_answered_is_always_answered() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), HERE, 0.0)
+    for number in range(1, 1000):
+        assert len(channel.receive(frame(ARM, number % 256), HERE, number * 0.0055)) == 1
+
+
+def test_a_flood_of_one_peer_leaves_the_others_alone() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), HERE, 0.0)
+    channel.receive(heartbeat(0, system=254), THERE, 0.0)
+    for number in range(1, 5001):
+        channel.receive(demand(number % 256), HERE, number / 50_000)
+    assert len(channel.receive(frame(ARM, 1, system=254), THERE, 0.1)) == 1
+
+
+def test_noise_makes_no_peer_and_is_counted() -> None:
+    channel = vehicle()
+    assert channel.receive(b"Init ArduRover V4.7.0-dev\n", HERE, 0.0) == []
+    assert channel.report().resync_bytes == 26
+    assert not channel._peers
+
+
+def test_a_foreign_dialect_is_named_after_three_frames() -> None:
+    channel = vehicle()
+    foreign = bytearray(heartbeat(0))
+    foreign[-1] ^= 0x55
+    for times in range(3):
+        assert channel.report().dialect_mismatch == ()
+        channel.receive(bytes(foreign), HERE, float(times))
+    assert channel.report().dialect_mismatch == ("HEARTBEAT",)
+
+
+def test_a_stream_gives_up_a_forged_header_while_nothing_arrives() -> None:
+    channel = vehicle(stream=True, target="serial")
+    channel.receive(heartbeat(0), "serial", 0.0)
+    assert channel.receive(bytes([0xFD, 255, 0, 0, 0, 1, 1, 69, 0, 0]) + demand(1), "serial", 0.0) == []
+    assert numbers(channel.tick(0.2)) == [1]

@@ -1,0 +1,207 @@
+"""Bytes to frames: noise, cuts, forgeries and foreign dialects cost what they must and no more."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from dialects import rover
+from dialects.messages import Attitude, Heartbeat, ManualControl
+from link.protocol.frame import payload_of
+from link.protocol.framer import PARTIAL_DEADLINE, Framer
+from tests.link.frames import demand, frame, heartbeat, version_1
+
+TRAIN = b"".join(demand(number) for number in range(40))
+BOTH = pytest.mark.parametrize("stream", [True, False], ids=["stream", "datagram"])
+
+
+def sequences(framer: Framer, *pieces: bytes, now: float = 0.0) -> list[int]:
+    return [sequence for piece in pieces for _, _, _, sequence, _ in framer.feed(piece, now)]
+
+
+@BOTH
+@pytest.mark.parametrize("noise", [b"\xfd", b"\xfe", b"\xfd\xfe\xfd", b"\x00AT\r", b"\xfd" * 12])
+def test_noise_in_front_costs_no_frame(noise: bytes, stream: bool) -> None:
+    framer = Framer(stream=stream)
+    assert sequences(framer, noise + TRAIN) == list(range(40))
+    assert framer.counts.resync_bytes == len(noise)
+
+
+def test_pymavlink_loses_a_dozen_to_the_same_byte() -> None:
+    # The reason why the framer is ours; should pymavlink mend it, this test says so.
+    parser = rover.MAVLink(None)
+    parser.robust_parsing = True
+    messages = parser.parse_buffer(b"\xfd" + TRAIN) or []
+    assert sum(each.get_type() == "MANUAL_CONTROL" for each in messages) < 30
+
+
+def test_frames_arrive_byte_by_byte() -> None:
+    framer = Framer(stream=True)
+    assert sequences(framer, *(TRAIN[at : at + 1] for at in range(len(TRAIN)))) == list(range(40))
+
+
+@BOTH
+def test_a_corrupt_length_costs_only_its_frame(stream: bool) -> None:
+    data = bytearray(TRAIN)
+    data[23 * 10 + 1] = 200
+    assert sequences(Framer(stream=stream), bytes(data)) == [each for each in range(40) if each != 10]
+
+
+@BOTH
+def test_a_wrong_checksum_costs_only_its_frame(stream: bool) -> None:
+    data = bytearray(TRAIN)
+    data[23 * 10 + 12] ^= 1
+    framer = Framer(stream=stream)
+    assert sequences(framer, bytes(data)) == [each for each in range(40) if each != 10]
+    assert framer.counts.crc_errors == 1
+
+
+def test_fifty_frames_in_one_datagram_come_in_order() -> None:
+    data = b"".join(demand(number) for number in range(50))
+    assert sequences(Framer(stream=False), data) == list(range(50))
+
+
+def test_a_frame_over_two_datagrams_is_none() -> None:
+    framer = Framer(stream=False)
+    assert sequences(framer, demand(1)[:10], demand(1)[10:]) == []
+    assert sequences(framer, demand(2)) == [2]
+
+
+def test_a_forged_header_hides_nothing_for_long() -> None:
+    # A known id, length 255, then silence: the frames behind it act after the partial deadline, not after 255 bytes.
+    framer = Framer(stream=True)
+    forged = bytes([0xFD, 255, 0, 0, 0, 1, 1, 69, 0, 0])
+    assert sequences(framer, forged + demand(7), now=0.0) == []
+    assert framer.expire(PARTIAL_DEADLINE / 2) == []
+    assert [sequence for _, _, _, sequence, _ in framer.expire(PARTIAL_DEADLINE)] == [7]
+
+
+def test_a_slow_but_sound_frame_is_waited_for() -> None:
+    framer = Framer(stream=True)
+    assert sequences(framer, demand(7)[:12], now=0.0) == []
+    assert sequences(framer, demand(7)[12:], now=PARTIAL_DEADLINE * 0.9) == [7]
+
+
+def test_noise_for_ever_keeps_memory_small() -> None:
+    framer, source = Framer(stream=True), random.Random(1)
+    for step in range(256):
+        framer.feed(source.randbytes(4096), step * 0.01)
+        assert len(framer._buffer) < 300
+    framer.expire(10.0)
+    assert framer.counts.resync_bytes > 900_000
+    assert sequences(framer, demand(3), now=20.0) == [3]
+
+
+@BOTH
+@given(st.binary(max_size=600))
+def test_no_bytes_raise_and_a_frame_behind_them_acts(stream: bool, soup: bytes) -> None:
+    framer = Framer(stream=stream)
+    framer.feed(soup, 0.0)
+    found = framer.feed(demand(9), 1.0) + framer.expire(2.0)
+    assert 9 in [sequence for _, _, _, sequence, _ in found]
+
+
+def test_unknown_ids_are_dropped_and_counted() -> None:
+    unknown = bytearray(demand(0))
+    unknown[7:10] = (45999).to_bytes(3, "little")
+    for stream, data in (
+        (False, bytes(unknown)),
+        (False, bytes(unknown) + demand(1)),
+        (True, bytes(unknown) * 3 + demand(1)),
+    ):
+        framer = Framer(stream=stream)
+        framer.feed(data, 0.0)
+        assert framer.counts.unknown == (3 if stream else 1)
+        assert not framer.counts.mismatches
+
+
+def test_another_dialects_checksum_is_noticed() -> None:
+    foreign = bytearray(heartbeat(0))
+    foreign[-1] ^= 0x55
+    framer = Framer(stream=False)
+    framer.feed(bytes(foreign), 0.0)
+    assert framer.counts.mismatches == {Heartbeat.id: 1}
+    framer.feed(b"\xfd" + TRAIN, 0.0)  # noise is no dialect
+    assert framer.counts.mismatches == {Heartbeat.id: 1}
+
+
+def test_flags_we_may_not_ignore_are_refused() -> None:
+    data = bytearray(demand(0))
+    data[2] = 0x02
+    framer = Framer(stream=False)
+    assert framer.feed(bytes(data), 0.0) == []
+    assert framer.counts.refused == 1
+
+
+def test_a_signed_frame_is_taken_whole_and_a_cut_signature_waits() -> None:
+    from fastcrc.crc16 import mcrf4xx
+
+    body = bytearray(demand(5)[1:-2])
+    body[1] = 1
+    signed = b"\xfd" + bytes(body) + mcrf4xx(bytes(body) + b"\xf3").to_bytes(2, "little") + bytes(13)
+    assert sequences(Framer(stream=False), signed + demand(6)) == [5, 6]
+    assert sequences(Framer(stream=False), signed[:-1]) == []
+    framer = Framer(stream=True)
+    assert sequences(framer, signed[:-1]) == []
+    assert sequences(framer, signed[-1:]) == [5]
+
+
+def test_mavlink_1_needs_its_full_length() -> None:
+    beat = Heartbeat(6, 8, 0, 0, 4, 3)
+    assert sequences(Framer(stream=True), version_1(beat, 3)) == [3]
+    framer = Framer(stream=True)
+    assert sequences(framer, version_1(beat, 3, cut=2), demand(4)) == [4]
+    assert framer.counts.refused >= 1
+
+
+def test_payload_and_sender_are_told() -> None:
+    sent = frame(Attitude(1, 0.5, 0, 0, 0, 0, 0), 8, 2, 3)
+    assert Framer(stream=False).feed(sent, 0.0) == [(Attitude.id, 2, 3, 8, sent)]
+    assert payload_of(sent) == sent[10:-2]
+    [(*_, old)] = Framer(stream=False).feed(version_1(Heartbeat(6, 8, 0, 0, 4, 3)), 0.0)
+    assert len(payload_of(old)) == 9
+    assert ManualControl.id == 69
+
+
+@pytest.mark.parametrize("data", [b"", b"\xfd", b"\xfe" * 3, bytes(65507)])
+def test_empty_short_and_huge_datagrams(data: bytes) -> None:
+    framer = Framer(stream=False)
+    assert framer.feed(data, 0.0) == []
+    assert framer.counts.resync_bytes == len(data)
+
+
+# ---- for routers: ids that nobody here knows ----
+
+
+def unknown(sequence: int) -> bytes:
+    """A frame of an id outside the dialect; its checksum says nothing to us."""
+    data = bytearray(demand(sequence))
+    data[7:10] = (45999).to_bytes(3, "little")
+    return bytes(data)
+
+
+@BOTH
+def test_a_router_gets_unknown_frames_between_sound_ones(stream: bool) -> None:
+    framer = Framer(stream=stream, unknown=True)
+    train = demand(1) + unknown(2) + unknown(3) + demand(4) + unknown(5)
+    assert sequences(framer, train) == [1, 2, 3, 4, 5]
+    assert (framer.counts.frames, framer.counts.unknown, framer.counts.resync_bytes) == (2, 3, 0)
+
+
+def test_in_noise_an_unknown_id_hides_and_delays_nothing() -> None:
+    # 0xFD in noise claims an id that nobody knows nearly always: it must not be waited for.
+    framer = Framer(stream=True, unknown=True)
+    claim = bytes([0xFD, 200, 0, 0, 9, 9, 9, 9, 9, 9])
+    assert sequences(framer, b"noise" + claim + demand(7)) == [7]
+    assert sequences(framer, unknown(8)) == [8]
+    assert framer.counts.unknown == 1
+
+
+def test_an_unknown_frame_that_does_not_end_where_another_begins_is_none() -> None:
+    framer = Framer(stream=False, unknown=True)
+    assert sequences(framer, unknown(1) + b"rest") == []
+    assert sequences(framer, unknown(1)[:-1]) == []
+    assert framer.counts.unknown == 0

@@ -1,0 +1,106 @@
+"""Programs whose standard streams are closed, full or asked for what they cannot say. In processes of their own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+LOOK = """
+import os, sys
+from link.runtime import stdio as standard_streams
+standard_streams.secure()
+opened = os.open("kept", os.O_WRONLY | os.O_CREAT)
+print("out"); print("err", file=sys.stderr); sys.stdin.read()
+os.write(2, b"a line of the log")
+sys.stdout.flush()
+sys.exit(opened)
+"""
+"""The next thing that it opens is a file, whose number is its exit code."""
+
+
+def run(command: list[str], folder: Path, redirect: str = "") -> subprocess.CompletedProcess[bytes]:
+    """`python COMMAND` in a shell, which can close what Python's subprocess cannot."""
+    return subprocess.run(
+        ["sh", "-c", f'exec "$@" {redirect}', "sh", sys.executable, *command],
+        capture_output=True,
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"},
+        timeout=60,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize("closed", ["2>&-", ">&- 2>&-", "<&- >&- 2>&-", "<&-", ""])
+def test_nothing_that_is_opened_takes_the_place_of_a_closed_stream(closed: str, tmp_path: Path) -> None:
+    done = run(["-c", LOOK], tmp_path, closed)
+    assert done.returncode > 2, done
+    assert (tmp_path / "kept").read_bytes() == b""
+    assert (b"out" in done.stdout) == (">&- " not in closed)
+    assert (b"a line of the log" in done.stderr) == ("2>&-" not in closed)
+
+
+@pytest.mark.parametrize(
+    ("command", "redirect", "code"),
+    [
+        (["vehicle", "check", "nowhere"], ">&-", 2),
+        (["vehicle"], "2>&-", 2),
+        (["vehicle", "--nope"], "<&- >&- 2>&-", 2),
+        (["link.bridge"], "<&- >&- 2>&-", 2),
+        (["groundstation"], "<&- >&- 2>&-", 2),
+    ],
+)
+def test_a_mistake_is_a_mistake_also_where_nobody_is_told(
+    command: list[str], redirect: str, code: int, tmp_path: Path
+) -> None:
+    done = run(["-m", *command], tmp_path, redirect)
+    assert done.returncode == code
+    assert b"Traceback" not in done.stdout + done.stderr
+
+
+def test_a_full_disk_behind_the_output_is_one_line(tmp_path: Path) -> None:
+    done = run(["-m", "vehicle", "schema"], tmp_path, ">/dev/full")
+    assert done.returncode == 1
+    assert done.stderr == b"vehicle schema: No space left on device\n"
+
+
+def test_a_reader_who_goes_is_one_line(tmp_path: Path) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [sys.executable, "-m", "vehicle", "schema"],
+        stdout=writer,
+        stderr=subprocess.PIPE,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        timeout=60,
+        check=False,
+    )
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (1, b"vehicle schema: Broken pipe\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "says"),
+    [
+        ([b"check", b"\xff.toml"], 2, b"\\udcff.toml"),
+        ([b"--sim", b"udpout:\xff:14550"], 1, b"host '\\udcff' is not known"),  # a name may be known later
+        ([b"--sim", b"--motor-log", b"/nowhere/\xff"], 2, b"motor log /nowhere/\\udcff: No such file"),
+    ],
+)
+def test_a_name_that_is_no_text_is_told(words: list[bytes], code: int, says: bytes, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "vehicle", *words],
+        capture_output=True,
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"},
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == code
+    assert says in done.stdout + done.stderr
+    assert (done.stdout + done.stderr).count(b"\n") == 1

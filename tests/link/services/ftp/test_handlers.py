@@ -1,0 +1,159 @@
+"""MAVLink FTP of the vehicle: every question is answered, and no path, size or word leads where it must not."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dialects import messages as m
+from link.services.ftp.protocol import MAX_OFFSET, FtpError, FtpPacket, Op, parse
+from tests.link.ftp_vehicle import LOG, Vehicle, error
+from tests.link.services_world import PEER, from_gcs
+
+# ---- bad questions ----
+
+PATHS = [
+    b"../../etc/shadow",
+    b"/../etc/shadow",
+    b"/etc/shadow",
+    b"/logs/../general.json.xz",
+    b"/logs/../../etc/shadow",
+    b"/logs/./1.bin",
+    b"/logs//1.bin",
+    b"///etc/shadow",
+    b"..",
+    b".",
+    b"/logs/..",
+    b"\\etc\\shadow",
+    b"/logs/..\\1.bin",
+    b"/logs/1.bin\0/../../etc/shadow",
+    b"/logs/1.bin/x",
+    b"@PARAM/../logs/1.bin",
+    b"@MISSION/mission.dat",
+    b"\xff\xfe",
+    b"/logs/1.bin\n",
+    b"\x1b[2J",
+    b"A" * 239,
+    b"/" * 239,
+    b"../" * 79,
+]
+
+
+@pytest.mark.parametrize("path", PATHS)
+@pytest.mark.parametrize("op", [Op.OPEN, Op.CRC, Op.CREATE, Op.OPEN_TO_WRITE, Op.REMOVE, Op.TRUNCATE])
+def test_71_no_path_leads_out(path: bytes, op: Op) -> None:
+    assert error(Vehicle().ask(op, path)) in (FtpError.NOT_FOUND, FtpError.PROTECTED)
+
+
+@pytest.mark.parametrize(
+    "path", [b"..", b".", b"/..", b"/logs/..", b"/logs/.", b"../..", b"logs/../1.bin", b"/logs/a\\b"]
+)
+def test_no_folder_ever_sees_a_name_that_leads_out(path: bytes) -> None:
+    assert Vehicle().tree.find(path) is None
+
+
+@given(st.binary(max_size=239))
+def test_only_names_that_are_served_are_found(path: bytes) -> None:
+    place = Vehicle().tree.find(path)
+    assert place is None or place.name == "" or ("/" not in place.name and place.name not in (".", ".."))
+
+
+@pytest.mark.parametrize("size", [240, 255])
+@pytest.mark.parametrize("op", [Op.OPEN, Op.READ, Op.BURST, Op.WRITE, Op.LIST])
+def test_72_a_size_that_cannot_be_is_refused(size: int, op: Op) -> None:
+    vehicle = Vehicle()
+    vehicle.ask(Op.OPEN, b"/logs/1.bin")
+    assert error(vehicle.ask(op, b"A" * 239, size=size)) is FtpError.INVALID_SIZE
+
+
+@pytest.mark.parametrize("op", [16, 17, 100, 127, 130, 200, 255])
+def test_73_unknown_questions_are_unknown(op: int) -> None:
+    assert error(Vehicle().ask(op, b"/")) is FtpError.UNKNOWN_COMMAND
+
+
+@pytest.mark.parametrize("op", [Op.READ, Op.BURST, Op.WRITE])
+def test_72_a_session_that_is_not_open(op: Op) -> None:
+    assert error(Vehicle().ask(op, session=200)) is FtpError.INVALID_SESSION
+
+
+@pytest.mark.parametrize("op", [Op.RENAME, Op.MAKE_DIRECTORY, Op.REMOVE_DIRECTORY])
+def test_the_tree_keeps_its_shape(op: Op) -> None:
+    assert error(Vehicle().ask(op, b"/missions/new")) is FtpError.PROTECTED
+
+
+def test_answers_are_never_answered() -> None:
+    for op in (Op.ACK, Op.NAK):
+        assert Vehicle().send(FtpPacket(1, op)) == []
+
+
+def test_what_is_meant_for_others_or_comes_from_strangers_is_not_answered() -> None:
+    vehicle = Vehicle()
+    question = FtpPacket(1, Op.LIST, data=b"/")
+    for target in ((2, 1), (0, 0), (1, 42)):
+        assert vehicle.server.receive(from_gcs(question.message(*target)), 0.0) == []
+    assert vehicle.send(question, introduced=False) == []
+
+
+@settings(max_examples=300)
+@given(st.lists(st.binary(min_size=251, max_size=251), max_size=8))
+def test_any_bytes_are_answered_once_and_raise_nothing(payloads: list[bytes]) -> None:
+    vehicle = Vehicle()
+    for number, payload in enumerate(payloads):
+        answers = vehicle.server.receive(from_gcs(m.FileTransferProtocol(0, 1, 1, payload)), number * 1.0)
+        vehicle.server.tick(number * 1.0)
+        assert len(answers) <= 1
+
+
+@settings(max_examples=200)
+@given(
+    st.lists(
+        st.builds(
+            FtpPacket,
+            st.integers(0, 3),
+            st.integers(0, 17),
+            st.integers(0, 2),
+            st.sampled_from([b"/logs/1.bin", b"/missions/a.plan", b"/missions/old.plan", b"{}", b"/"]),
+            st.sampled_from([0, 1, 500, MAX_OFFSET]),
+            size=st.sampled_from([None, 0, 239, 255]),
+        ),
+        max_size=30,
+    )
+)
+def test_any_order_of_questions_raises_nothing_and_writes_only_plans(questions: list[FtpPacket]) -> None:
+    vehicle = Vehicle()
+    for number, question in enumerate(questions):
+        vehicle.send(question, number * 0.5)
+        vehicle.tick(number * 0.5)
+    assert all(name.endswith(".plan") for name, _ in vehicle.written)
+    assert vehicle.stored(b"/logs/1.bin") == LOG
+
+
+# ---- on the wire ----
+
+
+@given(
+    st.builds(
+        FtpPacket,
+        st.integers(0, 65535),
+        st.integers(0, 255),
+        st.integers(0, 255),
+        st.binary(max_size=239),
+        st.integers(0, MAX_OFFSET),
+        st.integers(0, 255),
+        st.booleans(),
+    )
+)
+def test_a_packet_comes_out_as_it_went_in(packet: FtpPacket) -> None:
+    again = parse(m.FileTransferProtocol(0, 1, 1, packet.payload()))
+    assert again == dataclasses.replace(packet, size=len(packet.data))
+
+
+def test_answers_go_to_who_asked() -> None:
+    vehicle = Vehicle()
+    [outgoing] = vehicle.server.receive(from_gcs(FtpPacket(1, Op.LIST, data=b"/").message(1, 0)), 0.0)
+    message = outgoing.message
+    assert isinstance(message, m.FileTransferProtocol)
+    assert (message.target_system, message.target_component, outgoing.peer) == (255, 190, PEER)

@@ -1,0 +1,246 @@
+"""Uploading a plan: the old one stays until the new one is whole and valid, whoever sends what."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import MissionResult, MissionType
+from link.services.mission.items import NOWHERE
+from link.services.mission.server import REMEMBER
+from link.services.mission.upload import ASK_AGAIN, GIVE_UP
+from tests.link.mission_vehicle import (
+    DO_JUMP,
+    FENCE_CIRCLE,
+    NAV_LOITER_TIME,
+    NAV_WAYPOINT,
+    Vehicle,
+    plain,
+    waypoint,
+)
+from tests.link.services_world import OTHER_PEER, PEER, from_gcs
+
+
+def test_an_upload_is_asked_for_item_by_item() -> None:
+    vehicle = Vehicle()
+    [first] = vehicle.ask(m.MissionCount(1, 1, 2))
+    assert isinstance(first, m.MissionRequestInt)
+    assert (first.seq, first.target_system, first.target_component, first.mission_type) == (0, 255, 190, 0)
+    [second] = vehicle.give(waypoint(0), 0)
+    assert (type(second), second.seq) == (m.MissionRequestInt, 1)
+    assert vehicle.plan == ()
+    [ack] = vehicle.give(waypoint(1), 1)
+    assert (type(ack), ack.type, ack.target_system) == (m.MissionAck, MissionResult.ACCEPTED, 255)
+    assert plain(vehicle.plan) == plain((waypoint(0), waypoint(1)))
+    assert vehicle.changes == [(MissionType.MISSION, 2)]
+
+
+def test_answers_go_to_who_asked() -> None:
+    vehicle = Vehicle()
+    [outgoing] = vehicle.server.receive(from_gcs(m.MissionCount(1, 1, 1)), 0.0)
+    assert outgoing.peer == PEER
+
+
+def test_an_item_in_floats_is_the_same_item() -> None:
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 1))
+    old = m.MissionItem(1, 1, 0, 3, NAV_WAYPOINT, 0, 1, 0.0, 1.0, 0.0, math.nan, 47.25, -8.5, 0.5)
+    assert [ack.type for ack in vehicle.ask(old)] == [MissionResult.ACCEPTED]
+    assert (vehicle.plan[0].latitude, vehicle.plan[0].longitude) == (47.25, -8.5)
+
+
+def test_an_empty_plan_clears() -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint()])
+    assert [ack.type for ack in vehicle.ask(m.MissionCount(1, 1, 0))] == [MissionResult.ACCEPTED]
+    assert vehicle.plan == ()
+
+
+def test_65_too_many_items_are_no_space() -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint()])
+    assert [ack.type for ack in vehicle.ask(m.MissionCount(1, 1, 65535))] == [MissionResult.NO_SPACE]
+    assert len(vehicle.plan) == 1
+    assert vehicle.tick(100.0) == []
+
+
+def test_66_silence_is_asked_again_and_then_cancelled_and_the_old_plan_stays() -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint()])
+    vehicle.ask(m.MissionCount(1, 1, 5), 10.0)
+    asked: list[tuple[float, Any]] = []
+    for step in range(1, 500):
+        now = 10.0 + step * 0.02
+        asked += [(now, message) for message in vehicle.tick(now)]
+    *requests, (at, ack) = asked
+    assert [round(now - 10.0, 2) for now, _ in requests[:3]] == pytest.approx([ASK_AGAIN, 2 * ASK_AGAIN, 3 * ASK_AGAIN])
+    assert {type(message) for _, message in requests} == {m.MissionRequest, m.MissionRequestInt}
+    assert {message.seq for _, message in requests} == {0}
+    assert ack.type == MissionResult.CANCELLED
+    assert at == pytest.approx(10.0 + GIVE_UP, abs=0.03)
+    assert plain(vehicle.plan) == plain((waypoint(),))
+    assert vehicle.give(waypoint(7), 0, 20.0) == []
+
+
+def test_who_refuses_to_be_asked_in_floats_is_asked_in_integers_at_once_and_from_then_on() -> None:
+    """As MAVSDK does: its refusal is no wish to end."""
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 2))
+    [old] = vehicle.tick(ASK_AGAIN)
+    assert isinstance(old, m.MissionRequest)
+    refusal = m.MissionAck(1, 1, MissionResult.UNSUPPORTED)
+    assert [type(each) for each in vehicle.ask(refusal, now=ASK_AGAIN)] == [m.MissionRequestInt]
+    assert vehicle.ask(refusal, now=ASK_AGAIN) == []
+    for again in range(2, 6):
+        assert [type(each) for each in vehicle.tick(again * ASK_AGAIN)] == [m.MissionRequestInt]
+    vehicle.give(waypoint(0), 0)
+    assert [ack.type for ack in vehicle.give(waypoint(1), 1)] == [MissionResult.ACCEPTED]
+
+
+def test_unsupported_ends_an_upload_that_was_asked_for_in_integers() -> None:
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 2))
+    assert vehicle.ask(m.MissionAck(1, 1, MissionResult.UNSUPPORTED)) == []
+    assert vehicle.give(waypoint(0), 0) == []
+
+
+def test_67_an_item_out_of_order_is_dropped_and_the_right_one_asked_for() -> None:
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 3), 0.0)
+    vehicle.give(waypoint(0), 0, 0.1)
+    assert vehicle.give(waypoint(0), 0, 0.11) == [], "a repeat is no reason to ask"
+    [again] = vehicle.give(waypoint(2), 2, 0.4)
+    assert again.seq == 1
+    vehicle.give(waypoint(1), 1, 0.5)
+    [ack] = vehicle.give(waypoint(2), 2, 0.6)
+    assert ack.type == MissionResult.ACCEPTED
+    assert plain(vehicle.plan) == plain((waypoint(0), waypoint(1), waypoint(2)))
+
+
+def test_67_the_last_item_said_again_is_acknowledged_again() -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint(0), waypoint(1)])
+    assert [ack.type for ack in vehicle.give(waypoint(1), 1, 1.0)] == [MissionResult.ACCEPTED]
+    assert vehicle.give(waypoint(0), 0, 1.0) == []
+    assert vehicle.give(waypoint(1), 1, REMEMBER + 1.0) == []
+    assert len(vehicle.changes) == 1
+
+
+def test_67_items_of_another_ground_station_do_not_count() -> None:
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 1), 0.0)
+    assert vehicle.give(waypoint(9), 0, 0.1, system=254) == []
+    assert vehicle.give(waypoint(9), 0, 0.1, peer=OTHER_PEER) == []
+    assert vehicle.plan == ()
+    vehicle.give(waypoint(0), 0, 0.2)
+    assert plain(vehicle.plan) == plain((waypoint(0),))
+
+
+def test_a_second_sender_is_denied_while_one_is_busy_and_the_first_may_begin_again() -> None:
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 5), 0.0)
+    assert [ack.type for ack in vehicle.ask(m.MissionCount(1, 1, 1), 0.1, system=254)] == [MissionResult.DENIED]
+    assert [ack.type for ack in vehicle.ask(m.MissionClearAll(1, 1, 0), 0.1, system=254)] == [MissionResult.DENIED]
+    assert vehicle.ask(m.MissionCount(1, 1, 1), 0.2)[0].seq == 0
+    assert vehicle.give(waypoint(), 0, 0.3)[0].type == MissionResult.ACCEPTED
+
+
+def test_what_may_not_be_changed_any_more_at_the_end_stays() -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint(9)])
+    vehicle.ask(m.MissionCount(1, 1, 2))
+    vehicle.give(waypoint(0), 0)
+    vehicle.verdict = MissionResult.DENIED
+    assert [(ack.type, ack.opaque_id) for ack in vehicle.give(waypoint(1), 1)] == [(MissionResult.DENIED, 0)]
+    assert plain(vehicle.plan) == plain((waypoint(9),))
+
+
+def test_plans_of_different_kinds_go_up_side_by_side() -> None:
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 1, MissionType.MISSION))
+    vehicle.ask(m.MissionCount(1, 1, 1, MissionType.FENCE), system=254)
+    circle = waypoint(command=FENCE_CIRCLE, params=(50.0, 0.0, 0.0, 0.0))
+    [ack] = vehicle.give(circle, 0, kind=MissionType.FENCE, system=254)
+    assert (ack.type, ack.mission_type) == (MissionResult.ACCEPTED, MissionType.FENCE)
+    vehicle.give(waypoint(), 0)
+    assert vehicle.changes == [(MissionType.FENCE, 1), (MissionType.MISSION, 1)]
+
+
+@pytest.mark.parametrize("verdict", [MissionResult.DENIED, MissionResult.ERROR])
+def test_the_vehicle_may_refuse_to_be_changed(verdict: MissionResult) -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint(0), waypoint(1)])
+    vehicle.verdict = verdict
+    for message in (
+        m.MissionCount(1, 1, 1),
+        m.MissionClearAll(1, 1, 0),
+        m.MissionClearAll(1, 1, 255),
+        m.MissionWritePartialList(1, 1, 0, 1),
+    ):
+        assert [ack.type for ack in vehicle.ask(message)] == [verdict]
+    assert len(vehicle.plan) == 2
+
+
+@pytest.mark.parametrize(
+    ("changes", "verdict"),
+    [
+        ({"command": 0}, MissionResult.UNSUPPORTED),
+        ({"command": 22}, MissionResult.UNSUPPORTED),
+        ({"command": 65535}, MissionResult.UNSUPPORTED),
+        ({"frame": 99}, MissionResult.UNSUPPORTED_FRAME),
+        ({"frame": 2}, MissionResult.UNSUPPORTED_FRAME),
+        ({"x": 900000001}, MissionResult.INVALID_X),
+        ({"x": -900000001}, MissionResult.INVALID_X),
+        ({"x": NOWHERE}, MissionResult.INVALID_X),
+        ({"x": 0, "y": 0}, MissionResult.INVALID_X),
+        ({"y": 1800000001}, MissionResult.INVALID_Y),
+        ({"params": (math.inf, 0.0, 0.0, 0.0)}, MissionResult.INVALID_PARAM1),
+        ({"params": (0.0, 0.0, 0.0, -math.inf)}, MissionResult.INVALID_PARAM4),
+        ({"z": math.inf}, MissionResult.INVALID_PARAM7),
+        ({"command": NAV_LOITER_TIME, "params": (math.nan, 0.0, 0.0, 0.0)}, MissionResult.INVALID_PARAM1),
+        ({"command": NAV_LOITER_TIME, "params": (-1.0, 0.0, 0.0, 0.0)}, MissionResult.INVALID_PARAM1),
+        ({"command": DO_JUMP, "params": (0.0, 101.0, 0.0, 0.0)}, MissionResult.INVALID_PARAM2),
+        ({"command": DO_JUMP, "params": (9.0, 1.0, 0.0, 0.0), "frame": 2}, MissionResult.INVALID_PARAM1),
+    ],
+)
+def test_68_an_invalid_item_ends_the_upload_and_says_which_field(
+    changes: dict[str, Any], verdict: MissionResult
+) -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint(5)])
+    vehicle.ask(m.MissionCount(1, 1, 1))
+    [ack] = vehicle.give(waypoint(**changes), 0, 0.1)
+    assert (type(ack), ack.type) == (m.MissionAck, verdict)
+    assert plain(vehicle.plan) == plain((waypoint(5),))
+    assert [each.type for each in vehicle.give(waypoint(**changes), 0, 0.2)] == [verdict], "its answer may get lost"
+    as_a_whole = changes.get("params", (0.0,))[0] == 9.0
+    assert vehicle.unfits == [(MissionType.MISSION, None if as_a_whole else 0, verdict)]
+
+
+@pytest.mark.parametrize("latitude", [math.nan, math.inf, -math.inf, 1e30, 91.0])
+def test_68_a_latitude_in_floats_that_is_none(latitude: float) -> None:
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 1))
+    old = m.MissionItem(1, 1, 0, 3, NAV_WAYPOINT, 0, 1, 0.0, 0.0, 0.0, 0.0, latitude, 8.5, 0.5)
+    assert [ack.type for ack in vehicle.ask(old)] == [MissionResult.INVALID_X]
+
+
+def test_here_is_a_place_where_a_command_allows_it() -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint(command=NAV_LOITER_TIME, params=(5.0, 0.0, 0.0, 0.0), x=0, y=0)])
+    assert len(vehicle.plan) == 1
+
+
+@pytest.mark.parametrize(
+    ("system", "component", "introduced"), [(2, 1, True), (0, 0, True), (1, 42, True), (1, 1, False)]
+)
+def test_what_is_meant_for_others_or_comes_from_strangers_is_not_answered(
+    system: int, component: int, introduced: bool
+) -> None:
+    vehicle = Vehicle()
+    assert vehicle.ask(m.MissionCount(system, component, 1), introduced=introduced) == []
+    assert vehicle.ask(m.MissionRequestList(system, component, 0), introduced=introduced) == []
+    assert vehicle.tick(1.0) == []

@@ -1,0 +1,239 @@
+"""Real sockets on loopback, driven by the runner: delivery, floods, refusals and the end."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import socket
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+import pytest
+
+from dialects.messages import Heartbeat, ManualControl, Message
+from link.core import LinkReport, Outgoing, Received
+from link.runner import Runner, open_links
+from link.transport.transport import LinkError
+from tests.link.frames import demand, heartbeat
+from tests.link.ports import Cable
+from tests.ports import free_port
+
+
+class Recorder:
+    """A core that notes everything and answers each demand with a heartbeat."""
+
+    def __init__(self, done: Callable[[Recorder], bool], runner: list[Runner]) -> None:
+        self.received: list[Received] = []
+        self.reports: list[Sequence[LinkReport]] = []
+        self.ticks: list[float] = []
+        self.numbers: list[tuple[Message, int]] = []
+        self.outbox: list[Outgoing] = []
+        self._done = done
+        self._runner = runner
+
+    def receive(self, received: Received, now: float) -> None:
+        self.received.append(received)
+        if isinstance(received.message, ManualControl):
+            self.outbox.append(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+        self._check()
+
+    def tick(self, now: float) -> None:
+        self.ticks.append(now)
+        self._check()
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        self.reports.append(reports)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        outbox, self.outbox = self.outbox, []
+        return outbox
+
+    def sent(self, message: Message, sequence: int, now: float) -> None:
+        self.numbers.append((message, sequence))
+
+    def _check(self) -> None:
+        if self._done(self):
+            self._runner[0].stop()
+
+
+async def run(
+    endpoint: str | list[str],
+    done: Callable[[Recorder], bool],
+    *,
+    first: Callable[[], None] = lambda: None,
+    route: bool | None = None,
+) -> Recorder:
+    runner: list[Runner] = []
+    core = Recorder(done, runner)
+    links = open_links([endpoint] if isinstance(endpoint, str) else endpoint, system=1, component=1)
+    runner.append(Runner(core, links, period=0.01, route=route))
+    first()
+    async with asyncio.timeout(60):
+        await runner[0].run()
+    return core
+
+
+@pytest.fixture
+def ground() -> Iterator[socket.socket]:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.bind(("127.0.0.1", 0))
+        sock.settimeout(60)
+        yield sock
+
+
+async def test_udpin_hears_and_answers_whoever_shows_a_heartbeat(ground: socket.socket) -> None:
+    port = free_port()
+
+    def speak() -> None:
+        for data in (heartbeat(0), demand(1)):
+            ground.sendto(data, ("127.0.0.1", port))
+
+    core = await run(f"udpin:127.0.0.1:{port}", lambda core: len(core.received) >= 2, first=speak)
+    assert [each.sequence for each in core.received] == [0, 1]
+    assert ground.recv(300)[7] == Heartbeat.id
+    assert [(type(message), number) for message, number in core.numbers] == [(Heartbeat, 0)]
+
+
+async def test_udpout_speaks_first_and_survives_nobody_listening(ground: socket.socket) -> None:
+    def two_ticks_with_words(core: Recorder) -> bool:
+        core.outbox.append(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+        return len(core.ticks) > 5
+
+    await run(f"udpout:127.0.0.1:{free_port()}", two_ticks_with_words)  # every datagram is refused by ICMP
+    await run(f"udpout:127.0.0.1:{ground.getsockname()[1]}", two_ticks_with_words)
+    assert ground.recv(300)[7] == Heartbeat.id
+
+
+async def test_the_core_ticks_and_hears_of_its_links_while_flooded(ground: socket.socket) -> None:
+    port, filled = free_port(), 0
+    frames = [demand(number) for number in range(256)]
+
+    def flood(core: Recorder) -> bool:
+        """With each tick four times what is read at once."""
+        nonlocal filled
+        if len(core.ticks) > filled:
+            filled = len(core.ticks)
+            for data in frames:
+                ground.sendto(data, ("127.0.0.1", port))
+        return len(core.ticks) > 50
+
+    core = await run(f"udpin:127.0.0.1:{port}", flood)
+    assert len(core.ticks) > 50
+    assert core.reports[0][0].name == f"udpin:127.0.0.1:{port}"
+
+
+async def test_a_port_that_is_away_is_told_to_the_log_and_that_it_has_come_too(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A vehicle without a screen has no other way to say that its port is missing."""
+    caplog.set_level(logging.INFO, "link.runner")
+    path = tmp_path / "ttyUSB0"
+    cables: list[Cable] = []
+
+    def plug_in_when_it_is_missed(core: Recorder) -> bool:
+        if core.reports and not cables:
+            assert core.reports[0][0].down
+            cables.append(Cable(path))
+        return "connected" in caplog.text
+
+    await run(f"serial:{path}:57600", plug_in_when_it_is_missed)
+    cables[0].unplug()
+    assert [(record.levelname, record.message) for record in caplog.records if record.name == "link.runner"] == [
+        ("WARNING", f"serial:{path}:57600: waiting for {path}, it is not there; is it plugged in?"),
+        ("INFO", f"serial:{path}:57600: connected"),
+    ]
+
+
+async def test_what_the_core_raises_ends_the_run_and_frees_the_port() -> None:
+    port = free_port()
+
+    def fail(core: Recorder) -> bool:
+        raise ZeroDivisionError("a bug")
+
+    with pytest.raises(ZeroDivisionError, match="a bug"):
+        await run(f"udpin:127.0.0.1:{port}", fail)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        sock.bind(("127.0.0.1", port))
+
+
+async def test_last_words_go_out_after_the_core_has_raised(ground: socket.socket) -> None:
+    """Who takes the error himself may speak on, and says when it is over."""
+    runner: list[Runner] = []
+    errors: list[Exception] = []
+
+    def fail(core: Recorder) -> bool:
+        if not errors:
+            raise ZeroDivisionError("a bug")
+        return len(core.ticks) > 5
+
+    def broken(error: Exception) -> None:
+        errors.append(error)
+        core.outbox.append(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+
+    core = Recorder(fail, runner)
+    links = open_links([f"udpout:127.0.0.1:{ground.getsockname()[1]}"], system=1, component=1)
+    runner.append(Runner(core, links, period=0.01, broken=broken))
+    async with asyncio.timeout(60):
+        await runner[0].run()
+    assert [str(error) for error in errors] == ["a bug"]
+    assert ground.recv(300)[7] == Heartbeat.id
+
+
+async def test_a_message_that_cannot_be_encoded_is_logged_and_the_rest_goes_out(
+    ground: socket.socket, caplog: pytest.LogCaptureFixture
+) -> None:
+    def speak(core: Recorder) -> bool:
+        core.outbox += [
+            Outgoing(ManualControl(target=1, x=99999, y=0, z=0, r=0, buttons=0)),
+            Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)),
+        ]
+        return len(core.ticks) > 1
+
+    await run(f"udpout:127.0.0.1:{ground.getsockname()[1]}", speak)
+    assert ground.recv(300)[7] == Heartbeat.id
+    assert "MANUAL_CONTROL" in caplog.text
+
+
+@pytest.mark.parametrize("route", [None, False], ids=["by default", "not where it is switched off"])
+async def test_ground_stations_on_two_links_hear_each_other(ground: socket.socket, route: bool | None) -> None:
+    port = free_port()
+
+    def speak() -> None:  # for everybody, for us alone, for everybody
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+            for data in (heartbeat(0, system=254), demand(1), heartbeat(2, system=254)):
+                other.sendto(data, ("127.0.0.1", port))
+
+    endpoints = [f"udpin:127.0.0.1:{port}", f"udpout:127.0.0.1:{ground.getsockname()[1]}"]
+    core = await run(endpoints, lambda core: len(core.received) >= 3, first=speak, route=route)
+    assert len(core.received) == 3  # what is forwarded is heard here all the same
+    ground.settimeout(0.5)
+    heard = []
+    with contextlib.suppress(TimeoutError):
+        while True:
+            heard.append(ground.recv(300))
+    forwarded = [data for data in heard if data[5] != 1]
+    assert forwarded == ([heartbeat(0, system=254), heartbeat(2, system=254)] if route is None else [])
+
+
+async def test_one_line_says_why_a_port_cannot_be_opened(ground: socket.socket) -> None:
+    port = ground.getsockname()[1]
+    wrong = {
+        f"udpin:127.0.0.1:{port}": f"port {port} is in use",
+        "udpout:no-such-host.invalid:14550": "host 'no-such-host.invalid' is not known",
+        "udpin:203.0.113.7:14550": "203.0.113.7 is no address of this machine",
+        f"udpout:{'x' * 70}.invalid:14550": "is not known",
+    }
+    for endpoint, told in wrong.items():
+        with pytest.raises(LinkError) as caught:
+            open_links([endpoint], system=1, component=1)
+        assert told in str(caught.value)
+        assert "\n" not in str(caught.value)
+
+
+async def test_a_failed_endpoint_leaves_none_open() -> None:
+    port = free_port()
+    with pytest.raises(LinkError):
+        open_links([f"udpin:127.0.0.1:{port}", "udpin:203.0.113.7:14550"], system=1, component=1)
+    for link in open_links([f"udpin:127.0.0.1:{port}"], system=1, component=1):
+        link.close()

@@ -1,0 +1,278 @@
+"""The recorder: all that it is handed is in the file in order, and a disk that fails or sleeps holds nobody up."""
+
+from __future__ import annotations
+
+import errno
+import os
+import threading
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from dialects import codec
+from dialects import messages as m
+from dialects.messages import MESSAGES
+from link.protocol.frame import Frame
+from link.protocol.log_tap import SETUP_SIGNING, Tape
+from link.runtime.worker import Worker
+from link.tlog.recorder import MAX_BATCH, PENDING, PERIOD, SLOW, RawFile, Recorder
+from link.tlog.tlog import Record, read
+from tests.link.frames import demand, heartbeat
+
+PATIENCE = 60.0
+
+
+class MemoryFile:
+    """A file whose disk may sleep or fail."""
+
+    def __init__(self) -> None:
+        self.data = b""
+        self.closed = False
+        self.awake = threading.Event()
+        self.awake.set()
+        self.writing = threading.Event()
+        self.error: OSError | None = None
+
+    def write(self, data: bytes) -> None:
+        self.writing.set()
+        assert self.awake.wait(PATIENCE)
+        if self.error:
+            raise self.error
+        self.data += data
+
+    def close(self) -> None:
+        self.closed = True
+
+    @property
+    def frames(self) -> list[bytes]:
+        return [each.raw for each in read(self.data)]
+
+
+def seen(recorder: Recorder) -> None:
+    """Wait until the thread has done all that it was given."""
+    done = threading.Event()
+    recorder.check(done.set)
+    assert done.wait(PATIENCE)
+
+
+def test_what_came_just_before_the_beginning_is_in_the_log_and_nothing_after_its_end() -> None:
+    recorder, file = Recorder(), MemoryFile()
+    recorder.add(1.0, [heartbeat(0)])
+    recorder.tick(1.0)  # long before: gone
+    recorder.add(1.1, [demand(1)])
+    recorder.begin(lambda: file)
+    recorder.add(1.2, [demand(2), demand(3)])
+    recorder.tick(1.3)
+    recorder.add(1.4, [demand(4)])
+    recorder.end()
+    recorder.add(1.5, [demand(5)])
+    recorder.tick(9.0)
+    recorder.close()
+    assert file.frames == [demand(number) for number in (1, 2, 3, 4)]
+    assert file.closed
+
+
+def test_frames_are_in_the_file_soon_also_without_an_end() -> None:
+    recorder, file = Recorder(), MemoryFile()
+    recorder.begin(lambda: file)
+    recorder.tick(1.0)
+    recorder.add(1.1, [demand(1)])
+    recorder.tick(1.0 + PERIOD)
+    seen(recorder)
+    assert file.frames == [demand(1)]
+    recorder.close()
+
+
+def test_times_are_unix_time_and_in_order_whatever_happens_to_the_clock() -> None:
+    offsets = iter([1_700_000_000_000_000, 1_600_000_000_000_000])
+    recorder, first, second = Recorder(offset=lambda: next(offsets)), MemoryFile(), MemoryFile()
+    recorder.begin(lambda: first)
+    recorder.add(1.5, [demand(1)])
+    recorder.add(2.0, [demand(2)])
+    recorder.end()
+    recorder.begin(lambda: second)  # somebody has set the clock back
+    recorder.add(3.0, [demand(3)])
+    recorder.close()
+    assert list(read(first.data)) == [
+        Record(1_700_000_001_500_000, demand(1)),
+        Record(1_700_000_002_000_000, demand(2)),
+    ]
+    assert list(read(second.data)) == [Record(1_600_000_003_000_000, demand(3))]
+
+
+def test_a_new_log_closes_the_one_before() -> None:
+    recorder, first, second = Recorder(), MemoryFile(), MemoryFile()
+    recorder.begin(lambda: first)
+    recorder.add(1.0, [demand(1)])
+    recorder.tick(1.0)
+    recorder.begin(lambda: second)
+    recorder.add(2.0, [demand(2)])
+    recorder.close()
+    assert first.closed
+    assert (first.frames, second.frames) == ([demand(1)], [demand(2)])
+
+
+def test_a_disk_that_sleeps_costs_frames_that_are_counted_and_no_time() -> None:
+    recorder, file = Recorder(), MemoryFile()
+    file.awake.clear()
+    recorder.begin(lambda: file)
+    recorder.add(0.0, [demand(0)])
+    recorder.tick(0.0)
+    assert file.writing.wait(PATIENCE)
+    for number in range(1, PENDING + 11):
+        recorder.add(number, [demand(number % 256)])
+        recorder.tick(number)
+    assert recorder.lost == 10
+    assert recorder.problem == SLOW
+    file.awake.set()
+    seen_when_there_is_room(recorder)
+    assert len(file.frames) == PENDING + 1
+    recorder.begin(MemoryFile)
+    assert recorder.problem is None
+    recorder.close()
+
+
+def seen_when_there_is_room(recorder: Recorder) -> None:
+    """As `seen`, behind a full queue."""
+    done = threading.Event()
+    for _ in range(1000):
+        recorder.check(done.set)
+        if done.wait(0.01):
+            return
+    raise AssertionError("the thread hangs")
+
+
+def test_a_flood_does_not_wait_for_the_time() -> None:
+    recorder, file = Recorder(), MemoryFile()
+    recorder.begin(lambda: file)
+    recorder.tick(0.0)
+    frames = [demand(number) for number in range(256)]
+    while sum(map(len, frames)) < MAX_BATCH:
+        frames *= 2
+    recorder.add(0.1, frames)
+    seen(recorder)
+    assert len(file.frames) == len(frames)
+    recorder.close()
+
+
+@pytest.mark.parametrize("where", ["open", "write"])
+def test_a_disk_that_fails_ends_this_log_and_not_the_next(where: str) -> None:
+    recorder, file, good = Recorder(), MemoryFile(), MemoryFile()
+    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    def opened() -> MemoryFile:
+        if where == "open":
+            raise full
+        file.error = full
+        return file
+
+    recorder.begin(opened)
+    recorder.add(1.0, [demand(1)])
+    recorder.tick(1.0)
+    seen(recorder)
+    assert recorder.problem == "No space left on device"
+    recorder.add(2.0, [demand(2)])
+    recorder.tick(2.0)
+    recorder.begin(lambda: good)
+    recorder.add(3.0, [demand(3)])
+    recorder.close()
+    assert recorder.problem is None
+    assert good.frames == [demand(3)]
+
+
+def test_a_full_disk_is_an_error_of_the_file(tmp_path: Path) -> None:
+    file = RawFile(os.open("/dev/full", os.O_WRONLY))
+    with pytest.raises(OSError, match="No space"):
+        file.write(b"data")
+    file.close()
+
+
+def test_a_file_that_somebody_removed_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    file = RawFile(os.open(path, os.O_WRONLY | os.O_CREAT))
+    file.write(b"data")
+    file.sync()
+    assert path.read_bytes() == b"data"
+    assert not file.removed()
+    path.unlink()
+    assert file.removed()
+    file.close()
+
+
+# ---- the thread ----
+
+
+def test_a_job_that_fails_is_told_and_the_next_is_done(caplog: pytest.LogCaptureFixture) -> None:
+    worker, done = Worker("test", 3), threading.Event()
+    worker.put(lambda: print(1 / 0))
+    worker.put(done.set)
+    worker.close(PATIENCE)
+    assert done.is_set()
+    assert "'test' failed" in caplog.text
+
+
+def test_the_end_does_not_wait_for_a_disk_that_hangs() -> None:
+    worker, awake, slept = Worker("test", 1), threading.Event(), threading.Event()
+
+    def sleeping() -> None:
+        awake.wait(PATIENCE)
+        slept.set()
+
+    assert worker.put(sleeping)
+    while worker.put(lambda: None):  # until it is full
+        pass
+    worker.close(0.01)
+    assert not slept.is_set()
+    awake.set()
+    worker.close(PATIENCE)
+    assert slept.is_set()
+
+
+def test_a_worker_that_never_worked_ends_at_once() -> None:
+    Worker("idle", 1).close(PATIENCE)
+
+
+# ---- what is recorded ----
+
+
+class Taped:
+    """A tape and what it hands on."""
+
+    def __init__(self) -> None:
+        self.frames: list[bytes] = []
+        self.tape = Tape(lambda now, frames: self.frames.extend(frames), system=1, component=1)
+
+    def say(self, message: m.Message) -> None:
+        self.tape.said(type(message).id, codec.encode_payload(message), 1.0)
+
+
+def framed(raw: bytes) -> Frame:
+    return int.from_bytes(raw[7:10], "little"), raw[5], raw[6], raw[4], raw
+
+
+def test_keys_are_never_recorded() -> None:
+    taped = Taped()
+    kind: Any = MESSAGES[SETUP_SIGNING]
+    setup = kind(1, 1, b"k" * 32, 1)
+    key = codec.frame(SETUP_SIGNING, codec.encode_payload(setup), 7, 255, 190)
+    taped.tape.heard([framed(demand(1)), framed(key), framed(demand(2))], 1.0)
+    taped.say(setup)
+    assert taped.frames == [demand(1), demand(2)]
+
+
+@pytest.mark.parametrize(
+    "bulk", [m.FileTransferProtocol(0, 255, 190, bytes(251)), m.LogData(0, 0, 90, bytes(90)), m.LogEntry(0, 1, 0, 0, 9)]
+)
+def test_a_log_does_not_grow_by_being_read(bulk: m.Message) -> None:
+    taped = Taped()
+    taped.say(bulk)
+    assert not taped.frames
+
+
+def test_our_own_are_numbered_without_a_gap() -> None:
+    taped = Taped()
+    for number in range(300):
+        taped.say(m.Attitude(number, 0, 0, 0, 0, 0, 0))
+    assert [raw[4] for raw in taped.frames] == [number % 256 for number in range(300)]
+    assert {(raw[5], raw[6]) for raw in taped.frames} == {(1, 1)}

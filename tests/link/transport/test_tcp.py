@@ -1,0 +1,267 @@
+"""TCP on real sockets: several clients, reconnects, half frames, readers that do not read."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from dialects.messages import Attitude, CommandLong, Heartbeat
+from link.core import Outgoing
+from link.endpoint import parse
+from link.protocol.channel import Channel
+from link.protocol.framer import Framer
+from link.transport.tcp import MAX_CONNECTIONS, TcpClient, TcpServer, open_tcpin, open_tcpout
+from link.transport.transport import LinkError
+from tests.link.frames import demand, frame, heartbeat
+from tests.link.ports import Heard, until
+from tests.ports import free_port
+
+DISARM = frame(CommandLong(1, 1, 400, 0, 0, 0, 0, 0, 0, 0, 0), 9)
+
+
+@pytest.fixture
+def port() -> int:
+    return free_port()
+
+
+@pytest.fixture
+async def server(port: int) -> TcpServer:
+    return open_tcpin(parse(f"tcpin:127.0.0.1:{port}"))
+
+
+@pytest.fixture
+def listener(port: int) -> Iterator[socket.socket]:
+    with socket.create_server(("127.0.0.1", port)) as sock:
+        sock.settimeout(60)
+        yield sock
+
+
+def client(port: int) -> TcpClient:
+    return open_tcpout(parse(f"tcpout:127.0.0.1:{port}"))
+
+
+def connected(port: int) -> socket.socket:
+    sock = socket.create_connection(("127.0.0.1", port), timeout=10)
+    sock.setblocking(False)
+    return sock
+
+
+def received(sock: socket.socket) -> bytes:
+    try:
+        return sock.recv(65536)
+    except BlockingIOError:
+        return b""
+
+
+def said(heard: Heard) -> list[tuple[bytes, object]]:
+    """What came, without the connections themselves."""
+    return [(data, address) for data, address in heard.data if data]
+
+
+async def test_who_connects_is_heard_of_before_he_has_said_anything(server: TcpServer, port: int) -> None:
+    """mavutil and MAVSDK say nothing before they have heard a vehicle."""
+    heard = Heard(server)
+    with connected(port) as sock:
+        await until(lambda: heard.data)
+        assert heard.data == [(b"", sock.getsockname())]
+        channel = Channel("tcpin:127.0.0.1:5760", 0, system=1, component=1, stream=True)
+        channel.receive(*heard.data[0], 0.0)
+        [(beat, address, _)] = channel.send(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+        server.send(beat, address)
+        await until(lambda: received(sock) == beat)
+    server.close()
+
+
+async def test_each_client_is_a_peer_of_its_own_and_goes_when_it_closes(server: TcpServer, port: int) -> None:
+    heard = Heard(server)
+    one, two = connected(port), connected(port)
+    one.sendall(heartbeat(0))
+    two.sendall(heartbeat(0, system=254))
+    await until(lambda: len(said(heard)) == 2)
+    assert {address for _, address in heard.data} == {one.getsockname(), two.getsockname()}
+    server.send(demand(1), two.getsockname())
+    await until(lambda: received(two) == demand(1))
+    assert received(one) == b""
+    two.close()
+    await until(lambda: heard.gone)
+    server.send(demand(2), heard.gone[0])
+    assert len(heard.gone) == 1
+    one.close()
+    server.close()
+
+
+async def test_the_crowd_is_closed_at_once(server: TcpServer, port: int) -> None:
+    heard = Heard(server)
+    crowd = [connected(port) for _ in range(MAX_CONNECTIONS + 1)]
+    for sock in crowd[:MAX_CONNECTIONS]:
+        sock.sendall(heartbeat(0))
+    await until(lambda: len(said(heard)) == MAX_CONNECTIONS)
+
+    def last_is_closed() -> bool:
+        try:
+            return crowd[-1].recv(1) == b""
+        except BlockingIOError:
+            return False
+
+    await until(last_is_closed)
+    for sock in crowd:
+        sock.close()
+    server.close()
+
+
+async def test_it_connects_when_somebody_listens_and_again_when_he_returns(port: int) -> None:
+    wire = client(port)
+    heard = Heard(wire)
+    await until(lambda: "not connected" in (wire.problem or ""))
+    for number in range(2):
+        with socket.create_server(("127.0.0.1", port)) as listener:
+            listener.setblocking(False)
+            await until(lambda: wire.problem is None)
+            sock, _ = listener.accept()
+            sock.sendall(heartbeat(number))
+            await until(lambda: len(heard.data) == len(heard.gone) + 1)
+            assert heard.bytes.endswith(heartbeat(number))
+            wire.send(demand(number), "whoever")
+            sock.settimeout(60)
+            assert sock.recv(100) == demand(number)
+            sock.close()
+        await until(lambda: wire.problem is not None)
+        assert len(heard.gone) == number + 1
+    wire.close()
+
+
+async def test_nobody_reads_telemetry_is_dropped_and_the_stop_arrives(listener: socket.socket, port: int) -> None:
+    wire = client(port)
+    Heard(wire)
+    await until(lambda: wire.problem is None)
+    sock, _ = listener.accept()
+    sock.setblocking(False)
+    bulk = frame(Attitude(1, 0.5, 0, 0, 0, 0, 1), 1, 1, 1)
+    while wire.dropped < 1000:
+        wire.send(bulk, "whoever")
+    wire.send(DISARM, "whoever")
+    framer = Framer(stream=True)
+    found: list[int] = []
+
+    def stop_arrives() -> bool:
+        found.extend(message_id for message_id, *_ in framer.feed(received(sock), 0.0))
+        return CommandLong.id in found
+
+    await until(stop_arrives)
+    assert framer.counts.resync_bytes == 0
+    sock.close()
+    wire.close()
+
+
+async def test_no_nagle(server: TcpServer, port: int) -> None:
+    heard = Heard(server)
+    with connected(port) as sock:
+        sock.sendall(heartbeat(0))
+        await until(lambda: heard.data)
+        [connection] = server._connections.values()
+        assert connection._socket.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+    server.close()
+
+
+def test_half_a_frame_of_a_lost_connection_is_no_part_of_the_next() -> None:
+    channel = Channel("tcpout:127.0.0.1:5760", 0, system=255, component=190, stream=True, target="there")
+    channel.receive(heartbeat(0, system=1), "there", 0.0)
+    channel.receive(heartbeat(1, system=1)[:10], "there", 0.0)
+    channel.gone("there")
+    found = channel.receive(heartbeat(2, system=1), "there", 0.1)
+    assert [each.sequence for each in found] == [2]
+    assert channel.report().resync_bytes == 0
+
+
+def test_who_comes_after_a_lost_connection_must_introduce_itself() -> None:
+    channel = Channel("tcpin:127.0.0.1:5760", 0, system=1, component=1, stream=True)
+    channel.receive(heartbeat(0), "one", 0.0)
+    assert channel.report().peers == 1
+    channel.gone("one")
+    channel.gone("never was")
+    assert channel.report().peers == 0
+    assert not channel.receive(demand(1), "one", 0.1)[0].introduced
+    assert channel.receive(frame(Heartbeat(6, 8, 0, 0, 4, 3), 2), "one", 0.1)[0].introduced
+
+
+async def test_one_line_says_why_it_cannot_be_opened(listener: socket.socket, port: int) -> None:
+    with pytest.raises(LinkError, match=f"port {port} is in use"):
+        open_tcpin(parse(f"tcpin:127.0.0.1:{port}"))
+    with pytest.raises(LinkError, match="is not known"):
+        open_tcpout(parse("tcpout:no-such-host.invalid:5760"))
+
+
+async def test_it_does_not_talk_to_itself() -> None:
+    # Connecting to a free port of the range that the kernel takes own ports from now and then finds its own end.
+    port = free_port()
+    own = socket.socket()
+    own.bind(("127.0.0.1", port))
+    own.connect(("127.0.0.1", port))  # the case, made on purpose
+    wire = client(port)
+    wire._refused = lambda loop, why: refused.append(why)  # type: ignore[method-assign]
+    refused: list[str] = []
+    wire._connected(asyncio.get_running_loop(), own)
+    assert refused == ["nobody listens"]
+    own.close()
+
+
+class Names:
+    """A name server: what it says can change, and it can be slow or away."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.address: str | None = "127.0.0.1"
+        self.asked = 0
+        self.answers = threading.Event()
+        self.answers.set()
+        monkeypatch.setattr(socket, "getaddrinfo", self._answer)
+
+    def _answer(self, host: str, port: int, *_: object, **__: object) -> list[tuple[object, ...]]:
+        assert host == "rover.example"
+        self.asked += 1
+        assert self.answers.wait(60)
+        if self.address is None:
+            raise socket.gaierror(socket.EAI_AGAIN, "Temporary failure in name resolution")
+        return [(socket.AF_INET, socket.SOCK_STREAM, 6, "", (self.address, port))]
+
+
+async def taken(address: str, port: int, wire: TcpClient) -> None:
+    """A connection that comes to an address, and ends."""
+    with socket.create_server((address, port)):
+        await until(lambda: wire.problem is None)
+    await until(lambda: wire.problem is not None)
+
+
+async def test_a_name_that_moves_is_followed(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = Names(monkeypatch)
+    wire = open_tcpout(parse(f"tcpout:rover.example:{port}"))
+    Heard(wire)
+    await taken("127.0.0.1", port, wire)
+    names.address = "127.0.0.2"
+    await taken("127.0.0.2", port, wire)
+    names.address = None  # where the name is not known any more, the last address counts
+    await taken("127.0.0.2", port, wire)
+    wire.close()
+
+
+async def test_a_name_server_that_hangs_delays_no_connection(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = Names(monkeypatch)
+    wire = open_tcpout(parse(f"tcpout:rover.example:{port}"))
+    names.answers.clear()
+    Heard(wire)
+    await until(lambda: names.asked == 2)  # the first was at the start
+    await taken("127.0.0.1", port, wire)
+    wire.close()
+    names.answers.set()
+
+
+async def test_a_number_is_not_looked_up(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    wire = client(port)
+    names = Names(monkeypatch)
+    Heard(wire)
+    await taken("127.0.0.1", port, wire)
+    wire.close()
+    assert names.asked == 0

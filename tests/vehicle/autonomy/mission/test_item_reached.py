@@ -1,0 +1,66 @@
+"""MISSION_ITEM_REACHED: said again a few times, until another item is done or the mission is another one."""
+
+from __future__ import annotations
+
+from dialects import messages as m
+from link.core import Outgoing
+from tests.vehicle.autonomy.mission.test_mission import finish, ready, start, upload, way
+from tests.vehicle.field import Field
+from vehicle.autonomy.mission.item_reached import GAP, TIMES, Reached
+
+
+def sequences(outgoing: list[Outgoing]) -> list[int]:
+    return [each.message.seq for each in outgoing if isinstance(each.message, m.MissionItemReached)]
+
+
+def test_it_is_said_at_once_and_a_few_times_more() -> None:
+    reached = Reached()
+    assert reached.tick([], 0.0) == []
+    assert sequences(reached.tick([3], 1.0)) == [3]
+    said = [step * 0.02 for step in range(51, 500) if reached.tick([], step * 0.02)]
+    assert len(said) == TIMES - 1
+    assert said[0] - 1.0 >= GAP
+    assert said[1] - said[0] >= GAP
+
+
+def test_only_the_newest_is_said_again() -> None:
+    reached = Reached()
+    reached.tick([3], 0.0)
+    assert sequences(reached.tick([4, 5], GAP)) == [4, 5]
+    assert sequences(reached.tick([], 2 * GAP)) == [5]
+
+
+def test_what_is_forgotten_is_not_said_again() -> None:
+    reached = Reached()
+    reached.tick([3], 0.0)
+    reached.forget()
+    assert reached.tick([], 10.0) == []
+
+
+def finished() -> Field:
+    """A mission of one item, just complete."""
+    field = ready(way(3, 0))
+    start(field)
+    finish(field, 30.0)
+    assert [each.seq for each in field.all(m.MissionItemReached)] == [0]
+    return field
+
+
+def test_a_finished_mission_says_so_again() -> None:
+    field = finished()
+    field.beat(3.0)
+    assert [each.seq for each in field.all(m.MissionItemReached)] == [0] * TIMES
+
+
+def test_another_mission_hears_nothing_of_the_former_one() -> None:
+    field = finished()
+    upload(field, way(3, 0), way(0, 0))
+    field.beat(3.0)
+    assert len(field.all(m.MissionItemReached)) == 1
+
+
+def test_nor_does_another_item_of_it() -> None:
+    field = finished()
+    field.say(m.MissionSetCurrent(1, 1, 0))
+    field.beat(3.0)
+    assert len(field.all(m.MissionItemReached)) == 1

@@ -1,0 +1,133 @@
+"""Setpoints and commands of self-driving that are refused, and how it is told."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Command, Result
+from dialects.modes import Mode
+from tests.vehicle.autonomy.modes.test_guided import going
+from tests.vehicle.bench import DRIVER, OTHER, Bench, said
+from tests.vehicle.field import ONLY_PLACE, TWIST, Field
+from vehicle.navigation.geo import Point
+
+NAN = math.nan
+
+
+class TestRefusals:
+    @pytest.mark.parametrize(
+        ("frame", "mask", "why"),
+        [
+            (2, TWIST, "frame 2"),
+            (8, TWIST & ~64, "acceleration"),
+            (8, TWIST & ~64 | 512, "force"),
+            (8, 0xFFF & ~512, "nothing"),
+            (8, 0xFFF, "nothing"),
+            (1, ONLY_PLACE | 1, "half a position"),
+        ],
+    )
+    def test_45_what_is_not_offered_is_told_once(self, frame: int, mask: int, why: str) -> None:
+        field = Field()
+        field.begin(Mode.GUIDED)
+        field.texts.clear()
+        for _ in range(30):
+            field.goto(5.0, 0.0, frame=frame, mask=mask)
+            field.wait(0.2)
+        assert not field.turning
+        assert sum(why in text for text in field.texts) == 1
+
+    @pytest.mark.parametrize("index", [5, 6, 8, 9, 14, 15])
+    def test_43_a_used_value_that_is_no_number_refuses_the_whole(self, index: int) -> None:
+        field = going()
+        values: list[Any] = [0, 1, 1, 8, 64 | 128 | 256 | 4, 1.0, 1.0, 0, 0.1, 0.1, 0, 0, 0, 0, 0.1, 0.1]
+        values[index] = NAN
+        field.say(m.SetPositionTargetLocalNed(*values))
+        assert said(field, "is no number")
+        field.wait(0.3)
+        assert field.speed > 0.7
+
+    def test_an_ignored_value_may_be_anything(self) -> None:
+        field = Field()
+        field.begin(Mode.GUIDED)
+        field.say(m.SetPositionTargetLocalNed(0, 1, 1, 8, TWIST, NAN, NAN, NAN, 0.5, 0, NAN, NAN, NAN, NAN, NAN, 0))
+        field.wait(0.5)
+        assert field.turning
+
+    def test_46_in_another_mode_disarmed_or_from_another_station_it_counts_for_nothing(self) -> None:
+        field = Field()
+        field.twist(0.8)
+        assert said(field, "nobody is in control")
+        field.arm()
+        field.twist(0.8)
+        field.wait(0.5)
+        assert said(field, "mode is MANUAL, not GUIDED")
+        field.set_mode(Mode.GUIDED)
+        field.twist(0.8, system=OTHER)
+        field.wait(0.5)
+        assert said(field, f"GCS {DRIVER} is in control")
+        assert field.stands_for(1.0)
+
+    def test_nothing_asked_for_before_arming_moves_after_it(self) -> None:
+        field = Field()
+        field.begin(Mode.GUIDED)
+        field.goto(20.0, 0.0)
+        field.beat(2.0)
+        assert field.turning
+        field.command(Command.COMPONENT_ARM_DISARM, 0)
+        field.arm()
+        assert field.mode is Mode.GUIDED
+        assert field.stands_for(3.0)
+
+    @pytest.mark.parametrize(
+        ("x", "y"), [(0, 0), (2**31 - 1, 80_000_000), (500_000_000, 2**31 - 1), (910_000_000, 0), (0, 1_810_000_000)]
+    )
+    def test_53_reposition_to_nowhere_is_denied(self, x: int, y: int) -> None:
+        field = Field()
+        field.arm()
+        assert field.command_int(Command.DO_REPOSITION, -1, 1, x=x, y=y) is Result.DENIED
+
+    def test_reposition_needs_its_message_its_frame_its_flags_and_its_driver(self) -> None:
+        field = Field()
+        place = Point(5.0, 0.0)
+        assert field.reposition(place) is Result.FAILED  # not armed
+        field.arm()
+        assert field.command(Command.DO_REPOSITION, -1, 1, 0, NAN, 50.0, 8.0) is Result.INT_ONLY
+        assert field.reposition(place, frame=1) is Result.UNSUPPORTED_FRAME
+        assert field.reposition(place, flags=2) is Result.DENIED
+        assert field.reposition(place, speed=math.inf) is Result.DENIED
+        assert field.command_int(Command.DO_REPOSITION, -1, 1, x=1, y=1, system=OTHER) is Result.FAILED
+        assert field.stands_for(1.0)
+
+    def test_without_a_position_nothing_that_needs_one_is_begun(self) -> None:
+        bench = Bench()
+        bench.arm()
+        for mode in (Mode.LOITER, Mode.RTL, Mode.SMART_RTL, Mode.ACRO):
+            assert bench.set_mode(mode) is Result.FAILED
+            bench.wait(0.5)
+        assert said(bench, "position is not known")
+        assert said(bench, "there is no gyro")
+        assert bench.command(Command.DO_SET_HOME, 1) is Result.FAILED
+        assert bench.command(Command.NAV_RETURN_TO_LAUNCH) is Result.FAILED
+        bench.set_mode(Mode.GUIDED)
+        bench.say(m.SetPositionTargetLocalNed(0, 1, 1, 1, ONLY_PLACE, 5, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0))
+        assert said(bench, "position is not known")
+
+    @pytest.mark.parametrize("params", [(2, 1.0), (NAN, 1.0), (1, NAN), (1, -0.5), (1, math.inf)])
+    def test_a_speed_that_is_none_is_denied(self, params: tuple[float, ...]) -> None:
+        assert Field().command(Command.DO_CHANGE_SPEED, *params) is Result.DENIED
+
+    def test_too_much_speed_is_cut_and_told(self) -> None:
+        field = Field()
+        assert field.command(Command.DO_CHANGE_SPEED, 1, 99) is Result.ACCEPTED
+        assert said(field, "cut to 1.5")
+        assert field.command(Command.DO_CHANGE_SPEED, 1, -2) is Result.ACCEPTED
+        assert field.rover._navigator.cruise() == pytest.approx(0.8)
+
+    @pytest.mark.parametrize("command", [Command.DO_SET_REVERSE, Command.DO_PAUSE_CONTINUE, Command.DO_SET_HOME])
+    def test_neither_yes_nor_no_is_denied(self, command: int) -> None:
+        for value in (0.5, NAN, 2):
+            assert Field().command(command, value) is Result.DENIED

@@ -1,0 +1,105 @@
+"""Bad input 47: setpoints that are old when they arrive, by the clock of their sender."""
+
+from __future__ import annotations
+
+import pytest
+
+from dialects.enums import Result
+from dialects.modes import Mode
+from tests.vehicle.bench import said
+from tests.vehicle.field import Field
+from vehicle.autonomy.setpoints import SenderClock
+
+WRAP = 2**32
+
+
+def heard(*stamps: tuple[int, float]) -> list[float | None]:
+    """Ages of setpoints with these (time_boot_ms, arrival)."""
+    clock = SenderClock()
+    return [clock.age(boot_ms, now) for boot_ms, now in stamps]
+
+
+def test_in_time_is_no_age_whatever_the_clocks_say() -> None:
+    assert heard((5000, 100.0), (5100, 100.1), (5200, 100.2)) == pytest.approx([0, 0, 0], abs=1e-3)
+
+
+def test_what_waited_is_as_old_as_it_waited() -> None:
+    assert heard((5000, 100.0), (5100, 101.6), (6600, 101.61)) == pytest.approx([0, 1.5, 0.01], abs=2e-3)
+
+
+def test_the_fastest_is_the_measure() -> None:
+    assert heard((5000, 102.0), (6000, 101.5), (7000, 103.0)) == pytest.approx([0, 0, 0.5], abs=2e-3)
+
+
+def test_overtaken_and_started_anew() -> None:
+    assert heard((5000, 100.0), (4990, 100.01), (10, 100.9), (10, 101.1)) == pytest.approx([0, None, None, 0])
+
+
+def test_47_a_clock_that_stops_grows_old() -> None:
+    ages = heard((7677, 99.9), *((7777, 100.0 + step / 10) for step in range(20)))
+    assert ages[-1] == pytest.approx(1.9, abs=0.01)
+
+
+def test_one_that_never_ran_is_none() -> None:
+    ages = heard(*((10, 100.0 + step / 10) for step in range(50)), (5000, 200.0), (5100, 200.5))
+    assert ages == pytest.approx([0.0] * 51 + [0.4], abs=0.02), "from then on it is a clock"
+
+
+def test_the_script_of_ardupilots_examples_drives_on() -> None:
+    field = Field()
+    field.begin(Mode.GUIDED)
+    for _ in range(60):
+        field.twist(0.8, boot_ms=10)
+        field.wait(0.05)
+        field.heartbeat()
+    assert field.speed > 0.7
+
+
+def test_no_clock_has_no_age() -> None:
+    assert heard(*((0, 100.0 + step) for step in range(20))) == [0.0] * 20
+
+
+def test_the_field_begins_again_after_49_days() -> None:
+    assert heard((WRAP - 50, 100.0), (50, 100.1), (150, 100.2)) == pytest.approx([0, 0, 0], abs=1e-3)
+
+
+def test_a_slow_clock_is_followed_for_days() -> None:
+    clock = SenderClock()
+    ages = [clock.age(1 + int(step * 100 * (1 - 1e-4)), step * 0.1) for step in range(0, 2_000_000, 997)]
+    assert max(age for age in ages if age is not None) < 0.1
+
+
+def test_47_what_a_radio_held_back_for_two_seconds_does_not_move_the_rover() -> None:
+    field = Field()
+    field.begin(Mode.GUIDED)
+    for step in range(20):
+        field.twist(0.8, boot_ms=1000 + 50 * step)
+        field.wait(0.05)
+    assert field.turning
+    field.wait(2.5)  # the link is dead; the setpoint is lost
+    assert not field.turning
+    for step in range(20, 40):  # and gives back what it held
+        field.twist(0.8, boot_ms=1000 + 50 * step)
+        field.wait(0.01)
+        assert not field.turning
+    assert said(field, "it is old, by its sender's clock")
+    for step in range(70, 90):
+        field.twist(0.8, boot_ms=1000 + 50 * step)
+        field.wait(0.05)
+    assert field.turning
+
+
+def test_a_sender_whose_clock_slept_counts_again_when_guided_is_chosen_again() -> None:
+    field = Field()
+    field.begin(Mode.GUIDED)
+    field.twist(0.8, boot_ms=1000)
+    field.wait(0.3)
+    assert field.turning
+    field.wait(2.0)
+    field.twist(0.8, boot_ms=1050)  # its computer slept, and its clock too
+    field.wait(0.3)
+    assert not field.turning
+    assert field.set_mode(Mode.GUIDED) is Result.ACCEPTED
+    field.twist(0.8, boot_ms=1400)
+    field.wait(0.3)
+    assert field.turning

@@ -1,0 +1,135 @@
+"""The sample and the schema are made of the tables in the code, so they can only be right or fail here."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+import vehicle
+from tests.vehicle.words import said_by
+from vehicle.config.config import Config, LogSettings, parsed
+from vehicle.config.schema import schema
+from vehicle.config.template import LISTENING, SIMULATED, sample
+from vehicle.motors import DRIVERS, PROFILES, settings_type
+from vehicle.motors.settings import Around, Safety
+from vehicle.params import TABLE, Params
+from vehicle.sensors.suite import SensorSettings
+
+BLOCKS = re.split(r"^# ---- (.+?)(?::.*)?$|^(?=\[sensors\])", sample(), flags=re.MULTILINE)
+OWN = [name for name in DRIVERS if name != "simulated"]
+
+
+def made_live(text: str) -> str:
+    """With every setting in force."""
+    return re.sub(r"^#(?=[\w\[])", "", text, flags=re.MULTILINE)
+
+
+def live(text: str) -> dict[str, Any]:
+    """... as tables."""
+    return tomllib.loads(made_live(text))
+
+
+def block(title: str) -> str:
+    """What stands below a line `# ---- title`."""
+    return str(BLOCKS[BLOCKS.index(title) + 1])
+
+
+def test_as_it_is_it_holds_the_defaults() -> None:
+    assert parsed(sample(), "rover.toml") == Config(endpoints=tuple(LISTENING), motors=SIMULATED)
+
+
+def test_everything_in_it_is_a_setting() -> None:
+    text = "".join(part for part in (BLOCKS[0], BLOCKS[-1]) if part)
+    found = parsed(made_live(text).replace("MAV_SYSID", "#"), "rover.toml")
+    assert set(live(text)) == set(Config.__struct_fields__)
+    assert set(live(text)["log"]) == set(LogSettings.__struct_fields__)
+    assert found.log.verbose is LogSettings().verbose
+
+
+def test_every_parameter_is_in_it_at_its_default() -> None:
+    assert live(BLOCKS[-1])["params"] == {parameter.name: parameter.default for parameter in TABLE}
+    assert Params(live(BLOCKS[-1])["params"])
+
+
+def test_every_sensor_is_in_it_with_every_key_at_its_default() -> None:
+    table = live(BLOCKS[-1])["sensors"]
+    assert set(table) == set(SensorSettings.__struct_fields__)
+    required = {"battery": {"kind": "ina219"}, "gps": {}, "encoders": {"wheels": table["encoders"]["wheels"]}}
+    assert msgspec.convert(table, SensorSettings) == msgspec.convert(required, SensorSettings)
+    for name in required:
+        assert set(table[name]) == set(msgspec.to_builtins(msgspec.convert(table, SensorSettings))[name])
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_every_driver_is_in_it_with_every_key_at_its_default(name: str) -> None:
+    text = made_live("[motors]\n" + block(name))
+    table = tomllib.loads(text)["motors"]
+    assert parsed(text, "rover.toml").motors == table
+    assert table.pop("driver") == name
+    kind = settings_type(name)
+    assert kind is not None
+    if name in PROFILES:
+        return
+    fields = msgspec.structs.fields(kind)
+    assert set(table) == {field.name for field in fields}
+    for field in fields:
+        assert field.required or table[field.name] == field.default
+
+
+def test_what_goes_around_a_driver_is_in_it() -> None:
+    text = made_live(block("for any driver"))
+    table = tomllib.loads(text)["motors"]
+    assert set(table) == set(Around.__struct_fields__)
+    assert set(table["safety"]) == set(Safety.__struct_fields__)
+    assert parsed(f'[motors]\ndriver = "simulated"\n{text}', "rover.toml").motors["safety"]
+
+
+def test_init_writes_it_once(tmp_path: Path) -> None:
+    file = tmp_path / "rover.toml"
+    assert said_by("init", str(file)) == (0, f"wrote {file}; edit it, then: vehicle check {file}\n", "")
+    assert file.read_text() == sample()
+    file.write_text("mine")
+    code, _, error = said_by("init", str(file))
+    assert (code, error) == (2, f"vehicle init: {file} is there already; name another file, or remove it\n")
+    assert file.read_text() == "mine"
+    code, _, error = said_by("init", str(tmp_path / "no" / "folder"))
+    assert (code, error.count("\n")) == (2, 1)
+
+
+def test_the_schema_knows_every_key_with_its_help() -> None:
+    whole = json.loads(schema())
+    assert set(whole["properties"]) == set(Config.__struct_fields__)
+    assert whole["additionalProperties"] is False
+    *drivers, own = whole["properties"]["motors"]["oneOf"]
+    assert [driver["properties"]["driver"]["const"] for driver in drivers] == list(DRIVERS)
+    assert all(driver["additionalProperties"] is False for driver in drivers)
+    assert own["properties"]["driver"]["pattern"] == ":"
+    roboclaw = drivers[list(DRIVERS).index("roboclaw")]
+    assert roboclaw["required"] == ["driver", "port"]
+    assert roboclaw["properties"]["timeout"]["description"].startswith("s of silence until the controller stops")
+    assert set(whole["properties"]["params"]["properties"]) == {parameter.name for parameter in TABLE}
+    assert said_by("schema") == (0, schema(), "")
+
+
+def test_the_shipped_schema_is_the_codes() -> None:
+    shipped = Path(vehicle.__file__).with_name("config") / "rover.schema.json"
+    assert shipped.read_text() == schema(), "run: .venv/bin/vehicle schema > vehicle/config/rover.schema.json"
+
+
+def test_every_reference_in_the_schema_leads_somewhere() -> None:
+    text = schema()
+    for name in re.findall(r'"#/\$defs/(\w+)"', text):
+        assert name in json.loads(text)["$defs"]
+
+
+def test_schema_and_sample_agree() -> None:
+    """Each key of the sample stands in the schema."""
+    properties = json.loads(schema())["properties"]
+    for name in live(BLOCKS[-1])["params"]:
+        assert name in properties["params"]["properties"]

@@ -1,0 +1,97 @@
+"""One program at a time for one set of motors, and for one folder of kept things."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from vehicle.config.run_settings import SettingsError
+from vehicle.runtime.lock import InUseError, MotorLock, state_lock
+
+# A serial port of each test's own, so that tests that run at the same time do not meet.
+MINE = {"driver": "roboclaw", "port": f"/dev/test-{os.getpid()}"}
+
+
+def test_the_second_is_refused_until_the_first_lets_go() -> None:
+    first = MotorLock(MINE)
+    with pytest.raises(InUseError, match="in use by another vehicle"):
+        MotorLock({**MINE, "baud": 9600})
+    first.close()
+    first.close()
+    MotorLock(MINE).close()
+
+
+def test_another_port_is_another_controller() -> None:
+    first, second = MotorLock(MINE), MotorLock({**MINE, "port": MINE["port"] + "b"})
+    first.close()
+    second.close()
+
+
+def test_a_port_has_one_lock_by_all_its_names_however_long(tmp_path: Path) -> None:
+    port, name = tmp_path / "ttyUSB0", tmp_path / f"usb-{'x' * 200}-if00-port0"
+    port.touch()
+    name.symlink_to(port)
+    first = MotorLock({**MINE, "port": str(name)})
+    with pytest.raises(InUseError):
+        MotorLock({**MINE, "port": str(port)})
+    first.close()
+    MotorLock({**MINE, "port": str(port)}).close()
+
+
+@pytest.mark.parametrize("driver", ["simulated", "my_car:Motors"])
+def test_simulated_motors_and_those_of_others_are_not_locked(driver: str) -> None:
+    first, second = MotorLock({"driver": driver}), MotorLock({"driver": driver})
+    first.close()
+    second.close()
+
+
+def test_a_killed_process_holds_nothing() -> None:
+    script = f"from vehicle.runtime.lock import MotorLock; lock = MotorLock({MINE!r}); print(flush=True); input()"
+    process = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert process.stdout is not None
+    process.stdout.readline()
+    with pytest.raises(InUseError):
+        MotorLock(MINE)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    MotorLock(MINE).close()
+
+
+def test_the_second_vehicle_of_a_folder_is_refused_until_the_first_lets_go(tmp_path: Path) -> None:
+    folder = tmp_path / "new" / "state"
+    words = f"state folder {folder} is in use by another vehicle; end that, or name another folder with --state"
+    with state_lock(folder), pytest.raises(SettingsError, match=words), state_lock(folder):
+        pass
+    with state_lock(folder), state_lock(tmp_path):
+        pass
+
+
+def test_a_killed_vehicle_holds_no_folder(tmp_path: Path) -> None:
+    script = f"""
+from pathlib import Path
+from vehicle.runtime.lock import state_lock
+with state_lock(Path({str(tmp_path)!r})):
+    print(flush=True); input()
+"""
+    process = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert process.stdout is not None
+    process.stdout.readline()
+    with pytest.raises(SettingsError), state_lock(tmp_path):
+        pass
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    with state_lock(tmp_path):
+        pass
+
+
+@pytest.mark.parametrize("folder", ["file", "file/inside", "loop"])
+def test_a_folder_that_is_none_is_not_the_locks_matter(folder: str, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    (tmp_path / "loop").symlink_to("loop")
+    with state_lock(tmp_path / folder):
+        pass

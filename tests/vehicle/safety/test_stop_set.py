@@ -1,0 +1,102 @@
+"""What stops the rover is open to everybody and acts before its answer is out."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Command, Failsafe, Limit, ModeFlag, Result, State
+from dialects.modes import Mode
+from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, Bench, said
+from vehicle.drive.gate import Outputs
+from vehicle.safety import states
+
+ARM, SWITCH, TERMINATE = Command.COMPONENT_ARM_DISARM, Command.DO_SET_SAFETY_SWITCH_STATE, Command.DO_FLIGHTTERMINATION
+NAN = math.nan
+ZERO = Outputs((0.0, 0.0), enabled=False)
+
+
+@pytest.mark.parametrize("command", [(ARM, 0), (ARM, 0, 21196), (SWITCH, 0), (TERMINATE, 1)])
+@pytest.mark.parametrize(("system", "introduced"), [(DRIVER, True), (OTHER, True), (OTHER, False)])
+@pytest.mark.parametrize("target", [1, 0])
+def test_zero_before_the_answer_is_out(command: tuple[int, ...], system: int, introduced: bool, target: int) -> None:
+    bench = Bench()
+    bench.drive()
+    assert bench.command(*command, system=system, introduced=introduced, target=target) is Result.ACCEPTED
+    assert bench.rover.outputs == ZERO
+    bench.wait(0.1, NEUTRAL)
+    bench.wait(1.0, AHEAD)
+    assert bench.rover.outputs == ZERO
+    assert not bench.armed
+
+
+@pytest.mark.parametrize("introduced", [True, False])
+def test_hold_ramps_down(introduced: bool) -> None:
+    bench = Bench()
+    bench.drive()
+    assert bench.command(Command.DO_SET_MODE, 1, Mode.HOLD, system=OTHER, introduced=introduced) is Result.ACCEPTED
+    bench.wait(0.04, AHEAD)
+    assert 0.5 < bench.throttles[0] < 1.0
+    bench.wait(0.5, AHEAD)
+    assert not bench.turning
+    assert bench.armed
+    assert bench.mode is Mode.HOLD
+
+
+def test_emergency_stop_is_told() -> None:
+    bench = Bench()
+    bench.drive()
+    bench.command(SWITCH, 0)
+    bench.wait(0.1)
+    beat = bench.newest(m.Heartbeat)
+    assert beat.system_status == State.EMERGENCY
+    assert not beat.base_mode & ModeFlag.ARMED
+    assert bench.newest(m.RoverFailsafeStatus).latched == Failsafe.ESTOP
+    assert bench.newest(m.RoverDriveStatus).limits & Limit.ESTOP
+    assert said(bench, f"EMERGENCY STOP by GCS {DRIVER}")
+
+
+def test_release_then_arm_then_neutral() -> None:
+    bench = Bench()
+    bench.drive()
+    bench.command(SWITCH, 0)
+    assert bench.command(SWITCH, 1, system=OTHER) is Result.FAILED  # not in control
+    assert bench.command(SWITCH, 1) is Result.ACCEPTED
+    assert bench.rover.state is states.State.SAFE
+    bench.wait(0.5, NEUTRAL)
+    assert bench.arm() is Result.ACCEPTED
+    bench.wait(0.5, AHEAD)
+    assert not bench.turning
+    bench.wait(0.1, NEUTRAL)
+    bench.wait(0.1, AHEAD)
+    assert bench.turning
+
+
+@pytest.mark.parametrize("position", [2, 0.5, NAN, -1])
+def test_no_position_of_the_switch_is_denied(position: float) -> None:
+    bench = Bench()
+    bench.drive()
+    assert bench.command(SWITCH, position) is Result.DENIED
+    assert bench.turning
+
+
+def test_termination_lasts_until_a_restart() -> None:
+    bench = Bench()
+    bench.drive()
+    bench.command(TERMINATE, 1)
+    assert bench.command(SWITCH, 1) is Result.FAILED
+    assert bench.command(ARM, 1, 21196) is Result.FAILED
+    assert said(bench, "PreArm: terminated, restart the vehicle")
+    bench.wait(0.1)
+    assert bench.newest(m.Heartbeat).system_status == State.FLIGHT_TERMINATION
+
+
+@pytest.mark.parametrize("wish", [NAN, 0, 0.5, -1])
+def test_59_termination_that_is_not_meant_fails_with_a_text(wish: float) -> None:
+    bench = Bench()
+    bench.drive()
+    assert bench.command(TERMINATE, wish) is Result.FAILED
+    assert bench.turning
+    assert said(bench, "termination refused")

@@ -1,0 +1,295 @@
+"""A served folder of the disk: its own files, at any time, and nothing beside them; the loop never waits."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TypeVar
+
+import pytest
+
+from link.services.ftp.files import Content, Entry, MadeFiles, NotYetError, Tree
+from link.services.ftp.protocol import FtpError, FtpPacket, Op, parse
+from link.services.ftp.server import FtpServer
+from link.services.pacing import Pacer
+from tests.link.services_world import from_gcs, messages
+from vehicle.storage import disk_folder
+from vehicle.storage.disk_folder import MAX_ASKED, MAX_ENTRIES, MAX_SIZE, PIECE, DiskFolder
+
+T = TypeVar("T")
+DATA = os.urandom(3 * PIECE + 77)
+PATIENCE = 60.0
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Iterator[DiskFolder]:
+    place = tmp_path / "logs"
+    place.mkdir()
+    (place / "1.tlog").write_bytes(DATA)
+    (place / "2.tlog").write_bytes(b"")
+    served = DiskFolder(place, suffix=".tlog", removable=lambda name: name != "2.tlog")
+    yield served
+    served.close()
+
+
+def soon(ask: Callable[[], T]) -> T:
+    """The answer, some ticks later."""
+    deadline = time.monotonic() + PATIENCE
+    while True:
+        try:
+            return ask()
+        except NotYetError:
+            assert time.monotonic() < deadline
+            threading.Event().wait(0.002)
+
+
+def here(content: Content, offset: int, size: int) -> bytes:
+    """A part of a file, some ticks later."""
+    deadline = time.monotonic() + PATIENCE
+    while (data := content.read(offset, size)) is None:
+        assert time.monotonic() < deadline
+        threading.Event().wait(0.002)
+    return data
+
+
+def opened(folder: DiskFolder, name: str) -> Content | None:
+    return soon(lambda: folder.open(name, {}))
+
+
+def whole(content: Content) -> bytes:
+    data = b""
+    while piece := here(content, len(data), 239):
+        data += piece
+    return data
+
+
+def test_files_are_listed_and_read(folder: DiskFolder) -> None:
+    with pytest.raises(NotYetError):
+        folder.entries()
+    assert soon(folder.entries) == [Entry("1.tlog", len(DATA)), Entry("2.tlog", 0)]
+    content, empty = opened(folder, "1.tlog"), opened(folder, "2.tlog")
+    assert content is not None
+    assert empty is not None
+    assert (content.size, empty.size) == (len(DATA), 0)
+    assert whole(content) == DATA
+    assert here(content, 5, 10) == DATA[5:15]
+    assert here(content, 10, 2 * PIECE) == DATA[10 : 10 + 2 * PIECE]
+    assert here(content, len(DATA) - 3, 239) == DATA[-3:]
+    assert (content.read(len(DATA), 10), content.read(2**32, 10), empty.read(0, 10)) == (b"", b"", b"")
+
+
+def test_a_file_that_grows_is_as_long_as_it_was(folder: DiskFolder, tmp_path: Path) -> None:
+    before = opened(folder, "1.tlog")
+    assert before is not None
+    with (tmp_path / "logs/1.tlog").open("ab") as file:
+        file.write(b"more")
+    assert soon(folder.entries)[0].size == len(DATA) + 4
+    assert whole(before) == DATA
+    after = opened(folder, "1.tlog")
+    assert after is not None
+    assert whole(after) == DATA + b"more"
+
+
+def test_a_file_that_goes_while_it_is_read_ends(folder: DiskFolder, tmp_path: Path) -> None:
+    content = opened(folder, "1.tlog")
+    assert content is not None
+    assert here(content, 0, 10) == DATA[:10]
+    (tmp_path / "logs/1.tlog").unlink()
+    assert here(content, 2 * PIECE, 10) == b""
+    assert soon(folder.entries) == [Entry("2.tlog", 0)]
+
+
+@pytest.mark.parametrize("name", ["link.tlog.tlog", "pipe.tlog", "folder.tlog", "gone.tlog"])
+def test_71_what_is_no_file_of_this_folder_is_not_there(folder: DiskFolder, tmp_path: Path, name: str) -> None:
+    secret = tmp_path / "secret.tlog"
+    secret.write_bytes(b"root:x:0:0")
+    place = tmp_path / "logs"
+    (place / "link.tlog.tlog").symlink_to(secret)
+    os.mkfifo(place / "pipe.tlog")
+    (place / "folder.tlog").mkdir()
+    (place / "gone.tlog").symlink_to(place / "nothing")
+    assert opened(folder, name) is None
+    assert soon(lambda: folder.remove(name)) is FtpError.NOT_FOUND
+    assert name not in [entry.name for entry in soon(folder.entries)]
+    assert secret.exists()
+
+
+@pytest.mark.parametrize("name", ["../secret.tlog", "/etc/passwd", ".hidden.tlog", "1.txt", "", "a\tb.tlog", "ü.tlog",
+                                  "x" * 200 + ".tlog"])  # fmt: skip
+def test_other_names_lead_nowhere(folder: DiskFolder, tmp_path: Path, name: str) -> None:
+    (tmp_path / "secret.tlog").write_bytes(b"secret")
+    assert folder.open(name, {}) is None
+    assert folder.remove(name) is FtpError.NOT_FOUND
+    assert folder.open("1.tlog", {"start": "0"}) is None
+
+
+def test_a_file_that_becomes_a_link_or_a_pipe_while_it_is_open_is_read_no_more(
+    folder: DiskFolder, tmp_path: Path
+) -> None:
+    log, secret = tmp_path / "logs/1.tlog", tmp_path / "secret"
+    secret.write_bytes(b"s" * len(DATA))
+    replacements: list[Callable[[], None]] = [lambda: log.symlink_to(secret), lambda: os.mkfifo(log)]
+    for replace in replacements:
+        content = opened(folder, "1.tlog")
+        assert content is not None
+        log.unlink()
+        replace()
+        assert here(content, 0, 10) == b""
+        log.unlink()
+        log.write_bytes(DATA)
+
+
+def test_only_what_may_go_is_removed(folder: DiskFolder, tmp_path: Path) -> None:
+    assert soon(lambda: folder.remove("1.tlog")) is None
+    assert soon(lambda: folder.remove("1.tlog")) is FtpError.NOT_FOUND
+    assert soon(lambda: folder.remove("2.tlog")) is FtpError.PROTECTED
+    assert soon(folder.entries) == [Entry("2.tlog", 0)]
+    assert not folder.writable("1.tlog")
+    assert folder.store("3.tlog", b"") is FtpError.PROTECTED
+
+
+def test_all_at_once_but_for_what_must_stay(folder: DiskFolder, tmp_path: Path) -> None:
+    (tmp_path / "logs/notes.txt").write_text("mine")
+    folder.clear()
+    assert soon(folder.entries) == [Entry("2.tlog", 0)]
+    assert (tmp_path / "logs/notes.txt").exists()
+
+
+def test_a_folder_that_is_not_there_is_empty(tmp_path: Path) -> None:
+    served = DiskFolder(tmp_path / "none", suffix=".tlog", removable=lambda name: True)
+    assert soon(served.entries) == []
+    assert soon(lambda: served.open("1.tlog", {})) is None
+    served.close()
+
+
+def test_of_very_many_files_the_last_are_listed(folder: DiskFolder, tmp_path: Path) -> None:
+    for number in range(MAX_ENTRIES + 5):
+        (tmp_path / f"logs/{number:08}.tlog").touch()
+    entries = soon(folder.entries)
+    assert len(entries) == MAX_ENTRIES
+    assert entries[-3].name == f"{MAX_ENTRIES + 4:08}.tlog"
+
+
+def test_a_disk_that_sleeps_is_asked_only_so_often(folder: DiskFolder) -> None:
+    awake = threading.Event()
+    folder._worker.put(lambda: _ignore(awake.wait(PATIENCE)))
+    for number in range(200):
+        with pytest.raises(NotYetError):
+            folder.open(f"{number}.tlog", {})
+    assert len(folder._asked) == MAX_ASKED
+    awake.set()
+    assert soon(folder.entries)
+
+
+def test_an_answer_that_nobody_fetched_is_not_the_answer_to_a_later_question(
+    folder: DiskFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(NotYetError):
+        folder.entries()
+    done = threading.Event()
+    folder._worker.put(done.set)
+    assert done.wait(PATIENCE)
+    (tmp_path / "logs/3.tlog").touch()
+    monkeypatch.setattr(disk_folder, "FRESH", 0.0)
+    with pytest.raises(NotYetError):
+        folder.entries()
+    monkeypatch.undo()
+    assert len(soon(folder.entries)) == 3
+
+
+def _ignore(value: object) -> None:
+    del value
+
+
+# ---- by MAVLink FTP ----
+
+
+class Vehicle:
+    """A file server over the folder; its clock is the test's."""
+
+    def __init__(self, folder: DiskFolder, *, allowed: bool = True) -> None:
+        tree = Tree(MadeFiles({}), {"logs": folder})
+        pacer = Pacer(lambda peer: 1e9)
+        self.server = FtpServer(tree, system=1, component=1, pacer=pacer, allowed=lambda received: allowed)
+        self._sequence = 0
+
+    def ask(self, op: Op, data: bytes = b"", *, offset: int = 0, size: int | None = None) -> FtpPacket:
+        """Its first answer, some ticks later."""
+        self._sequence += 7
+        packet = FtpPacket(self._sequence, op, 0, data, offset, size=size)
+        outgoing = self.server.receive(from_gcs(packet.message(1, 1)), 1.0)
+        deadline = time.monotonic() + PATIENCE
+        while not outgoing:
+            assert time.monotonic() < deadline
+            threading.Event().wait(0.002)
+            outgoing = self.server.tick(1.0)
+        return parse(messages(outgoing)[0])
+
+
+def test_it_is_served_as_every_other_folder(folder: DiskFolder) -> None:
+    vehicle = Vehicle(folder)
+    assert vehicle.ask(Op.LIST, b"/logs").data == b"F1.tlog\t%d\0F2.tlog\t0\0" % len(DATA)
+    assert int.from_bytes(vehicle.ask(Op.OPEN, b"/logs/1.tlog").data, "little") == len(DATA)
+    assert vehicle.ask(Op.READ, offset=PIECE - 3, size=10).data == DATA[PIECE - 3 : PIECE + 7]
+    assert vehicle.ask(Op.BURST, offset=100, size=239).data == DATA[100:339]
+    assert vehicle.ask(Op.CRC, b"/logs/1.tlog").op == Op.ACK
+    assert vehicle.ask(Op.OPEN, b"/logs/none.tlog").data == bytes([FtpError.NOT_FOUND])
+    assert vehicle.ask(Op.REMOVE, b"/logs/1.tlog").op == Op.ACK
+    assert vehicle.ask(Op.LIST, b"/logs").data == b"F2.tlog\t0\0"
+
+
+def test_only_who_may_write_removes(folder: DiskFolder) -> None:
+    answer = Vehicle(folder, allowed=False).ask(Op.REMOVE, b"/logs/1.tlog")
+    assert (answer.op, answer.data) == (Op.NAK, bytes([FtpError.PROTECTED]))
+    assert len(soon(folder.entries)) == 2
+
+
+@pytest.mark.parametrize("op", [Op.READ, Op.BURST])
+def test_a_file_that_goes_while_it_is_fetched_is_a_failure_and_not_silence(
+    folder: DiskFolder, tmp_path: Path, op: Op
+) -> None:
+    vehicle = Vehicle(folder)
+    assert vehicle.ask(Op.OPEN, b"/logs/1.tlog").op == Op.ACK
+    (tmp_path / "logs/1.tlog").unlink()
+    answer = vehicle.ask(op, offset=0, size=239)
+    assert (answer.op, answer.data, answer.asked) == (Op.NAK, bytes([FtpError.FAIL]), op)
+    assert vehicle.server.tick(2.0) == []
+
+
+def test_a_checksum_of_a_file_that_is_cut_meanwhile_is_a_failure(folder: DiskFolder, tmp_path: Path) -> None:
+    def cut(name: str, offset: int, size: int, take: Callable[[bytes], None]) -> bool:
+        take(b"")
+        return True
+
+    folder.fetch = cut  # type: ignore[method-assign]
+    assert Vehicle(folder).ask(Op.CRC, b"/logs/1.tlog").data == bytes([FtpError.FAIL])
+
+
+def test_a_disk_that_answers_at_once_does_not_hold_up_what_is_read_next(
+    folder: DiskFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    content = opened(folder, "1.tlog")
+    assert content is not None
+
+    def at_once(name: str, offset: int, size: int, take: Callable[[bytes], None]) -> bool:
+        take(DATA[offset : offset + size])
+        return True
+
+    monkeypatch.setattr(folder, "fetch", at_once)
+    for offset in (0, PIECE, 2 * PIECE):
+        assert content.read(offset, 100) is None
+        assert content.read(offset, 100) == DATA[offset : offset + 100]
+
+
+def test_a_file_that_is_longer_than_the_protocols_can_say_is_not_served(folder: DiskFolder, tmp_path: Path) -> None:
+    for name, size in (("3.tlog", MAX_SIZE), ("4.tlog", MAX_SIZE + 1)):
+        (tmp_path / "logs" / name).touch()
+        os.truncate(tmp_path / "logs" / name, size)  # holes: they take no room
+    assert [(each.name, each.size) for each in soon(folder.entries)][2:] == [("3.tlog", MAX_SIZE)]
+    content = opened(folder, "3.tlog")
+    assert content is not None
+    assert content.size.to_bytes(4, "little")
+    assert opened(folder, "4.tlog") is None

@@ -1,0 +1,1 @@
+"""AUTO: which mission items are accepted, and how they are executed."""

@@ -1,0 +1,100 @@
+"""Which items the three plans of this vehicle may hold. What a mission does is executor.py's, a fence vehicle/navigation/fence.py's.
+
+To offer another mission command, add a line here and its task or effect there. Plans move servos and relays, which
+vehicle/commands/accessories.py does; one that this vehicle has not is told at the upload, and passed over when its turn
+comes. Motors are nobody's servos: a plan that moves one is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from functools import partial
+
+from dialects.enums import Command, FenceItem, MissionResult, MissionType
+from link.services.mission.items import ItemRule, Items, Place, PlanRules
+from vehicle.accessories import LARGEST_RELAY, LARGEST_SERVO, PERIOD_MAX, TIMES_MAX
+from vehicle.navigation.fence import POLYGONS
+
+DAY = 86400.0
+TURNS_MAX = 1000.0
+SPEED_LOW, SPEED_HIGH = -2.0, 100.0
+"""m/s; -1 and -2 are "no change" and "the usual one"."""
+OF_RELAYS = (Command.DO_SET_RELAY, Command.DO_REPEAT_RELAY)
+OF_SERVOS = (Command.DO_SET_SERVO, Command.DO_REPEAT_SERVO)
+ACCESSORIES = (*OF_SERVOS, *OF_RELAYS)
+_SERVOS, _RELAYS = (1.0, LARGEST_SERVO), (0.0, LARGEST_RELAY)
+_PULSES = (500.0, 2500.0)
+"""us; what any servo takes. What this one takes is its own matter."""
+_TIMES, _PERIOD = (1.0, TIMES_MAX), (0.0, PERIOD_MAX)
+CORNERS_MIN = 3
+RADIUS_MAX = 1e5
+
+_GO = ItemRule(Place.NEEDED, {1: (0.0, DAY)})
+_HERE = ItemRule(Place.OPTIONAL)
+
+MISSION: dict[int, ItemRule] = {
+    Command.NAV_WAYPOINT: _GO,
+    Command.NAV_LOITER_UNLIM: _HERE,
+    Command.NAV_LOITER_TURNS: ItemRule(Place.OPTIONAL, {1: (0.0, TURNS_MAX)}),
+    Command.NAV_LOITER_TIME: ItemRule(Place.OPTIONAL, {1: (0.0, DAY)}),
+    Command.NAV_RETURN_TO_LAUNCH: ItemRule(),
+    Command.NAV_DELAY: ItemRule(ranges={1: (0.0, DAY)}),
+    Command.CONDITION_DELAY: ItemRule(ranges={1: (0.0, DAY)}),
+    Command.CONDITION_DISTANCE: ItemRule(ranges={1: (0.0, RADIUS_MAX)}),
+    Command.CONDITION_YAW: ItemRule(ranges={1: (-360.0, 360.0), 4: (0.0, 1.0)}),
+    Command.DO_JUMP: ItemRule(ranges={1: (0.0, 65535.0), 2: (-1.0, 65535.0)}),
+    Command.DO_CHANGE_SPEED: ItemRule(ranges={1: (0.0, 1.0), 2: (SPEED_LOW, SPEED_HIGH)}),
+    Command.DO_SET_REVERSE: ItemRule(ranges={1: (0.0, 1.0)}),
+    Command.DO_FENCE_ENABLE: ItemRule(ranges={1: (0.0, 1.0)}),
+    Command.DO_SET_SERVO: ItemRule(ranges={1: _SERVOS, 2: _PULSES}),
+    Command.DO_REPEAT_SERVO: ItemRule(ranges={1: _SERVOS, 2: _PULSES, 3: _TIMES, 4: _PERIOD}),
+    Command.DO_SET_RELAY: ItemRule(ranges={1: _RELAYS, 2: (0.0, 1.0)}),
+    Command.DO_REPEAT_RELAY: ItemRule(ranges={1: _RELAYS, 2: _TIMES, 3: _PERIOD}),
+}
+
+FENCE: dict[int, ItemRule] = {
+    FenceItem.RETURN_POINT: ItemRule(Place.NEEDED),
+    FenceItem.POLYGON_INCLUSION: ItemRule(Place.NEEDED, {1: (CORNERS_MIN, 500.0)}),
+    FenceItem.POLYGON_EXCLUSION: ItemRule(Place.NEEDED, {1: (CORNERS_MIN, 500.0)}),
+    FenceItem.CIRCLE_INCLUSION: ItemRule(Place.NEEDED, {1: (0.1, RADIUS_MAX)}),
+    FenceItem.CIRCLE_EXCLUSION: ItemRule(Place.NEEDED, {1: (0.1, RADIUS_MAX)}),
+}
+
+RALLY: dict[int, ItemRule] = {FenceItem.RALLY_POINT: ItemRule(Place.NEEDED)}
+
+
+def _mission_is_sane(items: Items, motors: Collection[int]) -> MissionResult:
+    """Jumps lead somewhere, numbers are whole, and no servo is a motor."""
+
+    def numbers(*commands: Command) -> list[float]:
+        return [item.params[0] for item in items if item.command in commands]
+
+    sane = all(target == int(target) and target < len(items) for target in numbers(Command.DO_JUMP))
+    sane &= all(servo == int(servo) and servo not in motors for servo in numbers(*OF_SERVOS))
+    sane &= all(relay == int(relay) for relay in numbers(*OF_RELAYS))
+    return MissionResult.ACCEPTED if sane else MissionResult.INVALID_PARAM1
+
+
+def _fence_is_sane(items: Items) -> MissionResult:
+    """The corners of one polygon stand together, and each says how many there are. One return point at most."""
+    if sum(item.command == FenceItem.RETURN_POINT for item in items) > 1:
+        return MissionResult.INVALID
+    index = 0
+    while index < len(items):
+        item = items[index]
+        size = int(item.params[0]) if item.command in POLYGONS else 1
+        corners = items[index : index + size]
+        if len(corners) < size or any((each.command, each.params[0]) != (item.command, item.params[0])
+                                      for each in corners):  # fmt: skip
+            return MissionResult.INVALID_PARAM1
+        index += size
+    return MissionResult.ACCEPTED
+
+
+def rules(motors: Collection[int]) -> dict[MissionType, PlanRules]:
+    """The rules of each plan; `motors` are the servo outputs that motors are at."""
+    return {
+        MissionType.MISSION: PlanRules(MISSION, check=partial(_mission_is_sane, motors=motors)),
+        MissionType.FENCE: PlanRules(FENCE, capacity=200, check=_fence_is_sane),
+        MissionType.RALLY: PlanRules(RALLY, capacity=20),
+    }

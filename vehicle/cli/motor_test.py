@@ -1,0 +1,87 @@
+"""Turns one motor, slowly and shortly, to see which wheel it is and which way it goes; nothing but driver and clock."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import signal
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from dialects.enums import DriveType
+from vehicle.drive.gate import TRIAL_LARGEST as LARGEST
+from vehicle.drive.gate import TRIAL_LONGEST as LONGEST
+from vehicle.drive.mixer import MIXERS
+from vehicle.drive.output_scaling import fits_of, fitted
+from vehicle.motors import open_motors
+from vehicle.params import Params
+from vehicle.runtime.lock import MotorLock
+
+PERIOD = 0.02
+"""s between writes: that of the control loop, so that controllers with a timeout of their own go on."""
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class RefusedError(Exception):
+    """This test is not made; the text is one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """What the motors get, and how long."""
+
+    throttles: tuple[float, ...]
+    time: float
+
+
+def wish(motor: str, throttle: float, seconds: float, params: Params) -> Wish:
+    """What was asked for, checked. `motor` is a name of this kind of drive, or a number from 1. Raises RefusedError."""
+    mixer = MIXERS[DriveType(int(params["DRIVE_TYPE"]))]
+    names = mixer.motors
+    known = {name.replace(" ", "-"): index for index, name in enumerate(names)}
+    known |= {str(index + 1): index for index in range(len(names))}
+    if motor.lower() not in known:
+        raise RefusedError(f"no motor {motor!r}; there are {', '.join(known)}")
+    if not (math.isfinite(throttle) and abs(throttle) <= LARGEST):
+        raise RefusedError(f"throttle {throttle:g} is not in -{LARGEST:g} to {LARGEST:g}")
+    if not (math.isfinite(seconds) and 0.0 < seconds <= LONGEST):
+        raise RefusedError(f"time {seconds:g} s is not more than 0 and at most {LONGEST:g}")
+    wheels = [0.0] * len(names)
+    wheels[known[motor.lower()]] = throttle
+    return Wish(fitted(wheels, mixer.driven, fits_of(params)), seconds)
+
+
+def turn(table: Mapping[str, Any], wanted: Wish) -> signal.Signals | None:
+    """Turn it; neutral and without power whatever happens. The signal that ended it early, or None. Raises MotorError.
+
+    `table` is [motors] of the settings.
+    """
+    settings = {key: value for key, value in table.items() if key != "driver"}
+    with contextlib.ExitStack() as opened, _held_back(SIGNALS):
+        opened.callback(MotorLock(table).close)
+        motors = open_motors(table["driver"], settings)
+        opened.callback(motors.close)
+        if len(wanted.throttles) != motors.count:
+            raise RefusedError(f"the driver has {motors.count} motors, DRIVE_TYPE needs {len(wanted.throttles)}")
+        opened.callback(motors.disable)
+        opened.callback(motors.set, (0.0,) * motors.count)
+        motors.enable()
+        end = time.monotonic() + wanted.time
+        while (left := end - time.monotonic()) > 0:
+            motors.set(wanted.throttles)
+            ended = signal.sigtimedwait(SIGNALS, min(PERIOD, left))
+            if ended is not None:
+                return signal.Signals(ended.si_signo)
+    return None
+
+
+@contextlib.contextmanager
+def _held_back(signals: Sequence[signal.Signals]) -> Any:
+    """Signals wait until they are asked for: none may come between a motor that turns and its end."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -1,0 +1,1 @@
+"""What the vehicle does with each message and MAV_CMD that it receives."""

@@ -1,0 +1,1 @@
+"""The configuration file rover.toml: reading, checking, schema and template."""

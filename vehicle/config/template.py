@@ -1,0 +1,176 @@
+"""The commented file of settings that `vehicle init` writes: every key and its default, from the tables in the code."""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from collections.abc import Mapping
+from typing import Any
+
+import msgspec
+
+from vehicle.accessories import DRIVERS as ACCESSORY_DRIVERS
+from vehicle.accessories.settings import COMMON, Accessories, Kind
+from vehicle.accessories.settings import settings_type as settings_type_of
+from vehicle.config.config import Config
+from vehicle.config.docstrings import field_docs, words
+from vehicle.motors import DRIVERS, PROFILES, USUAL_PARAMS, MotorError, settings_type
+from vehicle.motors.settings import Around, NoSettings
+from vehicle.params import TABLE, Parameter
+from vehicle.sensors.suite import SensorSettings
+
+WIDTH = 116
+
+SIMULATED: dict[str, Any] = {"driver": "simulated"}
+LISTENING = ["udpin:0.0.0.0:14550"]
+"""The two things that the sample sets, so that it runs as it is: 14550 is the port that ground stations know."""
+
+EXAMPLES: dict[str, dict[str, Any]] = {
+    "gpio": {"bridges": [
+        {"wiring": "two-inputs", "forward": 5, "backward": 6}, {"wiring": "phase-enable", "enable": 13, "phase": 16}]},
+    "pca9685": {"channels": [{"channel": 0}, {"channel": 1}]},
+    "sysfs-pwm": {"outputs": [
+        {"drives": "bridge", "device": "fe20c000.pwm", "channel": 0, "direction": 5},
+        {"drives": "servo", "device": "fe20c000.pwm", "channel": 1}]},
+    "roboclaw": {"port": "/dev/serial0"},
+    "sabertooth": {"port": "/dev/serial0"},
+}  # fmt: skip
+"""Driver -> what has no default."""
+AROUND: dict[str, Any] = {
+    "safety": {"estop_pin": 17, "enable_pin": 22, "heartbeat_pin": 27},
+}
+SENSORS: dict[str, Any] = {
+    "battery": {"kind": "ina219"},
+    "gps": {},
+    "encoders": {"wheels": [{"a": 23, "b": 24}, {"a": 25, "b": 26}]},
+}
+ACCESSORIES: dict[Kind, dict[str, dict[str, Any]]] = {
+    "relay": {"gpio": {"number": 0, "pin": 16}},
+    "servo": {"pca9685": {"number": 9, "channel": 0, "address": 0x41}},
+}
+TOP: dict[str, Any] = {
+    "state": "/var/lib/mavhelm",
+    "identity": {"system": 1},
+    "log": {"file": "/var/log/rover.log", "motors": "/tmp/motors.log", "tlog": "/var/lib/mavhelm/logs"},
+}
+
+HEAD = """\
+# Settings of the vehicle daemon. `vehicle --config rover.toml` runs with them, `vehicle check rover.toml` tries them.
+#
+# A line like "#key = value", without a space, is a setting: take the # away to set it. What is shown is the default, or
+# an example where there is none. An unknown key is an error, so that a slip of the pen is not silently ignored.
+# Editors that know JSON schemas can check and complete this file: vehicle schema > rover.schema.json
+
+"""
+
+
+def sample() -> str:
+    """The sample file."""
+    config = msgspec.convert({**TOP, "endpoints": LISTENING, "motors": SIMULATED}, Config)
+    sensors = msgspec.convert(SENSORS, SensorSettings)
+    around = msgspec.convert(AROUND, Around)
+    parts = [
+        HEAD,
+        _line("endpoints", list(config.endpoints), Config, active=True),
+        _line("state", config.state, Config),
+        "\n[identity]\n" + _body(config.identity, "identity"),
+        f"\n[motors]\n# One of {', '.join(DRIVERS)}; or your own as module:Class.\n"
+        "# docs/pi.md has the wiring of each.\n" + 'driver = "simulated"\n',
+        *(_driver(name) for name in DRIVERS if name != "simulated"),
+        "\n# ---- for any driver\n" + _body(around, "motors"),
+        "\n[sensors]\n" + _body(sensors, "sensors"),
+        f"\n[accessories]\n{_comment(words(Accessories.__doc__))}# docs/pi.md has their wiring.\n",
+        *(_accessory(kind, name) for kind, drivers in ACCESSORIES.items() for name in drivers),
+        "\n[params]\n# A parameter that is set here is set here only: ground stations can read it and not change it.\n",
+        *(_parameter(parameter) for parameter in TABLE),
+        "\n[log]\n" + _body(config.log, "log"),
+    ]
+    return "".join(parts)
+
+
+def _driver(name: str) -> str:
+    if name in PROFILES:
+        usual = ", ".join(f"{key} = {value:g}" for key, value in USUAL_PARAMS.get(name, {}).items())
+        also = f"# Unless you set them, its parameters are {usual}.\n" if usual else ""
+        return f'\n# ---- {name}: a known car, with its settings\n{also}#driver = "{name}"\n'
+    try:
+        kind = settings_type(name) or NoSettings
+    except MotorError as error:  # its library is missing here
+        return f'\n# ---- {name}: {error}\n#driver = "{name}"\n'
+    settings: msgspec.Struct = msgspec.convert(EXAMPLES[name], kind)
+    return f'\n# ---- {name}: {words(kind.__doc__)}\n#driver = "{name}"\n{_body(settings, "motors")}'
+
+
+def _accessory(kind: Kind, name: str) -> str:
+    """A table for one, with every key."""
+    kinds = (COMMON[kind], settings_type_of(kind, name) or NoSettings)
+    also = f"One of {', '.join(ACCESSORY_DRIVERS[kind])}; or your own as module:Class."
+    head = f'\n#[[accessories.{kind}s]]\n{_comment(also)}#driver = "{name}"\n'
+    return head + "".join(_plain(ACCESSORIES[kind][name], each) for each in kinds)
+
+
+def _plain(example: Mapping[str, Any], kind: Any) -> str:
+    """The keys of a table without tables, as far as `kind` knows them."""
+    names = kind.__struct_fields__
+    struct = msgspec.convert({key: value for key, value in example.items() if key in names}, kind)
+    return "".join(_line(key, getattr(struct, key), kind) for key in names)
+
+
+def _body(struct: msgspec.Struct, path: str) -> str:
+    """Every key of a table: plain ones first, as TOML wants it, then the tables inside."""
+    kind = type(struct)
+    plain, inside = [], []
+    tag = kind.__struct_config__.tag
+    if tag is not None:
+        plain.append(f"#{kind.__struct_config__.tag_field} = {_value(tag)}\n")
+    for name in kind.__struct_fields__:
+        value = getattr(struct, name)
+        if isinstance(value, msgspec.Struct):
+            inside.append(_table(f"[{path}.{name}]", name, kind, value, f"{path}.{name}"))
+        elif isinstance(value, tuple) and value and isinstance(value[0], msgspec.Struct):
+            inside += [_table(f"[[{path}.{name}]]", name, kind, each, f"{path}.{name}") for each in value]
+        else:
+            plain.append(_line(name, value, kind))
+    return "".join(plain + inside)
+
+
+def _table(header: str, name: str, owner: type, value: msgspec.Struct, path: str) -> str:
+    about = field_docs(owner).get(name) or words(type(value).__doc__)
+    return f"\n{_comment(about)}#{header}\n" + _body(value, path)
+
+
+def _line(name: str, value: Any, owner: type, *, active: bool = False) -> str:
+    if value is None:
+        return ""
+    about = f"{field_docs(owner).get(name, '')}{_state(owner, name)}"
+    return f"{_comment(about)}{'' if active else '#'}{name} = {_value(value)}\n"
+
+
+def _state(owner: type, name: str) -> str:
+    """What the value shown is, where it is not the default."""
+    field = next(field for field in msgspec.structs.fields(owner) if field.name == name)
+    if field.default is None:
+        return " Not set unless you set it."
+    return " Must be set." if field.required else ""
+
+
+def _parameter(parameter: Parameter) -> str:
+    return f"{_comment(about(parameter))}#{parameter.name} = {parameter.default:g}\n"
+
+
+def about(parameter: Parameter) -> str:
+    """What it does and what it may be."""
+    unit = f" {parameter.unit}" if parameter.unit else ""
+    return f"{parameter.description} ({parameter.low:g} to {parameter.high:g}{unit})"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, str | list):
+        return json.dumps(value)
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:.10g}"
+
+
+def _comment(text: str) -> str:
+    return "".join(f"# {line}\n" for line in textwrap.wrap(text, WIDTH))

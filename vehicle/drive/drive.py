@@ -1,0 +1,142 @@
+"""From a demand to motor values: dead band, expo, limits, mixer, ramps, fit, gate; not who may drive."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from dialects.enums import DriveType, Limit
+from vehicle.drive.demand import Demand
+from vehicle.drive.gate import Clearance, Gate, Outputs, Permit, Trial
+from vehicle.drive.mixer import MIXERS, AtLimit, clamp, deadband, expo, pivot_share
+from vehicle.drive.output_scaling import fits_of, fitted
+from vehicle.drive.slew import Slew, SlewLimits
+from vehicle.params import Params
+
+SATURATED, SPEED, SLEW, REVERSE_DELAY = (
+    each.value for each in (Limit.SATURATED, Limit.SPEED, Limit.SLEW, Limit.REVERSE_DELAY)
+)
+"""Bits as plain numbers: sums of flags cost a microsecond each, and a demand is to be at the motors within 30."""
+HALF = 0.5
+"""Largest throttle while a failsafe limits the speed (vehicle.md, battery low)."""
+
+
+class Drive:
+    """The motors' side of the rover. Ramps are per motor, so that a stop makes every motor's value fall from the first
+    cycle on; ramps before the mixer would leave a saturated motor at full for a while."""
+
+    def __init__(self, params: Params, now: float) -> None:
+        self.kind = DriveType(int(params["DRIVE_TYPE"]))
+        self.mixer = MIXERS[self.kind]
+        self._limits = 0
+        self.outputs = Outputs((0.0,) * len(self.mixer.motors), enabled=False)
+        self._params = params
+        self._slews = [Slew() for _ in self.mixer.motors]
+        self._driven = self.mixer.driven
+        self._gate = Gate(len(self._slews), self._driven)
+        self._tune()
+        self._tested: int | None = None
+        """The motor that a test turns."""
+        self._at = now
+
+    @property
+    def limits(self) -> Limit:
+        """Why the outputs differ from the demand, as far as this side knows."""
+        return Limit(self._limits)
+
+    @property
+    def wheels(self) -> tuple[float, ...]:
+        """What each wheel does now, -1..1, ahead positive, steering to the right positive; the motors' `outputs` differ
+        by how they are wired."""
+        return self._gate.wheels
+
+    @property
+    def driving(self) -> tuple[float, ...]:
+        """Of `wheels` those that move the rover."""
+        return self._gate.wheels[: self._driven]
+
+    @property
+    def refused(self) -> int:
+        """Cycles in a row in which the gate got values that are no values."""
+        return self._gate.refused
+
+    def step(self, demand: Demand | None, clearance: Clearance, *, limited: bool, now: float) -> Outputs:
+        """The outputs of this moment. `limited`: a failsafe asks for half speed."""
+        permit = clearance.permit
+        dt, self._at = max(0.0, now - self._at), now
+        self._limits = 0
+        if self._tuned != self._params.changes:
+            self._tune()
+        trial = clearance.trial if permit is Permit.TEST else None
+        motor = None if trial is None else trial.motor
+        if permit is Permit.NONE or motor != self._tested:  # no test ramps down, nor into another one or a drive
+            for slew in self._slews:
+                slew.reset()
+        self._tested = motor
+        wanted = demand if permit is Permit.DRIVE else None
+        wheels = self._ramped(self._targets(wanted, limited) if trial is None else self._alone(trial), dt)
+        self._note_limits()
+        motors = fitted(wheels, self._driven, self._fits)
+        self.outputs = self._gate.judge(wheels, motors, permit, 100 / self._params["MOT_DECEL"], now, trial)
+        if self.wheels != wheels:  # refused: no ramp goes on from there
+            for slew in self._slews:
+                slew.reset()
+        return self.outputs
+
+    def _targets(self, demand: Demand | None, limited: bool) -> tuple[float, ...]:
+        if demand is None:
+            return (0.0,) * len(self._slews)
+        throttle, steering, sideways = shape(demand, self._params)
+        throttle, sideways = self._cap(throttle, limited), self._cap(sideways, limited)
+        mixed = self.mixer.mix(throttle, steering, sideways, self._at_limit)
+        if mixed.saturated:
+            self._limits |= SATURATED
+        if self._driven < len(self._slews):
+            return mixed.throttles
+        share = pivot_share(throttle, steering, sideways, self._params["MOT_PIVOT_MAX"] / 100)
+        return tuple([share * value for value in mixed.throttles])
+
+    def _alone(self, trial: Trial) -> tuple[float, ...]:
+        """One motor, the others at rest."""
+        return tuple(trial.throttle if index == trial.motor else 0.0 for index in range(len(self._slews)))
+
+    def _cap(self, throttle: float, limited: bool) -> float:
+        largest = self._params["MOT_THR_MAX"] / 100
+        if limited:
+            largest = min(largest, HALF)
+        if abs(throttle) > largest:
+            self._limits |= SPEED
+        return clamp(throttle, largest)
+
+    def _ramped(self, targets: Sequence[float], dt: float) -> tuple[float, ...]:
+        pairs = zip(self._slews, targets, self._rates, strict=True)
+        return tuple([slew.step(target, dt, rates) for slew, target, rates in pairs])
+
+    def _tune(self) -> None:
+        """What follows from parameters, as long as they do not change."""
+        params, self._tuned = self._params, self._params.changes
+        self._fits = fits_of(params)
+        self._at_limit = AtLimit(params["MOT_STR_THR_MIX"], params["MOT_THST_ASYM"])
+        accel, decel = params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100
+        wheel = SlewLimits(accel, decel, params["MOT_REV_DELAY"])
+        servo = SlewLimits(accel, decel)  # its gears do not mind a reversal; the rover would go straight on meanwhile
+        self._rates = [wheel if at < self._driven else servo for at in range(len(self._slews))]
+
+    def _note_limits(self) -> None:
+        for slew in self._slews:
+            if slew.limited:
+                self._limits |= SLEW
+            if slew.waiting:
+                self._limits |= REVERSE_DELAY
+
+
+def shape(demand: Demand, params: Params) -> tuple[float, float, float]:
+    """Throttle, steering and sideways as the driver means them: dead band and softness."""
+    throttle, steering, sideways = demand.throttle or 0.0, demand.steering or 0.0, demand.sideways or 0.0
+    if demand.direct:
+        return throttle, steering, sideways
+    band = params["MAN_DEADBAND"] / 100
+    return (
+        expo(deadband(throttle, band), params["MANUAL_EXPO"]),
+        expo(deadband(steering, band), params["MANUAL_STR_EXPO"]),
+        expo(deadband(sideways, band), params["MANUAL_EXPO"]),
+    )

@@ -1,0 +1,1 @@
+"""What drivers of motors, sensors and accessories share."""

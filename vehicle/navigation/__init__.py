@@ -1,0 +1,1 @@
+"""Position estimate, path following, fence and rally points."""

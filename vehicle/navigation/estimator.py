@@ -1,0 +1,244 @@
+"""Where the rover is and how it moves: a complementary filter over gyro, compass, wheels and GPS. It steers nothing.
+
+Fast sensors carry the estimate from cycle to cycle, slow ones pull it back to the truth:
+
+    gyro - bias --integrate--> yaw <--HEADING_TIME-- compass + offset; the pull also teaches the gyro's bias
+    GPS course while moving --OFFSET_TIME--> offset of the compass (mounting, declination, iron in the chassis)
+    GPS speed while moving --SCALE_TIME--> scale of the wheels (tyres, and settings that are not quite right)
+    wheels * scale along yaw --integrate--> position <--POSITION_TIME-- GPS; one fix far off is left out, many are not
+
+Each pull begins as a plain mean (gain 1/n) and settles at its time constant, so that the first seconds are not lost.
+Receivers of this class wander by decimetres over half a minute: POSITION_TIME hides the wander as far as the drift of
+wheels and heading allows. Without wheels the GPS gives the speed; without compass its course gives the heading.
+A drive that can move sideways has a course that is not its heading: its wheels say by how much, or else the GPS.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from vehicle.navigation.dead_reckoning import Gain, Reckoning
+from vehicle.navigation.estimate import Estimate
+from vehicle.navigation.geo import Origin, Point, wrap
+from vehicle.navigation.wheel_odometry import Wheels
+from vehicle.readings import Readings
+
+HEADING_TIME = 3.0
+"""s; a magnetometer's noise is gone by then, a gyro's bias of 1 deg/s has made 3 degrees."""
+BIAS_TIME = 20.0
+"""s until the gyro's bias is learned."""
+BIAS_MAX = 0.1
+"""rad/s: a larger one is no bias but a broken gyro."""
+OFFSET_TIME = 60.0
+"""s of straight driving until the compass's offset is learned; one course is good to 4 degrees at 0.8 m/s."""
+POSITION_TIME = 100.0
+"""s; longer hides more of the wander, and shows more of what wheels and heading still have wrong."""
+COURSE_SPEED = 0.4
+"""m/s from which on the GPS knows a course: its velocity is good to 0.05 m/s."""
+COURSE_RATE = 0.3
+"""rad/s of turn up to which course and heading are taken for the same."""
+WHEELLESS_TIME = 20.0
+"""s; the same without wheels: a speed that comes from fixes drifts away sooner."""
+FIX_PERIOD = 0.2
+"""s between two fixes of usual receivers."""
+GPS_LOST = 3.0
+"""s without a fix (vehicle.md, position lost)."""
+GPS_SAME = 1.0
+"""s after which an unchanged fix counts as a new one: a receiver at rest may repeat itself."""
+FIX_3D = 3
+OUTLIER = 5.0
+"""m; a fix this far off, and more than three times the accuracy, is left out ..."""
+OUTLIERS = 10
+"""... but this many in a row are right and we are wrong."""
+ACCURACY_MAX = 5.0
+"""m; with less the position is not good."""
+DRIFT = 0.03
+"""m of error for each metre by wheels."""
+BLIND_DRIFT = 0.1
+"""m/s of error without wheels and GPS."""
+LONGEST_STEP = 0.5
+"""s; after a longer gap nobody knows what happened."""
+
+
+class Estimator:
+    """The filter. `sense` each cycle."""
+
+    def __init__(self, aside: Sequence[int] = ()) -> None:
+        """`aside`: what a motion to the right gives to each wheel, of a drive that can (vehicle/drive/mixer.py, FOUR_WHEELS)."""
+        self.estimate = Estimate()
+        self._wheels = Wheels(aside)
+        self._at: float | None = None
+        self._yaw: float | None = None
+        self._bias = self._offset = 0.0
+        self._offset_gain = Gain(OFFSET_TIME)
+        self._speed: float | None = None
+        self._sideways = 0.0
+        self._reckoning = Reckoning()
+        self._place_gain = Gain(POSITION_TIME)
+        self._origin: Origin | None = None
+        self._fix: tuple[float | None, ...] = ()
+        self._fix_at = -math.inf
+        self._outliers = self._resets = 0
+        self._drift = 0.0
+
+    def sense(self, readings: Readings, now: float) -> Estimate:
+        """Take the readings of this cycle; numbers that cannot be are taken for missing ones."""
+        dt = 0.0 if self._at is None else max(0.0, min(LONGEST_STEP, now - self._at))
+        self._at = now
+        rate = sane_rate(readings)
+        self._turn(rate, _sane(readings.yaw, 1e6), dt)
+        wheels, sideways = self._wheels.speed(readings), self._wheels.sideways(readings)
+        if wheels is not None:
+            self._speed = wheels
+        if sideways is not None:
+            self._sideways = sideways
+        self._move(dt, wheels is not None)
+        fix = self._new_fix(readings, now)
+        if fix is not None:
+            self._take_fix(fix, readings, now, rate, wheels is not None)
+        self.estimate = self._believed(rate, wheels, now)
+        return self.estimate
+
+    def rebase(self, origin: Origin) -> None:
+        """`origin` is 0/0 from now on, and the rover where it is on the globe. Nothing before the first fix."""
+        if self._origin is not None:
+            self._reckoning.put(origin.point(*self._origin.globe(self._reckoning.place)))
+            self._origin = origin
+            self._resets += 1
+            self.estimate = self.estimate._replace(place=self._reckoning.place, origin=origin, resets=self._resets)
+
+    def set_bias(self, bias: float) -> bool:
+        """What the gyro says at rest, rad/s; False where that is no bias."""
+        fits = abs(bias) <= BIAS_MAX
+        if fits:
+            self._bias = bias
+        return fits
+
+    def _turn(self, rate: float | None, compass: float | None, dt: float) -> None:
+        if self._yaw is None:
+            self._yaw = compass
+            return
+        if rate is not None:
+            self._yaw += (rate - self._bias) * dt
+        if compass is not None:
+            error = wrap(compass + self._offset - self._yaw)
+            self._yaw += error * dt / (HEADING_TIME + dt) if rate is not None else error
+            if rate is not None:
+                self._learn_bias(-error * dt / (HEADING_TIME * BIAS_TIME))
+        self._yaw = wrap(self._yaw)
+
+    def _move(self, dt: float, wheels: bool) -> None:
+        if self._yaw is None or self._speed is None:
+            return
+        way, right = self._speed * dt, self._sideways * dt
+        self._reckoning.step(way, self._yaw)
+        if right:
+            self._reckoning.step(right, self._yaw + math.pi / 2)
+        self._drift += DRIFT * math.hypot(way, right) if wheels else BLIND_DRIFT * dt
+
+    def _new_fix(self, readings: Readings, now: float) -> tuple[float, float] | None:
+        """Latitude and longitude, once for each time that the receiver says something."""
+        latitude, longitude = _sane(readings.latitude, 90.0), _sane(readings.longitude, 180.0)
+        if latitude is None or longitude is None or (readings.gps_fix or 0) < FIX_3D:
+            return None
+        fix = (latitude, longitude, readings.velocity_north, readings.velocity_east)
+        if fix == self._fix and now - self._fix_at < GPS_SAME:
+            return None
+        self._fix = fix
+        return latitude, longitude
+
+    def _take_fix(
+        self, fix: tuple[float, float], readings: Readings, now: float, rate: float | None, wheels: bool
+    ) -> None:
+        north, east = _sane(readings.velocity_north, 50.0), _sane(readings.velocity_east, 50.0)
+        if north is not None and east is not None:
+            self._take_aside(north, east, readings)
+            self._take_velocity(north, east, rate, readings.yaw is not None, wheels)
+        dt = min(GPS_SAME, now - self._fix_at)
+        self._fix_at = now
+        if self._origin is None:  # what was driven before the first fix stays as it is
+            self._origin = Origin(*Origin(*fix).globe(Point(-self._reckoning.north, -self._reckoning.east)))
+        error = self._origin.point(*fix)
+        north_off, east_off = error.north - self._reckoning.north, error.east - self._reckoning.east
+        if self._is_outlier(math.hypot(north_off, east_off)):
+            return
+        self._place_gain.time = POSITION_TIME if wheels else WHEELLESS_TIME
+        gain = self._place_gain.next(dt)
+        self._reckoning.pull(north_off, east_off, gain)
+        self._drift *= 1.0 - gain
+
+    def _is_outlier(self, distance: float) -> bool:
+        if distance <= max(OUTLIER, 3.0 * self._drift):
+            self._outliers = 0
+            return False
+        self._outliers += 1
+        if self._outliers < OUTLIERS:
+            return True
+        self._place_gain = Gain(POSITION_TIME)  # begins with a gain of 1: the fix is believed
+        self._outliers = 0
+        self._resets += 1
+        return False
+
+    def _take_aside(self, north: float, east: float, readings: Readings) -> None:
+        """Where the drive can move sideways and its wheels do not say so."""
+        if self._yaw is not None and self._wheels.sideways(readings) is None:
+            across = east * math.cos(self._yaw) - north * math.sin(self._yaw)
+            self._sideways = (self._sideways + across) / 2
+
+    def _take_velocity(self, north: float, east: float, rate: float | None, compass: bool, wheels: bool) -> None:
+        speed = math.hypot(north, east)
+        along = speed if self._yaw is None else north * math.cos(self._yaw) + east * math.sin(self._yaw)
+        if not wheels:
+            self._speed = along if self._speed is None else (self._speed + along) / 2
+        if speed < COURSE_SPEED or abs(rate or 0.0) > COURSE_RATE:
+            return
+        if wheels and self._yaw is not None:
+            self._learn_scale(along)
+        course = math.atan2(east, north) - math.atan2(self._sideways, self._speed or 0.0)
+        if self._yaw is None:
+            self._yaw = wrap(course)
+            return
+        change = wrap(course - self._yaw) * self._offset_gain.next(FIX_PERIOD)
+        if compass:
+            self._offset = wrap(self._offset + change)
+            self._reckoning.turn(change)
+        else:
+            self._learn_bias(-change / BIAS_TIME)
+        self._yaw = wrap(self._yaw + change)
+
+    def _learn_scale(self, along: float) -> None:
+        speed = self._speed or 0.0
+        if abs(speed) < COURSE_SPEED:
+            return
+        self._reckoning.stretch(self._wheels.learn(along, speed, FIX_PERIOD))
+
+    def _learn_bias(self, change: float) -> None:
+        self._bias = max(-BIAS_MAX, min(BIAS_MAX, self._bias + change))
+
+    def _believed(self, rate: float | None, wheels: float | None, now: float) -> Estimate:
+        since = now - self._fix_at
+        if wheels is None and since > GPS_LOST:
+            self._speed, self._sideways = None, 0.0
+        accuracy = math.inf if self._origin is None else 1.0 + self._drift
+        return Estimate(
+            yaw=self._yaw,
+            yaw_rate=None if rate is None else rate - self._bias,
+            speed=self._speed,
+            sideways=self._sideways,
+            place=self._reckoning.place,
+            moving_place=self._origin is not None or (self._yaw is not None and wheels is not None),
+            origin=self._origin,
+            accuracy=accuracy,
+            resets=self._resets,
+            good=self._yaw is not None and since <= GPS_LOST and accuracy <= ACCURACY_MAX,
+        )
+
+
+def sane_rate(readings: Readings) -> float | None:
+    """rad/s as the gyro says it, where that is a number that can be."""
+    return _sane(readings.yaw_rate, 50.0)
+
+
+def _sane(value: float | None, largest: float) -> float | None:
+    return value if value is not None and -largest <= value <= largest else None  # NaN is not

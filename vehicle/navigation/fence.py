@@ -1,0 +1,109 @@
+"""Where the rover may be: a circle around home and the areas of the fence plan. What a breach does is vehicle/safety/failsafe.py's."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from dialects.enums import FenceItem
+from link.services.mission.items import Items
+from vehicle.navigation.fence_area import Area
+from vehicle.navigation.geo import Origin, Point
+from vehicle.params import Params
+
+POLYGONS = (FenceItem.POLYGON_INCLUSION, FenceItem.POLYGON_EXCLUSION)
+CIRCLE, AREAS = 2, 4
+"""Bits of FENCE_TYPE, as ArduPilot's."""
+FAR = 100.0
+"""m outside from which on nothing drives by itself any more: that far out the position itself is in doubt."""
+
+
+class Fence:
+    """The fence in force. The rover must be inside every inclusion and outside every exclusion, as in ArduPilot."""
+
+    def __init__(self, params: Params) -> None:
+        self.damage: str | None = None
+        """Why the kept fence is lost: where it was nobody knows, so that it is no fence that counts."""
+        self._params = params
+        self._items: Items = ()
+        """What draws its areas."""
+        self._areas: list[Area] = []
+        self._origin: Origin | None = None
+
+    @property
+    def enabled(self) -> bool:
+        """It counts."""
+        return bool(self._params["FENCE_ENABLE"])
+
+    @property
+    def there(self) -> bool:
+        """It counts, or areas were uploaded that would."""
+        return self.enabled or bool(self._items)
+
+    @property
+    def missing(self) -> str | None:
+        """Why nobody may drive inside it, though it counts."""
+        return f"{self.damage}, upload it again or set FENCE_ENABLE 0" if self.enabled and self.damage else None
+
+    @property
+    def drawn(self) -> bool:
+        """There is a line that nobody may cross."""
+        kinds = int(self._params["FENCE_TYPE"])
+        return self.enabled and bool(kinds & CIRCLE or (kinds & AREAS and self._items))
+
+    def enable(self, wish: bool) -> str | None:
+        """Let it count, or not. Returns why that stays as it is: the file of settings says it."""
+        if wish != self.enabled and "FENCE_ENABLE" in self._params.pinned:
+            return f"the file of settings has FENCE_ENABLE {int(self.enabled)}"
+        self._params.set("FENCE_ENABLE", float(wish))
+        return None
+
+    def load(self, items: Items, damage: str | None = None) -> None:
+        """Another plan; it has passed the rules of vehicle/autonomy/mission/rules.py. `damage`: why the kept one is lost."""
+        self._items = tuple(item for item in items if item.command != FenceItem.RETURN_POINT)
+        self.damage = damage
+        self._origin = None
+
+    def room(self, place: Point, origin: Origin | None, home: Point | None) -> float:
+        """m to the nearest edge, negative beyond it; infinite where there is none."""
+        return min((area.room(place) for area in self._in_force(origin, home)), default=math.inf)
+
+    def ahead(self, place: Point, course: float, origin: Origin | None, home: Point | None) -> float:
+        """m to the first edge on a course; infinite where there is none."""
+        return min((area.ahead(place, course) for area in self._in_force(origin, home)), default=math.inf)
+
+    def _in_force(self, origin: Origin | None, home: Point | None) -> Iterator[Area]:
+        if not self.enabled or origin is None:
+            return
+        kinds = int(self._params["FENCE_TYPE"])
+        if kinds & CIRCLE and home is not None:
+            yield Area((home,), self._params["FENCE_RADIUS"], inside=True)
+        if kinds & AREAS:
+            yield from self._areas_on(origin)
+
+    def _areas_on(self, origin: Origin) -> list[Area]:
+        """In metres; reckoned once for an origin."""
+        if origin != self._origin:
+            self._origin = origin
+            self._areas = _areas(self._items, origin)
+        return self._areas
+
+
+def without_effect(items: Items) -> list[str]:
+    """What a fence plan holds for others, in words: as in ArduRover, nothing drives to a return point."""
+    if any(item.command == FenceItem.RETURN_POINT for item in items):
+        return ["Fence: return point kept but not driven to; FENCE_ACTION says what a breach does"]
+    return []
+
+
+def _areas(items: Items, origin: Origin) -> list[Area]:
+    found, index = [], 0
+    while index < len(items):
+        item = items[index]
+        size = int(item.params[0]) if item.command in POLYGONS else 1
+        corners = tuple(origin.point(each.latitude, each.longitude) for each in items[index : index + size])
+        radius = 0.0 if item.command in POLYGONS else item.params[0]
+        inside = item.command in (FenceItem.POLYGON_INCLUSION, FenceItem.CIRCLE_INCLUSION)
+        found.append(Area(corners, radius, inside))
+        index += size
+    return found

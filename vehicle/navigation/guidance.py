@@ -1,0 +1,150 @@
+"""Along a line, around a circle, to a heading: an estimate and a wish become speed and turn rate. Pure pursuit.
+
+The rover steers for a point on its line a little ahead of it (LOOKAHEAD), so an error dies out without overshoot; it
+slows down for what it cannot turn at speed, stops and pivots for sharp corners, and brakes so as to stand at the end.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from dialects.enums import DriveType
+from vehicle.drive.mixer import clamp
+from vehicle.navigation.estimate import Estimate
+from vehicle.navigation.geo import Point, wrap
+from vehicle.navigation.speed_control import STAND, Motion
+from vehicle.params import Params
+
+LOOKAHEAD_TIME = 1.0
+"""s ahead on the line; with ATC_STR_ANG_P 2 the error decays with a damping of 0.7 ..."""
+LOOKAHEAD = 0.6
+"""... and m at least, so that a slow rover does not snake."""
+CRAWL = 0.12
+"""m/s: the slowest approach; more than what an encoder can just see."""
+PIVOTED = math.radians(5)
+"""rad; a pivot ends this near its heading."""
+GRAVITY = 9.81
+"""m/s/s"""
+STOPPED_SHORT = 0.15
+"""m from a point where the rover is to stand: closer than its own length, and than the GPS knows."""
+
+
+class Leg(NamedTuple):
+    """A straight line to drive."""
+
+    start: Point
+    end: Point
+
+    @property
+    def bearing(self) -> float:
+        """rad"""
+        return self.start.bearing(self.end)
+
+    def beside(self, place: Point) -> tuple[float, float]:
+        """m still to go along the line, and m to the right of it."""
+        bearing = self.bearing
+        north, east = self.end.north - place.north, self.end.east - place.east
+        along = north * math.cos(bearing) + east * math.sin(bearing)
+        return along, north * math.sin(bearing) - east * math.cos(bearing)
+
+
+class Guide:
+    """One path at a time; `begin` with each new one."""
+
+    def __init__(self, params: Params, kind: DriveType) -> None:
+        self.reverse = False
+        """Drive backwards along the path."""
+        self.leg: Leg | None = None
+        """The line it follows; None where it follows none."""
+        self.course: float | None = None
+        """rad; where it steers."""
+        self._params = params
+        self._pivots = kind is not DriveType.ACKERMANN
+        self._pivoting = False
+
+    def begin(self) -> None:
+        """Another path: a pivot that was under way is not wanted any more."""
+        self._pivoting = False
+        self.leg = self.course = None
+
+    def follow(self, leg: Leg, estimate: Estimate, speed: float, end_speed: float) -> Motion:
+        """Along a leg with up to `speed` m/s, and `end_speed` at its end."""
+        self.leg = leg
+        remaining, beside = leg.beside(estimate.place)
+        ahead = max(LOOKAHEAD, LOOKAHEAD_TIME * abs(estimate.speed or 0.0))
+        braking = math.sqrt(end_speed**2 + 2.0 * self._params["ATC_DECEL_MAX"] * max(0.0, remaining))
+        course = leg.bearing + math.atan2(-beside, ahead)
+        return self.head(course, estimate, min(speed, max(CRAWL, braking)))
+
+    def orbit(self, centre: Point, radius: float, estimate: Estimate, speed: float) -> Motion:
+        """Clockwise around `centre`; counter-clockwise where the radius is negative."""
+        side = math.copysign(1.0, radius)
+        out = centre.distance(estimate.place) - abs(radius)
+        ahead = max(LOOKAHEAD, LOOKAHEAD_TIME * abs(estimate.speed or 0.0))
+        tangent = centre.bearing(estimate.place) + side * math.pi / 2
+        inward = side * math.atan2(out, ahead)
+        motion = self.head(tangent + inward, estimate, min(speed, math.sqrt(self._grip * abs(radius))))
+        turning = side * motion.speed / max(abs(radius), LOOKAHEAD)  # the circle itself, besides the error
+        if self._pivoting:
+            return motion
+        return Motion(motion.speed, self.limited(motion.turn_rate + turning, motion.speed, estimate))
+
+    def head(self, course: float, estimate: Estimate, speed: float) -> Motion:
+        """On a course, at up to `speed` m/s as far as the course is ahead."""
+        self.course = course
+        nose = (estimate.yaw or 0.0) + (math.pi if self.reverse else 0.0)
+        error = wrap(course - nose)
+        if self._must_pivot(error):
+            rate = math.radians(self._params["WP_PIVOT_RATE"])
+            return Motion(0.0, clamp(self._params["ATC_STR_ANG_P"] * error, rate))
+        slowed = max(CRAWL, speed * math.cos(error)) if abs(error) < math.pi / 2 else CRAWL
+        along = min(speed, slowed)
+        motion = -along if self.reverse else along
+        return Motion(motion, self.limited(self._params["ATC_STR_ANG_P"] * error, motion, estimate))
+
+    def steer(self, heading: float, estimate: Estimate, speed: float) -> Motion:
+        """Nose on a heading, forward or, with a negative speed, backward; stops for a sharp turn where it can pivot."""
+        self.course = heading
+        error = wrap(heading - (estimate.yaw or 0.0))
+        if self._must_pivot(error):
+            return self.pivot(heading, estimate)
+        return Motion(speed, self.limited(self._params["ATC_STR_ANG_P"] * error, speed, estimate))
+
+    def pivot(self, heading: float, estimate: Estimate) -> Motion:
+        """Turn on the spot to a heading; STAND once there, and where the wheels cannot do it."""
+        error = wrap(heading - (estimate.yaw or 0.0))
+        if not self._pivots or abs(error) < PIVOTED:
+            return STAND
+        rate = math.radians(self._params["WP_PIVOT_RATE"])
+        return Motion(0.0, clamp(self._params["ATC_STR_ANG_P"] * error, rate))
+
+    def corner_speed(self, angle: float, speed: float) -> float:
+        """m/s at which a corner of `angle` rad is taken."""
+        if abs(angle) > self._pivot_angle:
+            return 0.0 if self._pivots else CRAWL
+        return max(CRAWL, speed * math.cos(angle))
+
+    @property
+    def _pivot_angle(self) -> float:
+        return math.radians(self._params["WP_PIVOT_ANGLE"])
+
+    def _must_pivot(self, error: float) -> bool:
+        self._pivoting = self._pivots and abs(error) > (PIVOTED if self._pivoting else self._pivot_angle)
+        return self._pivoting
+
+    def limited(self, rate: float, speed: float, estimate: Estimate) -> float:
+        """A turn rate, cut to ATC_STR_RAT_MAX and to what ATC_TURN_MAX_G allows at this speed."""
+        fastest = max(abs(speed), abs(estimate.speed or 0.0))
+        largest = math.radians(self._params["ATC_STR_RAT_MAX"])
+        return clamp(rate, min(largest, self._grip / fastest) if fastest else largest)
+
+    @property
+    def _grip(self) -> float:
+        """m/s/s to the side at most."""
+        return self._params["ATC_TURN_MAX_G"] * GRAVITY
+
+
+def arrived(leg: Leg, place: Point, radius: float) -> bool:
+    """Within `radius` of the end, or past it."""
+    return leg.end.distance(place) <= radius or leg.beside(place)[0] <= 0.0

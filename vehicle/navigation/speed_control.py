@@ -1,0 +1,108 @@
+"""Wanted speed and turn rate -> throttle and steering, closed over wheels and gyro. Where to go is decided elsewhere.
+
+Each is feed-forward plus what the sensor says is missing (ArduRover's ATC_ settings). Without the sensor the
+feed-forward drives alone: CRUISE_THROTTLE gives CRUISE_SPEED, and full steering 1 / ATC_STR_RAT_FF rad/s.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from dialects.enums import DriveType
+from vehicle.drive.mixer import clamp
+from vehicle.navigation.estimate import Estimate
+from vehicle.params import Params
+
+TRIM_MAX = 0.5
+"""Largest share of full throttle or steering that the integrals may take: a rover held fast must not wind up."""
+SLOW = 0.2
+"""m/s; wheels that steer turn nothing at rest, so their angle is reckoned for this speed at least."""
+
+
+LONGEST_STEP = 0.1
+"""s; controllers reckon with no longer cycle than the one that zeroes the motors."""
+
+
+class Motion(NamedTuple):
+    """What is wanted: m/s along the nose, and rad/s clockwise."""
+
+    speed: float
+    turn_rate: float
+
+
+STAND = Motion(0.0, 0.0)
+
+
+class Pilot:
+    """The two controllers. `step` each cycle while it drives, `reset` when it does not."""
+
+    def __init__(self, params: Params, kind: DriveType) -> None:
+        self._params = params
+        self._kind = kind
+        self._speed = 0.0
+        self._speed_trim = self._turn_trim = 0.0
+        self._at = 0.0
+
+    def reset(self) -> None:
+        """Forget ramps and integrals."""
+        self._speed = self._speed_trim = self._turn_trim = 0.0
+
+    def step(self, wanted: Motion, estimate: Estimate, now: float) -> tuple[float, float]:
+        """Throttle and steering, -1..1."""
+        dt = self._passed(now)
+        throttle = self._throttle(wanted.speed, estimate.speed, dt)
+        if wanted == STAND:
+            self._turn_trim = 0.0
+            return throttle, 0.0
+        return throttle, self._steering(wanted.turn_rate, estimate, dt)
+
+    def turn(self, rate: float, estimate: Estimate, now: float) -> float:
+        """Steering for a turn rate, where the throttle is somebody else's."""
+        return self._steering(rate, estimate, self._passed(now))
+
+    def _passed(self, now: float) -> float:
+        dt, self._at = max(0.0, min(LONGEST_STEP, now - self._at)), now
+        return dt
+
+    def _steering(self, rate: float, estimate: Estimate, dt: float) -> float:
+        params, measured = self._params, estimate.yaw_rate
+        speed = self._speed if estimate.speed is None else estimate.speed
+        steering = self._feed_forward(rate, speed)
+        if measured is not None and not self._rests(speed):
+            error = rate - measured
+            flip = -1.0 if self._kind is DriveType.ACKERMANN and speed < 0.0 else 1.0
+            if abs(steering) < 1.0:
+                self._turn_trim = clamp(self._turn_trim + params["ATC_STR_RAT_I"] * error * dt, TRIM_MAX)
+            steering += flip * (params["ATC_STR_RAT_P"] * error + self._turn_trim)
+        return clamp(steering, 1.0)
+
+    def _feed_forward(self, rate: float, speed: float) -> float:
+        params = self._params
+        if self._kind is not DriveType.ACKERMANN:
+            return clamp(params["ATC_STR_RAT_FF"] * rate, 1.0)
+        reckoned = math.copysign(max(abs(speed), SLOW), speed)
+        full = math.atan(params["WHEELBASE"] / params["TURN_RADIUS"])
+        return clamp(math.atan(rate * params["WHEELBASE"] / reckoned) / full, 1.0)
+
+    def _rests(self, speed: float) -> bool:
+        return self._kind is DriveType.ACKERMANN and abs(speed) < self._params["ATC_STOP_SPEED"]
+
+    def _throttle(self, wanted: float, measured: float | None, dt: float) -> float:
+        params = self._params
+        self._speed = self._ramped(wanted, dt)
+        if self._speed == 0.0 and abs(measured or 0.0) < params["ATC_STOP_SPEED"]:
+            self._speed_trim = 0.0
+            return 0.0
+        throttle = self._speed / params["CRUISE_SPEED"] * params["CRUISE_THROTTLE"] / 100
+        if measured is not None:
+            error = self._speed - measured
+            if abs(throttle) < 1.0:
+                self._speed_trim = clamp(self._speed_trim + params["ATC_SPEED_I"] * error * dt, TRIM_MAX)
+            throttle += params["ATC_SPEED_P"] * error + self._speed_trim
+        return clamp(throttle, 1.0)
+
+    def _ramped(self, wanted: float, dt: float) -> float:
+        slower = abs(wanted) < abs(self._speed) or wanted * self._speed < 0.0
+        step = self._params["ATC_DECEL_MAX" if slower else "ATC_ACCEL_MAX"] * dt
+        return self._speed + clamp(wanted - self._speed, step)

@@ -1,0 +1,1 @@
+"""The daemon: links, control loop, signals, systemd and locks in one process."""

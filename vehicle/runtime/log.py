@@ -1,0 +1,96 @@
+"""The daemon's log: lines to stderr and to a file, written by a thread of its own; what is logged is not decided here.
+
+A terminal on hold (Ctrl-S) or a full pipe blocks whoever writes to it. The control loop must never wait for that while
+wheels turn, so it only puts lines in a queue; when the queue is full, the newest lines are lost and not the control.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import queue
+import threading
+from typing import ClassVar
+
+from link.runtime import journald
+
+QUEUE_LINES = 1000
+"""More than a start and an end write; what a daemon says more than this while nobody can read it is lost."""
+DRAIN = 1.0
+"""s that the end of the program waits for the last lines; a reader that takes longer is gone."""
+
+
+class _Brief(logging.Formatter):
+    """For a person and for the journal: one line, never a traceback, and nothing that a terminal would obey: some words
+    come from afar."""
+
+    SEVERITIES: ClassVar = {
+        logging.DEBUG: journald.DEBUG,
+        logging.INFO: journald.INFO,
+        logging.WARNING: journald.WARNING,
+        logging.ERROR: journald.ERROR,
+        logging.CRITICAL: journald.CRITICAL,
+    }
+
+    def format(self, record: logging.LogRecord) -> str:
+        mark = journald.mark(self.SEVERITIES.get(record.levelno, journald.INFO))
+        words = " ".join(record.getMessage().split())
+        return f"{mark}vehicle: " + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in words)
+
+
+class _Queued(logging.Handler):
+    """Puts formatted lines in the queue, with the descriptor where they go."""
+
+    def __init__(self, lines: queue.Queue[tuple[int, bytes] | None], descriptor: int) -> None:
+        super().__init__()
+        self._lines = lines
+        self._descriptor = descriptor
+
+    def emit(self, record: logging.LogRecord) -> None:
+        try:
+            self._lines.put_nowait((self._descriptor, (self.format(record) + "\n").encode(errors="backslashreplace")))
+        except queue.Full:
+            return  # losing the newest line is the rule above
+
+
+class Log:
+    """The running log. Make one, `close` it last."""
+
+    def __init__(self, path: str | None = None, *, verbose: bool = False) -> None:
+        """`path` takes every line with its time and traceback. Raises OSError where it cannot be opened."""
+        self._lines: queue.Queue[tuple[int, bytes] | None] = queue.Queue(QUEUE_LINES)
+        self._handlers = [self._handler(journald.STDERR, _Brief())]
+        if path is not None:
+            # Not blocking: a pipe that nobody reads would be waited for, without a word.
+            flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NONBLOCK
+            full = logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s")
+            self._handlers.append(self._handler(os.open(path, flags, 0o644), full))
+        root = logging.getLogger()
+        root.setLevel(logging.DEBUG if verbose else logging.INFO)
+        for handler in self._handlers:
+            root.addHandler(handler)
+        self._thread = threading.Thread(target=self._write, name="log", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Write what is left, for at most DRAIN s, and log no more."""
+        for handler in self._handlers:
+            logging.getLogger().removeHandler(handler)
+        try:
+            self._lines.put(None, timeout=DRAIN)
+        except queue.Full:
+            return
+        self._thread.join(DRAIN)
+
+    def _handler(self, descriptor: int, formatter: logging.Formatter) -> logging.Handler:
+        handler = _Queued(self._lines, descriptor)
+        handler.setFormatter(formatter)
+        return handler
+
+    def _write(self) -> None:
+        while (item := self._lines.get()) is not None:
+            descriptor, line = item
+            try:
+                os.write(descriptor, line)
+            except OSError:
+                continue  # the terminal is closed or the disk is full: there is nobody to tell

@@ -1,0 +1,1 @@
+"""Arming, emergency stop, failsafes and health: decides whether the vehicle may move."""

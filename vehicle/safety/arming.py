@@ -1,0 +1,115 @@
+"""What must be right before the vehicle arms: one table of checks. To add one, write a function and add a line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from vehicle.params import Params
+from vehicle.safety.states import State
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What the checks look at."""
+
+    params: Params
+    state: State
+    terminated: bool = False
+    pressed: str | None = None
+    """Why the emergency stop's own input stops the vehicle."""
+    fault: str | None = None
+    mode: str | None = None
+    """Why the mode cannot work now."""
+    fence: str | None = None
+    """Why the fence, which counts, would stop nobody."""
+    battery_low: bool = False
+    battery_critical: bool = False
+    battery_silent: bool = False
+    computer: str | None = None
+    """What is wrong with the Pi's supply or temperature now."""
+    sticks_moving: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """`find` returns what is wrong, in words a driver understands, or None."""
+
+    find: Callable[[Facts], str | None]
+    hard: bool
+    """Arming by force does not skip it."""
+
+
+def _emergency_stop(facts: Facts) -> str | None:
+    if facts.terminated:
+        return "terminated, restart the vehicle"
+    if facts.pressed is not None:
+        return facts.pressed
+    return "emergency stop, release it first" if facts.state is State.ESTOP else None
+
+
+def _motor_driver(facts: Facts) -> str | None:
+    return f"motor driver: {facts.fault}" if facts.fault else None
+
+
+def _running(facts: Facts) -> str | None:
+    return f"vehicle is in state {facts.state.value}" if facts.state in (State.BOOT, State.OFF) else None
+
+
+def _settings(facts: Facts) -> str | None:
+    """Each value is in its range; these must also fit together."""
+    params = facts.params
+    if params["BATT_LOW_VOLT"] and params["BATT_CRT_VOLT"] > params["BATT_LOW_VOLT"]:
+        return "BATT_CRT_VOLT is above BATT_LOW_VOLT"
+    if params["FS_DISARM_T"] < params["FS_TIMEOUT"]:
+        return "FS_DISARM_T is shorter than FS_TIMEOUT"
+    return None
+
+
+def _saved_settings(facts: Facts) -> str | None:
+    damage = facts.params.damage
+    return f"{damage}, defaults in force; set one to go on" if damage else None
+
+
+def _mode(facts: Facts) -> str | None:
+    return f"the mode cannot work: {facts.mode}" if facts.mode else None
+
+
+def _fence(facts: Facts) -> str | None:
+    return facts.fence
+
+
+def _battery(facts: Facts) -> str | None:
+    if facts.battery_silent:
+        return "battery sensor is silent"
+    if facts.battery_critical:
+        return "battery critical"
+    return "battery low" if facts.battery_low else None
+
+
+def _computer(facts: Facts) -> str | None:
+    return facts.computer if facts.params["FS_PI_ACT"] else None
+
+
+def _sticks(facts: Facts) -> str | None:
+    return "throttle or steering not neutral" if facts.sticks_moving else None
+
+
+CHECKS: tuple[Check, ...] = (
+    Check(_emergency_stop, hard=True),
+    Check(_motor_driver, hard=True),
+    Check(_running, hard=True),
+    Check(_settings, hard=True),
+    Check(_saved_settings, hard=True),
+    Check(_mode, hard=True),
+    Check(_fence, hard=True),
+    Check(_battery, hard=False),
+    Check(_computer, hard=False),
+    Check(_sticks, hard=False),
+)
+
+
+def problems(facts: Facts, *, force: bool = False) -> list[str]:
+    """What forbids to arm, worst first; empty where nothing does."""
+    found = (check.find(facts) for check in CHECKS if check.hard or not force)
+    return [problem for problem in found if problem]

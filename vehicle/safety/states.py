@@ -1,0 +1,67 @@
+"""The vehicle's safety state and what changes it, as one table.
+
+BOOT --ready--> SAFE --arm--> ARMED
+                 ^ <--disarm--  |
+   release       |              | fail (motor driver)
+ESTOP -----------+              v
+  ^              +--repair--- FAULT
+  +-- stop: from every state but OFF, in the same cycle
+OFF: the end, from every state
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class State(Enum):
+    """Only in ARMED may a motor turn."""
+
+    BOOT = "boot"
+    SAFE = "safe"
+    """Disarmed and able to arm."""
+    ARMED = "armed"
+    ESTOP = "estop"
+    """Emergency stop, by a command or the button, latched until it is released."""
+    FAULT = "fault"
+    """The motor driver has failed."""
+    OFF = "off"
+    """Shut down; nothing leads out."""
+
+
+class Event(Enum):
+    """What may happen to the state. What is not allowed leaves it as it is."""
+
+    READY = "ready"
+    ARM = "arm"
+    DISARM = "disarm"
+    STOP = "stop"
+    """Emergency stop."""
+    RELEASE = "release"
+    """The emergency stop is released; arming is a separate step."""
+    FAIL = "fail"
+    """The motor driver fails."""
+    REPAIR = "repair"
+    """The motor driver works again."""
+    SHUTDOWN = "shutdown"
+
+
+_B, _S, _A, _E, _F, _O = State
+
+TRANSITIONS: dict[tuple[State, Event], State] = {
+    (state, event): after
+    for event, row in {
+        #               BOOT SAFE ARMED ESTOP FAULT OFF
+        Event.READY:    (_S, _S, _A, _E, _F, _O),
+        Event.ARM:      (_B, _A, _A, _E, _F, _O),
+        Event.DISARM:   (_B, _S, _S, _E, _F, _O),
+        Event.STOP:     (_E, _E, _E, _E, _E, _O),
+        Event.RELEASE:  (_B, _S, _A, _S, _F, _O),
+        Event.FAIL:     (_F, _F, _F, _E, _F, _O),
+        Event.REPAIR:   (_B, _S, _A, _E, _S, _O),
+        Event.SHUTDOWN: (_O, _O, _O, _O, _O, _O),
+    }.items()
+    for state, after in zip(State, row, strict=True)
+}  # fmt: skip
+"""(state, event) -> state, every cell. A driver fault during an emergency stop is kept by vehicle/safety/state_machine.py and
+comes back when the stop is released."""

@@ -1,0 +1,1 @@
+"""What survives a restart: parameters, plans, logs."""

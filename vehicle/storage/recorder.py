@@ -1,0 +1,55 @@
+"""Records what the vehicle hears and says, in a folder of logs that it serves: recorder, files and folder joined."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from link.protocol.log_tap import Tape
+from link.tlog.recorder import Recorder
+from vehicle.storage.disk_folder import DiskFolder
+from vehicle.storage.tlog_files import MEGABYTE, SUFFIX, Limits, LogFiles, time_of
+
+LOGS = "logs"
+"""In the folder that keeps things, unless another one is named."""
+
+
+class VehicleRecorder:
+    """Fits `vehicle.storage.logbook.Recording`; `tape` is for the runner."""
+
+    def __init__(self, folder: Path, *, system: int, component: int) -> None:
+        self._files = LogFiles(folder)
+        self._recorder = Recorder()
+        self.folder = DiskFolder(folder, suffix=SUFFIX, removable=lambda name: name != self._files.current)
+        self.tape = Tape(self._recorder.add, system=system, component=component)
+        self._recorder.check(self._files.probe)
+
+    @property
+    def problem(self) -> str | None:
+        """Why it does not record, or not all, in one line."""
+        return self._recorder.problem
+
+    def begin(self, files: int, megabytes_free: int) -> None:
+        """A new log. Never blocks and never raises."""
+        limits = Limits(files, megabytes_free * MEGABYTE)
+        self._recorder.begin(lambda: self._files.open(limits))
+
+    def end(self) -> None:
+        """Close it."""
+        self._recorder.end()
+
+    def tick(self, now: float) -> None:
+        """Hand over what has come together."""
+        self._recorder.tick(now)
+
+    def clear(self) -> None:
+        """Remove all logs but the one that is being written."""
+        self.folder.clear()
+
+    def when(self, name: str) -> int:
+        """By its name."""
+        return time_of(name)
+
+    def close(self) -> None:
+        """Write the rest and end."""
+        self._recorder.close()
+        self.folder.close()

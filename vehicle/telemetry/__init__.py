@@ -1,0 +1,1 @@
+"""What the vehicle sends, to whom, and how often."""

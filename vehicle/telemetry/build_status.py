@@ -1,0 +1,262 @@
+"""Messages about the vehicle's state: heartbeat, health, mode, control, demand, failsafes, identity. Builders only."""
+
+from __future__ import annotations
+
+from dialects import messages as m
+from dialects.enums import Autopilot, Capability, Failsafe, Limit, Sensor, State, Type
+from dialects.modes import Mode, base_mode
+from vehicle.modes import OFFERED, Need, Offer
+from vehicle.safety import states
+from vehicle.safety.failsafe import Action
+from vehicle.telemetry.build_motion import home_above_origin
+from vehicle.telemetry.scaling import INT8, INT16, INT32, UINT16, real, whole
+from vehicle.telemetry.view import View
+
+VERSION = (0, 1, 0)
+"""Of this program, in AUTOPILOT_VERSION."""
+TAKEOVER_ALLOWED, SYSTEM_MANAGER = 2, 1
+"""GCS_CONTROL_STATUS_FLAGS."""
+X_AXIS, R_AXIS = 0, 3
+"""ROVER_AXIS of throttle and steering: those of the specification (dialects/axes.py, Autopilot.GENERIC)."""
+NOT_USER_SELECTABLE, AUTO_MODE = 2, 4
+"""MAV_MODE_PROPERTY."""
+UNKNOWN_VOLTAGES = [m.UINT16_MAX] * 9
+CHARGE_OK, CHARGE_LOW, CHARGE_CRITICAL = 1, 2, 3
+"""MAV_BATTERY_CHARGE_STATE."""
+
+
+def heartbeat(view: View) -> m.Message:
+    """HEARTBEAT: armed, mode and state in the words every ground station knows."""
+    return m.Heartbeat(
+        type=Type.GROUND_ROVER,
+        autopilot=Autopilot.GENERIC,
+        base_mode=base_mode(_mode(view), armed=view.safety.armed),
+        custom_mode=_mode(view),
+        system_status=_system_status(view),
+        mavlink_version=3,
+    )
+
+
+def _system_status(view: View) -> State:
+    safety = view.safety
+    if safety.terminated:
+        return State.FLIGHT_TERMINATION
+    if safety.armed and (safety.failsafes.active or safety.latched):
+        return State.CRITICAL
+    return {
+        states.State.BOOT: State.BOOT,
+        states.State.SAFE: State.STANDBY,
+        states.State.ARMED: State.ACTIVE,
+        states.State.ESTOP: State.EMERGENCY,
+        states.State.FAULT: State.CRITICAL,
+        states.State.OFF: State.POWEROFF,
+    }[safety.state]
+
+
+def sys_status(view: View) -> m.Message:
+    """SYS_STATUS: which sensors there are and whether they are well, and the battery."""
+    readings, battery, fence = view.readings, view.safety.battery, view.navigator.boundary.fence
+    has = {
+        Sensor.MOTOR_OUTPUTS: True,
+        Sensor.PREARM: True,
+        Sensor.GEOFENCE: fence.there,
+        Sensor.BATTERY: battery.present,
+        Sensor.GPS: readings.gps_fix is not None or "gps" in readings.configured,
+        Sensor.GYRO: readings.yaw_rate is not None,
+        Sensor.ACCELEROMETER: readings.roll is not None,  # by what else would it know level
+        Sensor.COMPASS: readings.yaw is not None,
+        Sensor.AHRS: view.estimate.yaw is not None,
+        Sensor.LOGGING: view.logs is not None,
+    }
+    ill = {
+        Sensor.MOTOR_OUTPUTS: view.safety.fault is not None,
+        Sensor.GEOFENCE: view.navigator.boundary.beyond > 0.0,
+        Sensor.PREARM: not view.safety.armed and bool(view.safety.problems(view.now)),  # a moving stick forbids to arm
+        Sensor.BATTERY: battery.silent(view.now) or battery.low_since(view.now) is not None,
+        Sensor.GPS: (readings.gps_fix or 0) < 3,
+        Sensor.AHRS: readings.gps_fix is not None and not view.estimate.good,
+        Sensor.LOGGING: view.logs is False,
+    }
+    present = sum(sensor for sensor, there in has.items() if there)
+    # MAVProxy takes a fence that does not count and whose health bit is 0 for a breached one.
+    off = 0 if fence.enabled else Sensor.GEOFENCE
+    health = off | sum(sensor for sensor, there in has.items() if there and not ill.get(sensor))
+    return m.SysStatus(
+        onboard_control_sensors_present=present,
+        onboard_control_sensors_enabled=present & ~off,
+        onboard_control_sensors_health=health,
+        load=whole(view.host.load, (0, 1000), 1000),
+        voltage_battery=whole(readings.battery_voltage, UINT16, 1000, unknown=m.UINT16_MAX),
+        current_battery=whole(readings.battery_current, INT16, 100, unknown=-1),
+        battery_remaining=whole(readings.battery_remaining, (0, 100), 100, unknown=-1),
+        drop_rate_comm=0, errors_comm=0, errors_count1=0, errors_count2=0, errors_count3=0, errors_count4=0,
+    )  # fmt: skip
+
+
+def battery_status(view: View) -> m.Message | None:
+    """BATTERY_STATUS of the one battery; nothing without a sensor."""
+    readings, battery = view.readings, view.safety.battery
+    if readings.battery_voltage is None:
+        return None
+    critical, low = battery.critical_since(view.now) is not None, battery.low_since(view.now) is not None
+    return m.BatteryStatus(
+        id=0,
+        battery_function=0,
+        type=0,
+        temperature=INT16[1],
+        voltages=[whole(readings.battery_voltage, (0, 65534), 1000), *UNKNOWN_VOLTAGES],
+        current_battery=whole(readings.battery_current, INT16, 100, unknown=-1),
+        current_consumed=-1,
+        energy_consumed=-1,
+        battery_remaining=whole(readings.battery_remaining, (0, INT8[1]), 100, unknown=-1),
+        charge_state=CHARGE_CRITICAL if critical else CHARGE_LOW if low else CHARGE_OK,
+    )
+
+
+def current_mode(view: View) -> m.Message:
+    """CURRENT_MODE: what it is, and what the driver last chose."""
+    mode = _mode(view)
+    return m.CurrentMode(OFFERED[mode].standard, custom_mode=mode, intended_custom_mode=view.safety.intended)
+
+
+def _mode(view: View) -> Mode:
+    return Mode.INITIALISING if view.safety.state is states.State.BOOT else view.safety.mode
+
+
+def control_status(view: View) -> m.Message:
+    """CONTROL_STATUS: which ground station is in control."""
+    flags = SYSTEM_MANAGER | (TAKEOVER_ALLOWED if view.control.takeover_allowed else 0)
+    return m.ControlStatus(flags=flags, gcs_main=view.control.owner, gcs_secondary=[0] * 10)
+
+
+def system_time(view: View) -> m.Message:
+    """SYSTEM_TIME; 0 for a wall clock nobody knows."""
+    seconds = view.host.unix_time(view.now)
+    unix = 0 if seconds is None else whole(seconds, (0, 2**63), 1e6)
+    return m.SystemTime(time_unix_usec=unix, time_boot_ms=view.boot_ms)
+
+
+def limits(view: View) -> Limit:
+    """Why the outputs differ from the demand."""
+    safety, control = view.safety, view.control
+    reasons = {
+        Limit.DISARMED: not safety.armed,
+        Limit.ESTOP: safety.state is states.State.ESTOP,
+        Limit.FAILSAFE: safety.failsafes.action(view.now) >= Action.NEUTRAL or bool(safety.failsafes.latched),
+        Limit.FENCE: bool(safety.failsafes.active & Failsafe.FENCE) or view.navigator.boundary.held_back,
+        Limit.BATTERY: bool(safety.failsafes.active & (Failsafe.BATTERY_LOW | Failsafe.BATTERY_CRITICAL)),
+        Limit.STALE: control.stale(view.now),
+        Limit.NEUTRAL_FIRST: safety.armed and not control.neutral_seen,
+    }
+    return view.drive.limits | Limit(sum(limit for limit, holds in reasons.items() if holds))
+
+
+def drive_status(view: View) -> m.Message:
+    """ROVER_DRIVE_STATUS: the driver's demand while it counts as fresh, what the wheels do, and why that differs."""
+    control = view.control
+    demand = None if control.stale(view.now) else control.demand
+    output = [whole(value, INT16, 10000) for value in view.drive.wheels]
+    return m.RoverDriveStatus(
+        time_boot_ms=view.boot_ms,
+        demand_age_ms=whole(control.age(view.now), UINT16, 1000, unknown=m.UINT16_MAX),
+        demand_throttle=whole(demand.throttle, INT16, 10000) if demand else 0,
+        demand_steering=whole(demand.steering, INT16, 10000) if demand else 0,
+        output=(output + [0] * 4)[:4],
+        limits=limits(view),
+        source_system=control.demand.system if control.demand else 0,
+        source_seq=control.demand.sequence if control.demand else 0,
+    )
+
+
+def failsafe_status(view: View) -> m.Message:
+    """ROVER_FAILSAFE_STATUS: what is wrong, what follows and when."""
+    safety = view.safety
+    step = safety.failsafes.next_step(view.now)
+    return m.RoverFailsafeStatus(
+        time_boot_ms=view.boot_ms,
+        active=safety.failsafes.active | (safety.latched & (Failsafe.ESTOP | Failsafe.MOTOR_DRIVER)),
+        latched=safety.latched,
+        action_in_ms=whole(step.delay if step else None, UINT16, 1000, unknown=m.UINT16_MAX),
+        custom_mode_after=Mode.HOLD if step and step.action is Action.HOLD else safety.mode,
+        will_disarm=step is not None and step.action is Action.DISARM,
+    )
+
+
+def drive_info(view: View) -> m.Message:
+    """ROVER_DRIVE_INFO: what the axes of MANUAL_CONTROL mean here."""
+    params = view.params
+    return m.RoverDriveInfo(
+        speed_max=params["SPEED_MAX"],
+        turn_rate_max=2 * params["SPEED_MAX"] / params["TRACK_WIDTH"],
+        track_width=params["TRACK_WIDTH"],
+        wheelbase=params["WHEELBASE"],
+        manual_timeout_ms=whole(params["MAN_TIMEOUT"], UINT16, 1000),
+        drive_type=view.drive.kind,
+        throttle_axis=X_AXIS,
+        steering_axis=R_AXIS,
+        throttle_neutral=0,
+        motor_count=len(view.drive.wheels),
+    )
+
+
+def extended_sys_state(view: View) -> m.Message:
+    """EXTENDED_SYS_STATE: a rover is on the ground."""
+    return m.ExtendedSysState(vtol_state=0, landed_state=1)
+
+
+def home_position(view: View) -> m.Message | None:
+    """HOME_POSITION, once there is a home."""
+    home = view.home
+    if home is None:
+        return None
+    return m.HomePosition(
+        latitude=whole(home.latitude, INT32, 1e7),
+        longitude=whole(home.longitude, INT32, 1e7),
+        altitude=whole(home.altitude, INT32, 1000),
+        x=real(home.north), y=real(home.east), z=-home_above_origin(view), q=[1.0, 0.0, 0.0, 0.0],
+        approach_x=0.0, approach_y=0.0, approach_z=0.0, time_usec=view.boot_us,
+    )  # fmt: skip
+
+
+def autopilot_version(view: View) -> m.Message:
+    """AUTOPILOT_VERSION: what we can do."""
+    major, minor, patch = VERSION
+    nothing = [0] * 8
+    can = Capability.MISSION_INT | Capability.MISSION_FENCE | Capability.MISSION_RALLY | Capability.FTP
+    can |= Capability.SET_POSITION_TARGET_LOCAL | Capability.SET_POSITION_TARGET_GLOBAL
+    can |= Capability.SET_ATTITUDE_TARGET | Capability.COMMAND_INT | Capability.FLIGHT_TERMINATION
+    can |= Capability.MAVLINK2 | Capability.PARAM_C_CAST
+    return m.AutopilotVersion(
+        capabilities=can,
+        flight_sw_version=major << 24 | minor << 16 | patch << 8,
+        middleware_sw_version=0, os_sw_version=0, board_version=0, flight_custom_version=nothing,
+        middleware_custom_version=nothing, os_custom_version=nothing, vendor_id=0, product_id=0,
+        uid=int.from_bytes(view.host.uid[:8], "big"), uid2=list(view.host.uid.ljust(18, b"\0")),
+    )  # fmt: skip
+
+
+def protocol_version(view: View) -> m.Message:
+    """PROTOCOL_VERSION: MAVLink 2; version 1 is understood."""
+    return m.ProtocolVersion(200, 100, 200, spec_version_hash=[0] * 8, library_version_hash=[0] * 8)
+
+
+def available_modes(view: View) -> list[m.Message]:
+    """AVAILABLE_MODES, one message a mode. What a sensor is missing for cannot be selected now."""
+    return [
+        m.AvailableModes(
+            number_modes=len(OFFERED), mode_index=index, standard_mode=offer.standard, custom_mode=mode,
+            properties=_properties(offer, view), mode_name=mode.name.encode(),
+        )
+        for index, (mode, offer) in enumerate(OFFERED.items(), start=1)
+    ]  # fmt: skip
+
+
+def _properties(offer: Offer, view: View) -> int:
+    selectable = offer.selectable and view.navigator.offers(offer.need)
+    automatic = AUTO_MODE if offer.own and offer.need is Need.POSITION else 0
+    return automatic | (0 if selectable else NOT_USER_SELECTABLE)
+
+
+def available_modes_monitor(view: View) -> m.Message:
+    """AVAILABLE_MODES_MONITOR: its number changes when the modes that can be selected do."""
+    return m.AvailableModesMonitor(sum(1 << index for index, need in enumerate(Need) if view.navigator.offers(need)))

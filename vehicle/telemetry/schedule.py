@@ -1,0 +1,233 @@
+"""What one peer is told and when: its rates, its families of messages, and its share of the link."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from dialects.codec import MAX_FRAME
+from dialects.enums import DataStream
+from link.protocol.rate import TokenBucket
+from vehicle.telemetry.streams import BY_ID, STREAMS, Family, Stream
+
+BUDGET = 200.0
+"""Streamed messages/s to one peer: about 60 kbit/s of 40-byte frames, whatever it asks for."""
+FASTEST = 0.02
+"""s: a stream cannot be faster than the control cycle."""
+CHANGE_GAP = 0.05
+"""s between two messages of a stream that tells changes at once: 20 Hz."""
+PHASE = 0.02
+"""s between the first messages of neighbouring streams, so that they do not come in one burst."""
+BURST = 0.3
+"""s of a limit in messages that may go at once."""
+BYTES_BURST = 0.05
+"""s of a limit in bytes that may go at once, though always the longest message: on a slow link bursts are delays."""
+STEADY = 0.5
+"""Share of a limit that one steady stream may fill, its changes included: the others must not starve."""
+LEAST_ROOM = 0.1
+"""Share of a limit that is left to the others where several steady ones want all of it."""
+SLOWEST = 8.0
+"""Largest factor by which a full radio stretches the intervals."""
+RADIO_SILENCE = 5.0
+"""s: a radio reports once a second; one that is gone slows nothing down."""
+EARLY = 1e-6
+"""s: so much before its time a message goes out, or rounding would make it wait for another cycle."""
+
+
+class Share(NamedTuple):
+    """What one peer may get of its link."""
+
+    messages: float = BUDGET
+    """A second."""
+    bytes: float | None = None
+    """A second; None where nobody knows what the link takes."""
+
+
+@dataclass(slots=True)
+class _Clock:
+    """When one stream is due. Without an interval it is told when it changes, where it is `on`, and on request."""
+
+    stream: Stream
+    origin: float
+    on: bool = False
+    interval: float | None = None
+    due: float = math.inf
+    sent: float = -math.inf
+
+    def next(self, step: float, now: float) -> float:
+        """The next of the times `origin` + n x `step`. They are the same for all peers with this step, so that one
+        message serves them all; what was missed in a pause is left out."""
+        number = math.floor((now + 2 * EARLY - self.origin) / step) + 1
+        return self.origin + number * step - EARLY
+
+
+class Schedule:
+    """The streams of one peer. It begins with those that everybody understands, one after the other.
+
+    `boot` is the time that all peers' streams are counted from.
+    """
+
+    def __init__(self, boot: float, now: float) -> None:
+        self.family = Family.COMMON
+        """The last one that the peer has shown to speak."""
+        self._clocks = {each.message.id: _Clock(each, boot + n * PHASE) for n, each in enumerate(STREAMS)}
+        self._next = math.inf
+        self._share = Share()
+        self._messages = TokenBucket(BUDGET, BUDGET * BURST)
+        self._bytes: TokenBucket | None = None
+        self._stretch, self._radio_heard = 1.0, -math.inf
+        """Factor on the intervals that a full radio asks for."""
+        self._narrow = 1.0
+        """Factor on the intervals for what was asked beyond the share."""
+        self._begin((Family.COMMON,), now)
+
+    def speak(self, family: Family, now: float) -> None:
+        """The peer understands `family` and those before it: their streams begin."""
+        if family > self.family:
+            self._begin([each for each in Family if self.family < each <= family], now)
+            self.family = family
+
+    def interval(self, message_id: int) -> float | None:
+        """s between two of a stream, None where it has no rate. Raises KeyError for a message that is no stream."""
+        return self._clocks[message_id].interval
+
+    def set_interval(self, message_id: int, interval: float | None, now: float) -> None:
+        """Change a stream; None turns it off. Too fast is made slower, a fixed one stays.
+
+        Who asks again for what it has, as MAVProxy does all the time, gets no message for that.
+        """
+        clock = self._clocks[message_id]
+        on, interval = interval is not None, interval and max(FASTEST, interval)
+        if not clock.stream.fixed and (on, interval) != (clock.on, clock.interval):
+            self._set(message_id, on, interval, now)
+            self._narrow = self._narrowed()
+
+    def set_default(self, message_id: int, now: float) -> None:
+        """Back to the table's rate."""
+        if not BY_ID[message_id].fixed:
+            self._set_default(BY_ID[message_id], now)
+            self._narrow = self._narrowed()
+
+    def set_group(self, group: int, rate: float, now: float) -> None:
+        """REQUEST_DATA_STREAM: all streams of a group, 0 turns them off."""
+        for stream in STREAMS:
+            if stream.group is not None and group in (DataStream.ALL, stream.group):
+                self.set_interval(stream.message.id, _interval(rate), now)
+
+    def limit(self, share: Share) -> None:
+        """Messages and bytes of all streams together. They slow down alike, steady ones last."""
+        if share == self._share:
+            return
+        self._share = share
+        self._messages.limit(share.messages, max(1.0, share.messages * BURST))
+        if share.bytes is None:
+            self._bytes = None
+        else:
+            rate, burst = max(0.0, share.bytes - _FIXED), max(share.bytes * BYTES_BURST, MAX_FRAME)
+            self._bytes = self._bytes or TokenBucket(rate, burst)
+            self._bytes.limit(rate, burst)
+        self._narrow = self._narrowed()
+
+    def radio(self, free: int, now: float) -> None:
+        """RADIO_STATUS: `free` percent of the radio's buffer. Slower when it fills, faster again when it is empty."""
+        self._radio_heard = now
+        if free < 50:
+            self._stretch = min(SLOWEST, self._stretch * 2)
+        elif free > 90:
+            self._stretch = max(1.0, self._stretch / 2)
+
+    def hurry(self, message_id: int, now: float) -> None:
+        """What a stream tells has changed: say so now, or as soon as CHANGE_GAP allows."""
+        clock = self._clocks[message_id]
+        if clock.on:
+            clock.due = min(clock.due, max(now, clock.sent + max(CHANGE_GAP, self._least(clock.stream))))
+            self._next = min(self._next, clock.due)
+
+    def take(self, now: float) -> list[Stream]:
+        """The streams that are due and have room; they count as told."""
+        if now < self._next:
+            return []
+        due = [each for each in self._clocks.values() if now >= each.due]
+        due.sort(key=lambda each: (not each.stream.steady, each.due))  # where room is short, all get their turn
+        taken = [each.stream for each in due if self._take(each, now)]
+        self._next = min(each.due for each in self._clocks.values())
+        return taken
+
+    def take_one(self, message_id: int, now: float) -> bool:
+        """The same of one stream alone."""
+        clock = self._clocks[message_id]
+        return now >= clock.due and self._take(clock, now)
+
+    def _take(self, clock: _Clock, now: float) -> bool:
+        stream = clock.stream
+        if not (stream.fixed or self._room(stream, now)):
+            return False
+        clock.sent, clock.due = now, self._next_due(clock, now)
+        return True
+
+    def _next_due(self, clock: _Clock, now: float) -> float:
+        """When it is due again, as the link allows; a steady one may just have told a change."""
+        if clock.interval is None:
+            return math.inf
+        if clock.stream.steady:
+            least = self._least(clock.stream)
+            return max(clock.next(max(clock.interval, least), now), now + least - EARLY)
+        return clock.next(clock.interval * max(self._stretched(now), self._narrow), now)
+
+    def _least(self, stream: Stream) -> float:
+        """s between two of a steady stream, or of a changing one, that leave room for the others."""
+        share = self._share
+        return max(1 / share.messages, stream.size / share.bytes if share.bytes else 0.0) / STEADY
+
+    def _stretched(self, now: float) -> float:
+        if now - self._radio_heard > RADIO_SILENCE:
+            self._stretch = 1.0
+        return self._stretch
+
+    def _room(self, stream: Stream, now: float) -> bool:
+        return self._messages.take(now) and (self._bytes is None or self._bytes.take(now, stream.size))
+
+    def _begin(self, families: Collection[Family], now: float) -> None:
+        new = [stream for stream in STREAMS if stream.family in families and _unasked(stream)]
+        for number, stream in enumerate(new):
+            self._set_default(stream, now + number * PHASE)
+        self._narrow = self._narrowed()
+
+    def _set_default(self, stream: Stream, due: float) -> None:
+        self._set(stream.message.id, _unasked(stream), _interval(stream.rate), due)
+
+    def _set(self, message_id: int, on: bool, interval: float | None, due: float) -> None:
+        clock = self._clocks[message_id]
+        clock.on, clock.interval, clock.due = on, interval, due if on else math.inf
+        self._next = min(self._next, clock.due)
+
+    def _narrowed(self) -> float:
+        messages = self._excess(self._share.messages, lambda stream: 1.0)
+        return max(1.0, messages, self._excess(self._share.bytes, lambda stream: stream.size))
+
+    def _excess(self, limit: float | None, weight: Callable[[Stream], float]) -> float:
+        """How many times too much the streams are that can be slowed down, in messages or bytes."""
+        if limit is None:
+            return 1.0
+        steady = others = 0.0
+        for clock in self._clocks.values():
+            if clock.interval is not None and clock.stream.steady:
+                steady += weight(clock.stream) / max(clock.interval, self._least(clock.stream))
+            elif clock.interval is not None:
+                others += weight(clock.stream) / clock.interval
+        return others / max(limit - steady, limit * LEAST_ROOM)
+
+
+def _unasked(stream: Stream) -> bool:
+    """It is told without being asked for: at its rate, or when it changes."""
+    return stream.rate > 0 or stream.change is not None
+
+
+def _interval(rate: float) -> float | None:
+    return 1.0 / rate if rate > 0 else None
+
+
+_FIXED = sum(stream.size * stream.rate for stream in STREAMS if stream.fixed)
+"""Bytes/s of the streams that do not ask for room."""
