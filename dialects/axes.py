@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from dialects.enums import Autopilot
 from dialects.messages import INVALID_AXIS, ManualControl
 
-FULL = 1000
+FULL_DEFLECTION = 1000
 """Full deflection of an axis (common.xml, MANUAL_CONTROL)."""
 
 
@@ -39,7 +39,7 @@ class AxisMap:
     throttle: str
     steering: str
     throttle_neutral: int = 0
-    throttle_span: int = FULL
+    throttle_span: int = FULL_DEFLECTION
 
 
 AXIS_MAPS: dict[int, AxisMap] = {
@@ -55,7 +55,7 @@ def axis_map(autopilot: int) -> AxisMap:
     return AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
 
 
-def manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]) -> ManualControl:
+def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]) -> ManualControl:
     """The message for a demand. Values are clamped here because ArduPilot does not (z = 32766 is full ahead there).
 
     Axes that mean nothing to the vehicle are sent as INT16_MAX, "invalid".
@@ -63,7 +63,7 @@ def manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopi
     message = ManualControl(target, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, 0)
     throttle = axis_map.throttle_neutral + round(_clamp(axes.throttle) * axis_map.throttle_span)
     setattr(message, axis_map.throttle, throttle)
-    setattr(message, axis_map.steering, round(_clamp(axes.steering) * FULL))
+    setattr(message, axis_map.steering, round(_clamp(axes.steering) * FULL_DEFLECTION))
     return message
 
 
@@ -71,7 +71,7 @@ def _clamp(value: float) -> float:
     return 0.0 if math.isnan(value) else max(-1.0, min(1.0, value))
 
 
-def demand(
+def parse_manual_control(
     message: ManualControl, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]
 ) -> tuple[float | None, float | None]:
     """Throttle and steering in -1..1 of a received message; None for an axis that is invalid or out of range.
@@ -81,5 +81,5 @@ def demand(
     raw_throttle = getattr(message, axis_map.throttle)
     raw_steering = getattr(message, axis_map.steering)
     throttle = (raw_throttle - axis_map.throttle_neutral) / axis_map.throttle_span
-    steering = raw_steering / FULL
+    steering = raw_steering / FULL_DEFLECTION
     return (throttle if abs(throttle) <= 1.0 else None, steering if abs(steering) <= 1.0 else None)

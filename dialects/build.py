@@ -55,7 +55,7 @@ def generate(target: Path = MODULE) -> Path:
             _mavgen(xml, module)
             messages = _messages(Path(scratch))
         made_from = runpy.run_path(str(HERE / "fingerprint.py"))["line"]()
-        code = "\n".join([lightened(module.read_text("utf-8")), *_codec(messages), made_from]) + "\n"
+        code = "\n".join([strip_unused(module.read_text("utf-8")), *_codec(messages), made_from]) + "\n"
     whole = target.with_suffix(".new")
     whole.write_text(code, "utf-8")
     whole.replace(target)  # a program that starts meanwhile finds the old module or the new one, never half of it
@@ -100,7 +100,7 @@ def drop_texts(definitions: Sequence[Path]) -> None:
         tree.write(path, "utf-8")
 
 
-def lightened(code: str) -> str:
+def strip_unused(code: str) -> str:
     """mavgen's module without its tables of enums, but for the names of NAMED, and without the two methods a message
     that MAVLink has for making and sending it. With the texts that is 1.6 MiB in each process that imports it."""
     named = re.compile(rf'enums\["({"|".join(NAMED)})"\](\[\d+\])? = ')

@@ -7,47 +7,47 @@ from dataclasses import dataclass
 from pathlib import Path
 
 FILE = Path(__file__).with_name("rover.xml")
-PRIVATE = range(46000, 46100)
+PRIVATE_IDS = range(46000, 46100)
 """Ids that no public dialect uses."""
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class FieldDefinition:
     """One field of a message."""
 
     name: str
     type: str
     unit: str
     enum: str
-    words: str
+    description: str
 
 
 @dataclass(frozen=True, slots=True)
-class Definition:
+class MessageDefinition:
     """One message."""
 
     id: int
     name: str
-    words: str
-    fields: tuple[Field, ...]
+    description: str
+    fields: tuple[FieldDefinition, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Value:
+class EnumValue:
     """One value of an enum."""
 
     number: int
     name: str
-    words: str
+    description: str
 
 
-def private_messages() -> list[Definition]:
+def private_messages() -> list[MessageDefinition]:
     """Those with an id of ours, in order."""
-    found = [_definition(each) for each in _root().iter("message") if int(each.get("id", 0)) in PRIVATE]
+    found = [_definition(each) for each in _root().iter("message") if int(each.get("id", 0)) in PRIVATE_IDS]
     return sorted(found, key=lambda each: each.id)
 
 
-def private_enums() -> dict[str, list[Value]]:
+def private_enums() -> dict[str, list[EnumValue]]:
     """Enums that rover.xml defines, by name."""
     return {
         each.get("name", ""): [_value(entry) for entry in each.iter("entry")]
@@ -60,16 +60,20 @@ def _root() -> ET.Element:
     return ET.parse(FILE).getroot()
 
 
-def _definition(message: ET.Element) -> Definition:
+def _definition(message: ET.Element) -> MessageDefinition:
     fields = tuple(
-        Field(each.get("name", ""), each.get("type", ""), each.get("units", ""), each.get("enum", ""), _text(each))
+        FieldDefinition(
+            each.get("name", ""), each.get("type", ""), each.get("units", ""), each.get("enum", ""), _text(each)
+        )
         for each in message.iter("field")
     )
-    return Definition(int(message.get("id", 0)), message.get("name", ""), _text(message.find("description")), fields)
+    return MessageDefinition(
+        int(message.get("id", 0)), message.get("name", ""), _text(message.find("description")), fields
+    )
 
 
-def _value(entry: ET.Element) -> Value:
-    return Value(int(entry.get("value", "0"), 0), entry.get("name", ""), _text(entry.find("description")))
+def _value(entry: ET.Element) -> EnumValue:
+    return EnumValue(int(entry.get("value", "0"), 0), entry.get("name", ""), _text(entry.find("description")))
 
 
 def _text(element: ET.Element | None) -> str:

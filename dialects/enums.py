@@ -17,7 +17,7 @@ class Autopilot(IntEnum):
     PX4 = rover.MAV_AUTOPILOT_PX4
 
 
-class Type(IntEnum):
+class VehicleType(IntEnum):
     """MAV_TYPE, as far as we meet it."""
 
     GCS = rover.MAV_TYPE_GCS
@@ -25,7 +25,7 @@ class Type(IntEnum):
     SURFACE_BOAT = rover.MAV_TYPE_SURFACE_BOAT
 
 
-class State(IntEnum):
+class SystemState(IntEnum):
     """MAV_STATE: `system_status` of HEARTBEAT."""
 
     UNINIT = rover.MAV_STATE_UNINIT
@@ -143,7 +143,7 @@ class FenceItem(IntEnum):
     RALLY_POINT = rover.MAV_CMD_NAV_RALLY_POINT
 
 
-class Operator(IntFlag):
+class OperatorFlag(IntFlag):
     """ROVER_OPERATOR_FLAGS of ROVER_OPERATOR_PRESENCE."""
 
     DEADMAN = rover.ROVER_OPERATOR_FLAGS_DEADMAN
@@ -152,7 +152,7 @@ class Operator(IntFlag):
     SCRIPT = rover.ROVER_OPERATOR_FLAGS_SCRIPT
 
 
-class Limit(IntFlag):
+class DriveLimit(IntFlag):
     """ROVER_DRIVE_LIMITS: why the motor outputs differ from the demand."""
 
     SLEW = rover.ROVER_DRIVE_LIMITS_SLEW
@@ -212,7 +212,7 @@ class Sensor(IntFlag):
     PREARM = rover.MAV_SYS_STATUS_PREARM_CHECK
 
 
-class Estimated(IntFlag):
+class EstimatorFlag(IntFlag):
     """ESTIMATOR_STATUS_FLAGS, as far as a rover on flat ground has them."""
 
     ATTITUDE = rover.ESTIMATOR_ATTITUDE
@@ -250,7 +250,7 @@ class DataStream(IntEnum):
     EXTRA3 = rover.MAV_DATA_STREAM_EXTRA3
 
 
-class ParamFault(IntEnum):
+class ParamErrorCode(IntEnum):
     """MAV_PARAM_ERROR of PARAM_ERROR."""
 
     DOES_NOT_EXIST = rover.MAV_PARAM_ERROR_DOES_NOT_EXIST

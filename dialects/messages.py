@@ -129,7 +129,7 @@ ACKNOWLEDGED: frozenset[int] = frozenset(
 """Messages that are repeated until answered, or said once. All others are state: only the newest counts."""
 
 
-def text_of(message: StatusText) -> str:
+def decode_text(message: StatusText) -> str:
     """The text as UTF-8 (the generated decoder knows only ASCII), with control characters shown and never obeyed.
 
     A vehicle's text goes to a terminal: an escape sequence inside it must not reach the screen as one.

@@ -13,11 +13,21 @@ from pathlib import Path
 import msgspec
 
 from groundstation.intents import AnyIntent, Quit
-from groundstation.ipc import MAX_PACKET, NEVER_LATE, SOCKET_BUFFER, Batch, Failure, Hello, clock, decode_up, encode
+from groundstation.ipc import (
+    MAX_PACKET,
+    SOCKET_BUFFER,
+    VALID_WHEN_LATE,
+    IntentBatch,
+    StationFailed,
+    StationReady,
+    clock,
+    decode_from_station,
+    encode,
+)
 from groundstation.processes import end_process, start_module
 from groundstation.snapshot import Snapshot
 
-HELLO_TIMEOUT = 15.0
+START_TIMEOUT = 15.0
 """How long the station may take to open its links: Python's start on a slow Pi (3 s) and a name to resolve (10 s)."""
 
 CLOSE_TIMEOUT = 1.0
@@ -83,10 +93,10 @@ class StationClient:
                 return
             packet = (*self._pending, *intents)
             try:
-                self._pipe.send(encode(Batch(clock(), packet)))
+                self._pipe.send(encode(IntentBatch(clock(), packet)))
                 self._pending.clear()
             except BlockingIOError:
-                self._pending.extend(intent for intent in intents if isinstance(intent, NEVER_LATE))
+                self._pending.extend(intent for intent in intents if isinstance(intent, VALID_WHEN_LATE))
             except OSError:  # the station has ended; alive tells
                 self._open = False
 
@@ -133,25 +143,29 @@ def _spawn(descriptor: int, options: Sequence[str], endpoints: Sequence[str]) ->
         raise StationError(f"the station process did not start: {error.strerror}") from error
 
 
-def _hello(pipe: socket.socket) -> Hello:
-    pipe.settimeout(HELLO_TIMEOUT)
+def _hello(pipe: socket.socket) -> StationReady:
+    pipe.settimeout(START_TIMEOUT)
     try:
         packet = pipe.recv(MAX_PACKET)
     except TimeoutError as error:
-        raise StationError(f"the station process did not answer within {HELLO_TIMEOUT:.0f} s") from error
+        raise StationError(f"the station process did not answer within {START_TIMEOUT:.0f} s") from error
     except OSError as error:
         raise StationError(f"the station process ended: {error.strerror}") from error
-    first = decode_up(packet) if packet else Failure("the station process ended before it was ready; its log says why")
-    if isinstance(first, Failure):
+    first = (
+        decode_from_station(packet)
+        if packet
+        else StationFailed("the station process ended before it was ready; its log says why")
+    )
+    if isinstance(first, StationFailed):
         raise StationError(first.line)
-    if not isinstance(first, Hello):
+    if not isinstance(first, StationReady):
         raise StationError("the station process speaks another version")
     return first
 
 
 def _snapshot(packet: bytes) -> Snapshot | None:
     with contextlib.suppress(msgspec.DecodeError):
-        message = decode_up(packet)
+        message = decode_from_station(packet)
         if isinstance(message, Snapshot):
             return message
     return None

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import msgspec
 
-LEASE = 0.3
+LEASE_TIMEOUT = 0.3
 """s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz and longer than its longest
 drawing (0.1 s); a frozen screen then means neutral well within 0.5 s."""
 
@@ -20,7 +20,7 @@ class Intent(msgspec.Struct, frozen=True, tag=True):
     """Base of the union below."""
 
 
-class Push(Intent, frozen=True):
+class DriveKeyDown(Intent, frozen=True):
     """A drive key went down, or repeats: "this way", -1, 0 or +1 an axis."""
 
     key: str
@@ -30,7 +30,7 @@ class Push(Intent, frozen=True):
     """The terminal says that this is an auto-repeat (only terminals that report key releases know)."""
 
 
-class Release(Intent, frozen=True):
+class DriveKeyUp(Intent, frozen=True):
     """A drive key went up. Only some terminals tell; elsewhere the sticks fall back by themselves."""
 
     key: str
@@ -50,7 +50,7 @@ class ClearEmergencyStop(Intent, frozen=True):
     """Release the emergency stop; arming is a further step."""
 
 
-class ChangeSpeed(Intent, frozen=True):
+class ScaleLimits(Intent, frozen=True):
     """Scale the limits of the sticks; never moves the vehicle. Factors above 0, e.g. 1.1."""
 
     throttle: float = 1.0
@@ -63,18 +63,18 @@ class SetStyle(Intent, frozen=True):
     style: str
 
 
-class ExactKeys(Intent, frozen=True):
+class ReportKeyReleases(Intent, frozen=True):
     """The terminal has proved that it reports key releases: no timers are needed any more."""
 
 
-class Gate(Intent, frozen=True):
+class SetKeyGate(Intent, frozen=True):
     """May keys drive now? Closed when another screen is on top, the focus is lost or the terminal is gone."""
 
     open: bool
     reason: str = ""
 
 
-class Lease(Intent, frozen=True):
+class RenewLease(Intent, frozen=True):
     """ "The screen lives": renewed by the UI's own loop. Without it the station goes neutral and then silent."""
 
 
@@ -102,7 +102,7 @@ class SelectVehicle(Intent, frozen=True):
     system: int
 
 
-class SelectNext(Intent, frozen=True):
+class SelectNextVehicle(Intent, frozen=True):
     """Drive the vehicle after this one from now on, by system id; after the last comes the first."""
 
 
@@ -115,6 +115,6 @@ class Quit(Intent, frozen=True):
 
 
 AnyIntent = (
-    Push | Release | Stop | EmergencyStop | ClearEmergencyStop | ChangeSpeed | SetStyle | ExactKeys | Gate | Lease | Arm
-    | Disarm | SetMode | RequestControl | SelectVehicle | SelectNext | StartSimulator | Quit
+    DriveKeyDown | DriveKeyUp | Stop | EmergencyStop | ClearEmergencyStop | ScaleLimits | SetStyle | ReportKeyReleases | SetKeyGate | RenewLease | Arm
+    | Disarm | SetMode | RequestControl | SelectVehicle | SelectNextVehicle | StartSimulator | Quit
 )  # fmt: skip

@@ -6,7 +6,17 @@ import time
 
 import msgspec
 
-from groundstation.intents import LEASE, AnyIntent, Disarm, EmergencyStop, ExactKeys, Gate, Quit, Release, Stop
+from groundstation.intents import (
+    LEASE_TIMEOUT,
+    AnyIntent,
+    Disarm,
+    DriveKeyUp,
+    EmergencyStop,
+    Quit,
+    ReportKeyReleases,
+    SetKeyGate,
+    Stop,
+)
 from groundstation.snapshot import Snapshot
 
 SOCKET_BUFFER = 1 << 20
@@ -15,15 +25,15 @@ SOCKET_BUFFER = 1 << 20
 MAX_PACKET = 1 << 18
 
 
-NEVER_LATE = (Stop, EmergencyStop, Disarm, Release, Gate, ExactKeys, Quit)
+VALID_WHEN_LATE = (Stop, EmergencyStop, Disarm, DriveKeyUp, SetKeyGate, ReportKeyReleases, Quit)
 """Intents that only ever stop, or that say how things are. All others mean the moment in which they were made."""
 
-TOO_LATE = LEASE
+MAX_INTENT_AGE = LEASE_TIMEOUT
 """s after which other intents are dropped: a station that was frozen must not drive, arm or call the screen alive by
 what lay in the pipe meanwhile."""
 
 
-class Batch(msgspec.Struct, frozen=True):
+class IntentBatch(msgspec.Struct, frozen=True):
     """Down: the intents of one read of keys (or of one act of the screen), and when they were made."""
 
     time: float
@@ -31,23 +41,23 @@ class Batch(msgspec.Struct, frozen=True):
     intents: tuple[AnyIntent, ...]
 
 
-class Hello(msgspec.Struct, frozen=True, tag=True):
+class StationReady(msgspec.Struct, frozen=True, tag=True):
     """Up, first: the links are open."""
 
     endpoints: tuple[str, ...]
 
 
-class Failure(msgspec.Struct, frozen=True, tag=True):
+class StationFailed(msgspec.Struct, frozen=True, tag=True):
     """Up, first and last: the station cannot work; one line for the user."""
 
     line: str
 
 
-Up = Hello | Failure | Snapshot
+FromStation = StationReady | StationFailed | Snapshot
 
 encode = msgspec.msgpack.Encoder().encode
-decode_up = msgspec.msgpack.Decoder(Up).decode
-decode_down = msgspec.msgpack.Decoder(Batch).decode
+decode_from_station = msgspec.msgpack.Decoder(FromStation).decode
+decode_from_screen = msgspec.msgpack.Decoder(IntentBatch).decode
 
 
 def clock() -> float:

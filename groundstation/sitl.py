@@ -56,11 +56,11 @@ class Simulator:
         if code is None:
             return "running"
         how = f"ended by {signal.Signals(-code).name}" if code < 0 else f"ended with code {code}"
-        lines = self.said.strip().split("\n")
+        lines = self.output_tail.strip().split("\n")
         return f"{how}: {lines[-1]}" if lines[-1] else how
 
     @property
-    def said(self) -> str:
+    def output_tail(self) -> str:
         """The end of what it printed."""
         size = os.fstat(self._output.fileno()).st_size
         return os.pread(self._output.fileno(), KEPT, max(0, size - KEPT)).decode("utf-8", "replace")

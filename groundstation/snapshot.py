@@ -66,11 +66,11 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Settings of a foreign vehicle that would let it drive on."""
 
 
-class HelmView(msgspec.Struct, frozen=True, kw_only=True):
+class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
     """The operator's side."""
 
     style: str = "hold"
-    exact: bool = False
+    reports_releases: bool = False
     """Key releases are reported; else timers end a push."""
     stop_bound: float = 0.0
     """The longest a vehicle gets a demand after the key is let go, s, as it stands now.
@@ -107,7 +107,7 @@ class LinkView(msgspec.Struct, frozen=True, kw_only=True):
     """e.g. "messages arrive with another dialect's checksum: HEARTBEAT"."""
 
 
-class TextLine(msgspec.Struct, frozen=True, kw_only=True):
+class LogLine(msgspec.Struct, frozen=True, kw_only=True):
     """A line of the message log."""
 
     time: float
@@ -142,9 +142,9 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     vehicle: VehicleView | None = None
     vehicles: tuple[int, ...] = ()
     """System ids of all vehicles heard."""
-    helm: HelmView = HelmView()
+    operator: OperatorView = OperatorView()
     links: tuple[LinkView, ...] = ()
-    texts: tuple[TextLine, ...] = ()
+    texts: tuple[LogLine, ...] = ()
     """The newest 200, oldest first."""
     messages: tuple[MessageRate, ...] = ()
     simulator: str | None = None

@@ -20,14 +20,22 @@ import msgspec
 from dialects.enums import Severity
 from dialects.messages import printable
 from groundstation.input.style import Style
-from groundstation.intents import Lease, Quit, StartSimulator, Stop
-from groundstation.ipc import MAX_PACKET, NEVER_LATE, TOO_LATE, Failure, Hello, decode_down, encode
+from groundstation.intents import Quit, RenewLease, StartSimulator, Stop
+from groundstation.ipc import (
+    MAX_INTENT_AGE,
+    MAX_PACKET,
+    VALID_WHEN_LATE,
+    StationFailed,
+    StationReady,
+    decode_from_screen,
+    encode,
+)
 from groundstation.sitl import Simulator, free_port
-from groundstation.snapshot import HelmView, Snapshot, TextLine
-from groundstation.station.crash_neutral import Farewell
+from groundstation.snapshot import LogLine, OperatorView, Snapshot
+from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import COMPONENT, Station
 from groundstation.vehicles.message_log import MAX_LENGTH
-from link.endpoint import EndpointError, parse
+from link.endpoint import EndpointError, parse_endpoint
 from link.runner import Runner, open_links
 from link.runtime.event_loop import run_loop
 from link.transport.transport import Link, LinkError
@@ -43,34 +51,34 @@ SNAPSHOT_PERIOD = 0.1
 END_WITHIN = 1.0
 """s for the last neutral frames (0.25 s are needed), then the process ends in any case."""
 
-EVERY_ADDRESS = ("0.0.0.0", "::")
+WILDCARD_HOSTS = ("0.0.0.0", "::")
 """Hosts that mean "all addresses of this machine" and cannot be sent to."""
 
 LOG_SIZE = 1 << 20
 LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 
 
-class Helm:
+class StationProcess:
     """One station, its links, its pipe to the screen, and the simulator where it started one."""
 
     def __init__(self, station: Station, links: Sequence[Link], pipe: socket.socket) -> None:
         self._station = station
         self._links = links
         self._pipe = pipe
-        self._core = Farewell(station)
-        self._runner = Runner(self._core, links, period=TICK, broken=self._broke)
+        self._core = CrashNeutral(station)
+        self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash)
         self._simulator: Simulator | None = None
-        self._picture = Snapshot()
+        self._last_snapshot = Snapshot()
         self._broken = self._ending = False
 
     async def run(self) -> int:
         """Run until the screen is gone or says so. The exit code: 1 where something broke inside."""
         loop = asyncio.get_running_loop()
-        loop.set_exception_handler(self._broke_outside)
+        loop.set_exception_handler(self._handle_loop_exception)
         for number in (signal.SIGTERM, signal.SIGHUP):
-            loop.add_signal_handler(number, self._end)
-        loop.add_reader(self._pipe, self._listen)
-        show = loop.create_task(self._show())
+            loop.add_signal_handler(number, self._shut_down)
+        loop.add_reader(self._pipe, self._read_pipe)
+        show = loop.create_task(self._send_snapshots())
         try:
             await self._runner.run()
         finally:
@@ -86,25 +94,25 @@ class Helm:
         if self._simulator is not None and self._simulator.running:
             return
         if endpoint is None:
-            self._say(now, "the simulator needs a link that listens, such as udpin:127.0.0.1:14550")
+            self._log_warning(now, "the simulator needs a link that listens, such as udpin:127.0.0.1:14550")
             return
         try:
-            host = "127.0.0.1" if endpoint.host in EVERY_ADDRESS else endpoint.host
+            host = "127.0.0.1" if endpoint.host in WILDCARD_HOSTS else endpoint.host
             self._simulator = Simulator(host, endpoint.port)
         except OSError as error:
-            self._say(now, f"the simulator did not start: {error.strerror}")
+            self._log_warning(now, f"the simulator did not start: {error.strerror}")
 
     # ---- the pipe ----
 
-    def _listen(self) -> None:
+    def _read_pipe(self) -> None:
         now = asyncio.get_running_loop().time()
         while (packet := self._packet()) is not None:
             if not packet:  # the screen is gone, whatever became of it
                 asyncio.get_running_loop().remove_reader(self._pipe)
-                self._end()
+                self._shut_down()
                 break
-            self._take(packet, now)
-        self._runner.wake()
+            self._handle_packet(packet, now)
+        self._runner.flush()
 
     def _packet(self) -> bytes | None:
         try:
@@ -114,40 +122,42 @@ class Helm:
         except OSError:
             return b""
 
-    def _take(self, packet: bytes, now: float) -> None:
+    def _handle_packet(self, packet: bytes, now: float) -> None:
         try:
-            batch = decode_down(packet)
+            batch = decode_from_screen(packet)
         except msgspec.DecodeError:
             log.exception("the screen sent what is no intent")
             return
-        late = now - batch.time > TOO_LATE
+        late = now - batch.time > MAX_INTENT_AGE
         for intent in batch.intents:
-            if late and not isinstance(intent, NEVER_LATE):
-                if not isinstance(intent, Lease):
-                    self._say(now, f"{type(intent).__name__} came {now - batch.time:.1f} s late and was dropped")
+            if late and not isinstance(intent, VALID_WHEN_LATE):
+                if not isinstance(intent, RenewLease):
+                    self._log_warning(
+                        now, f"{type(intent).__name__} came {now - batch.time:.1f} s late and was dropped"
+                    )
             elif isinstance(intent, StartSimulator):
                 self.start_simulator(now)
             elif isinstance(intent, Quit):
-                self._end()
+                self._shut_down()
             else:
-                self._station.intend(intent, now)
+                self._station.handle_intent(intent, now)
 
-    async def _show(self) -> None:
+    async def _send_snapshots(self) -> None:
         """Snapshots at absolute deadlines, and the simulator's end."""
         loop = asyncio.get_running_loop()
         due = loop.time()
         while not self._broken:
             try:
-                self._draw(loop.time())
+                self._send_snapshot(loop.time())
             except Exception as error:  # nobody waits for this task: it would go unseen
-                self._broke(error)
+                self._handle_crash(error)
             due = max(due + SNAPSHOT_PERIOD, loop.time())
             await asyncio.sleep(due - loop.time())
 
-    def _draw(self, now: float) -> None:
+    def _send_snapshot(self, now: float) -> None:
         self._watch_simulator(now)
-        self._picture = self._station.snapshot(now, time.time())
-        self._send(self._picture)
+        self._last_snapshot = self._station.snapshot(now, time.time())
+        self._send(self._last_snapshot)
 
     def _send(self, message: msgspec.Struct) -> None:
         """Now or never: a screen that does not read gets a newer picture later."""
@@ -162,26 +172,26 @@ class Helm:
         if self._simulator is None:
             return
         state = f"simulator {self._simulator.state}"
-        if not self._simulator.running and self._station.simulator != self._simulator.state:
-            self._say(now, state)
-            log.error("the simulator said:\n%s", self._simulator.said)
-        self._station.simulator = self._simulator.state
+        if not self._simulator.running and self._station.simulator_state != self._simulator.state:
+            self._log_warning(now, state)
+            log.error("the simulator said:\n%s", self._simulator.output_tail)
+        self._station.simulator_state = self._simulator.state
 
-    def _say(self, now: float, text: str) -> None:
+    def _log_warning(self, now: float, text: str) -> None:
         log.warning(text)
         self._station.log.add(now, "station", text, Severity.WARNING)
 
     # ---- the end ----
 
-    def _end(self) -> None:
+    def _shut_down(self) -> None:
         """Neutral several times, then end."""
         if self._ending:
             return
         self._ending = True
         loop = asyncio.get_running_loop()
-        self._station.intend(Stop("ending"), loop.time())
-        self._station.intend(Quit(), loop.time())
-        self._runner.wake()
+        self._station.handle_intent(Stop("ending"), loop.time())
+        self._station.handle_intent(Quit(), loop.time())
+        self._runner.flush()
         self._end_when_finished(loop.time() + END_WITHIN)
 
     def _end_when_finished(self, deadline: float) -> None:
@@ -191,7 +201,7 @@ class Helm:
         else:
             loop.call_later(TICK, self._end_when_finished, deadline)
 
-    def _broke(self, error: BaseException) -> None:
+    def _handle_crash(self, error: BaseException) -> None:
         """A bug of ours, anywhere: neutral several times, then the end. What half works must not look alive."""
         if self._broken:
             return
@@ -199,21 +209,25 @@ class Helm:
         now = asyncio.get_running_loop().time()
         what = printable(f"the station broke ({type(error).__name__}: {error}): neutral, and the end")
         log.critical(what, exc_info=error)
-        self._core.begin(now)
-        self._runner.wake()
-        self._send(last_picture(self._picture, what, time.time()))
+        self._core.activate(now)
+        self._runner.flush()
+        self._send(crash_snapshot(self._last_snapshot, what, time.time()))
         self._end_when_finished(now + END_WITHIN)
 
-    def _broke_outside(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    def _handle_loop_exception(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
         """In a callback of the loop that is not the runner's."""
-        self._broke(context.get("exception") or RuntimeError(str(context.get("message"))))
+        self._handle_crash(context.get("exception") or RuntimeError(str(context.get("message"))))
 
 
-def last_picture(picture: Snapshot, what: str, wall: float) -> Snapshot:
+def crash_snapshot(picture: Snapshot, what: str, wall: float) -> Snapshot:
     """The newest picture that there is, with the reason why no other comes."""
-    line = TextLine(time=wall, severity=Severity.CRITICAL, label="station", text=what[:MAX_LENGTH])
-    stopped = HelmView(style=picture.helm.style, exact=picture.helm.exact, gate_reason="the station broke")
-    return msgspec.structs.replace(picture, number=picture.number + 1, helm=stopped, texts=(*picture.texts, line))
+    line = LogLine(time=wall, severity=Severity.CRITICAL, label="station", text=what[:MAX_LENGTH])
+    stopped = OperatorView(
+        style=picture.operator.style,
+        reports_releases=picture.operator.reports_releases,
+        gate_reason="the station broke",
+    )
+    return msgspec.structs.replace(picture, number=picture.number + 1, operator=stopped, texts=(*picture.texts, line))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -227,11 +241,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         _log_to(options.log_file)
         links = open_links(endpoints, system=options.system, component=COMPONENT)
-        known = tuple(parse(text).text for text in endpoints)
+        known = tuple(parse_endpoint(text).text for text in endpoints)
     except (EndpointError, LinkError, OSError) as error:
-        pipe.send(encode(Failure(_one_line(error))))
+        pipe.send(encode(StationFailed(_one_line(error))))
         return 2
-    pipe.send(encode(Hello(known)))
+    pipe.send(encode(StationReady(known)))
     return _run(options, known, links, pipe)
 
 
@@ -242,7 +256,7 @@ def _run(options: argparse.Namespace, endpoints: tuple[str, ...], links: list[Li
     station = Station(
         endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started
     )  # fmt: skip
-    helm = Helm(station, links, pipe)
+    helm = StationProcess(station, links, pipe)
     if options.sitl:
         helm.start_simulator(started)
     gc.collect()

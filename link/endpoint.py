@@ -59,19 +59,17 @@ def _path_baud(scheme: str, rest: str) -> Endpoint:
         raise EndpointError(f"endpoint {text!r}: write {SCHEMES[scheme].form}, for example {scheme}:/dev/ttyAMA0:57600")
     if not path.startswith("/"):
         raise EndpointError(f"endpoint {text!r}: {path!r} is no path; write {scheme}:/dev/{path}:{baud}")
-    if not _within(baud, SLOWEST_BAUD, FASTEST_BAUD):
-        raise EndpointError(
-            f"endpoint {text!r}: baud rate {baud!r} is not a number from {SLOWEST_BAUD} to {FASTEST_BAUD}"
-        )
+    if not _within(baud, MIN_BAUD, MAX_BAUD):
+        raise EndpointError(f"endpoint {text!r}: baud rate {baud!r} is not a number from {MIN_BAUD} to {MAX_BAUD}")
     return Endpoint(text, scheme, path=path, baud=int(baud))
 
 
-SLOWEST_BAUD, FASTEST_BAUD = 300, 12_000_000
+MIN_BAUD, MAX_BAUD = 300, 12_000_000
 """What a radio modem of old and the fastest USB adapters take; 57600 and 921600 are usual."""
 
-USUAL_BAUD = 57600
+DEFAULT_BAUD = 57600
 """What telemetry radios have at first."""
-FOREIGN = {"tcp": "tcpout", "udp": "udpin", "udpbcast": "udpout"}
+SCHEME_ALIASES = {"tcp": "tcpout", "udp": "udpin", "udpbcast": "udpout"}
 """MAVProxy's and pymavlink's names -> ours."""
 
 SCHEMES: dict[str, Scheme] = {
@@ -84,7 +82,7 @@ SCHEMES: dict[str, Scheme] = {
 """Scheme -> its parser and help. link/transport/transports.py holds what opens each."""
 
 
-def parse(text: str) -> Endpoint:
+def parse_endpoint(text: str) -> Endpoint:
     """The endpoint that `text` names; `udpin://HOST:PORT` is the same as `udpin:HOST:PORT`. Raises EndpointError."""
     scheme, colon, rest = text.strip().partition(":")
     scheme = scheme.lower()
@@ -100,9 +98,13 @@ def _hint(text: str, scheme: str) -> str:
     """What was meant, where that can be told: a slip of the pen, or how MAVProxy writes it."""
     if text.startswith("/dev/"):
         path, _, baud = text.replace(",", ":").rpartition(":")
-        path, baud = (path, baud) if path and baud.isdigit() else (text, str(USUAL_BAUD))
+        path, baud = (path, baud) if path and baud.isdigit() else (text, str(DEFAULT_BAUD))
         return f"did you mean serial:{path}:{baud}? "
-    near = [FOREIGN[scheme]] if scheme in FOREIGN else difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
+    near = (
+        [SCHEME_ALIASES[scheme]]
+        if scheme in SCHEME_ALIASES
+        else difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
+    )
     return f"did you mean {near[0]}:? " if near else ""
 
 

@@ -13,11 +13,11 @@ from dialects.enums import Severity
 from dialects.messages import Message
 from link.core import Core, LinkReport, Outgoing, Received
 from link.protocol.channel import Channel
-from link.protocol.link_events import Troubles
-from link.protocol.log_tap import Tape
+from link.protocol.link_events import LinkEvents
+from link.protocol.log_tap import LogTap
 from link.routing.router import Delivery, Router
 from link.transport.transport import Link
-from link.transport.transports import open_wires
+from link.transport.transports import open_transports
 
 log = logging.getLogger(__name__)
 
@@ -26,10 +26,10 @@ REPORT_PERIOD = 1.0
 
 
 @runtime_checkable
-class HearsOfSending(Protocol):
+class SendListener(Protocol):
     """A core that wants to know which packet sequence its messages got."""
 
-    def sent(self, message: Message, sequence: int, now: float) -> None:
+    def handle_sent(self, message: Message, sequence: int, now: float) -> None:
         """`message` went out under this number."""
 
 
@@ -47,11 +47,11 @@ def open_links(
                 component=component,
                 stream=wire.stream,
                 wanted=wanted,
-                target=wire.fixed,
+                target=wire.fixed_address,
                 capacity=wire.capacity,
             ),
         )
-        for index, wire in enumerate(open_wires(endpoints))
+        for index, wire in enumerate(open_transports(endpoints))
     ]
 
 
@@ -73,7 +73,7 @@ class Runner:
         period: float,
         route: bool | None = None,
         broken: Callable[[Exception], None] | None = None,
-        tape: Tape | None = None,
+        tape: LogTap | None = None,
     ) -> None:
         """`tape` takes what all links hear, and what the core says, also where nobody listens."""
         self._core = core
@@ -81,15 +81,15 @@ class Runner:
         self._links = links
         self._period = period
         self._router = _router(links) if links and (len(links) > 1 if route is None else route) else None
-        self._sent = core.sent if isinstance(core, HearsOfSending) else None
+        self._sent = core.handle_sent if isinstance(core, SendListener) else None
         self._ended: asyncio.Future[None] | None = None
         self._report_due = 0.0
-        self._troubles = Troubles()
+        self._troubles = LinkEvents()
         self._tick_due = 0.0
         self._timer: asyncio.TimerHandle | None = None
         self._tape = tape
         for link in links:
-            link.channel.tape = tape
+            link.channel.log_tap = tape
 
     async def run(self) -> None:
         """Run until stop() or until the core raises; that exception is raised here. Closes the links at the end."""
@@ -98,13 +98,13 @@ class Runner:
         self._tick_due = loop.time()
         try:
             for index, link in enumerate(self._links):
-                link.wire.start(loop, partial(self._deliver, index), partial(self._gone, index))
+                link.transport.start(loop, partial(self._deliver, index), partial(self._handle_disconnect, index))
             self._tick()
             await self._ended
         finally:
             if self._timer:
                 self._timer.cancel()
-            self._last_words()
+            self._send_remaining()
             for link in self._links:
                 link.close()
 
@@ -113,11 +113,11 @@ class Runner:
         if self._ended and not self._ended.done():
             self._ended.set_result(None)
 
-    def wake(self) -> None:
+    def flush(self) -> None:
         """Send what the core has now: for cores that are told things from elsewhere than a link."""
         self._guard(self._flush)
 
-    def _last_words(self) -> None:
+    def _send_remaining(self) -> None:
         """What the core still says when it ends, also after an exception of its own."""
         try:
             self._flush()
@@ -139,10 +139,10 @@ class Runner:
     def _deliver(self, index: int, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
         self._guard(lambda: self._receive(index, pieces))
 
-    def _gone(self, index: int, address: Hashable) -> None:
-        self._links[index].channel.gone(address)
+    def _handle_disconnect(self, index: int, address: Hashable) -> None:
+        self._links[index].channel.handle_disconnect(address)
         if self._router:
-            self._router.table.gone(index, address)
+            self._router.table.handle_disconnect(index, address)
 
     def _receive(self, index: int, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
         now = asyncio.get_running_loop().time()
@@ -155,20 +155,20 @@ class Runner:
     def _forward(self, deliveries: Sequence[Delivery]) -> None:
         for port, address, frames in deliveries:
             for frame in frames:
-                self._links[port].wire.send(frame, address)
+                self._links[port].transport.send(frame, address)
 
     def _hand_over(self, messages: list[Received], now: float) -> None:
         for received in messages:
             self._core.receive(received, now)
 
     def _tick(self) -> None:
-        self._guard(self._on_time)
+        self._guard(self._run_tick)
         loop = asyncio.get_running_loop()
         # Absolute deadlines do not drift; after a pause the missed ticks are skipped, not made up for.
         self._tick_due = max(self._tick_due + self._period, loop.time())
         self._timer = loop.call_at(self._tick_due, self._tick)
 
-    def _on_time(self) -> None:
+    def _run_tick(self) -> None:
         now = asyncio.get_running_loop().time()
         for link in self._links:
             self._hand_over(link.channel.tick(now), now)
@@ -182,17 +182,17 @@ class Runner:
 
     def _observe(self, now: float) -> None:
         for link in self._links:
-            link.channel.forget_silent(now)
+            link.channel.expire_peers(now)
         reports = [self._report(link, now) for link in self._links]
         for report in reports:
-            if news := self._troubles.news(report):
+            if news := self._troubles.update(report):
                 level = logging.WARNING if news.severity <= Severity.ERROR else logging.INFO
                 log.log(level, "%s: %s", report.name, news.text)
         self._core.observe(reports, now)
 
     @staticmethod
     def _report(link: Link, now: float) -> LinkReport:
-        return link.channel.report(link.wire.problem, now=now, dropped=link.wire.dropped)
+        return link.channel.report(link.transport.problem, now=now, dropped=link.transport.dropped)
 
     def _flush(self) -> None:
         for outgoing in self._core.messages_to_send():
@@ -205,12 +205,12 @@ class Runner:
         payload = encode_payload(outgoing.message)
         for link in self._links:
             for data, address, sequence in link.channel.send(outgoing, payload):
-                link.wire.send(data, address)
+                link.transport.send(data, address)
                 if self._sent:
                     self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())
         if self._tape:
-            self._tape.said(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
+            self._tape.record_sent(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
 
 
 def _router(links: Sequence[Link]) -> Router:
-    return Router([(link.wire.stream, link.wire.fixed) for link in links], own=links[0].channel.ids)
+    return Router([(link.transport.stream, link.transport.fixed_address) for link in links], own=links[0].channel.ids)

@@ -9,11 +9,11 @@ from groundstation.snapshot import VehicleView
 from link.protocol.channel import PEER_SILENCE
 from tests.test_stops import Drive
 from tests.world import Host
-from vehicle.control_loop import Machine
+from vehicle.control_loop import ControlLoop
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
 from vehicle.rover import Rover
-from vehicle.safety.states import State
+from vehicle.safety.states import SafetyState
 from vehicle.sensors import NoSensors
 
 
@@ -58,7 +58,7 @@ def test_it_comes_back_when_the_vehicle_has_restarted_unnoticed() -> None:
     now, motors = drive.world.now, SimulatedMotors()
     rover = Rover(Params({}), now=now)
     channel = drive.world._channel("far", (1, 1), "near")
-    drive.world.far = Host(Machine(rover, motors, NoSensors()), channel, 0.02)
+    drive.world.far = Host(ControlLoop(rover, motors, NoSensors()), channel, 0.02)
     drive.run(3.0)
     told = [message for at, message in drive.world.far.sent if at > drive.world.now - 1.0]
     assert any(isinstance(message, RoverDriveStatus) for message in told)
@@ -76,5 +76,5 @@ def test_armed_is_seen_at_once() -> None:
     drive = Drive(delay=0.01)
     drive.get_going()
     drive.rover.motor_failed("broken", drive.world.now)
-    assert drive.rover.state is not State.ARMED
+    assert drive.rover.state is not SafetyState.ARMED
     assert drive.until(lambda: not view(drive).armed) < 0.1  # type: ignore[union-attr]

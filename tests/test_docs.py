@@ -74,10 +74,10 @@ SHOWN = [(doc.name, program, words) for doc in DOCS for program, words in comman
 
 @pytest.mark.parametrize(("doc", "program", "words"), SHOWN, ids=lambda value: str(value))
 def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, words: list[str]) -> None:
-    if program == "vehicle" and words[0] in subcommands.VERBS:
-        subcommands.parser_of(words[0]).parse_args(words[1:])
+    if program == "vehicle" and words[0] in subcommands.SUBCOMMANDS:
+        subcommands.build_parser(words[0]).parse_args(words[1:])
     elif program == "vehicle":
-        options.new_parser().parse_intermixed_args(options.joined(words))
+        options.build_parser().parse_intermixed_args(options.join_home_option(words))
     else:
         {"bridge": bridge_main, "groundstation": station_main}[program]._parser().parse_args(words)
 

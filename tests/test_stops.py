@@ -18,14 +18,14 @@ from groundstation.station.station import Station
 from link.core import Outgoing
 from link.transport.memory import LossyPipe
 from tests.world import World
-from vehicle.control_loop import Machine
+from vehicle.control_loop import ControlLoop
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
 from vehicle.rover import Rover
-from vehicle.safety.states import State
+from vehicle.safety.states import SafetyState
 from vehicle.sim.battery import Battery
-from vehicle.sim.body import Home, SimulatedBody
-from vehicle.sim.chassis import Frame, SkidChassis
+from vehicle.sim.body import SimulatedBody, SimulatedHome
+from vehicle.sim.chassis import ChassisDimensions, SkidChassis
 
 FALLS_WITHIN = 0.5
 NEUTRAL_WITHIN = 1.0
@@ -46,14 +46,14 @@ class Drive:
         self.rover = Rover(params, now=start)
         body = SimulatedBody(
             lambda: self.motors.outputs,
-            chassis=SkidChassis(Frame(top_speed=params["SPEED_MAX"], track_width=params["TRACK_WIDTH"])),
+            chassis=SkidChassis(ChassisDimensions(top_speed=params["SPEED_MAX"], track_width=params["TRACK_WIDTH"])),
             battery=Battery(1.0),
-            home=Home(),
+            home=SimulatedHome(),
             seed=None,
         )
         self.world = World(
             self.station,
-            Machine(self.rover, self.motors, body),
+            ControlLoop(self.rover, self.motors, body),
             up=LossyPipe(loss=loss, delay=delay, seed=seed),
             down=LossyPipe(loss=loss, delay=delay, seed=seed + 1),
             now=start,
@@ -62,7 +62,7 @@ class Drive:
         self.screen_lives = True
         self.moved: list[tuple[float, float]] = []
         self._key_due = self._lease_due = 0.0
-        self.tell(i.SetStyle(style), i.Gate(True))
+        self.tell(i.SetStyle(style), i.SetKeyGate(True))
 
     @property
     def power(self) -> float:
@@ -71,7 +71,7 @@ class Drive:
 
     def tell(self, *intents: i.AnyIntent) -> None:
         for intent in intents:
-            self.station.intend(intent, self.world.now)
+            self.station.handle_intent(intent, self.world.now)
         self.world.settle()
 
     def run(self, seconds: float) -> None:
@@ -87,10 +87,10 @@ class Drive:
     def _each(self, now: float) -> None:
         if self.screen_lives and now >= self._lease_due:
             self._lease_due = now + 0.1
-            self.station.intend(i.Lease(), now)
+            self.station.handle_intent(i.RenewLease(), now)
         if self.screen_lives and self.held and now >= self._key_due:
             self._key_due = now + REPEAT
-            self.station.intend(i.Push(self.held, 1, 0), now)
+            self.station.handle_intent(i.DriveKeyDown(self.held, 1, 0), now)
         self.moved.append((now, self.power))
 
     def get_going(self) -> None:
@@ -98,7 +98,7 @@ class Drive:
         self.until(lambda: self.station.snapshot(self.world.now, 0).vehicle is not None)
         self.run(2.0)
         self.tell(i.Arm())
-        self.until(lambda: self.rover.state is State.ARMED)
+        self.until(lambda: self.rover.state is SafetyState.ARMED)
         self.run(1.5)
         self.held = "i"
         self.until(lambda: self.power > 0.5)
@@ -152,7 +152,7 @@ def test_frozen_screen(style: str) -> None:
 def test_closed_gate(style: str) -> None:
     drive = Drive(style=style)
     drive.get_going()
-    drive.tell(i.Gate(False, "help is open"))
+    drive.tell(i.SetKeyGate(False, "help is open"))
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.5)
 
 
@@ -240,10 +240,10 @@ def test_emergency_stop_is_at_once_and_stays() -> None:
     drive.get_going()
     drive.tell(i.EmergencyStop())
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.05)
-    assert drive.rover.state is State.ESTOP
+    assert drive.rover.state is SafetyState.ESTOP
     drive.tell(i.Arm())
     drive.run(3.0)
-    assert drive.rover.state is State.ESTOP
+    assert drive.rover.state is SafetyState.ESTOP
     drive.held = None
     drive.tell(i.ClearEmergencyStop())
     drive.run(2.0)
@@ -262,11 +262,11 @@ def test_the_stop_key_stops_a_rover_that_drives_itself() -> None:
         drive.station._outbox.append(Outgoing(AHEAD_IN_GUIDED))
         drive.run(0.05)
     assert drive.power > 0.2
-    drive.tell(i.Gate(False, "help is open"), i.Stop("help is open"))
+    drive.tell(i.SetKeyGate(False, "help is open"), i.Stop("help is open"))
     drive.station._outbox.append(Outgoing(AHEAD_IN_GUIDED))
     drive.run(0.2)
     assert drive.power > 0.1
-    drive.tell(i.Gate(True), i.Stop())
+    drive.tell(i.SetKeyGate(True), i.Stop())
     drive.until(lambda: drive.power == 0.0, within=NEUTRAL_WITHIN)
     drive.run(0.5)
     vehicle = drive.station.snapshot(drive.world.now, 0).vehicle
@@ -287,7 +287,7 @@ def test_a_key_pressed_right_after_arming_drives(wait: float) -> None:
     drive = Drive()
     drive.run(2.0)
     drive.tell(i.Arm())
-    drive.until(lambda: drive.station.snapshot(drive.world.now, 0).helm.gate_open)
+    drive.until(lambda: drive.station.snapshot(drive.world.now, 0).operator.gate_open)
     drive.run(wait)
     drive.held = "i"
     drive.until(lambda: drive.power > 0.5, within=1.0)
@@ -300,7 +300,7 @@ def test_arming_with_a_key_held_does_not_drive_off() -> None:
     drive.run(1.0)
     drive.tell(i.Arm())
     drive.run(5.0)
-    assert drive.rover.state is State.ARMED
+    assert drive.rover.state is SafetyState.ARMED
     assert max(power for _, power in drive.moved) == 0.0
     drive.held = None
     drive.run(1.0)

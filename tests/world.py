@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from dialects.messages import Message
 from link.core import Core, Outgoing
 from link.protocol.channel import Channel
-from link.runner import REPORT_PERIOD, HearsOfSending
+from link.runner import REPORT_PERIOD, SendListener
 from link.transport.memory import LossyPipe
 
 
@@ -32,7 +32,7 @@ class Host:
         self.tick_due = max(self.tick_due + self.period, now)
         if now >= self.report_due:
             self.report_due = now + REPORT_PERIOD
-            self.channel.forget_silent(now)
+            self.channel.expire_peers(now)
             self.core.observe([self.channel.report()], now)
         self.core.tick(now)
 
@@ -51,8 +51,8 @@ class Host:
             self.sent.append((now, outgoing.message))
             for data, _, sequence in self.channel.send(outgoing):
                 frames.append(data)
-                if isinstance(self.core, HearsOfSending):
-                    self.core.sent(outgoing.message, sequence, now)
+                if isinstance(self.core, SendListener):
+                    self.core.handle_sent(outgoing.message, sequence, now)
         return frames
 
 

@@ -20,12 +20,12 @@ from vehicle.motors import MotorError, Motors, StopPressedError
 from vehicle.readings import Readings
 from vehicle.sensors import Sensors
 
-RETRY = 1.0
+MOTOR_RETRY_TIME = 1.0
 """s after a motor failure until the motors are tried again, standing still: a driver that lost its bus for a moment may
 come back, and one that did not must not be asked so often that the bus stays busy."""
 
 
-class Mind(Core, Protocol):
+class Controller(Core, Protocol):
     """What decides; vehicle.rover.Rover is one."""
 
     @property
@@ -35,7 +35,7 @@ class Mind(Core, Protocol):
     def sense(self, readings: Readings, now: float) -> None:
         """Take what the sensors say, each cycle before the tick."""
 
-    def stop_input(self, reason: str | None, now: float) -> None:
+    def update_estop_input(self, reason: str | None, now: float) -> None:
         """Why the emergency stop beside the motors stops them, or None while it is closed; each cycle before the tick.
 
         Also at once where the motors refuse because of it; they are stopped already then.
@@ -113,12 +113,12 @@ class Drivetrain:
             self._unpower()
 
 
-class Machine:
+class ControlLoop:
     """A `link.core.Core` that owns its motors."""
 
     def __init__(
         self,
-        mind: Mind,
+        mind: Controller,
         motors: Motors,
         sensors: Sensors,
         *,
@@ -183,7 +183,7 @@ class Machine:
         finally:
             self._mind.shutdown(now)
 
-    def abandon(self, error: BaseException, now: float) -> None:
+    def abort(self, error: BaseException, now: float) -> None:
         """Shut down because of `error`, which goes on after this: it gets a note where the motors may still turn."""
         if self._closed:
             return
@@ -197,11 +197,11 @@ class Machine:
             decide()
             self._drive(now, refresh=refresh)
         except BaseException as error:
-            self.abandon(error, now)
+            self.abort(error, now)
             raise
 
     def _cycle(self, now: float) -> None:
-        self._mind.stop_input(self._stop_reason(), now)
+        self._mind.update_estop_input(self._stop_reason(), now)
         self._mind.sense(self._sensors.read(now), now)
         self._mind.tick(now)
         if not self._proven:
@@ -215,10 +215,10 @@ class Machine:
         try:
             self._drivetrain.prove()
         except MotorError as error:
-            self._failed(str(error), now)
+            self._handle_motor_failure(str(error), now)
 
-    def _failed(self, reason: str, now: float) -> None:
-        self._retry_due = now + RETRY
+    def _handle_motor_failure(self, reason: str, now: float) -> None:
+        self._retry_due = now + MOTOR_RETRY_TIME
         self._mind.motor_failed(reason, now)
 
     def _stop_reason(self) -> str | None:
@@ -233,16 +233,16 @@ class Machine:
         try:
             self._drivetrain.follow(self._mind.outputs, refresh=refresh)
         except StopPressedError as error:  # pressed since this cycle asked
-            self._mind.stop_input(str(error), now)
+            self._mind.update_estop_input(str(error), now)
         except MotorError as error:
             if self._retry_due is None:  # told once, not each cycle until it is repaired
-                self._failed(str(error), now)
+                self._handle_motor_failure(str(error), now)
 
     def _retry(self, now: float) -> None:
         try:
             self._drivetrain.self_test()
         except MotorError:
-            self._retry_due = now + RETRY
+            self._retry_due = now + MOTOR_RETRY_TIME
         else:
             self._retry_due = None
             self._mind.motor_repaired(now)

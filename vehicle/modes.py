@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from enum import Enum
 
 from dialects.modes import Mode
-from link.services.command.server import given
+from link.services.command.server import value_or_default
 
 
-class Need(Enum):
+class ModeRequirement(Enum):
     """What a mode cannot do without."""
 
     NOTHING = "nothing"
@@ -19,15 +19,15 @@ class Need(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Offer:
+class ModeSpec:
     """What a mode does to the motors."""
 
     mode: Mode
     manual: bool = False
     """The driver's demand counts."""
-    own: bool = False
+    autonomous: bool = False
     """The vehicle drives by itself. With neither the motors are neutral."""
-    need: Need = Need.NOTHING
+    requirement: ModeRequirement = ModeRequirement.NOTHING
     selectable: bool = True
     """A ground station may ask for it."""
     standard: int = 0
@@ -36,21 +36,21 @@ class Offer:
     @property
     def moves(self) -> bool:
         """Motors may turn in it."""
-        return self.manual or self.own
+        return self.manual or self.autonomous
 
 
-OFFERED: dict[Mode, Offer] = {
+MODES: dict[Mode, ModeSpec] = {
     offer.mode: offer
     for offer in (
-        Offer(Mode.MANUAL, manual=True),
-        Offer(Mode.ACRO, manual=True, need=Need.GYRO),
-        Offer(Mode.HOLD),
-        Offer(Mode.LOITER, own=True, need=Need.POSITION),
-        Offer(Mode.AUTO, own=True, need=Need.POSITION, standard=6),
-        Offer(Mode.RTL, own=True, need=Need.POSITION, standard=5),
-        Offer(Mode.SMART_RTL, own=True, need=Need.POSITION),
-        Offer(Mode.GUIDED, own=True),
-        Offer(Mode.INITIALISING, selectable=False),
+        ModeSpec(Mode.MANUAL, manual=True),
+        ModeSpec(Mode.ACRO, manual=True, requirement=ModeRequirement.GYRO),
+        ModeSpec(Mode.HOLD),
+        ModeSpec(Mode.LOITER, autonomous=True, requirement=ModeRequirement.POSITION),
+        ModeSpec(Mode.AUTO, autonomous=True, requirement=ModeRequirement.POSITION, standard=6),
+        ModeSpec(Mode.RTL, autonomous=True, requirement=ModeRequirement.POSITION, standard=5),
+        ModeSpec(Mode.SMART_RTL, autonomous=True, requirement=ModeRequirement.POSITION),
+        ModeSpec(Mode.GUIDED, autonomous=True),
+        ModeSpec(Mode.INITIALISING, selectable=False),
     )
 }
 """The standard modes of the specification that a rover may use are SAFE_RECOVERY (5) and MISSION (6)."""
@@ -72,9 +72,9 @@ CUSTOM_MODE_ENABLED = 1
 """MAV_MODE_FLAG_CUSTOM_MODE_ENABLED: without it the number is not a custom mode."""
 
 
-def asked_mode(base: float, main: float, sub: float = 0.0) -> Mode | None:
+def parse_mode(base: float, main: float, sub: float = 0.0) -> Mode | None:
     """The offered mode that DO_SET_MODE's parameters 1..3 name; None for anything else."""
-    sub = given(sub)
+    sub = value_or_default(sub)
     if not all(math.isfinite(value) and value == int(value) for value in (base, main, sub)):
         return None
     if not int(base) & CUSTOM_MODE_ENABLED:
@@ -82,10 +82,10 @@ def asked_mode(base: float, main: float, sub: float = 0.0) -> Mode | None:
     alias = PX4_ALIASES.get((int(main), int(sub)))
     if sub or alias is not None:
         return alias
-    return next((mode for mode, offer in OFFERED.items() if offer.selectable and mode == int(main)), None)
+    return next((mode for mode, offer in MODES.items() if offer.selectable and mode == int(main)), None)
 
 
-def mode_words(base: float, main: float, sub: float = 0.0) -> str:
+def describe_mode(base: float, main: float, sub: float = 0.0) -> str:
     """What was asked for, for a refusal: without the flag the number names no mode of ours, also where we have one."""
     if math.isfinite(base) and not int(base) & CUSTOM_MODE_ENABLED:
         return f"base mode {base:g} without a custom mode"
@@ -94,9 +94,9 @@ def mode_words(base: float, main: float, sub: float = 0.0) -> str:
 
 def standard_mode(number: float) -> Mode | None:
     """The offered mode that is this MAV_STANDARD_MODE; None for the others."""
-    return next((mode for mode, offer in OFFERED.items() if offer.standard and offer.standard == number), None)
+    return next((mode for mode, offer in MODES.items() if offer.standard and offer.standard == number), None)
 
 
-def first_mode(number: float) -> Mode:
+def initial_mode(number: float) -> Mode:
     """HOLD where the number is no mode of ours: a parameter that was set must not keep the vehicle from starting."""
-    return next((mode for mode in OFFERED if mode == number), Mode.HOLD)
+    return next((mode for mode in MODES if mode == number), Mode.HOLD)

@@ -163,7 +163,7 @@ TABLE: tuple[Parameter, ...] = (
 
 PARAMETERS: dict[str, Parameter] = {parameter.name: parameter for parameter in TABLE}
 
-ASCENDING: tuple[tuple[str, str], ...] = tuple((f"MOT{n}_MIN", f"MOT{n}_MAX") for n in range(1, MOTORS + 1))
+ORDERED_PAIRS: tuple[tuple[str, str], ...] = tuple((f"MOT{n}_MIN", f"MOT{n}_MAX") for n in range(1, MOTORS + 1))
 """Pairs of which the first must be smaller. Their defaults are their extremes, so that two values that fit each other
 may be set one after the other in any order."""
 
@@ -189,14 +189,14 @@ class Params:
         for this car.
         """
         self.pinned = frozenset(pinned)
-        self.run = dict(run or {})
+        self.run_values = dict(run or {})
         """What the command line says; it ends with the program."""
         self._usual = dict(usual or {})
-        self.changes = 0
+        self.generation = 0
         """Grows with each value that is put in force: what was derived from values may be kept until then."""
         self.damage: str | None = None
         """Why saved values could not be had; nobody arms before somebody has set one anew."""
-        self.untold: set[str] = set()
+        self.unannounced: set[str] = set()
         """What was put in force and ground stations were not told of (vehicle/commands/params.py)."""
         self._values = {parameter.name: float(parameter.default) for parameter in TABLE}
         for name, value in (values or {}).items():
@@ -229,19 +229,19 @@ class Params:
             raise ParamError(f"{name} must be {parameter.low:g} to {parameter.high:g}, not {value:g}")
         if parameter.whole and value != int(value):
             raise ParamError(f"{name} must be a whole number, not {value:g}")
-        self._refuse_descent({**self._values, name: value})
+        self._check_order({**self._values, name: value})
         self._values[name] = float(value)
-        self.changes += 1
-        self.untold.add(name)
+        self.generation += 1
+        self.unannounced.add(name)
 
     @staticmethod
-    def _refuse_descent(values: Mapping[str, float]) -> None:
-        for small, large in ASCENDING:
+    def _check_order(values: Mapping[str, float]) -> None:
+        for small, large in ORDERED_PAIRS:
             if values[small] >= values[large]:
                 raise ParamError(f"{small} {values[small]:g} must be smaller than {large} {values[large]:g}")
 
 
-def in_force(
+def merge_params(
     given: Mapping[str, float],
     *,
     kept: Mapping[str, float],

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Computer:
+class ComputerReadings:
     """How the computer on board is; for ONBOARD_COMPUTER_STATUS and for what follows from a weak supply or heat."""
 
     temperature: float | None = None
@@ -67,7 +67,7 @@ class Readings:
     """0..1"""
     wheel_speeds: tuple[float, ...] = ()
     """m/s of each wheel, in motor order."""
-    computer: Computer | None = None
+    computer: ComputerReadings | None = None
     configured: tuple[str, ...] = ()
     """Sensors that there should be, whether they answer or not, by the name that SensorFault has."""
     faults: tuple[SensorFault, ...] = ()

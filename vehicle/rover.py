@@ -8,35 +8,35 @@ from dialects import messages as m
 from dialects.enums import Severity
 from dialects.modes import Mode
 from link.core import LinkReport, Outgoing, Received
-from vehicle.accessories.accessory_set import Rack
+from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.autonomy.navigator import Navigator
 from vehicle.commands.actuator_test import ActuatorTest
 from vehicle.commands.buttons import Buttons
-from vehicle.commands.dispatch import COMPONENT, Answers, Keepers
-from vehicle.commands.params import Keeper
-from vehicle.commands.reboot import Leave
+from vehicle.commands.dispatch import COMPONENT, Dispatcher, Stores
+from vehicle.commands.params import ParamStoreLike
+from vehicle.commands.reboot import RebootRequest
 from vehicle.drive.control import Control
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
 from vehicle.drive.gate import Outputs, Permit
-from vehicle.modes import OFFERED
+from vehicle.modes import MODES
 from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
-from vehicle.safety.failsafe import Action
-from vehicle.safety.health_notices import Complaints, of_fence, of_sensors
-from vehicle.safety.monitor import Watch
+from vehicle.safety.failsafe import FailsafeAction
+from vehicle.safety.health_notices import HealthNotices, fence_notices, sensor_notices
+from vehicle.safety.monitor import SafetyMonitor
 from vehicle.safety.state_machine import Safety
-from vehicle.safety.states import State
-from vehicle.statustext import Texts
-from vehicle.storage.logbook import Recording
-from vehicle.storage.plan_keeping import PlanKeeper
+from vehicle.safety.states import SafetyState
+from vehicle.statustext import StatusTextQueue
+from vehicle.storage.logbook import LogRecorder
+from vehicle.storage.plan_keeping import PlanStoreLike
 from vehicle.telemetry import build_status as status
 from vehicle.telemetry.bandwidth import Bandwidth
-from vehicle.telemetry.host import Host
-from vehicle.telemetry.link_status import Links
-from vehicle.telemetry.streams import Family
+from vehicle.telemetry.host import HostInfo
+from vehicle.telemetry.link_status import LinkStatusReporter
+from vehicle.telemetry.streams import DialectLevel
 from vehicle.telemetry.telemetry import Telemetry
-from vehicle.telemetry.view import View
+from vehicle.telemetry.view import TelemetryView
 
 
 class Rover:
@@ -47,12 +47,12 @@ class Rover:
         params: Params,
         *,
         now: float,
-        keeper: Keeper | None = None,
-        plan_keeper: PlanKeeper | None = None,
-        recording: Recording | None = None,
-        host: Host | None = None,
+        keeper: ParamStoreLike | None = None,
+        plan_keeper: PlanStoreLike | None = None,
+        recording: LogRecorder | None = None,
+        host: HostInfo | None = None,
         told: Callable[[Severity, str], None] = lambda severity, text: None,
-        rack: Rack | None = None,
+        rack: AccessorySet | None = None,
     ) -> None:
         """`now` is the monotonic time of boot.
 
@@ -63,11 +63,11 @@ class Rover:
         self._params = params
         self._boot = now
         self._system = int(params["MAV_SYSID"])
-        self._host = host or Host()
+        self._host = host or HostInfo()
         self._readings = NO_READINGS
         self._outgoing: list[Outgoing] = []
-        self._texts = Texts(told)
-        self._complaints = Complaints(self._texts)
+        self._texts = StatusTextQueue(told)
+        self._complaints = HealthNotices(self._texts)
         self._control = Control(params, self._texts, system=self._system, boot=now)
         self._drive = Drive(params, now)
         self._navigator = Navigator(params, self._drive.kind)
@@ -76,10 +76,10 @@ class Rover:
             self._control,
             self._texts,
             now,
-            self._navigator.unready,
-            unfenced=lambda: self._navigator.boundary.unfenced,
+            self._navigator.unready_reason,
+            unfenced=lambda: self._navigator.fence_avoidance.unenforceable_reason,
         )
-        self._watch = Watch(params, self._safety, self._control, self._texts, now)
+        self._monitor = SafetyMonitor(params, self._safety, self._control, self._texts, now)
         self._telemetry = Telemetry(self._system, now, logged=recording is not None)
         self._demanded: float | None = None
         """When a demand came that has not been told yet."""
@@ -88,9 +88,9 @@ class Rover:
         self._bandwidth = Bandwidth(lambda: self._safety.armed)
         self._actuator_test = ActuatorTest(params, self._safety, self._control, self._texts, self._drive.mixer.motors)
         self._buttons = Buttons(params, self._safety, self._control, self._texts)
-        self._rack = rack or Rack()
-        self._links = Links(self._control, self._texts, (self._system, COMPONENT))
-        self._answers = Answers(
+        self._rack = rack or AccessorySet()
+        self._links = LinkStatusReporter(self._control, self._texts, (self._system, COMPONENT))
+        self._answers = Dispatcher(
             params,
             self._safety,
             self._control,
@@ -101,9 +101,9 @@ class Rover:
             bandwidth=self._bandwidth,
             links=self._links,
             trials=self._actuator_test,
-            keepers=Keepers(keeper, plan_keeper, recording),
+            keepers=Stores(keeper, plan_keeper, recording),
             rack=self._rack,
-            look=self._look,
+            look=self._build_view,
         )
 
     @property
@@ -112,7 +112,7 @@ class Rover:
         return self._drive.outputs
 
     @property
-    def state(self) -> State:
+    def state(self) -> SafetyState:
         """Safety state, for the daemon's log and for tests."""
         return self._safety.state
 
@@ -121,87 +121,87 @@ class Rover:
         """What is answered with more than UNSUPPORTED."""
         return self._answers.commands
 
-    def leaving(self, now: float) -> Leave | None:
+    def reboot_request(self, now: float) -> RebootRequest | None:
         """How the program is to end because a ground station asked for it, or None."""
-        return self._answers.leaving(now)
+        return self._answers.reboot_request(now)
 
     def receive(self, received: Received, now: float) -> None:
         """Take one message; a fresh demand is in `outputs` when this returns."""
-        if self._safety.state is State.OFF:
+        if self._safety.state is SafetyState.OFF:
             return
-        self._control.hear(received, now)
-        self._actuator_test.hear(received, now)
+        self._control.update_liveness(received, now)
+        self._actuator_test.update_liveness(received, now)
         self._telemetry.receive(received, now)
         if isinstance(received.message, m.RoverOperatorPresence):
             # It says what the demand behind it is worth and asks for nothing: the ramp's time is the demand's to use.
-            self._control.operator(received, received.message, now)
-        elif self._demand(received, now):
-            self._move(now)
+            self._control.handle_operator_presence(received, received.message, now)
+        elif self._handle_demand(received, now):
+            self._update_outputs(now)
             self._demanded = now
-        elif (answers := self._answers.order(received, now)) is not None:
+        elif (answers := self._answers.dispatch_command(received, now)) is not None:
             self._outgoing += answers
-            self._move(now)
-            self._tell(now)
+            self._update_outputs(now)
+            self._queue_due_messages(now)
         else:
-            self._outgoing += self._answers.receive(received, now)
+            self._outgoing += self._answers.dispatch(received, now)
 
     def tick(self, now: float) -> None:
         """Let time pass: act on silence. What is due is said by `messages_to_send`."""
-        if self._safety.state is State.OFF:
+        if self._safety.state is SafetyState.OFF:
             return
-        late = self._watch.is_late(now)
+        late = self._monitor.is_late(now)
         self._cycle(now)
-        self._move(now, late=late)
+        self._update_outputs(now, late=late)
         self._ticked = now
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves, about once a second."""
-        if self._safety.state is State.OFF:
+        if self._safety.state is SafetyState.OFF:
             return
-        self._bandwidth.observe(reports)
+        self._bandwidth.update(reports)
         audience = [peer for report in reports for peer in report.audience]
-        self._telemetry.attend(audience, self._bandwidth.telemetry, now)
-        self._answers.observe(now)
-        among = self._telemetry.speakers(Family.ROVER)
-        self._outgoing += [Outgoing(status, among=among) for status in self._links.observe(reports, now)]
+        self._telemetry.update_audience(audience, self._bandwidth.telemetry_rates, now)
+        self._answers.handle_link_reports(now)
+        among = self._telemetry.peers_at_level(DialectLevel.ROVER)
+        self._outgoing += [Outgoing(status, among=among) for status in self._links.update(reports, now)]
 
     def messages_to_send(self) -> list[Outgoing]:
         """What to send now; empties what it returns. What a demand or a cycle gives to say is made here, when the
         motors have what was decided already."""
         if self._demanded is not None:
-            self._outgoing += self._telemetry.of_demand(self._look(self._demanded))
+            self._outgoing += self._telemetry.build_after_demand(self._build_view(self._demanded))
             self._demanded = None
-        if self._ticked is not None and self._safety.state is not State.OFF:
-            self._go_on(self._ticked)
+        if self._ticked is not None and self._safety.state is not SafetyState.OFF:
+            self._run_services(self._ticked)
         self._ticked = None
         outgoing, self._outgoing = self._outgoing, []
         return outgoing
 
-    def _go_on(self, now: float) -> None:
+    def _run_services(self, now: float) -> None:
         """What is due in this cycle besides driving."""
-        self._tell(now)
+        self._queue_due_messages(now)
         self._outgoing += self._answers.tick(now)
 
     def sense(self, readings: Readings, now: float) -> None:
         """Take the newest readings."""
         self._readings = readings
         self._navigator.sense(readings, now)
-        self._safety.battery.sense(readings.battery_voltage, now, expected="battery" in readings.configured)
-        self._safety.computer.sense(readings.computer, now)
-        self._complaints.update(of_sensors(readings) | of_fence(self._navigator.boundary), now)
+        self._safety.battery.update(readings.battery_voltage, now, expected="battery" in readings.configured)
+        self._safety.computer.update(readings.computer, now)
+        self._complaints.update(sensor_notices(readings) | fence_notices(self._navigator.fence_avoidance), now)
 
-    def stop_input(self, reason: str | None, now: float) -> None:
+    def update_estop_input(self, reason: str | None, now: float) -> None:
         """The emergency stop's own input, each cycle: why it stops the rover, or None while it is closed."""
         before = self._safety.state
-        if before is not State.OFF:
-            self._safety.stop_input(reason, now)
+        if before is not SafetyState.OFF:
+            self._safety.update_estop_input(reason, now)
         if self._safety.state is not before:
-            self._move(now)
+            self._update_outputs(now)
 
     def motor_failed(self, reason: str, now: float) -> None:
         """The motor driver reports an error: zero, disarm, and no arming until `motor_repaired`."""
         self._safety.motor_failed(reason, now)
-        self._move(now)
+        self._update_outputs(now)
 
     def motor_repaired(self, now: float) -> None:
         """The motor driver has passed its self test again: arming is possible."""
@@ -209,48 +209,48 @@ class Rover:
 
     def shutdown(self, now: float) -> None:
         """The last call: neutral, disarmed, and one HEARTBEAT that says POWEROFF."""
-        if self._safety.state is not State.OFF:
+        if self._safety.state is not SafetyState.OFF:
             self._safety.shutdown()
-            self._outgoing.append(Outgoing(status.heartbeat(self._look(now))))
-        self._drive.step(None, self._watch.clearance(now, None, late=False), limited=False, now=now)
+            self._outgoing.append(Outgoing(status.heartbeat(self._build_view(now))))
+        self._drive.update(None, self._monitor.build_clearance(now, None, late=False), limited=False, now=now)
 
-    def _move(self, now: float, *, late: bool | None = None) -> None:
+    def _update_outputs(self, now: float, *, late: bool | None = None) -> None:
         """Outputs of this moment."""
-        late = self._watch.is_late(now) if late is None else late
-        trial = self._actuator_test.trial(now, late=late)
-        clearance = self._watch.clearance(now, self._navigator.demand, late=late, trial=trial)
-        limited = self._safety.failsafes.action(now) >= Action.LIMIT
-        self._drive.step(self._wanted(now), clearance, limited=limited, now=now)
+        late = self._monitor.is_late(now) if late is None else late
+        trial = self._actuator_test.current_test(now, late=late)
+        clearance = self._monitor.build_clearance(now, self._navigator.demand, late=late, trial=trial)
+        limited = self._safety.failsafes.lasting_action(now) >= FailsafeAction.LIMIT
+        self._drive.update(self._demand_in_use(now), clearance, limited=limited, now=now)
         if clearance.permit is not Permit.DRIVE:
-            self._navigator.rest()
+            self._navigator.reset_controller()
 
-    def _tell(self, now: float) -> None:
+    def _queue_due_messages(self, now: float) -> None:
         """What the outputs and the state make worth telling."""
-        self._outgoing += self._telemetry.due(self._look(now))
-        self._outgoing += [Outgoing(text) for text in self._texts.due(now)]
+        self._outgoing += self._telemetry.build_due(self._build_view(now))
+        self._outgoing += [Outgoing(text) for text in self._texts.pop_due(now)]
 
-    def _wanted(self, now: float) -> Demand | None:
+    def _demand_in_use(self, now: float) -> Demand | None:
         """Whose demand the mode drives by; whether it may is the clearance's matter."""
-        if OFFERED[self._safety.mode].own:
+        if MODES[self._safety.mode].autonomous:
             return self._navigator.demand
         if self._safety.mode is Mode.ACRO:
-            return self._navigator.acro(self._control.demand, now)
+            return self._navigator.acro_demand(self._control.demand, now)
         return self._control.demand
 
     def _cycle(self, now: float) -> None:
         """What fails, what follows, and what self-driving wants then."""
-        driving = self._drive.driving
-        hazards = self._navigator.hazards(self._safety, driving, now)
-        moves = OFFERED[self._safety.mode].own and any(driving)
-        self._watch.update(now, self._drive.refused, hazards, driving=moves)
+        driving = self._drive.driven_wheels
+        hazards = self._navigator.find_hazards(self._safety, driving, now)
+        moves = MODES[self._safety.mode].autonomous and any(driving)
+        self._monitor.update(now, self._drive.rejected_cycles, hazards, driving=moves)
         self._navigator.step(self._safety, now)
-        if self._navigator.ended is not None:
-            self._safety.end(self._navigator.ended, now)
+        if self._navigator.end_reason is not None:
+            self._safety.finish_autonomy(self._navigator.end_reason, now)
             self._navigator.step(self._safety, now)
 
-    def _look(self, now: float) -> View:
+    def _build_view(self, now: float) -> TelemetryView:
         since_boot = now - self._boot
-        return View(
+        return TelemetryView(
             now=now,
             since_boot=since_boot,
             params=self._params,
@@ -259,19 +259,19 @@ class Rover:
             control=self._control,
             drive=self._drive,
             navigator=self._navigator,
-            logs=self._answers.logbook.well,
+            logs=self._answers.logbook.is_healthy,
             host=self._host,
             rack=self._rack,
         )
 
-    def _demand(self, received: Received, now: float) -> bool:
+    def _handle_demand(self, received: Received, now: float) -> bool:
         """What may move the rover."""
         match received.message:
             case m.ManualControl() as message:
-                self._buttons.take(received, message, now)
-                self._control.manual(received, message, now)
+                self._buttons.handle_manual_control(received, message, now)
+                self._control.handle_manual_control(received, message, now)
             case m.RcChannelsOverride(target_component=component) as message if component in (0, COMPONENT):
-                self._control.rc_override(received, message, now)
+                self._control.handle_rc_override(received, message, now)
             case _:
                 return False
         return True

@@ -16,14 +16,14 @@ from groundstation.client import StationClient, StationError
 from groundstation.input.keymap import KEYMAPS, KeymapError
 from groundstation.input.keymap_file import load_keymap
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
-from link.endpoint import EndpointError, endpoint_help, parse
+from link.endpoint import EndpointError, endpoint_help, parse_endpoint
 from link.runtime import stdio
-from link.runtime.command_line import Parser
+from link.runtime.command_line import CommandLineParser
 
 DEFAULT_ENDPOINT = "udpin:127.0.0.1:14550"
 """The port that vehicles and simulators send to by custom; of this machine only, because MAVLink has no password."""
 
-SMALLEST = (40, 10)
+MIN_TERMINAL_SIZE = (40, 10)
 """Columns and rows below which not even the message fits that the terminal is too small."""
 
 EXAMPLES = f"""\
@@ -55,9 +55,9 @@ class UsageError(Exception):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the ground station. 0 after a session, 2 after a mistake of the user's, 1 when the station broke."""
-    stdio.secure()
+    stdio.ensure_open()
     parser = _parser()
-    options = parser.parse_args(parser.checked(sys.argv[1:] if arguments is None else arguments))
+    options = parser.parse_args(parser.reject_empty(sys.argv[1:] if arguments is None else arguments))
     try:
         return _run(options)
     except (UsageError, EndpointError, KeymapError, StationError) as error:
@@ -69,7 +69,7 @@ def _run(options: argparse.Namespace) -> int:
     keymap = load_keymap(options.keys)
     endpoints = options.endpoints or ([] if options.sitl else [DEFAULT_ENDPOINT])
     for endpoint in endpoints:
-        parse(endpoint)
+        parse_endpoint(endpoint)
     _check_terminal()
     log_file = _log_file(options.log_file)
     client = StationClient.start(
@@ -93,9 +93,9 @@ def _check_terminal() -> None:
         if stream is None or not stream.isatty():
             raise UsageError(f"standard {name} is not a terminal: run it in one, without a pipe or redirection")
     columns, rows = shutil.get_terminal_size()
-    if columns < SMALLEST[0] or rows < SMALLEST[1]:
+    if columns < MIN_TERMINAL_SIZE[0] or rows < MIN_TERMINAL_SIZE[1]:
         raise UsageError(
-            f"the terminal is {columns}x{rows}: make it at least {SMALLEST[0]}x{SMALLEST[1]}, better 80x24"
+            f"the terminal is {columns}x{rows}: make it at least {MIN_TERMINAL_SIZE[0]}x{MIN_TERMINAL_SIZE[1]}, better 80x24"
         )
 
 
@@ -131,8 +131,8 @@ def _speed(text: str) -> float:
     return value
 
 
-def _parser() -> Parser:
-    parser = Parser(
+def _parser() -> CommandLineParser:
+    parser = CommandLineParser(
         prog="groundstation",
         description="Drive a MAVLink rover from the terminal.",
         epilog=EXAMPLES,

@@ -9,20 +9,20 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass, field
 
-FIRST = 0.75
+PRESS_WINDOW = 0.75
 """Window after a press, s: longer than X11's repeat delay of 0.66 s; also the longest that a tap drives, unless this
 keyboard has proved that it begins to repeat later."""
 
-FIRST_LONGEST = 1.1
+PRESS_WINDOW_MAX = 1.1
 """The same for such a keyboard, s: Windows' longest repeat delay (1 s) and JITTER. FIRST would stop each hold once."""
 
-FIRST_SHORTEST = 0.35
+PRESS_WINDOW_MIN = 0.35
 """A learned window after a press is not shorter, s: the shortest repeat delay (0.25 s) and 0.1 s of network jitter."""
 
-LATER = 0.20
+REPEAT_WINDOW = 0.20
 """Window once a key repeats, s: two gaps of the slowest console (kbdrate, 92 ms)."""
 
-LATER_SHORTEST, LATER_LONGEST = 0.12, 0.25
+REPEAT_WINDOW_MIN, REPEAT_WINDOW_MAX = 0.12, 0.25
 """Clamps of the learned window, s: three gaps of 40 ms; and what ssh needs, half of the vehicle's own 0.5 s."""
 
 REPEAT_GAP = 0.12
@@ -45,7 +45,7 @@ GAPS_TO_LEARN = 20
 
 
 @dataclass(slots=True)
-class Trace:
+class KeyTrace:
     """When one key was seen, from its press on."""
 
     pressed: float
@@ -69,36 +69,39 @@ class RepeatWindows:
     _gaps: deque[float] = field(default_factory=lambda: deque(maxlen=GAPS_TO_LEARN))
 
     @property
-    def first(self) -> float:
+    def press_window(self) -> float:
         """Window after a press, s."""
         if not self._delays:
-            return FIRST
+            return PRESS_WINDOW
         longest = max(self._delays)
-        limit = FIRST if longest <= FIRST else FIRST_LONGEST
-        return min(max(1.15 * longest + JITTER, FIRST_SHORTEST), limit)
+        limit = PRESS_WINDOW if longest <= PRESS_WINDOW else PRESS_WINDOW_MAX
+        return min(max(1.15 * longest + JITTER, PRESS_WINDOW_MIN), limit)
 
     @property
-    def later(self) -> float:
+    def repeat_window(self) -> float:
         """Window once a key repeats, s."""
         if len(self._gaps) < GAPS_TO_LEARN:
-            return LATER
-        return min(max(2.5 * max(self._gaps), LATER_SHORTEST), LATER_LONGEST)
+            return REPEAT_WINDOW
+        return min(max(2.5 * max(self._gaps), REPEAT_WINDOW_MIN), REPEAT_WINDOW_MAX)
 
     @staticmethod
-    def press(earlier: Trace | None, now: float) -> Trace:
+    def start_press(earlier: KeyTrace | None, now: float) -> KeyTrace:
         """Begin a press. `earlier` is the last one of this key: it may have been given up before its first repeat."""
         if earlier is not None and earlier.delay is None and now - earlier.pressed < LONGEST_DELAY:
-            return Trace(pressed=earlier.pressed, seen=now, delay=now - earlier.pressed)
-        return Trace(pressed=now, seen=now)
+            return KeyTrace(pressed=earlier.pressed, seen=now, delay=now - earlier.pressed)
+        return KeyTrace(pressed=now, seen=now)
 
-    def again(self, trace: Trace, now: float) -> float:
+    def record_repeat(self, trace: KeyTrace, now: float) -> float:
         """Note a further event of a key that counts as held; the window to hold it from now on, s."""
         gap, trace.seen = now - trace.seen, now
         if trace.delay is None or not (trace.repeating or gap <= REPEAT_GAP):
             trace.delay = gap  # and what was taken for a first repeat was a press of its own
-            return self.later
+            return self.repeat_window
         trace.repeats += 1
-        if trace.repeats == (1 if trace.delay <= FIRST else PROOF) and SHORTEST_DELAY <= trace.delay <= LONGEST_DELAY:
+        if (
+            trace.repeats == (1 if trace.delay <= PRESS_WINDOW else PROOF)
+            and SHORTEST_DELAY <= trace.delay <= LONGEST_DELAY
+        ):
             self._delays.append(trace.delay)
         self._gaps.append(gap)
-        return self.later
+        return self.repeat_window

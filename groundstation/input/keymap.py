@@ -14,14 +14,14 @@ import msgspec
 from groundstation.intents import (
     AnyIntent,
     Arm,
-    ChangeSpeed,
     ClearEmergencyStop,
     Disarm,
+    DriveKeyDown,
+    DriveKeyUp,
     EmergencyStop,
-    Push,
-    Release,
     RequestControl,
-    SelectNext,
+    ScaleLimits,
+    SelectNextVehicle,
     SetMode,
     SetStyle,
     StartSimulator,
@@ -40,7 +40,7 @@ class KeymapError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Action:
+class OperatorAction:
     """Something an operator can ask for with a key or in the palette."""
 
     id: str
@@ -58,7 +58,7 @@ class Action:
 
 
 @dataclass(frozen=True, slots=True)
-class KeyPress:
+class KeyEvent:
     """One key event of the terminal."""
 
     key: str
@@ -67,12 +67,14 @@ class KeyPress:
     release: bool = False
 
 
-def _drive(name: str, label: str, text: str, throttle: int, steering: int) -> Action:
-    return Action(f"drive.{name}", label, text, "drive", Push(key="", throttle=throttle, steering=steering))
+def _drive(name: str, label: str, text: str, throttle: int, steering: int) -> OperatorAction:
+    return OperatorAction(
+        f"drive.{name}", label, text, "drive", DriveKeyDown(key="", throttle=throttle, steering=steering)
+    )
 
 
-def _speed(name: str, label: str, text: str, throttle: float, steering: float) -> Action:
-    return Action(f"speed.{name}", label, text, "speed", ChangeSpeed(throttle=throttle, steering=steering))
+def _speed(name: str, label: str, text: str, throttle: float, steering: float) -> OperatorAction:
+    return OperatorAction(f"speed.{name}", label, text, "speed", ScaleLimits(throttle=throttle, steering=steering))
 
 
 _ACTIONS = (
@@ -86,9 +88,9 @@ _ACTIONS = (
     # driven forward, as a car does with its wheels held. A chord of two keys does not: left always turns the nose left.
     _drive("backward_left", "Back left", "Back up to the left, as a car does", -1, 1),
     _drive("backward_right", "Back right", "Back up to the right, as a car does", -1, -1),
-    Action("drive.stop", "Stop", "Neutral at once; ends a latched drive", "stop", Stop()),
-    Action("stop.emergency", "EMERGENCY STOP", "Motors off and locked, from every screen", "stop", EmergencyStop()),
-    Action("stop.clear", "Clear e-stop", "Release the emergency stop; arming comes after", "stop",
+    OperatorAction("drive.stop", "Stop", "Neutral at once; ends a latched drive", "stop", Stop()),
+    OperatorAction("stop.emergency", "EMERGENCY STOP", "Motors off and locked, from every screen", "stop", EmergencyStop()),
+    OperatorAction("stop.clear", "Clear e-stop", "Release the emergency stop; arming comes after", "stop",
            ClearEmergencyStop(), confirm=True),
     _speed("faster", "Faster", "Raise both limits by 10 %; never moves the vehicle", FASTER, FASTER),
     _speed("slower", "Slower", "Lower both limits by 10 %", SLOWER, SLOWER),
@@ -96,20 +98,20 @@ _ACTIONS = (
     _speed("throttle_slower", "Throttle -", "Lower the limit of the throttle by 10 %", SLOWER, 1.0),
     _speed("steering_faster", "Steering +", "Raise the limit of the steering by 10 %", 1.0, FASTER),
     _speed("steering_slower", "Steering -", "Lower the limit of the steering by 10 %", 1.0, SLOWER),
-    Action("drive.style", "Style", "Next drive style: hold, latch, step", "drive", SetStyle(style="next")),
-    Action("vehicle.arm", "Arm", "Arm; when armed, disarm in one key", "vehicle", Arm(), confirm=True,
+    OperatorAction("drive.style", "Style", "Next drive style: hold, latch, step", "drive", SetStyle(style="next")),
+    OperatorAction("vehicle.arm", "Arm", "Arm; when armed, disarm in one key", "vehicle", Arm(), confirm=True,
            when_armed=Disarm()),
-    Action("vehicle.disarm", "Disarm", "Disarm", "vehicle", Disarm()),
-    Action("vehicle.manual", "MANUAL", "Mode MANUAL: the keys drive", "vehicle", SetMode(mode="MANUAL")),
-    Action("vehicle.hold", "HOLD", "Mode HOLD: the vehicle stands", "vehicle", SetMode(mode="HOLD")),
-    Action("vehicle.control", "Take control", "Ask to be the ground station in control", "vehicle", RequestControl()),
-    Action("vehicle.next", "Next vehicle", "Stop this vehicle and look at the next one", "vehicle", SelectNext()),
-    Action("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator()),
-    Action("app.help", "Help", "Keys and what they do", "app"),
-    Action("app.quit", "Quit", "Stop the vehicle and leave", "app"),
+    OperatorAction("vehicle.disarm", "Disarm", "Disarm", "vehicle", Disarm()),
+    OperatorAction("vehicle.manual", "MANUAL", "Mode MANUAL: the keys drive", "vehicle", SetMode(mode="MANUAL")),
+    OperatorAction("vehicle.hold", "HOLD", "Mode HOLD: the vehicle stands", "vehicle", SetMode(mode="HOLD")),
+    OperatorAction("vehicle.control", "Take control", "Ask to be the ground station in control", "vehicle", RequestControl()),
+    OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and look at the next one", "vehicle", SelectNextVehicle()),
+    OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator()),
+    OperatorAction("app.help", "Help", "Keys and what they do", "app"),
+    OperatorAction("app.quit", "Quit", "Stop the vehicle and leave", "app"),
 )  # fmt: skip
 
-ACTIONS: dict[str, Action] = {action.id: action for action in _ACTIONS}
+ACTIONS: dict[str, OperatorAction] = {action.id: action for action in _ACTIONS}
 """Every action by id, in the order of the help screen."""
 
 _EVERYWHERE = {
@@ -142,33 +144,33 @@ class Keymap:
     name: str
     bindings: Mapping[str, str] = field(default_factory=dict)
 
-    def action(self, key: str) -> Action | None:
+    def get_action(self, key: str) -> OperatorAction | None:
         """What a key asks for."""
         action_id = self.bindings.get(key)
         return ACTIONS[action_id] if action_id else None
 
-    def keys(self, action_id: str) -> tuple[str, ...]:
+    def get_keys(self, action_id: str) -> tuple[str, ...]:
         """The keys of an action, in the order of the map."""
         return tuple(key for key, bound in self.bindings.items() if bound == action_id)
 
-    def intents(self, batch: Sequence[KeyPress], *, armed: bool, driving: bool) -> list[AnyIntent]:
+    def build_intents(self, batch: Sequence[KeyEvent], *, armed: bool, driving: bool) -> list[AnyIntent]:
         """What the keys of ONE read ask for. Actions that confirm, and those of the screen itself, give nothing.
 
         A stop key anywhere in the read wins: then only what stops is left, because over a slow line "ik" may be one
         read and the operator's last word must not be driven over. A key that drives nothing is a stop key while the
         vehicle is driven (`driving`; say True when in doubt, a needless Stop is harmless), speed keys apart.
         """
-        wishes = [wish for press in batch if (wish := self._wish(press, armed)) is not None]
-        driving = driving or any(isinstance(wish, Push) for wish in wishes)
+        wishes = [wish for press in batch if (wish := self._build_intent(press, armed)) is not None]
+        driving = driving or any(isinstance(wish, DriveKeyDown) for wish in wishes)
         if any(self._stops(press, driving) for press in batch):
             return _stopping(wishes)
         return wishes
 
-    def _wish(self, press: KeyPress, armed: bool) -> AnyIntent | None:
-        action = self.action(press.key)
+    def _build_intent(self, press: KeyEvent, armed: bool) -> AnyIntent | None:
+        action = self.get_action(press.key)
         if action is None:
             return None
-        if isinstance(action.intent, Push):
+        if isinstance(action.intent, DriveKeyDown):
             return _drive_intent(press, action.intent)
         if press.release or (press.repeat and action.group == "vehicle"):  # a held key must not arm and disarm in turn
             return None
@@ -176,23 +178,23 @@ class Keymap:
             return action.when_armed
         return None if action.confirm else action.intent
 
-    def _stops(self, press: KeyPress, driving: bool) -> bool:
+    def _stops(self, press: KeyEvent, driving: bool) -> bool:
         if press.release:
             return False
-        action = self.action(press.key)
+        action = self.get_action(press.key)
         if action is not None and isinstance(action.intent, (Stop, EmergencyStop)):
             return True
-        return driving and (action is None or not isinstance(action.intent, (Push, ChangeSpeed)))
+        return driving and (action is None or not isinstance(action.intent, (DriveKeyDown, ScaleLimits)))
 
 
-def _drive_intent(press: KeyPress, push: Push) -> AnyIntent:
+def _drive_intent(press: KeyEvent, push: DriveKeyDown) -> AnyIntent:
     if press.release:
-        return Release(key=press.key)
+        return DriveKeyUp(key=press.key)
     return msgspec.structs.replace(push, key=press.key, repeat=press.repeat)
 
 
 def _stopping(wishes: Sequence[AnyIntent]) -> list[AnyIntent]:
     """What is left of a read with a stop key in it: the emergency stop first, then neutral, then what is safe."""
     emergency: list[AnyIntent] = [wish for wish in wishes if isinstance(wish, EmergencyStop)]
-    rest = [wish for wish in wishes if not isinstance(wish, (Push, Stop, EmergencyStop, ChangeSpeed, SetStyle))]
+    rest = [wish for wish in wishes if not isinstance(wish, (DriveKeyDown, Stop, EmergencyStop, ScaleLimits, SetStyle))]
     return [*emergency[:1], Stop(), *rest]

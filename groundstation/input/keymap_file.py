@@ -41,7 +41,7 @@ NAMED_KEYS = frozenset(
     | {f"f{number}" for number in range(1, 25)}
 )
 
-VITAL = ("drive.stop", "stop.emergency", "app.quit")
+REQUIRED_ACTIONS = ("drive.stop", "stop.emergency", "app.quit")
 """Actions that no key map may leave without a key. Escape does not count: a plain terminal tells it 0.1 s late."""
 
 _MODIFIERS = re.compile(r"^(?:(?:ctrl|alt|shift|super)\+)+")
@@ -61,10 +61,10 @@ def load_keymap(name_or_path: str) -> Keymap:
         content = read_toml(path)
     except TomlError as error:
         raise KeymapError(f"key map {error}") from error
-    return keymap_of(content, path.stem, str(path))
+    return parse_keymap(content, path.stem, str(path))
 
 
-def keymap_of(content: Mapping[str, object], name: str, where: str) -> Keymap:
+def parse_keymap(content: Mapping[str, object], name: str, where: str) -> Keymap:
     """The key map that a TOML file's content describes. Raises KeymapError with `where` in its line."""
     unknown = set(content) - {"base", "keys"}
     if unknown:
@@ -87,7 +87,7 @@ def _rebindings(keys: Mapping[str, object], where: str) -> dict[str, str]:
         if action_id not in ACTIONS:
             raise KeymapError(f"key map {where}: unknown action {action_id!r}: choose {', '.join(ACTIONS)}")
         for key in value if isinstance(value, list) else [value]:
-            name = key_name(key, where)
+            name = parse_key(key, where)
             if bound.setdefault(name, action_id) != action_id:
                 raise KeymapError(f"key map {where}: key {key!r} is bound to {bound[name]} and to {action_id}")
     for action_id in keys:
@@ -102,7 +102,7 @@ def _rebind(base: Mapping[str, str], bound: Mapping[str, str]) -> dict[str, str]
     return kept | {key: action_id for key, action_id in bound.items() if not key.startswith("nothing for ")}
 
 
-def key_name(key: object, where: str) -> str:
+def parse_key(key: object, where: str) -> str:
     """Textual's name of a key as a user may write it: "e", ",", "comma", "ctrl+x", "f9". Raises KeymapError."""
     if not isinstance(key, str) or not key:
         raise KeymapError(f"key map {where}: a key must be a string, not {key!r}")
@@ -122,7 +122,7 @@ def key_name(key: object, where: str) -> str:
 def _check(bindings: Mapping[str, str], where: str) -> None:
     if CONFIRM_KEY in bindings:
         raise KeymapError(f"key map {where}: key {CONFIRM_KEY!r} confirms and cannot be bound")
-    for action_id in VITAL:
+    for action_id in REQUIRED_ACTIONS:
         keys = {key for key, bound in bindings.items() if bound == action_id}
         if not keys - {"escape"}:
             raise KeymapError(f"key map {where}: {action_id} needs a key other than escape")

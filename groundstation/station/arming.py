@@ -15,7 +15,7 @@ from enum import Enum, auto
 from dialects.enums import Autopilot, Command, ModeFlag, Result
 from dialects.modes import Mode, custom_mode
 from groundstation.vehicles.vehicle_state import VehicleState
-from link.services.command.server import CommandClient, Outcome
+from link.services.command.server import CommandClient, CommandOutcome
 
 NEUTRAL_FIRST = 0.12
 """s of neutral demands before the commands: three frames. ArduPilot refuses to arm with the throttle off neutral."""
@@ -24,7 +24,7 @@ CONFIRM_WITHIN = 3.0
 """s for the heartbeat to say what the acknowledgement said: three heartbeats."""
 
 
-class Step(Enum):
+class ArmStep(Enum):
     """Where the arming stands."""
 
     NEUTRAL = auto()
@@ -45,45 +45,45 @@ class ArmSequence:
     vehicle: VehicleState
     due: float
     """When the step of now ends by itself."""
-    step: Step = Step.NEUTRAL
-    failed: str | None = None
+    step: ArmStep = ArmStep.NEUTRAL
+    failure: str | None = None
     """What went wrong besides a refusal."""
 
     @classmethod
-    def begin(cls, vehicle: VehicleState, now: float) -> ArmSequence:
+    def start(cls, vehicle: VehicleState, now: float) -> ArmSequence:
         """Start with neutral demands, where it takes any before arming (driver 0: it obeys nobody yet)."""
         return cls(vehicle, now if vehicle.driver == 0 else now + NEUTRAL_FIRST)
 
     def tick(self, client: CommandClient, now: float) -> None:
         """Go on when it is time."""
-        if self.step is Step.NEUTRAL and now >= self.due:
+        if self.step is ArmStep.NEUTRAL and now >= self.due:
             self._mode_or_arm(client, now)
-        elif self.step is Step.CONFIRM and self.vehicle.armed:
-            self.step = Step.DONE
-        elif self.step is Step.CONFIRM and now >= self.due:
-            self.step, self.failed = Step.DONE, "the vehicle acknowledged arming, but its heartbeat says disarmed"
+        elif self.step is ArmStep.CONFIRM and self.vehicle.armed:
+            self.step = ArmStep.DONE
+        elif self.step is ArmStep.CONFIRM and now >= self.due:
+            self.step, self.failure = ArmStep.DONE, "the vehicle acknowledged arming, but its heartbeat says disarmed"
 
-    def answered(self, outcome: Outcome, client: CommandClient, now: float) -> None:
+    def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, now: float) -> None:
         """An answer of this vehicle came."""
-        waited_for = {Step.MODE: Command.DO_SET_MODE, Step.ARM: Command.COMPONENT_ARM_DISARM}.get(self.step)
+        waited_for = {ArmStep.MODE: Command.DO_SET_MODE, ArmStep.ARM: Command.COMPONENT_ARM_DISARM}.get(self.step)
         if outcome.command != waited_for:
             return
         if outcome.result is not Result.ACCEPTED:
-            self.step = Step.DONE
-        elif self.step is Step.MODE:
+            self.step = ArmStep.DONE
+        elif self.step is ArmStep.MODE:
             self._arm(client, now)
         else:
-            self.step, self.due = Step.CONFIRM, now + CONFIRM_WITHIN
+            self.step, self.due = ArmStep.CONFIRM, now + CONFIRM_WITHIN
 
     def _mode_or_arm(self, client: CommandClient, now: float) -> None:
         if not _needs_manual(self.vehicle):
             self._arm(client, now)
             return
-        self.step = Step.MODE
+        self.step = ArmStep.MODE
         send_mode(client, self.vehicle, Mode.MANUAL, now)
 
     def _arm(self, client: CommandClient, now: float) -> None:
-        self.step = Step.ARM
+        self.step = ArmStep.ARM
         client.send(
             Command.COMPONENT_ARM_DISARM,
             1,

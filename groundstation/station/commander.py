@@ -6,17 +6,17 @@ from dataclasses import dataclass
 
 from dialects.enums import Command, Result, Severity, result_name
 from dialects.modes import Mode
-from groundstation.station.arming import ArmSequence, Step, send_mode
+from groundstation.station.arming import ArmSequence, ArmStep, send_mode
 from groundstation.station.emergency import DANGEROUS, EmergencyLock
-from groundstation.vehicles.message_log import TextLog
+from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Outgoing, Received
-from link.services.command.server import CommandClient, Outcome
+from link.services.command.server import CommandClient, CommandOutcome
 
 REASON_WITHIN = 1.0
 """s between a refusal and the vehicle's text that says why; either may come first."""
 
-QUIET = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
+QUERY_COMMANDS = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
 """Commands that the station sends by itself: their answers are not told to the operator."""
 
 DISARM_AGAIN, DISARM_GIVE_UP = 1.5, 6.0
@@ -33,7 +33,7 @@ class _Disarm:
 class Commander:
     """Orders for all vehicles. `system` and `component` are ours."""
 
-    def __init__(self, log: TextLog, system: int, component: int) -> None:
+    def __init__(self, log: MessageLog, system: int, component: int) -> None:
         self.claimed: set[int] = set()
         """Vehicles that do not tell who is in control, and that obeyed us when we armed or asked."""
         self._system = system
@@ -45,7 +45,7 @@ class Commander:
         self._refusals: dict[int, tuple[str, float]] = {}
         self._reasons: dict[int, tuple[str, float]] = {}
         self._modes: dict[int, str] = {}
-        self._quiet: list[Outcome] = []
+        self._quiet: list[CommandOutcome] = []
 
     # ---- orders ----
 
@@ -56,7 +56,7 @@ class Commander:
             return
         self._disarms.pop(vehicle.system, None)
         self._modes[vehicle.system] = Mode.MANUAL.name
-        self._arming = ArmSequence.begin(vehicle, now)
+        self._arming = ArmSequence.start(vehicle, now)
 
     def disarm(self, vehicle: VehicleState, now: float) -> None:
         """Disarm, and look whether it became true: the answer to an earlier arming may come in between."""
@@ -64,7 +64,7 @@ class Commander:
         self._disarms[vehicle.system] = _Disarm(vehicle, now + DISARM_AGAIN, now + DISARM_GIVE_UP)
         self._send(vehicle, now, Command.COMPONENT_ARM_DISARM, 0)
 
-    def mode(self, vehicle: VehicleState, name: str, now: float) -> None:
+    def set_mode(self, vehicle: VehicleState, name: str, now: float) -> None:
         """Ask for a mode by its name."""
         try:
             send_mode(self._client, vehicle, Mode[name], now)
@@ -77,11 +77,11 @@ class Commander:
         """Ask to be the ground station in control; later requests of others are granted without asking us."""
         self._send(vehicle, now, Command.REQUEST_OPERATOR_CONTROL, 1, 1)
 
-    def ask_for(self, vehicle: VehicleState, message_id: int, now: float) -> None:
+    def request_message(self, vehicle: VehicleState, message_id: int, now: float) -> None:
         """Ask for one message, silently."""
         self._send(vehicle, now, Command.REQUEST_MESSAGE, message_id)
 
-    def set_rate(self, vehicle: VehicleState, message_id: int, rate: float, now: float) -> None:
+    def set_message_interval(self, vehicle: VehicleState, message_id: int, rate: float, now: float) -> None:
         """Ask for a message `rate` times a second, silently."""
         self._send(vehicle, now, Command.SET_MESSAGE_INTERVAL, message_id, round(1e6 / rate))
 
@@ -99,24 +99,24 @@ class Commander:
 
     # ---- what the station asks ----
 
-    def locked(self, system: int) -> bool:
+    def is_locked(self, system: int) -> bool:
         """Is our emergency stop on?"""
         return system in self._locks
 
-    def arms(self, system: int) -> bool:
+    def is_arming(self, system: int) -> bool:
         """Is the vehicle being armed? Then neutral demands go out although it is disarmed."""
         return self._arming is not None and self._arming.vehicle.system == system
 
-    def busy(self, command: Command, vehicle: VehicleState) -> bool:
+    def is_pending(self, command: Command, vehicle: VehicleState) -> bool:
         """Is a command of this kind not answered yet by this vehicle?"""
-        return self._client.waits(command, vehicle.system)
+        return self._client.is_waiting(command, vehicle.system)
 
-    def quiet_outcomes(self) -> list[Outcome]:
+    def pop_query_outcomes(self) -> list[CommandOutcome]:
         """How the station's own questions ended, since the last call."""
         quiet, self._quiet = self._quiet, []
         return quiet
 
-    def refusal(self, system: int) -> str | None:
+    def last_refusal(self, system: int) -> str | None:
         """What this vehicle refused last and why."""
         refusal = self._refusals.get(system)
         return refusal[0] if refusal else None
@@ -126,9 +126,9 @@ class Commander:
     def receive(self, received: Received, now: float) -> None:
         """Take an acknowledgement."""
         self._client.receive(received, now)
-        self._settle(now)
+        self._handle_outcomes(now)
 
-    def heard(self, system: int, text: str, severity: int, now: float) -> None:
+    def handle_statustext(self, system: int, text: str, severity: int, now: float) -> None:
         """A vehicle said something: it may be the reason of a refusal."""
         if severity > Severity.WARNING:
             return
@@ -145,9 +145,9 @@ class Commander:
             self._arming.tick(self._client, now)
             self._end_arming(self._arming, now)
         for disarm in list(self._disarms.values()):
-            self._follow(disarm, now)
+            self._retry_disarm(disarm, now)
         self._client.tick(now)
-        self._settle(now)
+        self._handle_outcomes(now)
 
     def messages_to_send(self) -> list[Outgoing]:
         """What to send now; empties what it returns."""
@@ -159,47 +159,47 @@ class Commander:
         system, component = vehicle.system, vehicle.component
         self._client.send(command, *params, target_system=system, target_component=component, now=now)
 
-    def _follow(self, disarm: _Disarm, now: float) -> None:
+    def _retry_disarm(self, disarm: _Disarm, now: float) -> None:
         vehicle = disarm.vehicle
         if not vehicle.armed:
             del self._disarms[vehicle.system]
         elif now >= disarm.until:
             del self._disarms[vehicle.system]
             self._refuse(vehicle.system, f"disarm: {vehicle.name} still says armed", now)
-        elif now >= disarm.due and not self.busy(Command.COMPONENT_ARM_DISARM, vehicle):
+        elif now >= disarm.due and not self.is_pending(Command.COMPONENT_ARM_DISARM, vehicle):
             disarm.due = now + DISARM_AGAIN
             self._send(vehicle, now, Command.COMPONENT_ARM_DISARM, 0)
 
     def _end_arming(self, arming: ArmSequence, now: float) -> None:
-        if arming.step is Step.DONE and self._arming is arming:
+        if arming.step is ArmStep.DONE and self._arming is arming:
             self._arming = None
-            if arming.failed:
-                self._refuse(arming.vehicle.system, arming.failed, now)
+            if arming.failure:
+                self._refuse(arming.vehicle.system, arming.failure, now)
 
-    def _settle(self, now: float) -> None:
+    def _handle_outcomes(self, now: float) -> None:
         for outcome in self._client.outcomes():
-            if outcome.command in QUIET:
+            if outcome.command in QUERY_COMMANDS:
                 self._quiet.append(outcome)
             else:
-                self._tell(outcome, now)
-                self._act(outcome, now)
+                self._log_outcome(outcome, now)
+                self._apply_outcome(outcome, now)
 
-    def _act(self, outcome: Outcome, now: float) -> None:
+    def _apply_outcome(self, outcome: CommandOutcome, now: float) -> None:
         system = outcome.target_system
         if _grants_control(outcome):
             self.claimed.add(system)
         lock = self._locks.get(system)
         if lock is not None:
-            lock.answered(outcome)
+            lock.handle_outcome(outcome)
             if _released(outcome):
                 del self._locks[system]
         if self._arming is not None and self._arming.vehicle.system == system:
-            self._arming.answered(outcome, self._client, now)
+            self._arming.handle_outcome(outcome, self._client, now)
             self._end_arming(self._arming, now)
         if outcome.command == Command.COMPONENT_ARM_DISARM and outcome.result is not Result.ACCEPTED:
             self._disarms.pop(system, None)  # refused or unanswered, and the operator has been told
 
-    def _tell(self, outcome: Outcome, now: float) -> None:
+    def _log_outcome(self, outcome: CommandOutcome, now: float) -> None:
         what = self._label(outcome)
         if outcome.result is Result.ACCEPTED:
             self._refusals.pop(outcome.target_system, None)
@@ -216,7 +216,7 @@ class Commander:
             text = f"{text}: {reason[0]}"
         self._refusals[system] = (text, now)
 
-    def _label(self, outcome: Outcome) -> str:
+    def _label(self, outcome: CommandOutcome) -> str:
         first = outcome.params[0]
         match outcome.command:
             case Command.COMPONENT_ARM_DISARM:
@@ -231,7 +231,7 @@ class Commander:
                 return f"command {outcome.command}"
 
 
-def _grants_control(outcome: Outcome) -> bool:
+def _grants_control(outcome: CommandOutcome) -> bool:
     """Arming by us, or asking where nobody keeps control, is the claim on a vehicle that does not tell."""
     if outcome.command == Command.COMPONENT_ARM_DISARM:
         return outcome.params[0] == 1 and outcome.result is Result.ACCEPTED
@@ -239,7 +239,7 @@ def _grants_control(outcome: Outcome) -> bool:
     return asked and outcome.result in (Result.ACCEPTED, Result.UNSUPPORTED)
 
 
-def _released(outcome: Outcome) -> bool:
+def _released(outcome: CommandOutcome) -> bool:
     """The lock is off, or the vehicle does not know of locks and being disarmed is all there is."""
     switched = outcome.command == Command.DO_SET_SAFETY_SWITCH_STATE and outcome.params[0] == DANGEROUS
     return switched and outcome.result in (Result.ACCEPTED, Result.UNSUPPORTED)

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dialects.axes import NEUTRAL, axis_map, manual_control
+from dialects.axes import NEUTRAL, axis_map, build_manual_control
 from dialects.enums import Autopilot
 from dialects.messages import Heartbeat, ManualControl, Message
 from groundstation.station.station import Station
-from groundstation.vehicles.demand_stream import DRIVING, FAREWELL
+from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.fleet import is_vehicle
 from link.core import LinkReport, Outgoing, Received
 
@@ -20,7 +20,7 @@ LATCH = 3.0
 """s for which a vehicle may hold a demand (ArduPilot's RC_OVERRIDE_TIME): who got none for longer is left alone."""
 
 
-class Farewell:
+class CrashNeutral:
     """A core around the station: hands everything on until `begin`; from then on it speaks alone."""
 
     def __init__(self, station: Station) -> None:
@@ -33,11 +33,11 @@ class Farewell:
         self._due = 0.0
         self._outbox: list[Outgoing] = []
 
-    def begin(self, now: float) -> None:
+    def activate(self, now: float) -> None:
         """The station is not to be asked any more."""
         self._begun = True
         self._driven = {system: at for system, at in self._driven.items() if now - at <= LATCH}
-        self._left, self._due = FAREWELL if self._driven else 0, now
+        self._left, self._due = FINAL_NEUTRALS if self._driven else 0, now
         self.tick(now)
 
     @property
@@ -60,7 +60,7 @@ class Farewell:
             self._station.tick(now)
         elif self._left and now >= self._due:
             self._left -= 1
-            self._due = now + DRIVING
+            self._due = now + DRIVING_PERIOD
             self._outbox += [Outgoing(self._neutral(system)) for system in self._driven]
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
@@ -75,12 +75,12 @@ class Farewell:
         outbox, self._outbox = self._outbox, []
         return outbox
 
-    def sent(self, message: Message, sequence: int, now: float) -> None:
+    def handle_sent(self, message: Message, sequence: int, now: float) -> None:
         """Remember who is driven, and hand it on."""
         if isinstance(message, ManualControl):
             self._driven[message.target] = now
         if not self._begun:
-            self._station.sent(message, sequence, now)
+            self._station.handle_sent(message, sequence, now)
 
     def _neutral(self, system: int) -> ManualControl:
-        return manual_control(NEUTRAL, system, axis_map(self._autopilots.get(system, Autopilot.GENERIC)))
+        return build_manual_control(NEUTRAL, system, axis_map(self._autopilots.get(system, Autopilot.GENERIC)))

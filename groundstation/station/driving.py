@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dialects.axes import NEUTRAL, Axes, axis_map, manual_control
+from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
 from dialects.messages import ManualControl, Message
 from dialects.modes import Mode
 from groundstation.station.commander import Commander
-from groundstation.station.operator import Operator
+from groundstation.station.operator import OperatorSession
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Outgoing
 
-DRIVABLE = frozenset({"MANUAL", "ACRO", "STEERING", "SIMPLE", "STABILIZED", "ALTCTL", "POSCTL"})
+DRIVABLE_MODES = frozenset({"MANUAL", "ACRO", "STEERING", "SIMPLE", "STABILIZED", "ALTCTL", "POSCTL"})
 """Modes in which the driver's demand moves a rover (ArduRover's and PX4's names)."""
 
 
@@ -19,15 +19,15 @@ STANDING_MODES = frozenset({Mode.HOLD.name, Mode.INITIALISING.name})
 """Modes in which nothing moves a rover."""
 
 
-def drives_itself(state: VehicleState) -> bool:
+def is_autonomous(state: VehicleState) -> bool:
     """Does the vehicle, or something on board, decide where it goes?"""
-    return state.armed and state.mode not in DRIVABLE | STANDING_MODES
+    return state.armed and state.mode not in DRIVABLE_MODES | STANDING_MODES
 
 
-class Driving:
+class DrivingController:
     """Joins the operator with the selected vehicle. `system` is ours."""
 
-    def __init__(self, operator: Operator, fleet: Fleet, commander: Commander, system: int) -> None:
+    def __init__(self, operator: OperatorSession, fleet: Fleet, commander: Commander, system: int) -> None:
         self.ending = False
         """Quit was asked: neutral, and then nothing more."""
         self._operator = operator
@@ -40,20 +40,25 @@ class Driving:
         self._changed_at = 0.0
         """When the demand in `_changed` was asked for: what we need to send it is part of the latency."""
 
-    def advance(self, now: float) -> None:
+    def update(self, now: float) -> None:
         """Make the demands that are due."""
-        self.look(now)
+        self.update_permission(now)
         demand = self._operator.demand(now)
         for contact in self._fleet:
             chosen = contact is self._fleet.selected
-            axes = contact.stream.due(demand if chosen else NEUTRAL, chosen and self._may_stream(contact), now)
+            axes = contact.demand_stream.next_due(
+                demand if chosen else NEUTRAL, chosen and self._may_stream(contact), now
+            )
             if axes is not None:
-                self._demand(contact, axes, now)
+                self._queue_demand(contact, axes, now)
 
-    def look(self, now: float) -> None:
+    def update_permission(self, now: float) -> None:
         """Notice when keys begin to drive, and when they may no more: before a key is taken, and with each advance."""
-        if self._operator.allow(self.obstacle(now) is None, now) and self._fleet.selected is not None:
-            self._fleet.selected.stream.hurry(now)
+        if (
+            self._operator.set_driving_allowed(self.blocked_reason(now) is None, now)
+            and self._fleet.selected is not None
+        ):
+            self._fleet.selected.demand_stream.resume(now)
 
     def messages_to_send(self) -> list[Outgoing]:
         """The demands to send now; empties what it returns."""
@@ -64,60 +69,60 @@ class Driving:
         """A message went out under this packet sequence."""
         if not isinstance(message, ManualControl):
             return
-        self._operator.meter.add(now)
+        self._operator.demand_rate.add(now)
         contact = self._fleet.get(message.target)
         if message is self._changed and contact is not None:
-            contact.state.latency.sent(sequence, self._changed_at)
+            contact.state.latency.record_sent(sequence, self._changed_at)
 
     @property
     def finished(self) -> bool:
         """Nothing is sent and nothing is left to be said."""
-        return not self._demands and all(contact.stream.silent for contact in self._fleet)
+        return not self._demands and all(contact.demand_stream.finished for contact in self._fleet)
 
-    def in_control(self, contact: Contact) -> bool:
+    def is_in_control(self, contact: Contact) -> bool:
         """Do we control this vehicle: as it says itself, else since it obeyed us."""
         state = contact.state
         return state.system in self._commander.claimed if state.driver is None else state.driver == self._system
 
-    def obstacle(self, now: float) -> str | None:
+    def blocked_reason(self, now: float) -> str | None:
         """Why keys do not drive now, in words for the driver; None when they do."""
         contact = self._fleet.selected
-        obstacle = "quitting" if self.ending else self._operator.obstacle(now)
+        obstacle = "quitting" if self.ending else self._operator.blocked_reason(now)
         if obstacle or contact is None:
             return obstacle or "no vehicle"
-        return self._vehicle_obstacle(contact, now)
+        return self._vehicle_blocked_reason(contact, now)
 
-    def _vehicle_obstacle(self, contact: Contact, now: float) -> str | None:
+    def _vehicle_blocked_reason(self, contact: Contact, now: float) -> str | None:
         state = contact.state
-        if self._commander.locked(state.system) or state.emergency_stop:
+        if self._commander.is_locked(state.system) or state.emergency_stop:
             return "emergency stop"
-        if not state.monitor.alive(now):
+        if not state.monitor.is_alive(now):
             return f"{state.name} is silent"
         if not state.armed:
-            return "arming" if self._commander.arms(state.system) else "disarmed"
-        if not self.in_control(contact):
+            return "arming" if self._commander.is_arming(state.system) else "disarmed"
+        if not self.is_in_control(contact):
             return f"station {state.driver} is in control" if state.driver else "not in control"
-        return None if state.mode in DRIVABLE else f"mode {state.mode}"
+        return None if state.mode in DRIVABLE_MODES else f"mode {state.mode}"
 
     def _may_stream(self, contact: Contact) -> bool:
         """Demands go only to a vehicle that is armed and ours: an idle station must not fight another driver."""
         state = contact.state
         if self.ending or not self._operator.live:
             return False
-        if self._commander.arms(state.system):
+        if self._commander.is_arming(state.system):
             return state.driver in (None, self._system)
-        return state.armed and self.in_control(contact)
+        return state.armed and self.is_in_control(contact)
 
-    def _demand(self, contact: Contact, axes: Axes, now: float) -> None:
+    def _queue_demand(self, contact: Contact, axes: Axes, now: float) -> None:
         state = contact.state
-        message = manual_control(axes, state.system, axis_map(state.autopilot))
+        message = build_manual_control(axes, state.system, axis_map(state.autopilot))
         messages: list[Message] = [message]
         if contact is self._fleet.selected:
-            if axes != self._operator.sent:
+            if axes != self._operator.sent_demand:
                 self._changed, self._changed_at = message, now
                 messages.append(message)  # lost alone it would wait 50 ms for the next beat; twice at 5 % is 1 in 400
-            self._operator.sent = axes
-        if state.speaks_ours:
-            proof = self._operator.presence((state.system, state.component), state.boot_time, now)
+            self._operator.sent_demand = axes
+        if state.has_rover_dialect:
+            proof = self._operator.build_presence((state.system, state.component), state.boot_time, now)
             messages.insert(0, proof)
         self._demands[state.system] = messages

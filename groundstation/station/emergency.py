@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 from dialects.enums import Command
 from groundstation.vehicles.vehicle_state import VehicleState
-from link.services.command.server import CommandClient, Outcome
+from link.services.command.server import CommandClient, CommandOutcome
 
 SAFE, DANGEROUS = 0, 1
 """SAFETY_SWITCH_STATE: motors off and locked; motors may run."""
 
-FORCE = 21196
+FORCE_DISARM = 21196
 """Parameter 2 of COMPONENT_ARM_DISARM: also while it moves (common.xml)."""
 
 AGAIN = 0.5
@@ -27,9 +27,9 @@ class EmergencyLock:
 
     vehicle: VehicleState
     due: float
-    switched: bool = False
+    switch_answered: bool = False
     """The safety switch command was answered, with whatever result."""
-    disarmed: bool = False
+    disarm_answered: bool = False
     """The forced disarm was answered."""
     clearing: bool = False
     """The operator has asked to release it; asking for the opposite meanwhile would race with that."""
@@ -39,25 +39,25 @@ class EmergencyLock:
         if self.clearing or now < self.due:
             return
         self.due = now + AGAIN
-        if not self.switched:
+        if not self.switch_answered:
             self._send(client, now, Command.DO_SET_SAFETY_SWITCH_STATE, SAFE)
-        if not self.disarmed or self.vehicle.armed:
-            self._send(client, now, Command.COMPONENT_ARM_DISARM, 0, FORCE)
+        if not self.disarm_answered or self.vehicle.armed:
+            self._send(client, now, Command.COMPONENT_ARM_DISARM, 0, FORCE_DISARM)
 
     def clear(self, client: CommandClient, now: float) -> None:
         """Ask the vehicle to release the lock."""
         self.clearing = True
         self._send(client, now, Command.DO_SET_SAFETY_SWITCH_STATE, DANGEROUS)
 
-    def answered(self, outcome: Outcome) -> None:
+    def handle_outcome(self, outcome: CommandOutcome) -> None:
         """An answer of this vehicle came, or none after all repeats."""
         if outcome.command == Command.DO_SET_SAFETY_SWITCH_STATE:
             if outcome.params[0] == DANGEROUS:
                 self.clearing = False
             elif outcome.result is not None:
-                self.switched = True
+                self.switch_answered = True
         elif outcome.command == Command.COMPONENT_ARM_DISARM and outcome.result is not None:
-            self.disarmed = True
+            self.disarm_answered = True
 
     def _send(self, client: CommandClient, now: float, command: Command, *params: float) -> None:
         client.send(

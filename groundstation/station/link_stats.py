@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from groundstation.snapshot import LinkView
 from link.core import LinkReport, SourceCount
-from link.protocol.link_events import problem
+from link.protocol.link_events import link_problem
 
 LOSS_WINDOW = 5.0
 """s over which the loss is counted: 27 messages/s of ArduPilot's defaults make that one lost frame = 0.7 %."""
@@ -21,13 +21,13 @@ class _Sample:
     vehicle: SourceCount
 
 
-class LinkBook:
+class LinkStats:
     """The reports of the last seconds, by link."""
 
     def __init__(self) -> None:
         self._samples: dict[int, deque[_Sample]] = {}
 
-    def observe(self, reports: Sequence[LinkReport], system: int | None, now: float) -> None:
+    def update(self, reports: Sequence[LinkReport], system: int | None, now: float) -> None:
         """Take the reports; `system` is the vehicle whose loss is meant."""
         for report in reports:
             samples = self._samples.setdefault(report.index, deque())
@@ -35,7 +35,7 @@ class LinkBook:
             while now - samples[0].time > LOSS_WINDOW:
                 samples.popleft()
 
-    def views(self, round_trip: float | None) -> tuple[LinkView, ...]:
+    def build_views(self, round_trip: float | None) -> tuple[LinkView, ...]:
         """The links as the screen shows them."""
         return tuple(_view(samples, round_trip) for _, samples in sorted(self._samples.items()))
 
@@ -46,7 +46,7 @@ class LinkBook:
         return None if report is None or report.capacity is None else report.capacity * report.headroom
 
     @property
-    def hears_bytes(self) -> bool:
+    def has_traffic(self) -> bool:
         """Did any link receive anything in the window?"""
         return any(_delta(samples, "bytes_received") > 0 for samples in self._samples.values())
 
@@ -77,5 +77,5 @@ def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
         rate=max(0.0, _delta(samples, "frames") / seconds) if seconds else 0.0,
         bytes_per_second=max(0.0, _delta(samples, "bytes_received") / seconds) if seconds else 0.0,
         crc_errors=newest.report.crc_errors,
-        problem=problem(newest.report),
+        problem=link_problem(newest.report),
     )

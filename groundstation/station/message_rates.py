@@ -18,7 +18,7 @@ class _Kind:
     count: int = 0
 
 
-class Traffic:
+class MessageRates:
     """Rates by message name and direction; as many rows as the dialect has messages, at most."""
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class Traffic:
         kind.meter.add(now)
         kind.count += 1
 
-    def view(self, now: float) -> tuple[MessageRate, ...]:
+    def build_rates(self, now: float) -> tuple[MessageRate, ...]:
         """By name, received before sent."""
         return tuple(
             MessageRate(name=name, rate=kind.meter.rate(now), count=kind.count, sent=sent)

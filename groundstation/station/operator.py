@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 
 from dialects.axes import NEUTRAL, Axes
-from dialects.enums import Operator as Flag
+from dialects.enums import OperatorFlag as Flag
 from dialects.messages import RoverOperatorPresence, boot_ms
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents import LEASE, Gate, Push
-from groundstation.snapshot import HelmView
+from groundstation.intents import LEASE_TIMEOUT, DriveKeyDown, SetKeyGate
+from groundstation.snapshot import OperatorView
 from link.protocol.heartbeat import HeartbeatMonitor
 from link.protocol.rate import RateMeter
 
@@ -29,38 +29,38 @@ OLDEST_AGE = 0xFFFF
 """last_input_age_ms: older, or none."""
 
 
-class Operator:
+class OperatorSession:
     """One person at one screen. `session` is a random number that tells this session from others."""
 
     def __init__(self, style: Style, speed: float, session: int) -> None:
         self.sticks = Sticks(style, speed)
-        self.sent = NEUTRAL
+        self.sent_demand = NEUTRAL
         """The demand that went out last to the selected vehicle."""
-        self.meter = RateMeter()
+        self.demand_rate = RateMeter()
         """Demands sent."""
-        self.inputs = 0
+        self.input_count = 0
         """Real input events so far."""
         self._session = session
-        self._lease = HeartbeatMonitor(LEASE)
+        self._lease = HeartbeatMonitor(LEASE_TIMEOUT)
         self._live = False
         self._thawed_at = 0.0
-        self._gate = Gate(open=False, reason="starting")
+        self._gate = SetKeyGate(open=False, reason="starting")
         self._driving_allowed = False
         self._allowed_at = -math.inf
-        self._touched: float | None = None
+        self._last_input_at: float | None = None
 
     # ---- the screen ----
 
-    def renew(self, now: float) -> None:
+    def renew_lease(self, now: float) -> None:
         """The screen lives."""
         if not self._live:
-            self._thawed_at = now + THAW if self._lease.ever else now
+            self._thawed_at = now + THAW if self._lease.ever_heard else now
         self._live = True
-        self._lease.heard(now)
+        self._lease.update(now)
 
-    def lapsed(self, now: float) -> bool:
+    def expire_lease(self, now: float) -> bool:
         """True once when the screen has stopped renewing; keys are let go then."""
-        if not self._live or self._lease.alive(now):
+        if not self._live or self._lease.is_alive(now):
             return False
         self._live = False
         self.sticks.block(now)
@@ -71,13 +71,13 @@ class Operator:
         """The screen renews its lease."""
         return self._live
 
-    def set_gate(self, gate: Gate, now: float) -> None:
+    def set_gate(self, gate: SetKeyGate, now: float) -> None:
         """The screen opens or closes the way from keys to sticks."""
         self._gate = gate
         if not gate.open:
             self.sticks.block(now)
 
-    def obstacle(self, now: float) -> str | None:
+    def blocked_reason(self, now: float) -> str | None:
         """Why keys cannot drive, as far as the screen goes; None when they can."""
         if not self._live:
             return "the screen does not answer"
@@ -87,24 +87,24 @@ class Operator:
 
     # ---- the keys ----
 
-    def touch(self, now: float) -> None:
+    def record_input(self, now: float) -> None:
         """A real input event came."""
-        self.inputs += 1
-        self._touched = now
+        self.input_count += 1
+        self._last_input_at = now
 
-    def push(self, push: Push, now: float) -> None:
+    def press(self, push: DriveKeyDown, now: float) -> None:
         """A drive key; with the screen in the way it must not drive later either."""
-        if self.obstacle(now) is None:
-            self.sticks.push(push, now)
+        if self.blocked_reason(now) is None:
+            self.sticks.press(push, now)
         else:
-            self.sticks.swallow(push, now)
+            self.sticks.reject(push, now)
 
-    def let_go(self, now: float) -> None:
+    def reset_demand(self, now: float) -> None:
         """Another vehicle is looked at: what the old one was told is not what this one is told."""
         self.sticks.block(now)
-        self.sent = NEUTRAL
+        self.sent_demand = NEUTRAL
 
-    def allow(self, allowed: bool, now: float) -> bool:
+    def set_driving_allowed(self, allowed: bool, now: float) -> bool:
         """May keys drive from now on? True when they begin to; those that are held must be pressed anew."""
         begins = allowed and not self._driving_allowed
         if begins:
@@ -121,7 +121,7 @@ class Operator:
 
     # ---- what is told ----
 
-    def presence(self, target: tuple[int, int], echo: int | None, now: float) -> RoverOperatorPresence:
+    def build_presence(self, target: tuple[int, int], echo: int | None, now: float) -> RoverOperatorPresence:
         """The message that goes before a demand. `echo` is the newest time_boot_ms of the vehicle."""
         return RoverOperatorPresence(
             target_system=target[0],
@@ -129,35 +129,35 @@ class Operator:
             time_boot_ms=boot_ms(now),
             echo_time_boot_ms=echo or 0,
             session_id=self._session,
-            input_count=self.inputs & 0xFFFFFFFF,
+            input_count=self.input_count & 0xFFFFFFFF,
             last_input_age_ms=self._age_ms(now),
             flags=self._flags(now),
         )
 
-    def view(self, reason: str | None, sending: bool, now: float) -> HelmView:
+    def build_view(self, reason: str | None, sending: bool, now: float) -> OperatorView:
         """For the screen. `reason`: why keys do not drive, or None."""
         sticks = self.sticks
-        return HelmView(
+        return OperatorView(
             style=sticks.style.value,
-            exact=sticks.exact,
+            reports_releases=sticks.reports_releases,
             stop_bound=sticks.stop_bound,
-            held=sticks.held(now),
-            throttle=self.sent.throttle,
-            steering=self.sent.steering,
+            held=sticks.held_keys(now),
+            throttle=self.sent_demand.throttle,
+            steering=self.sent_demand.steering,
             throttle_limit=sticks.throttle_limit,
             steering_limit=sticks.steering_limit,
             gate_open=reason is None,
             gate_reason=reason or "",
             sending=sending,
-            rate=self.meter.rate(now),
+            rate=self.demand_rate.rate(now),
         )
 
     def _age_ms(self, now: float) -> int:
-        return OLDEST_AGE if self._touched is None else min(OLDEST_AGE, int((now - self._touched) * 1000))
+        return OLDEST_AGE if self._last_input_at is None else min(OLDEST_AGE, int((now - self._last_input_at) * 1000))
 
     def _flags(self, now: float) -> Flag:
         flags = Flag(0)
-        if self.sticks.held(now) or not self.sent.neutral:
+        if self.sticks.held_keys(now) or not self.sent_demand.neutral:
             flags |= Flag.DEADMAN
         if self._gate.open:
             flags |= Flag.FOCUSED

@@ -6,23 +6,23 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Severity, State, Type
+from dialects.enums import Autopilot, Severity, SystemState, VehicleType
 from dialects.modes import Mode
 from groundstation import intents as i
 from groundstation.input.style import Style
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
-from groundstation.station.driving import Driving, drives_itself
-from groundstation.station.link_stats import LinkBook
-from groundstation.station.message_rates import Traffic
-from groundstation.station.operator import Operator
-from groundstation.station.vehicle_queries import Inquiry
+from groundstation.station.driving import DrivingController, is_autonomous
+from groundstation.station.link_stats import LinkStats
+from groundstation.station.message_rates import MessageRates
+from groundstation.station.operator import OperatorSession
+from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.vehicles.fleet import Contact, Fleet
-from groundstation.vehicles.message_log import TextLog
+from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import LinkReport, Outgoing, Peer, Received
-from link.protocol.link_events import Troubles
-from link.services.timesync import TimesyncClient, answer
+from link.protocol.link_events import LinkEvents
+from link.services.timesync import TimesyncClient, handle_request
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -50,25 +50,25 @@ class Station:
         session: int = 0,
         now: float = 0.0,
     ) -> None:
-        self.simulator: str | None = None
+        self.simulator_state: str | None = None
         """State of the simulator, told by the shell that runs it."""
-        self.log = TextLog()
-        self.operator = Operator(style, speed, session)
+        self.log = MessageLog()
+        self.operator = OperatorSession(style, speed, session)
         self._endpoints = tuple(endpoints)
         self._system = system
         self._started = now
         self._fleet = Fleet(self.log, system)
         self._commander = Commander(self.log, system, COMPONENT)
-        self._driving = Driving(self.operator, self._fleet, self._commander, system)
-        self._links = LinkBook()
-        self._inquiry = Inquiry(self._fleet, self._commander, self._links, self.log)
+        self._driving = DrivingController(self.operator, self._fleet, self._commander, system)
+        self._links = LinkStats()
+        self._inquiry = VehicleQueries(self._fleet, self._commander, self._links, self.log)
         self._timesync = TimesyncClient(system)
         self._heartbeat_due = 0.0
         self._greeted: set[Peer] = set()
         self._greet_until = now
-        self._troubles = Troubles()
+        self._troubles = LinkEvents()
         self._outbox: list[Outgoing] = []
-        self._traffic = Traffic()
+        self._traffic = MessageRates()
         self._number = 0
 
     # ---- Core ----
@@ -76,41 +76,41 @@ class Station:
     def receive(self, received: Received, now: float) -> None:
         """Take one message and act on it at once."""
         self._traffic.count(received.message, now)
-        contact = self._fleet.admit(received, now)
+        contact = self._fleet.get_or_add(received, now)
         if contact is None:
             return
         self._greet(received.peer, now)
         contact.state.receive(received, now)
-        self._inquiry.receive(contact, received.message, now)
+        self._inquiry.handle_message(contact, received.message, now)
         match received.message:
             case m.StatusText() as message:
-                self._hear(message, received.system, now)
+                self._handle_statustext(message, received.system, now)
             case m.RoverDriveStatus() as message if message.source_system == self._system:
-                contact.state.latency.obeyed(message.source_seq, now, message.demand_age_ms / 1000)
+                contact.state.latency.record_applied(message.source_seq, now, message.demand_age_ms / 1000)
         if contact is self._fleet.selected:
             self._timesync.receive(received, now)
-        self._outbox += answer(received, now, (self._system, COMPONENT))
+        self._outbox += handle_request(received, now, (self._system, COMPONENT))
         self._commander.receive(received, now)
 
     def tick(self, now: float) -> None:
         """Send what is due, act on what is overdue."""
-        if self.operator.lapsed(now):
+        if self.operator.expire_lease(now):
             self.log.add(now, "station", "the screen does not answer: neutral, control given up", Severity.CRITICAL)
         self.log.expire(now)
-        self._fleet.watch(now)
+        self._fleet.update(now)
         self._commander.tick(now)
         if self.operator.live:
             self._inquiry.tick(now)
         if self.operator.live and not self._driving.ending:
             self._live(now)
-        self._driving.advance(now)
+        self._driving.update(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take what the links say of themselves; of a problem the beginning and the end are told."""
         selected = self._fleet.selected
-        self._links.observe(reports, selected.state.system if selected else None, now)
+        self._links.update(reports, selected.state.system if selected else None, now)
         for report in reports:
-            news = self._troubles.news(report)
+            news = self._troubles.update(report)
             if news:
                 self.log.add(now, "station", f"{report.name}: {news.text}", news.severity)
 
@@ -121,22 +121,22 @@ class Station:
         orders = self._commander.messages_to_send() + self._inquiry.messages_to_send()
         return demands + orders + self._timesync.messages_to_send() + outbox
 
-    def sent(self, message: m.Message, sequence: int, now: float) -> None:
+    def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """A message went out under this packet sequence."""
         self._traffic.count(message, now, sent=True)
         self._driving.sent(message, sequence, now)
 
     # ---- the operator ----
 
-    def intend(self, intent: i.AnyIntent, now: float) -> None:
+    def handle_intent(self, intent: i.AnyIntent, now: float) -> None:
         """Take what the operator wants; what follows from it is ready to be sent."""
-        if not isinstance(intent, (i.Lease, i.Gate, i.ExactKeys, i.Quit)):
-            self.operator.touch(now)
-        self._driving.look(now)
+        if not isinstance(intent, (i.RenewLease, i.SetKeyGate, i.ReportKeyReleases, i.Quit)):
+            self.operator.record_input(now)
+        self._driving.update_permission(now)
         method = _INTENTS.get(type(intent))
         if method is not None:
             method(self, intent, now)
-        self._driving.advance(now)
+        self._driving.update(now)
 
     @property
     def finished(self) -> bool:
@@ -153,46 +153,48 @@ class Station:
             endpoints=self._endpoints,
             waiting=self._waiting(),
             vehicle=self._vehicle_view(selected, now) if selected else None,
-            vehicles=self._fleet.systems,
-            helm=self.operator.view(self._driving.obstacle(now), bool(selected and selected.stream.streaming), now),
-            links=self._links.views(self._timesync.round_trip),
-            texts=self.log.lines(now, wall),
-            messages=self._traffic.view(now),
-            simulator=self.simulator,
+            vehicles=self._fleet.system_ids,
+            operator=self.operator.build_view(
+                self._driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now
+            ),
+            links=self._links.build_views(self._timesync.round_trip),
+            texts=self.log.build_lines(now, wall),
+            messages=self._traffic.build_rates(now),
+            simulator=self.simulator_state,
         )
 
     # ---- intents ----
 
-    def _push(self, intent: i.Push, now: float) -> None:
-        self.operator.push(intent, now)
+    def _push(self, intent: i.DriveKeyDown, now: float) -> None:
+        self.operator.press(intent, now)
 
-    def _release(self, intent: i.Release, now: float) -> None:
+    def _release(self, intent: i.DriveKeyUp, now: float) -> None:
         self.operator.sticks.release(intent.key)
 
     def _stop(self, intent: i.Stop, now: float) -> None:
         self.operator.sticks.stop()
         selected = self._fleet.selected
-        if intent.reason == i.STOP_KEY and selected is not None and drives_itself(selected.state):
-            self._commander.mode(selected.state, Mode.HOLD.name, now)  # neutral sticks stop no mission
+        if intent.reason == i.STOP_KEY and selected is not None and is_autonomous(selected.state):
+            self._commander.set_mode(selected.state, Mode.HOLD.name, now)  # neutral sticks stop no mission
 
-    def _change_speed(self, intent: i.ChangeSpeed, now: float) -> None:
-        self.operator.sticks.scale(intent)
+    def _change_speed(self, intent: i.ScaleLimits, now: float) -> None:
+        self.operator.sticks.scale_limits(intent)
 
     def _set_style(self, intent: i.SetStyle, now: float) -> None:
         if self.operator.sticks.set_style(intent.style):
             self.log.add(now, "station", f"drive style {self.operator.sticks.style}", Severity.NOTICE)
 
-    def _exact(self, intent: i.ExactKeys, now: float) -> None:
-        self.operator.sticks.prove_exact()
+    def _exact(self, intent: i.ReportKeyReleases, now: float) -> None:
+        self.operator.sticks.set_reports_releases()
 
-    def _gate(self, intent: i.Gate, now: float) -> None:
+    def _gate(self, intent: i.SetKeyGate, now: float) -> None:
         self.operator.set_gate(intent, now)
 
-    def _lease(self, intent: i.Lease, now: float) -> None:
-        self.operator.renew(now)
+    def _lease(self, intent: i.RenewLease, now: float) -> None:
+        self.operator.renew_lease(now)
 
-    def _select(self, intent: i.SelectVehicle | i.SelectNext, now: float) -> None:
-        self.operator.let_go(now)
+    def _select(self, intent: i.SelectVehicle | i.SelectNextVehicle, now: float) -> None:
+        self.operator.reset_demand(now)
         if isinstance(intent, i.SelectVehicle):
             self._fleet.select(intent.system, now)
         else:
@@ -220,7 +222,7 @@ class Station:
         if now >= self._heartbeat_due:
             greeting = now < self._greet_until
             self._heartbeat_due = now + (GREETING_PERIOD if greeting else HEARTBEAT_PERIOD)
-            heartbeat = m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3)
+            heartbeat = m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3)
             self._outbox.append(Outgoing(heartbeat))
 
     def _greet(self, peer: Peer, now: float) -> None:
@@ -231,28 +233,28 @@ class Station:
             self._greeted.add(peer)
             self._heartbeat_due, self._greet_until = now, now + GREETING
 
-    def _hear(self, message: m.StatusText, system: int, now: float) -> None:
-        text = self.log.hear(message, system, now)
+    def _handle_statustext(self, message: m.StatusText, system: int, now: float) -> None:
+        text = self.log.handle_statustext(message, system, now)
         if text is not None:
-            self._commander.heard(system, text, message.severity, now)
+            self._commander.handle_statustext(system, text, message.severity, now)
 
     # ---- what is told ----
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
         state, commander = contact.state, self._commander
-        return state.view(
+        return state.build_view(
             now,
-            in_control=self._driving.in_control(contact),
-            emergency_stop=state.emergency_stop or commander.locked(state.system),
-            refusal=commander.refusal(state.system),
-            warnings=contact.settings.warnings if contact.settings else (),
+            in_control=self._driving.is_in_control(contact),
+            emergency_stop=state.emergency_stop or commander.is_locked(state.system),
+            refusal=commander.last_refusal(state.system),
+            warnings=contact.settings_check.warnings if contact.settings_check else (),
         )
 
     def _waiting(self) -> str | None:
         if self._fleet.selected is not None:
             return None
         where = ", ".join(self._endpoints)
-        if self._links.hears_bytes:
+        if self._links.has_traffic:
             return f"data arrives on {where}, but no vehicle's heartbeat yet"
         return f"waiting for a vehicle on {where}"
 
@@ -260,7 +262,7 @@ class Station:
 _ORDERS: dict[type[i.Intent], Callable[[Commander, VehicleState, Any, float], None]] = {
     i.Arm: lambda commander, vehicle, _, now: commander.arm(vehicle, now),
     i.Disarm: lambda commander, vehicle, _, now: commander.disarm(vehicle, now),
-    i.SetMode: lambda commander, vehicle, intent, now: commander.mode(vehicle, intent.mode, now),
+    i.SetMode: lambda commander, vehicle, intent, now: commander.set_mode(vehicle, intent.mode, now),
     i.RequestControl: lambda commander, vehicle, _, now: commander.request_control(vehicle, now),
     i.EmergencyStop: lambda commander, vehicle, _, now: commander.emergency_stop(vehicle, now),
     i.ClearEmergencyStop: lambda commander, vehicle, _, now: commander.clear_emergency_stop(vehicle, now),
@@ -268,16 +270,16 @@ _ORDERS: dict[type[i.Intent], Callable[[Commander, VehicleState, Any, float], No
 """Orders to the selected vehicle."""
 
 _INTENTS: dict[type[i.Intent], Callable[[Station, Any, float], None]] = {
-    i.Push: Station._push,
-    i.Release: Station._release,
+    i.DriveKeyDown: Station._push,
+    i.DriveKeyUp: Station._release,
     i.Stop: Station._stop,
-    i.ChangeSpeed: Station._change_speed,
+    i.ScaleLimits: Station._change_speed,
     i.SetStyle: Station._set_style,
-    i.ExactKeys: Station._exact,
-    i.Gate: Station._gate,
-    i.Lease: Station._lease,
+    i.ReportKeyReleases: Station._exact,
+    i.SetKeyGate: Station._gate,
+    i.RenewLease: Station._lease,
     i.SelectVehicle: Station._select,
-    i.SelectNext: Station._select,
+    i.SelectNextVehicle: Station._select,
     i.Quit: Station._quit,
     **dict.fromkeys(_ORDERS, Station._order),
 }

@@ -8,70 +8,70 @@ from __future__ import annotations
 from dialects import messages as m
 from dialects.enums import Command, Severity
 from groundstation.station.commander import Commander
-from groundstation.station.link_stats import LinkBook
+from groundstation.station.link_stats import LinkStats
 from groundstation.vehicles.fleet import Contact, Fleet
-from groundstation.vehicles.message_log import TextLog
-from groundstation.vehicles.stream_requests import rate
+from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.stream_requests import stream_rate
 from link.core import Outgoing
 
 
-class Inquiry:
+class VehicleQueries:
     """Asks one thing at a time, because commands of a kind are answered one at a time."""
 
-    def __init__(self, fleet: Fleet, commander: Commander, links: LinkBook, log: TextLog) -> None:
+    def __init__(self, fleet: Fleet, commander: Commander, links: LinkStats, log: MessageLog) -> None:
         self._fleet = fleet
         self._commander = commander
         self._links = links
         self._log = log
         self._outbox: list[Outgoing] = []
 
-    def receive(self, contact: Contact, message: m.Message, now: float) -> None:
+    def handle_message(self, contact: Contact, message: m.Message, now: float) -> None:
         """Take a message of a vehicle."""
-        contact.streams.receive(message, now)
-        if isinstance(message, m.ParamValue) and contact.settings:
-            warning = contact.settings.receive(message)
+        contact.stream_requests.handle_message(message, now)
+        if isinstance(message, m.ParamValue) and contact.settings_check:
+            warning = contact.settings_check.handle_param(message)
             if warning:
                 self._log.add(now, "station", f"{contact.state.name}: {warning}", Severity.WARNING)
 
     def tick(self, now: float) -> None:
         """Ask who is there for what is due."""
-        self._take_answers(now)
+        self._handle_outcomes(now)
         for contact in self._fleet:
             if contact.lost_at is None:
                 self._ask(contact, now)
-                self._ask_for_telemetry(contact, now)
+                self._request_telemetry(contact, now)
 
     def messages_to_send(self) -> list[Outgoing]:
         """What to send now; empties what it returns."""
         outbox, self._outbox = self._outbox, []
         return outbox
 
-    def _take_answers(self, now: float) -> None:
-        for outcome in self._commander.quiet_outcomes():
+    def _handle_outcomes(self, now: float) -> None:
+        for outcome in self._commander.pop_query_outcomes():
             contact = self._fleet.get(outcome.target_system)
             if contact is None:
                 continue
             if outcome.command == Command.SET_MESSAGE_INTERVAL:
-                contact.streams.answered(outcome)
+                contact.stream_requests.handle_outcome(outcome)
             else:
-                contact.kinship.answered(outcome, now)
+                contact.dialect_probe.handle_outcome(outcome, now)
 
     def _ask(self, contact: Contact, now: float) -> None:
         state = contact.state
-        asking = self._commander.busy(Command.REQUEST_MESSAGE, state)
-        if not asking and contact.kinship.asks(state.autopilot, state.tells_ours(now), now):
-            self._commander.ask_for(state, m.RoverDriveInfo.id, now)
-        if contact.settings is not None:
-            self._outbox += [Outgoing(message) for message in contact.settings.tick(now)]
+        asking = self._commander.is_pending(Command.REQUEST_MESSAGE, state)
+        if not asking and contact.dialect_probe.is_due(state.autopilot, state.sends_drive_status(now), now):
+            self._commander.request_message(state, m.RoverDriveInfo.id, now)
+        if contact.settings_check is not None:
+            self._outbox += [Outgoing(message) for message in contact.settings_check.tick(now)]
 
-    def _ask_for_telemetry(self, contact: Contact, now: float) -> None:
+    def _request_telemetry(self, contact: Contact, now: float) -> None:
         """Never of our own rover: it tells what is needed, and sizes that to the link itself."""
-        if contact.state.speaks_ours:
+        if contact.state.has_rover_dialect:
             return
         capacity = self._links.capacity(contact.link)
-        self._outbox += [Outgoing(message) for message in contact.streams.groups(capacity, now)]
-        if self._commander.busy(Command.SET_MESSAGE_INTERVAL, contact.state):
+        self._outbox += [Outgoing(message) for message in contact.stream_requests.due_group_requests(capacity, now)]
+        if self._commander.is_pending(Command.SET_MESSAGE_INTERVAL, contact.state):
             return
-        message = contact.streams.next(contact.state.autopilot, now)
+        message = contact.stream_requests.next_message(contact.state.autopilot, now)
         if message is not None:
-            self._commander.set_rate(contact.state, message, rate(message, capacity), now)
+            self._commander.set_message_interval(contact.state, message, stream_rate(message, capacity), now)

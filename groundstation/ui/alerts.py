@@ -6,16 +6,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from groundstation.input.keymap import CONFIRM_KEY, Action, Keymap
+from groundstation.input.keymap import CONFIRM_KEY, Keymap, OperatorAction
 from groundstation.snapshot import Snapshot
-from groundstation.ui.key_gate import Shut
-from groundstation.ui.keynames import key_name, main_key
+from groundstation.ui.key_gate import GateClosure
+from groundstation.ui.keynames import format_key, main_key
 
 MAX_SILENCE = 99.0
 """s of silence that are still counted; after that it is simply gone."""
 
 
-class Level(Enum):
+class AlertLevel(Enum):
     """How loud a line is."""
 
     HINT = auto()
@@ -32,74 +32,74 @@ class Level(Enum):
 class Alert:
     """One line."""
 
-    level: Level
+    level: AlertLevel
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Situation:
+class AlertContext:
     """All that the rules look at."""
 
     snapshot: Snapshot
     keymap: Keymap
-    shut: Shut | None = None
-    question: Action | None = None
+    closure: GateClosure | None = None
+    question: OperatorAction | None = None
     station_alive: bool = True
 
     def key(self, action: str) -> str:
         """The key of an action, as it is written."""
         key = main_key(self.keymap, action)
-        return "?" if key is None else key_name(key)
+        return "?" if key is None else format_key(key)
 
 
-Rule = Callable[[Situation], Iterator[Alert]]
+Rule = Callable[[AlertContext], Iterator[Alert]]
 
 
-def alerts(situation: Situation) -> list[Alert]:
+def active_alerts(situation: AlertContext) -> list[Alert]:
     """Every line that holds now, the most urgent first; never empty."""
     return [alert for rule in RULES for alert in rule(situation)]
 
 
-def _station(now: Situation) -> Iterator[Alert]:
+def _station(now: AlertContext) -> Iterator[Alert]:
     if not now.station_alive:
-        yield Alert(Level.DANGER, f"the station process has ended, nothing is sent: {now.key('app.quit')} quits")
+        yield Alert(AlertLevel.DANGER, f"the station process has ended, nothing is sent: {now.key('app.quit')} quits")
 
 
-def _emergency(now: Situation) -> Iterator[Alert]:
+def _emergency(now: AlertContext) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if now.question is None and vehicle is not None and vehicle.emergency_stop:
         clear = f"{now.key('stop.clear')}, then {CONFIRM_KEY}, releases it"
-        yield Alert(Level.DANGER, f"EMERGENCY STOP: the motors are off and locked. {clear}")
+        yield Alert(AlertLevel.DANGER, f"EMERGENCY STOP: the motors are off and locked. {clear}")
 
 
-def _question(now: Situation) -> Iterator[Alert]:
+def _question(now: AlertContext) -> Iterator[Alert]:
     if now.question is not None:
-        yield Alert(Level.QUESTION, f"{now.question.label}? {CONFIRM_KEY} = yes, any other key = no")
+        yield Alert(AlertLevel.QUESTION, f"{now.question.label}? {CONFIRM_KEY} = yes, any other key = no")
 
 
-def _silence(now: Situation) -> Iterator[Alert]:
+def _silence(now: AlertContext) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.alive:
         silence = f"{vehicle.silence:.0f} s" if vehicle.silence < MAX_SILENCE else "minutes"
-        yield Alert(Level.DANGER, f"no word from {vehicle.name} for {silence}: it stops by itself")
+        yield Alert(AlertLevel.DANGER, f"no word from {vehicle.name} for {silence}: it stops by itself")
 
 
-def _failsafe(now: Situation) -> Iterator[Alert]:
+def _failsafe(now: AlertContext) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.failsafes and not vehicle.emergency_stop:
         soon = "" if vehicle.failsafe_in is None else f", next step in {vehicle.failsafe_in:.0f} s"
-        yield Alert(Level.DANGER, f"failsafe: {', '.join(vehicle.failsafes)}{soon}")
+        yield Alert(AlertLevel.DANGER, f"failsafe: {', '.join(vehicle.failsafes)}{soon}")
 
 
-def _gate(now: Situation) -> Iterator[Alert]:
-    if now.shut is not None and now.question is None:
-        yield Alert(Level.WARNING, f"keys do not drive: {now.shut.reason}")
+def _gate(now: AlertContext) -> Iterator[Alert]:
+    if now.closure is not None and now.question is None:
+        yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
 
 
-def _refusal(now: Situation) -> Iterator[Alert]:
+def _refusal(now: AlertContext) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.refusal:
-        yield Alert(Level.WARNING, vehicle.refusal)
+        yield Alert(AlertLevel.WARNING, vehicle.refusal)
 
 
 LIMITS = {
@@ -111,45 +111,49 @@ LIMITS = {
 """Limits of the vehicle that a driver must know, in words; others (slew, saturated) are everyday driving."""
 
 
-def _limits(now: Situation) -> Iterator[Alert]:
+def _limits(now: AlertContext) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.armed:
         for limit in vehicle.limits:
             if limit in LIMITS:
-                yield Alert(Level.WARNING, LIMITS[limit])
+                yield Alert(AlertLevel.WARNING, LIMITS[limit])
 
 
-def _driver(now: Situation) -> Iterator[Alert]:
+def _driver(now: AlertContext) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
-        yield Alert(Level.WARNING, f"{who}: {now.key('vehicle.control')} asks for control")
+        yield Alert(AlertLevel.WARNING, f"{who}: {now.key('vehicle.control')} asks for control")
 
 
-def _settings(now: Situation) -> Iterator[Alert]:
+def _settings(now: AlertContext) -> Iterator[Alert]:
     for link in now.snapshot.links:
         if link.problem:
-            yield Alert(Level.WARNING, f"{link.name}: {link.problem}")
+            yield Alert(AlertLevel.WARNING, f"{link.name}: {link.problem}")
     for warning in now.snapshot.vehicle.warnings if now.snapshot.vehicle else ():
-        yield Alert(Level.WARNING, warning)
+        yield Alert(AlertLevel.WARNING, warning)
 
 
-def _hint(now: Situation) -> Iterator[Alert]:
-    vehicle, helm = now.snapshot.vehicle, now.snapshot.helm
+def _hint(now: AlertContext) -> Iterator[Alert]:
+    vehicle, helm = now.snapshot.vehicle, now.snapshot.operator
     if vehicle is None:
-        yield Alert(Level.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves")
+        yield Alert(
+            AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves"
+        )
     elif not vehicle.armed:
-        yield Alert(Level.HINT, f"disarmed: {now.key('vehicle.arm')}, then {CONFIRM_KEY}, arms {vehicle.name}")
+        yield Alert(AlertLevel.HINT, f"disarmed: {now.key('vehicle.arm')}, then {CONFIRM_KEY}, arms {vehicle.name}")
     elif vehicle.mode != "MANUAL":
-        yield Alert(Level.HINT, f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive")
-    elif not helm.gate_open and now.shut is None:
-        yield Alert(Level.WARNING, f"keys do not drive: {helm.gate_reason}")
+        yield Alert(
+            AlertLevel.HINT, f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
+        )
+    elif not helm.gate_open and now.closure is None:
+        yield Alert(AlertLevel.WARNING, f"keys do not drive: {helm.gate_reason}")
     elif helm.style == "latch" and (helm.throttle or helm.steering):
-        yield Alert(Level.WARNING, f"it drives on by itself: {now.key('drive.stop')} or SPACE stops")
+        yield Alert(AlertLevel.WARNING, f"it drives on by itself: {now.key('drive.stop')} or SPACE stops")
     else:
         verb = "hold" if helm.style == "hold" else "press"
         stops = f"SPACE stops, {now.key('stop.emergency')} cuts the motors"
-        yield Alert(Level.HINT, f"{verb} {now.key('drive.forward')} to drive · {stops}")
+        yield Alert(AlertLevel.HINT, f"{verb} {now.key('drive.forward')} to drive · {stops}")
 
 
 RULES: tuple[Rule, ...] = (

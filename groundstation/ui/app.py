@@ -16,17 +16,17 @@ from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 
-from groundstation.input.keymap import Action, Keymap, KeyPress
-from groundstation.intents import AnyIntent, Lease
+from groundstation.input.keymap import KeyEvent, Keymap, OperatorAction
+from groundstation.intents import AnyIntent, RenewLease
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import THEME
-from groundstation.ui.exit import orderly_end
-from groundstation.ui.key_gate import Client, Door, KeyGate, Shut
-from groundstation.ui.palette import Actions
+from groundstation.ui.exit import exit_on_signals
+from groundstation.ui.key_gate import GateClosure, GateLevel, KeyGate, StationConnection
+from groundstation.ui.palette import ActionProvider
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.help import HelpScreen
-from groundstation.ui.terminal import PING, HelmDriver, KeyRepeat, KeyUp, TerminalClosed
-from groundstation.ui.tty_output import TerminalFile, only_the_screen
+from groundstation.ui.terminal import PING, ConsoleDriver, KeyRepeat, KeyUp, TerminalClosed
+from groundstation.ui.tty_output import TerminalFile, redirect_output
 from groundstation.ui.tty_ping import PERIOD
 
 TICK = 0.1
@@ -39,22 +39,22 @@ FASTEST_PICTURE = 0.06
 """s between two pictures at least: what comes faster is skipped, only the newest counts."""
 
 
-class HelmApp(App[int]):
+class ConsoleApp(App[int]):
     """One operator at one terminal."""
 
-    COMMANDS: ClassVar[Any] = {Actions}
+    COMMANDS: ClassVar[Any] = {ActionProvider}
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+z", "suspend_process", "Suspend", show=False)]
 
     def __init__(
         self,
-        client: Client,
+        client: StationConnection,
         keymap: Keymap,
         *,
         terminal: TerminalFile | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.gate = KeyGate(client, keymap, clock)
-        driver: type[Driver] | None = None if terminal is None else HelmDriver.bound(self.gate, terminal)
+        driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
         self._snapshot = Snapshot()
@@ -62,7 +62,7 @@ class HelmApp(App[int]):
         self._shown_at = 0.0
         self._leaving = False
         self._own_loop: asyncio.AbstractEventLoop | None = None
-        self.drive = DriveScreen(keymap, self._send, self.perform)
+        self.drive = DriveScreen(keymap, self._send, self.perform_action)
 
     # ---- life ----
 
@@ -81,16 +81,16 @@ class HelmApp(App[int]):
 
     def on_unmount(self) -> None:
         """Neutral before anything else ends."""
-        self.gate.shut("quitting")
+        self.gate.close("quitting")
         asyncio.get_running_loop().remove_reader(self._client.fileno())
 
     def end(self, code: int = 0) -> None:
         """Leave; neutral at once."""
-        self.gate.shut("quitting")
+        self.gate.close("quitting")
         self._leaving = True
         self.exit(code)
 
-    def end_soon(self, code: int) -> None:
+    def end_threadsafe(self, code: int) -> None:
         """The same from a signal handler: takes no lock."""
         if self._own_loop is None:
             raise SystemExit(code)
@@ -103,7 +103,7 @@ class HelmApp(App[int]):
     def push_screen(self, screen: Any, *arguments: Any, **options: Any) -> Any:
         """Another screen on top is neutral at once, before it is even made."""
         if screen is not self.drive:
-            self.gate.set(Shut("another screen is open", Door.STOPS))
+            self.gate.set_closure(GateClosure("another screen is open", GateLevel.STOPS))
         return super().push_screen(screen, *arguments, **options)
 
     # ---- the station ----
@@ -115,25 +115,25 @@ class HelmApp(App[int]):
         """A snapshot waits. Many may: only the newest is shown, and not faster than an eye can follow."""
         snapshot = self._client.receive()
         if snapshot is not None:
-            self._take(snapshot)
+            self._handle_snapshot(snapshot)
         if not self._client.alive:
             asyncio.get_running_loop().remove_reader(self._client.fileno())
 
-    def _take(self, snapshot: Snapshot) -> None:
+    def _handle_snapshot(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
-        vehicle, helm = snapshot.vehicle, snapshot.helm
+        vehicle, helm = snapshot.vehicle, snapshot.operator
         driving = bool(helm.throttle or helm.steering or helm.held)
-        self.gate.observe(armed=vehicle is not None and vehicle.armed, driving=driving)
+        self.gate.update(armed=vehicle is not None and vehicle.armed, driving=driving)
         if self._clock() - self._shown_at >= FASTEST_PICTURE:
-            self._show()
+            self._show_snapshot()
 
-    def _show(self) -> None:
+    def _show_snapshot(self) -> None:
         self._shown_at = self._clock()
         if self.drive.is_mounted:
-            self.drive.show(
+            self.drive.show_snapshot(
                 self._snapshot,
                 pressed=frozenset(self._pressed),
-                shut=self.gate.state,
+                shut=self.gate.closure,
                 terminal=self.gate.ping.round_trip,
                 alive=self._client.alive,
             )
@@ -144,28 +144,31 @@ class HelmApp(App[int]):
         if not self.screen_stack:
             return  # the app has taken its screens down, and timers live a little longer
         now = self._clock()
-        self._client.send(Lease())
-        self.gate.set(self._why_shut(now))
+        self._client.send(RenewLease())
+        self.gate.set_closure(self._gate_closure(now))
         for key in [key for key, until in self._pressed.items() if now >= until]:
             del self._pressed[key]
         if now - self._shown_at >= TICK:
-            self._show()
+            self._show_snapshot()
 
     def _ping(self) -> None:
-        if isinstance(self._driver, HelmDriver) and self.gate.ping.due(self._clock()):
+        if isinstance(self._driver, ConsoleDriver) and self.gate.ping.next_due(self._clock()):
             self._driver.write(PING)
 
-    def _why_shut(self, now: float) -> Shut | None:
+    def _gate_closure(self, now: float) -> GateClosure | None:
         """Why keys must not drive now, as far as the screen knows; None when they may."""
-        checks: tuple[tuple[bool, Shut], ...] = (
-            (self._leaving, Shut("quitting")),
-            (not self._client.alive, Shut("the station has ended")),
-            (self.screen is not self.drive, Shut("another screen is open", Door.STOPS)),
-            (self.drive.question is not None, Shut("a question is open", Door.STOPS)),
-            (not self.app_focus, Shut("this window does not have the focus")),
-            (self.drive.too_small, Shut("the terminal is too small")),
-            (self.gate.ping.silent(now), Shut("the terminal does not answer")),
-            (self._terminal is not None and self._terminal.stuck(time.monotonic()), Shut("the terminal is stuck")),
+        checks: tuple[tuple[bool, GateClosure], ...] = (
+            (self._leaving, GateClosure("quitting")),
+            (not self._client.alive, GateClosure("the station has ended")),
+            (self.screen is not self.drive, GateClosure("another screen is open", GateLevel.STOPS)),
+            (self.drive.question is not None, GateClosure("a question is open", GateLevel.STOPS)),
+            (not self.app_focus, GateClosure("this window does not have the focus")),
+            (self.drive.too_small, GateClosure("the terminal is too small")),
+            (self.gate.ping.is_silent(now), GateClosure("the terminal does not answer")),
+            (
+                self._terminal is not None and self._terminal.is_stuck(time.monotonic()),
+                GateClosure("the terminal is stuck"),
+            ),
         )
         return next((shut for holds, shut in checks if holds), None)
 
@@ -176,9 +179,9 @@ class HelmApp(App[int]):
         if isinstance(event, events.Key) and not self.screen_stack:
             return  # it was on its way when the app took its screens down, and Textual would fail over it
         if isinstance(event, events.Key) and not event.is_forwarded:
-            if not isinstance(self._driver, HelmDriver):
-                self.gate.take([KeyPress(event.key)])
-            action = self._keys.action(event.key)
+            if not isinstance(self._driver, ConsoleDriver):
+                self.gate.handle_keys([KeyEvent(event.key)])
+            action = self._keys.get_action(event.key)
             if action is not None and action.id == "app.quit":
                 self.end()
                 return
@@ -186,21 +189,21 @@ class HelmApp(App[int]):
                 self._light(event.key)
         await super().on_event(event)
         if isinstance(event, (events.Key, events.AppBlur, events.AppFocus)) and self.screen_stack:
-            self.gate.set(self._why_shut(self._clock()))
+            self.gate.set_closure(self._gate_closure(self._clock()))
 
     def on_key_up(self, event: KeyUp) -> None:
         """Dark again."""
         self._pressed.pop(event.key, None)
-        self.drive.light(frozenset(self._pressed))
+        self.drive.light_keycaps(frozenset(self._pressed))
 
     def _light(self, key: str) -> None:
         self._pressed[key] = self._clock() + LIT
         if self.screen is self.drive:
-            self.drive.light(frozenset(self._pressed))
+            self.drive.light_keycaps(frozenset(self._pressed))
 
     # ---- actions ----
 
-    def perform(self, action: Action) -> None:
+    def perform_action(self, action: OperatorAction) -> None:
         """Do an action by its name: what the app does itself, and what was chosen in the palette."""
         if action.id == "app.quit":
             self.end()
@@ -208,22 +211,22 @@ class HelmApp(App[int]):
             # Of several keys in one read each asks for it, before the first one's screen takes the rest.
             self.push_screen(HelpScreen(self._keys))
 
-    def choose(self, action: Action) -> None:
+    def choose_action(self, action: OperatorAction) -> None:
         """An action from the palette: no key has sent its intent."""
         vehicle = self._snapshot.vehicle
         if vehicle is not None and vehicle.armed and action.when_armed is not None:
             self._send(action.when_armed)
         elif action.confirm or action.intent is None:
-            self.drive.request(action)
+            self.drive.request_action(action)
         else:
             self._send(action.intent)
 
 
-def run(client: Client, *, keymap: Keymap, log_file: Path | None = None) -> int:
+def run(client: StationConnection, *, keymap: Keymap, log_file: Path | None = None) -> int:
     """Show the screen until its person leaves or is gone. 0 after a quit, 128 + n after signal n, 1 when it broke."""
-    with only_the_screen(log_file) as terminal:
-        app = HelmApp(client, keymap, terminal=terminal)
-        with orderly_end(app.end_soon, terminal):
+    with redirect_output(log_file) as terminal:
+        app = ConsoleApp(client, keymap, terminal=terminal)
+        with exit_on_signals(app.end_threadsafe, terminal):
             # No mouse: each move of it would wake the loop, and people want to select text.
             code = app.run(mouse=False)
     if code is None:

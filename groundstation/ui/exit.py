@@ -12,7 +12,7 @@ from groundstation.ui.tty_output import TerminalFile
 
 SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 
-PATIENCE = 1.0
+EXIT_TIMEOUT = 1.0
 """s for an orderly end; after it a terminal that takes no output is given up, after as much again everything.
 
 The vehicle does not wait for either: a screen that hangs loses its lease within 0.3 s (groundstation/station/operator.py).
@@ -20,7 +20,7 @@ The vehicle does not wait for either: a screen that hangs loses its lease within
 
 
 @contextlib.contextmanager
-def orderly_end(end: Callable[[int], None], terminal: TerminalFile) -> Iterator[None]:
+def exit_on_signals(end: Callable[[int], None], terminal: TerminalFile) -> Iterator[None]:
     """While it lasts, each of SIGNALS calls `end` with the exit code of that signal.
 
     `end` is called inside a signal handler of the main thread, which may stop any line: it must take no lock.
@@ -28,7 +28,7 @@ def orderly_end(end: Callable[[int], None], terminal: TerminalFile) -> Iterator[
     overdue = 0
 
     def told(number: int, frame: FrameType | None) -> None:
-        signal.setitimer(signal.ITIMER_REAL, PATIENCE, PATIENCE)
+        signal.setitimer(signal.ITIMER_REAL, EXIT_TIMEOUT, EXIT_TIMEOUT)
         end(128 + number)
 
     def late(number: int, frame: FrameType | None) -> None:

@@ -8,13 +8,21 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Protocol
 
-from groundstation.input.keymap import Keymap, KeyPress
-from groundstation.intents import AnyIntent, EmergencyStop, ExactKeys, Gate, Push, Release, Stop
+from groundstation.input.keymap import KeyEvent, Keymap
+from groundstation.intents import (
+    AnyIntent,
+    DriveKeyDown,
+    DriveKeyUp,
+    EmergencyStop,
+    ReportKeyReleases,
+    SetKeyGate,
+    Stop,
+)
 from groundstation.snapshot import Snapshot
-from groundstation.ui.tty_ping import Ping
+from groundstation.ui.tty_ping import TerminalPing
 
 
-class Client(Protocol):
+class StationConnection(Protocol):
     """The station as the screen sees it; groundstation.client.StationClient is one."""
 
     def send(self, *intents: AnyIntent) -> None:
@@ -31,7 +39,7 @@ class Client(Protocol):
         """The station is there."""
 
 
-class Door(Enum):
+class GateLevel(Enum):
     """How far the gate is open."""
 
     OPEN = auto()
@@ -43,83 +51,85 @@ class Door(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Shut:
+class GateClosure:
     """Why the gate is not open."""
 
     reason: str
-    door: Door = Door.COMMANDS
+    level: GateLevel = GateLevel.COMMANDS
 
 
-STARTING = Shut("starting")
+STARTING = GateClosure("starting")
 
 
 class KeyGate:
     """Turns the keys of one read into intents and sends them at once, as far as the gate is open.
 
-    The station holds the same gate (`Gate` travels on the same pipe, in order) and is the one that keeps the sticks
+    The station holds the same gate (`SetKeyGate` travels on the same pipe, in order) and is the one that keeps the sticks
     neutral; here is decided what else keys may ask for.
     """
 
-    def __init__(self, client: Client, keymap: Keymap, clock: Callable[[], float]) -> None:
+    def __init__(self, client: StationConnection, keymap: Keymap, clock: Callable[[], float]) -> None:
         self.keymap = keymap
         self._client = client
         self._clock = clock
         self._lock = threading.Lock()
-        self._shut: Shut | None = STARTING
+        self._closure: GateClosure | None = STARTING
         self._down: set[str] = set()
         self._exact = False
         self._armed = False
         self._driving = True
-        self.ping = Ping()
+        self.ping = TerminalPing()
 
     @property
-    def state(self) -> Shut | None:
+    def closure(self) -> GateClosure | None:
         """Why the gate is not open; None when it is."""
-        return self._shut
+        return self._closure
 
-    def observe(self, *, armed: bool, driving: bool) -> None:
+    def update(self, *, armed: bool, driving: bool) -> None:
         """What the newest snapshot says; it decides what one key means (arm or disarm, nothing or stop)."""
         self._armed, self._driving = armed, driving
 
-    def take(self, batch: Sequence[KeyPress]) -> None:
+    def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         """The keys of one read. In the input thread."""
         with self._lock:
-            intents = self.keymap.intents(self._live(batch), armed=self._armed, driving=self._driving)
+            intents = self.keymap.build_intents(
+                self._drop_stray_repeats(batch), armed=self._armed, driving=self._driving
+            )
             passing = [intent for intent in intents if self._passes(intent)]
             if passing:
                 self._client.send(*passing)
 
-    def exact(self) -> None:
+    def handle_release_support(self) -> None:
         """The terminal tells repeats and releases."""
         with self._lock:
             if not self._exact:
                 self._exact = True
-                self._client.send(ExactKeys())
+                self._client.send(ReportKeyReleases())
 
-    def shut(self, reason: str) -> None:
+    def close(self, reason: str) -> None:
         """Close at once, from any thread. The loop opens again when its own conditions hold."""
-        self.set(Shut(reason))
+        self.set_closure(GateClosure(reason))
 
-    def set(self, shut: Shut | None) -> None:
+    def set_closure(self, shut: GateClosure | None) -> None:
         """Open (None) or close. Closing is neutral at once, and a key held over it does not count afterwards."""
         with self._lock:
-            if shut == self._shut:
+            if shut == self._closure:
                 return
-            self._shut = shut
+            self._closure = shut
             if shut is None:
-                self._client.send(Gate(open=True))
+                self._client.send(SetKeyGate(open=True))
                 return
             self._down.clear()
             # The gate first: it makes the station remember which keys are held, and the stop forgets them.
-            self._client.send(Gate(open=False, reason=shut.reason), Stop(shut.reason))
+            self._client.send(SetKeyGate(open=False, reason=shut.reason), Stop(shut.reason))
 
-    def pong(self) -> None:
+    def handle_pong(self) -> None:
         """The terminal answered."""
-        self.ping.answered(self._clock())
+        self.ping.handle_answer(self._clock())
 
-    def _live(self, batch: Sequence[KeyPress]) -> list[KeyPress]:
+    def _drop_stray_repeats(self, batch: Sequence[KeyEvent]) -> list[KeyEvent]:
         """Without repeats of keys that are not down: kitty sends some after the focus is lost."""
-        live: list[KeyPress] = []
+        live: list[KeyEvent] = []
         for press in batch:
             if press.release:
                 self._down.discard(press.key)
@@ -132,6 +142,6 @@ class KeyGate:
 
     def _passes(self, intent: AnyIntent) -> bool:
         """Drive keys always pass: the station knows of the closed gate, and a key pressed now must not drive later."""
-        if self._shut is None or isinstance(intent, (Stop, EmergencyStop, Push, Release)):
+        if self._closure is None or isinstance(intent, (Stop, EmergencyStop, DriveKeyDown, DriveKeyUp)):
             return True
-        return self._shut.door is Door.COMMANDS
+        return self._closure.level is GateLevel.COMMANDS

@@ -13,7 +13,7 @@ _MARKS = {name: character for character, name in PUNCTUATION.items() if characte
 _PLACES = frozenset({"u", "i", "o", "j", "k", "l", "m", "comma", "full_stop"})
 
 
-def key_name(key: str) -> str:
+def format_key(key: str) -> str:
     """A key as people write it: "i", ",", "^q", "F9"."""
     *modifiers, last = key.split("+")
     shown = _MARKS.get(last) or (last.upper() if last[:1] == "f" and last[1:].isdigit() else last)
@@ -25,7 +25,7 @@ def main_key(keymap: Keymap, action_id: str) -> str | None:
 
     Where the place around `k` is free to choose, it is chosen, so that the caps look like the block on the keyboard.
     """
-    keys = keymap.keys(action_id)
+    keys = keymap.get_keys(action_id)
     place = [key for key in keys if key in _PLACES]
-    short = [key for key in keys if len(key_name(key)) == 1 and key.isascii()]
+    short = [key for key in keys if len(format_key(key)) == 1 and key.isascii()]
     return next(iter((*place, *short, *keys)), None)

@@ -7,26 +7,26 @@ from typing import Protocol, cast
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from groundstation.input.keymap import ACTIONS, Action
-from groundstation.intents import Push
+from groundstation.input.keymap import ACTIONS, OperatorAction
+from groundstation.intents import DriveKeyDown
 
 
-class Chooser(Protocol):
+class ActionChooser(Protocol):
     """The app."""
 
-    def choose(self, action: Action) -> None:
+    def choose_action(self, action: OperatorAction) -> None:
         """Do what was chosen."""
 
 
-class Actions(Provider):
+class ActionProvider(Provider):
     """All actions but the drive keys: driving is held, not chosen."""
 
     @property
-    def _choices(self) -> list[Action]:
-        return [action for action in ACTIONS.values() if not isinstance(action.intent, Push)]
+    def _choices(self) -> list[OperatorAction]:
+        return [action for action in ACTIONS.values() if not isinstance(action.intent, DriveKeyDown)]
 
-    def _chosen(self, action: Action) -> partial[None]:
-        return partial(cast(Chooser, self.app).choose, action)
+    def _chosen(self, action: OperatorAction) -> partial[None]:
+        return partial(cast(ActionChooser, self.app).choose_action, action)
 
     async def discover(self) -> Hits:
         """All of them, before anything is typed."""

@@ -24,10 +24,10 @@ from textual.drivers.linux_driver import LinuxDriver
 from textual.keys import Keys, _character_to_key
 from textual.message import Message
 
-from groundstation.input.keymap import KeyPress
+from groundstation.input.keymap import KeyEvent
 from groundstation.ui.tty_output import TerminalFile
 
-ASK_RELEASES = "\x1b[=31;1u\x1b[?u"
+REQUEST_KEY_RELEASES = "\x1b[=31;1u\x1b[?u"
 """Kitty keyboard protocol: 1 disambiguate, 2 event types, 4 alternate keys, 8 all keys, 16 text; then "what holds?".
 
 Written in full because some terminals mishandle the short forms (wezterm issue 7437).
@@ -55,7 +55,7 @@ _REPORT = re.compile(r"\x1b\[(?:\?\d+u|\d+n|\?[\d;]*\$p)")
 """Answers to our questions; the last is Textual's question about a mode, as a bad line echoes it."""
 _CUT = re.compile(r"\x1b\[[0-?]*\$?[\x00-\x1a\x1c-\x20!]")
 """A sequence without its end, then a key that is in none: Ctrl and a letter, space or "!", which are what stops."""
-_PASTE = KeyPress("paste")
+_PASTE = KeyEvent("paste")
 """Bound to nothing, and so a stop while driving."""
 _REPEAT, _RELEASE = "2", "3"
 
@@ -82,16 +82,16 @@ class TerminalClosed(Message, bubble=False):
 class KeySink(Protocol):
     """Takes what the input thread reads. Called in that thread: quick, and never on widgets."""
 
-    def take(self, batch: Sequence[KeyPress]) -> None:
+    def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         """The keys of one read, in order."""
 
-    def exact(self) -> None:
+    def handle_release_support(self) -> None:
         """The terminal has shown that it tells repeats and releases."""
 
-    def shut(self, reason: str) -> None:
+    def close(self, reason: str) -> None:
         """Nobody is at the keys: focus lost, suspended, terminal closed."""
 
-    def pong(self) -> None:
+    def handle_pong(self) -> None:
         """The terminal answered a ping."""
 
 
@@ -132,23 +132,23 @@ class KeyEventParser(XTermParser):
         if begun != ended:
             self._pasting = begun > ended
         if self._pasting and not before:
-            self._sink.take([_PASTE])
+            self._sink.handle_keys([_PASTE])
 
     def _batched(self, tokens: Iterable[Message]) -> list[Message]:
         found = [token for token in tokens if not _beyond_any_terminal(token)]
         batch = [press for token in found if (press := self._press(token)) is not None]
         if batch:
-            self._sink.take(batch)
+            self._sink.handle_keys(batch)
         if any(isinstance(token, events.AppBlur) for token in found):
             self._names.clear()
-            self._sink.shut("the terminal window has lost the focus")
+            self._sink.close("the terminal window has lost the focus")
         return found
 
-    def _press(self, token: Message) -> KeyPress | None:
+    def _press(self, token: Message) -> KeyEvent | None:
         match token:
             case events.Key(key=key) | KeyUp(key=key) if key not in MODIFIER_FUNCTIONAL_KEYS:
                 name = self._latin.get(key, key)
-                return KeyPress(name, repeat=isinstance(token, KeyRepeat), release=isinstance(token, KeyUp))
+                return KeyEvent(name, repeat=isinstance(token, KeyRepeat), release=isinstance(token, KeyUp))
             case events.Paste():
                 return _PASTE
         return None
@@ -156,7 +156,7 @@ class KeyEventParser(XTermParser):
     def _sequence_to_key_events(self, sequence: str, alt: bool = False) -> Iterable[events.Key]:
         if _REPORT.fullmatch(sequence):
             if sequence == PONG:
-                self._sink.pong()
+                self._sink.handle_pong()
             # "CSI ? flags u" is swallowed and not believed: Contour answers and then tells no releases. The first
             # sub-field seen is the proof.
             return [_ignored(sequence)]
@@ -167,7 +167,7 @@ class KeyEventParser(XTermParser):
             return self._stock(sequence, alt)
         code, alternates, modifiers, kind, text, end = found.groups(default="")
         if kind:
-            self._sink.exact()
+            self._sink.handle_release_support()
         if kind == _RELEASE:
             return self._released(code + end, _plain(code, modifiers, "", end), alt)
         return self._pressed(code + end, _plain(code, modifiers, text, end), alternates, kind == _REPEAT, alt)
@@ -214,7 +214,7 @@ def _plain(code: str, modifiers: str, text: str, end: str) -> str:
     return f"\x1b[{code};{modifiers}{';' + text if text else ''}{end}"
 
 
-class HelmDriver(LinuxDriver):
+class ConsoleDriver(LinuxDriver):
     """Textual's driver for Linux and macOS, whose keys go to the app's sink first and whose end is the app's end."""
 
     sink: KeySink
@@ -227,7 +227,7 @@ class HelmDriver(LinuxDriver):
         self.input_tty = os.isatty(self.fileno)
 
     @classmethod
-    def bound(cls, sink: KeySink, terminal: TerminalFile) -> type[HelmDriver]:
+    def bind(cls, sink: KeySink, terminal: TerminalFile) -> type[ConsoleDriver]:
         """A driver class for one app: Textual makes the driver itself and passes nothing of ours."""
         return type("BoundHelmDriver", (cls,), {"sink": sink, "terminal": terminal})
 
@@ -235,7 +235,7 @@ class HelmDriver(LinuxDriver):
         """Also after a suspend: ask for releases again."""
         super().start_application_mode()  # type: ignore[no-untyped-call]
         if not constants.DISABLE_KITTY_KEY:
-            self.write(ASK_RELEASES)
+            self.write(REQUEST_KEY_RELEASES)
             self.flush()
 
     def _get_terminal_size(self) -> tuple[int, int]:
@@ -249,7 +249,7 @@ class HelmDriver(LinuxDriver):
     def _sigtstp_application(self, *arguments: Any) -> None:
         # A signal handler: the main thread that it stopped may hold a lock that `shut` needs. Then the other thread
         # waits in vain, and the lease runs out instead.
-        shut = Thread(target=self.sink.shut, args=("the ground station was suspended",), daemon=True)
+        shut = Thread(target=self.sink.close, args=("the ground station was suspended",), daemon=True)
         shut.start()
         shut.join(SUSPEND_PATIENCE)
         super()._sigtstp_application(*arguments)
@@ -262,7 +262,7 @@ class HelmDriver(LinuxDriver):
             selector.register(self.fileno, selectors.EVENT_READ)
             while not self.exit_event.is_set():
                 if selector.select(SELECT_TIMEOUT) and not self._read(parser, decode):
-                    self.sink.shut("the terminal was closed")
+                    self.sink.close("the terminal was closed")
                     self.process_message(TerminalClosed())
                     return
                 self._dispatch(parser.tick())

@@ -12,7 +12,7 @@ from pathlib import Path
 
 _KEYBOARD, _STANDARD = 0, (1, 2)
 
-PATIENCE = 0.1
+FLUSH_POLL = 0.1
 """s between looks whether a terminal that takes nothing was given up."""
 
 MAX_FLUSH = 0.5
@@ -48,12 +48,12 @@ class TerminalFile:
             try:
                 data = data[os.write(self._descriptor, data) :]
             except BlockingIOError:
-                select.select([], [self._descriptor], [], PATIENCE)
+                select.select([], [self._descriptor], [], FLUSH_POLL)
             except OSError:
                 self.gone = True
         self._flushing_since = None
 
-    def stuck(self, now: float) -> bool:
+    def is_stuck(self, now: float) -> bool:
         """It takes nothing for a while: nobody sees what the vehicle does. `now` is of time.monotonic."""
         since = self._flushing_since
         return since is not None and now - since > MAX_FLUSH
@@ -68,7 +68,7 @@ class TerminalFile:
 
 
 @contextlib.contextmanager
-def only_the_screen(log_file: Path | None) -> Iterator[TerminalFile]:
+def redirect_output(log_file: Path | None) -> Iterator[TerminalFile]:
     """While it lasts, descriptors 1 and 2 lead to the log, and only the file given leads to the terminal."""
     sys.stdout.flush()
     sys.stderr.flush()

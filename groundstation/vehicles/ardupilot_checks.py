@@ -20,7 +20,7 @@ TRIES = 3
 LONGEST_OVERRIDE = 1.0
 """s that a vehicle may go on with a demand that is not renewed before we warn."""
 
-Judge = Callable[[float, int], str | None]
+ParamCheck = Callable[[float, int], str | None]
 
 
 def _override_time(value: float, system: int) -> str | None:
@@ -44,7 +44,7 @@ def _station_system(value: float, system: int) -> str | None:
     return None if wanted == system else f"it obeys ground station {wanted} only and we are {system}: use --system"
 
 
-SETTINGS: dict[str, Judge] = {
+PARAM_CHECKS: dict[str, ParamCheck] = {
     "RC_OVERRIDE_TIME": _override_time,
     "FS_GCS_ENABLE": _gcs_failsafe,
     "FS_THR_ENABLE": _throttle_failsafe,
@@ -54,18 +54,18 @@ SETTINGS: dict[str, Judge] = {
 """Parameter -> what to warn of. SYSID_MYGCS is the name of MAV_GCS_SYSID up to 4.6; the other one stays silent."""
 
 
-class SettingsCheck:
+class ArduPilotChecks:
     """Reads the settings of one vehicle, once, and keeps the warnings."""
 
     def __init__(self, system: int, target: tuple[int, int]) -> None:
         self._system = system
         self._target = target
-        self._missing = dict.fromkeys(SETTINGS, 0)
+        self._missing = dict.fromkeys(PARAM_CHECKS, 0)
         self._due = 0.0
         self._found: dict[str, str | None] = {}
 
     @classmethod
-    def wanted(cls, autopilot: int) -> bool:
+    def applies_to(cls, autopilot: int) -> bool:
         """Only ArduPilot has these settings."""
         return autopilot == Autopilot.ARDUPILOT
 
@@ -74,13 +74,13 @@ class SettingsCheck:
         """One line each."""
         return tuple(warning for warning in self._found.values() if warning)
 
-    def receive(self, message: ParamValue) -> str | None:
+    def handle_param(self, message: ParamValue) -> str | None:
         """Take a parameter; returns a new warning."""
         name = message.param_id
-        if name not in SETTINGS or not math.isfinite(message.param_value):
+        if name not in PARAM_CHECKS or not math.isfinite(message.param_value):
             return None
         self._missing.pop(name, None)
-        before, self._found[name] = self._found.get(name), SETTINGS[name](message.param_value, self._system)
+        before, self._found[name] = self._found.get(name), PARAM_CHECKS[name](message.param_value, self._system)
         return self._found[name] if self._found[name] != before else None
 
     def tick(self, now: float) -> list[Message]:

@@ -9,17 +9,17 @@ import math
 
 from dialects.axes import NEUTRAL, Axes
 
-DRIVING = 0.05
+DRIVING_PERIOD = 0.05
 """s between demands while driving and just after: nine of them in the vehicle's MAN_TIMEOUT of 0.45 s."""
 
-STANDING = 0.2
+NEUTRAL_PERIOD = 0.2
 """s between neutral demands while nothing is asked: the vehicle knows that its driver is there, and ArduPilot, which
 latches a demand for 3 s, is kept neutral."""
 
 SETTLE = 1.0
 """s for which neutral is sent at the DRIVING rate after the last movement: a stop must get through a bad link."""
 
-FAREWELL = 5
+FINAL_NEUTRALS = 5
 """Neutral frames at the end of a drive, DRIVING apart: all five are lost once in 400 at 30 % loss."""
 
 CLOSEST = 0.008
@@ -35,7 +35,7 @@ class DemandStream:
         self._due = -math.inf
         self._moved_at = -math.inf
         self._streaming = False
-        self._farewell = 0
+        self._neutrals_left = 0
 
     @property
     def streaming(self) -> bool:
@@ -43,30 +43,30 @@ class DemandStream:
         return self._streaming
 
     @property
-    def silent(self) -> bool:
+    def finished(self) -> bool:
         """Nothing is sent and nothing is left to be said."""
-        return not self._streaming and not self._farewell
+        return not self._streaming and not self._neutrals_left
 
-    def due(self, demand: Axes, streaming: bool, now: float) -> Axes | None:
+    def next_due(self, demand: Axes, streaming: bool, now: float) -> Axes | None:
         """The demand to send now, or None. `streaming`: may we send; when that ends, neutral goes out a few times."""
         if self._streaming and not streaming:
-            self._farewell, self._due = FAREWELL, now
+            self._neutrals_left, self._due = FINAL_NEUTRALS, now
         self._streaming = streaming
         if not streaming:
-            return self._goodbye(now)
-        self._farewell = 0
+            return self._final_neutral(now)
+        self._neutrals_left = 0
         if demand != self._sent and (demand.neutral or now - self._changed_at >= CLOSEST):
             return self._send(demand, now, now)
         return self._send(demand, now, self._due) if now >= self._due else None
 
-    def hurry(self, now: float) -> None:
+    def resume(self, now: float) -> None:
         """Go on at the DRIVING rate, beginning now."""
         self._moved_at = self._due = now
 
-    def _goodbye(self, now: float) -> Axes | None:
-        if not self._farewell or now < self._due:
+    def _final_neutral(self, now: float) -> Axes | None:
+        if not self._neutrals_left or now < self._due:
             return None
-        self._farewell -= 1
+        self._neutrals_left -= 1
         self._moved_at = now
         return self._send(NEUTRAL, now, self._due)
 
@@ -74,7 +74,7 @@ class DemandStream:
         """Send, and count the period from when it was `due`: a tick that comes late must not lower the rate."""
         if not demand.neutral or not self._sent.neutral:
             self._moved_at = now
-        period = DRIVING if now - self._moved_at < SETTLE else STANDING
+        period = DRIVING_PERIOD if now - self._moved_at < SETTLE else NEUTRAL_PERIOD
         if demand != self._sent:
             self._sent, self._changed_at = demand, now
         self._due = max(due + period, now)

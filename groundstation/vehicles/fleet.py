@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from dialects.enums import Autopilot, Severity, Type
+from dialects.enums import Autopilot, Severity, VehicleType
 from dialects.messages import Heartbeat, Message
-from groundstation.vehicles.ardupilot_checks import SettingsCheck
+from groundstation.vehicles.ardupilot_checks import ArduPilotChecks
 from groundstation.vehicles.demand_stream import DemandStream
-from groundstation.vehicles.dialect_probe import Kinship
-from groundstation.vehicles.message_log import TextLog
+from groundstation.vehicles.dialect_probe import DialectProbe
+from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.stream_requests import StreamRequests
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Received
@@ -24,19 +24,19 @@ class Contact:
     """A vehicle and what the station keeps beside its picture."""
 
     state: VehicleState
-    streams: StreamRequests
+    stream_requests: StreamRequests
     link: int
     """Index of the link on which it was heard last."""
-    settings: SettingsCheck | None = None
-    stream: DemandStream = field(default_factory=DemandStream)
+    settings_check: ArduPilotChecks | None = None
+    demand_stream: DemandStream = field(default_factory=DemandStream)
     lost_at: float | None = None
-    kinship: Kinship = field(default_factory=Kinship)
+    dialect_probe: DialectProbe = field(default_factory=DialectProbe)
 
 
 class Fleet:
     """The contacts by system id. `system` is ours."""
 
-    def __init__(self, log: TextLog, system: int) -> None:
+    def __init__(self, log: MessageLog, system: int) -> None:
         self.selected: Contact | None = None
         self._log = log
         self._system = system
@@ -46,7 +46,7 @@ class Fleet:
         return iter(self._contacts.values())
 
     @property
-    def systems(self) -> tuple[int, ...]:
+    def system_ids(self) -> tuple[int, ...]:
         """System ids of all of them, in rising order."""
         return tuple(sorted(self._contacts))
 
@@ -72,7 +72,7 @@ class Fleet:
         at = systems.index(self.selected.state.system)
         self.select(systems[(at + 1) % len(systems)], now)
 
-    def admit(self, received: Received, now: float) -> Contact | None:
+    def get_or_add(self, received: Received, now: float) -> Contact | None:
         """The contact that a message belongs to; a vehicle's HEARTBEAT makes a new one."""
         contact = self._contacts.get(received.system)
         if contact is not None:
@@ -84,26 +84,26 @@ class Fleet:
         target = (state.system, state.component)
         contact = Contact(state, StreamRequests(target, now), received.peer.link)
         self._contacts[received.system] = contact
-        if SettingsCheck.wanted(state.autopilot):
-            contact.settings = SettingsCheck(self._system, target)
+        if ArduPilotChecks.applies_to(state.autopilot):
+            contact.settings_check = ArduPilotChecks(self._system, target)
         self.selected = self.selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact
 
-    def watch(self, now: float) -> None:
+    def update(self, now: float) -> None:
         """Notice who went silent and who came back."""
         for contact in self._contacts.values():
             monitor, name = contact.state.monitor, contact.state.name
-            if contact.lost_at is None and not monitor.alive(now):
+            if contact.lost_at is None and not monitor.is_alive(now):
                 contact.lost_at = now - monitor.silence(now)
                 self._log.add(now, "station", f"{name} lost: silent for {monitor.timeout:g} s", Severity.CRITICAL)
-            elif contact.lost_at is not None and monitor.alive(now):
+            elif contact.lost_at is not None and monitor.is_alive(now):
                 self._log.add(now, "station", f"{name} is back after {now - contact.lost_at:.1f} s", Severity.NOTICE)
                 contact.lost_at = None
-                contact.streams.restart(now)
-                contact.kinship = Kinship()
+                contact.stream_requests.restart(now)
+                contact.dialect_probe = DialectProbe()
 
 
 def is_vehicle(message: Message) -> bool:
     """Is this the HEARTBEAT of something that drives, and not of a ground station, a camera or a radio?"""
-    return isinstance(message, Heartbeat) and message.type != Type.GCS and message.autopilot != Autopilot.INVALID
+    return isinstance(message, Heartbeat) and message.type != VehicleType.GCS and message.autopilot != Autopilot.INVALID

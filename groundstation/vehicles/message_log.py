@@ -6,8 +6,8 @@ from collections import deque
 from dataclasses import dataclass
 
 from dialects.enums import Severity
-from dialects.messages import StatusText, printable, text_of
-from groundstation.snapshot import TextLine
+from dialects.messages import StatusText, decode_text, printable
+from groundstation.snapshot import LogLine
 
 MAX_LINES = 200
 MAX_LENGTH = 160
@@ -50,7 +50,7 @@ class _Chunks:
         return "".join(self.parts[number] for number in sorted(self.parts))
 
 
-class TextLog:
+class MessageLog:
     """Texts in the order of arrival; times are of the monotonic clock and become wall clock in `lines`."""
 
     def __init__(self) -> None:
@@ -67,17 +67,17 @@ class TextLog:
         else:
             self._lines.append(_Line(now, severity, label, text))
 
-    def hear(self, message: StatusText, system: int, now: float) -> str | None:
+    def handle_statustext(self, message: StatusText, system: int, now: float) -> str | None:
         """Take a vehicle's text; returns it when it is whole."""
         severity = int(message.severity)
         if message.id == 0:  # the field is an extension: 0 says "not one of several chunks"
-            self.add(now, "vehicle", text_of(message), severity)
-            return text_of(message)
+            self.add(now, "vehicle", decode_text(message), severity)
+            return decode_text(message)
         key = (system, int(message.id))
         if key not in self._chunks and len(self._chunks) >= MAX_CHUNKS:
             self.expire(now, everything=True)
         chunks = self._chunks.setdefault(key, _Chunks(now, severity, {}))
-        part = text_of(message)
+        part = decode_text(message)
         chunks.parts[min(int(message.chunk_seq), MAX_CHUNKS - 1)] = part
         if len(message._text_raw.split(b"\0", 1)[0]) < CHUNK or message.chunk_seq >= MAX_CHUNKS - 1:
             chunks.last = min(int(message.chunk_seq), MAX_CHUNKS - 1)
@@ -94,10 +94,10 @@ class TextLog:
                 del self._chunks[key]
                 self.add(now, "vehicle", chunks.text + " ...", chunks.severity)
 
-    def lines(self, now: float, wall: float) -> tuple[TextLine, ...]:
+    def build_lines(self, now: float, wall: float) -> tuple[LogLine, ...]:
         """All lines, oldest first; `now` and `wall` are the same moment on both clocks."""
         return tuple(
-            TextLine(
+            LogLine(
                 time=wall - (now - line.time),
                 severity=line.severity,
                 label=line.label,

@@ -16,17 +16,17 @@ from dataclasses import dataclass
 
 from dialects import messages as m
 from dialects.enums import DataStream, Result
-from groundstation.vehicles.dialect_probe import FOREIGN
-from link.services.command.server import Outcome
+from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS
+from link.services.command.server import CommandOutcome
 
-PATIENCE = 3.0
+IDENTIFY_TIMEOUT = 3.0
 """s that a vehicle of no known kind gets to send by itself."""
 
-SHARE = 0.4
+CAPACITY_SHARE = 0.4
 """Of the link's capacity: 60 % full, ArduPilot's own buffer begins to delay everything (0.18 s at 57600 baud), and
 parameters, texts and answers need room, too."""
 
-SLOWEST = 0.1
+MIN_RATE = 0.1
 """Hz. A link that takes less is none to drive over."""
 
 FRAME = 12
@@ -40,26 +40,26 @@ REBOOTED = 5000
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class StreamRate:
     """How often the Drive screen needs a message, Hz, and ArduPilot's group that holds it."""
 
     rate: float
     group: DataStream
 
 
-WANTED: dict[int, Wanted] = {
-    m.Attitude.id: Wanted(10.0, DataStream.EXTRA1),
-    m.LocalPositionNed.id: Wanted(5.0, DataStream.POSITION),
-    m.ServoOutputRaw.id: Wanted(5.0, DataStream.RC_CHANNELS),
-    m.VfrHud.id: Wanted(4.0, DataStream.EXTRA2),
-    m.GlobalPositionInt.id: Wanted(2.0, DataStream.POSITION),
-    m.SysStatus.id: Wanted(1.0, DataStream.EXTENDED_STATUS),
-    m.GpsRawInt.id: Wanted(1.0, DataStream.EXTENDED_STATUS),
-    m.BatteryStatus.id: Wanted(1.0, DataStream.EXTRA3),
+STREAM_RATES: dict[int, StreamRate] = {
+    m.Attitude.id: StreamRate(10.0, DataStream.EXTRA1),
+    m.LocalPositionNed.id: StreamRate(5.0, DataStream.POSITION),
+    m.ServoOutputRaw.id: StreamRate(5.0, DataStream.RC_CHANNELS),
+    m.VfrHud.id: StreamRate(4.0, DataStream.EXTRA2),
+    m.GlobalPositionInt.id: StreamRate(2.0, DataStream.POSITION),
+    m.SysStatus.id: StreamRate(1.0, DataStream.EXTENDED_STATUS),
+    m.GpsRawInt.id: StreamRate(1.0, DataStream.EXTENDED_STATUS),
+    m.BatteryStatus.id: StreamRate(1.0, DataStream.EXTRA3),
 }
 """Message -> how it is wanted."""
 
-LOAD = sum((m.MESSAGES[number].unpacker.size + FRAME) * wanted.rate for number, wanted in WANTED.items())
+LOAD = sum((m.MESSAGES[number].unpacker.size + FRAME) * wanted.rate for number, wanted in STREAM_RATES.items())
 """Bytes/s of all of them together: 1240."""
 
 
@@ -83,7 +83,7 @@ class StreamRequests:
         self._heard.clear()
         self._groups.clear()
 
-    def receive(self, message: m.Message, now: float) -> None:
+    def handle_message(self, message: m.Message, now: float) -> None:
         """Note what comes by itself, and a clock that starts anew."""
         self._heard.add(type(message).id)
         boot = getattr(message, "time_boot_ms", None)
@@ -92,23 +92,23 @@ class StreamRequests:
                 self.restart(now)
             self._boot = boot
 
-    def next(self, autopilot: int, now: float) -> int | None:
+    def next_message(self, autopilot: int, now: float) -> int | None:
         """The message to ask for now by SET_MESSAGE_INTERVAL. To be called while no other is being asked for."""
         if self._ask is None:
             self._ask = self._missing(autopilot, now)
         return self._ask.pop(0) if self._ask else None
 
-    def answered(self, outcome: Outcome) -> None:
+    def handle_outcome(self, outcome: CommandOutcome) -> None:
         """How it took one of them."""
         if outcome.result is Result.ACCEPTED:
             return
         if outcome.result in (None, Result.UNSUPPORTED):  # it knows the command not at all
-            self._fall_back(WANTED)
+            self._fall_back(STREAM_RATES)
             self._ask = []
         else:
             self._fall_back([int(outcome.params[0])])
 
-    def groups(self, capacity: float | None, now: float) -> list[m.Message]:
+    def due_group_requests(self, capacity: float | None, now: float) -> list[m.Message]:
         """The group requests that are due. `capacity` of the link in bytes/s, None where nobody knows."""
         if not self._groups or now < self._group_due:
             return []
@@ -117,24 +117,26 @@ class StreamRequests:
         return [m.RequestDataStream(*self._target, group, _group_rate(group, capacity), 1) for group in asked]
 
     def _missing(self, autopilot: int, now: float) -> list[int] | None:
-        if autopilot in FOREIGN:  # they send little until they are asked: 1 Hz, or nothing
-            return list(WANTED)
-        if now - self._since < PATIENCE:
+        if autopilot in FOREIGN_AUTOPILOTS:  # they send little until they are asked: 1 Hz, or nothing
+            return list(STREAM_RATES)
+        if now - self._since < IDENTIFY_TIMEOUT:
             return None
-        return [number for number in WANTED if number not in self._heard]
+        return [number for number in STREAM_RATES if number not in self._heard]
 
     def _fall_back(self, messages: Collection[int]) -> None:
         for number in messages:
-            if number in WANTED:
-                self._groups[WANTED[number].group] = GROUP_TRIES
+            if number in STREAM_RATES:
+                self._groups[STREAM_RATES[number].group] = GROUP_TRIES
 
 
-def rate(message: int, capacity: float | None) -> float:
+def stream_rate(message: int, capacity: float | None) -> float:
     """How often to ask for a message, Hz, so that all of them fit the link."""
-    wanted = WANTED[message].rate
-    return wanted if capacity is None else max(SLOWEST, wanted * min(1.0, SHARE * capacity / LOAD))
+    wanted = STREAM_RATES[message].rate
+    return wanted if capacity is None else max(MIN_RATE, wanted * min(1.0, CAPACITY_SHARE * capacity / LOAD))
 
 
 def _group_rate(group: DataStream, capacity: float | None) -> int:
     """Whole Hz is all that REQUEST_DATA_STREAM knows."""
-    return max(1, int(max(rate(number, capacity) for number, wanted in WANTED.items() if wanted.group is group)))
+    return max(
+        1, int(max(stream_rate(number, capacity) for number, wanted in STREAM_RATES.items() if wanted.group is group))
+    )

@@ -42,7 +42,7 @@ class LocalFrame:
     def __init__(self) -> None:
         self._origin: tuple[float, float] | None = None
 
-    def metres(self, latitude: float, longitude: float) -> tuple[float, float]:
+    def to_local(self, latitude: float, longitude: float) -> tuple[float, float]:
         """North and east of the origin; degrees in."""
         if self._origin is None:
             self._origin = (latitude, longitude)

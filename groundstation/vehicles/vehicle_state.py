@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Failsafe, Limit, ModeFlag, State, Type
+from dialects.enums import Autopilot, DriveLimit, Failsafe, ModeFlag, SystemState, VehicleType
 from dialects.modes import mode_name
 from groundstation.snapshot import VehicleView
 from groundstation.vehicles.latency import LatencyMeter
@@ -21,13 +21,13 @@ from link.protocol.heartbeat import HeartbeatMonitor
 LOST_AFTER = 2.5
 """Silence after which a vehicle counts as lost, s: two and a half heartbeats, so that one lost one is no alarm."""
 
-FRESH = 1.5
+FRESH_TIMEOUT = 1.5
 """s for which a reading is preferred to the same one from a coarser message, and a ROVER_DRIVE_STATUS is shown."""
 
 UNKNOWN_U16 = 0xFFFF
 
 _AUTOPILOTS: dict[int, str] = {Autopilot.ARDUPILOT: "ArduPilot ", Autopilot.PX4: "PX4 "}
-_KINDS: dict[int, str] = {Type.GROUND_ROVER: "rover", Type.SURFACE_BOAT: "boat"}
+_KINDS: dict[int, str] = {VehicleType.GROUND_ROVER: "rover", VehicleType.SURFACE_BOAT: "boat"}
 _MOTOR_CHANNELS: dict[int, tuple[str, ...]] = {Autopilot.ARDUPILOT: ("servo1_raw", "servo3_raw")}
 """Steering and throttle of ArduRover's default outputs, for vehicles that tell nothing better."""
 
@@ -41,10 +41,10 @@ class VehicleState:
         self.monitor = HeartbeatMonitor(LOST_AFTER)
         self.latency = LatencyMeter()
         self.autopilot: int = Autopilot.GENERIC
-        self.kind: int = Type.GROUND_ROVER
+        self.kind: int = VehicleType.GROUND_ROVER
         self.mode = "unknown"
         self.armed = False
-        self.status: int = State.UNINIT
+        self.status: int = SystemState.UNINIT
         self.driver: int | None = None
         self.drive_info: m.RoverDriveInfo | None = None
         self.boot_time: int | None = None
@@ -62,7 +62,7 @@ class VehicleState:
 
     def receive(self, received: Received, now: float) -> None:
         """Take a message of this system."""
-        self.monitor.heard(now)
+        self.monitor.update(now)
         message = received.message
         if received.component != self.component:
             return
@@ -73,18 +73,18 @@ class VehicleState:
             self._times[type(message)] = now
 
     @property
-    def speaks_ours(self) -> bool:
+    def has_rover_dialect(self) -> bool:
         """It knows the private messages of our dialect."""
         return self._drive is not None or self.drive_info is not None
 
-    def tells_ours(self, now: float) -> bool:
+    def sends_drive_status(self, now: float) -> bool:
         """ROVER_DRIVE_STATUS comes."""
         return self._fresh(m.RoverDriveStatus, now)
 
     @property
     def emergency_stop(self) -> bool:
         """The vehicle says that its motors are locked."""
-        return self.status == State.EMERGENCY or bool(self._drive and self._drive.limits & Limit.ESTOP)
+        return self.status == SystemState.EMERGENCY or bool(self._drive and self._drive.limits & DriveLimit.ESTOP)
 
     @property
     def name(self) -> str:
@@ -92,7 +92,7 @@ class VehicleState:
         text = f"{_AUTOPILOTS.get(self.autopilot, '')}{_KINDS.get(self.kind, 'vehicle')} {self.system}"
         return text[0].upper() + text[1:]
 
-    def view(self, now: float, **station: Any) -> VehicleView:
+    def build_view(self, now: float, **station: Any) -> VehicleView:
         """The picture now; `station` are the fields that only the station knows."""
         drive = self._drive if self._fresh(m.RoverDriveStatus, now) else None
         return VehicleView(
@@ -102,16 +102,16 @@ class VehicleState:
             mode=self.mode,
             armed=self.armed,
             status=self.status,
-            alive=self.monitor.alive(now),
+            alive=self.monitor.is_alive(now),
             silence=self.monitor.silence(now),
             driver=self.driver,
             track=self._track.points,
             speed=self._speed(),
             demand=_demand(drive),
             outputs=_outputs(drive, self.drive_info) if drive else self._motors,
-            limits=flag_words(Limit, drive.limits) if drive else (),
+            limits=flag_words(DriveLimit, drive.limits) if drive else (),
             command_age=drive.demand_age_ms / 1000 if drive and drive.demand_age_ms != UNKNOWN_U16 else None,
-            latency=self.latency.newest,
+            latency=self.latency.latest,
             failsafes=flag_words(Failsafe, self._failsafe.active) if self._failsafe else (),
             failsafe_in=self._failsafe_in(now),
             **self._values,
@@ -156,13 +156,13 @@ class VehicleState:
         if self._fresh(m.LocalPositionNed, now) or (message.lat == 0 and message.lon == 0):  # 0, 0: no fix yet
             return
         self._velocity = (message.vx / 100, message.vy / 100)
-        self._move(*self._frame.metres(message.lat / 1e7, message.lon / 1e7))
+        self._move(*self._frame.to_local(message.lat / 1e7, message.lon / 1e7))
 
     def _home(self, message: m.HomePosition, now: float) -> None:
         if m.LocalPositionNed in self._times and _finite(message.x, message.y):
             self._values["home"] = (message.x, message.y)
         else:
-            self._values["home"] = self._frame.metres(message.latitude / 1e7, message.longitude / 1e7)
+            self._values["home"] = self._frame.to_local(message.latitude / 1e7, message.longitude / 1e7)
 
     def _gps(self, message: m.GpsRawInt, now: float) -> None:
         self._values["gps_fix"] = message.fix_type
@@ -198,7 +198,7 @@ class VehicleState:
 
     def _fresh(self, kind: type[m.Message], now: float) -> bool:
         at = self._times.get(kind)
-        return at is not None and now - at <= FRESH
+        return at is not None and now - at <= FRESH_TIMEOUT
 
     def _speed(self) -> float | None:
         heading = self._values.get("heading")
@@ -214,7 +214,7 @@ class VehicleState:
         return max(0.0, status.action_in_ms / 1000 - (now - self._times[m.RoverFailsafeStatus]))
 
 
-def flag_words(flags: type[Limit] | type[Failsafe], value: int) -> tuple[str, ...]:
+def flag_words(flags: type[DriveLimit] | type[Failsafe], value: int) -> tuple[str, ...]:
     """The names of the flags in `value`, as words; unknown bits are left out."""
     return tuple(str(flag.name).replace("_", " ").lower() for flag in flags if value & flag)
 

@@ -14,15 +14,15 @@ from pathlib import Path
 from typing import Any
 
 from link.bridge.bridge import Bridge
-from link.bridge.recorder import RecorderError, record_to
-from link.bridge.screens import Screen, Teller, print_json
-from link.bridge.status import Status
-from link.endpoint import EndpointError, endpoint_help, parse
+from link.bridge.recorder import RecorderError, open_recorder
+from link.bridge.screens import StatusLogger, StatusWriter, print_json
+from link.bridge.status import BridgeStatus
+from link.endpoint import EndpointError, endpoint_help, parse_endpoint
 from link.runtime import stdio
-from link.runtime.command_line import Parser
+from link.runtime.command_line import CommandLineParser
 from link.tlog.recorder import Recorder
-from link.transport.transport import LinkError, Wire
-from link.transport.transports import open_wires
+from link.transport.transport import LinkError, Transport
+from link.transport.transports import open_transports
 
 log = logging.getLogger(__name__)
 
@@ -54,9 +54,9 @@ class _Version(argparse.Action):
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the bridge; the exit code."""
-    stdio.secure()
+    stdio.ensure_open()
     parser = _parser()
-    asked = parser.parse_args(parser.checked(sys.argv[1:] if argv is None else argv))
+    asked = parser.parse_args(parser.reject_empty(sys.argv[1:] if argv is None else argv))
     _check(asked.endpoints, parser)
     logging.basicConfig(level=logging.INFO, format="bridge: %(message)s", stream=sys.stderr)
     try:
@@ -70,7 +70,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 async def _serve(asked: argparse.Namespace, stack: ExitStack) -> None:
-    wires = open_wires(asked.endpoints)
+    wires = open_transports(asked.endpoints)
     recorder = _recorder(asked.tlog, wires, stack)
     bridge = Bridge(wires, _screen(asked, stack), recorder=recorder, join=not asked.one_frame)
     loop = asyncio.get_running_loop()
@@ -84,11 +84,11 @@ async def _serve(asked: argparse.Namespace, stack: ExitStack) -> None:
     log.info("stopped")
 
 
-def _recorder(folder: Path | None, wires: Sequence[Wire], stack: ExitStack) -> Recorder | None:
+def _recorder(folder: Path | None, wires: Sequence[Transport], stack: ExitStack) -> Recorder | None:
     if folder is None:
         return None
     try:
-        path, recorder = record_to(folder)
+        path, recorder = open_recorder(folder)
     except RecorderError:
         for wire in wires:
             wire.close()
@@ -98,33 +98,33 @@ def _recorder(folder: Path | None, wires: Sequence[Wire], stack: ExitStack) -> R
     return recorder
 
 
-def _screen(asked: argparse.Namespace, stack: ExitStack) -> Callable[[Status], None]:
+def _screen(asked: argparse.Namespace, stack: ExitStack) -> Callable[[BridgeStatus], None]:
     """Where the status goes: a table on a terminal, else what goes wrong to the log, with --json every line as well."""
     if sys.stdout.isatty() and not asked.quiet and not asked.json:
-        return Screen(_live_table(stack)).show
-    teller = Teller()
+        return StatusWriter(_live_table(stack)).update
+    teller = StatusLogger()
     if not asked.json:
-        return teller.show
-    screen = Screen(print_json)
+        return teller.update
+    screen = StatusWriter(print_json)
 
-    def both(status: Status) -> None:
-        screen.show(status)
-        teller.show(status)
+    def both(status: BridgeStatus) -> None:
+        screen.update(status)
+        teller.update(status)
 
     return both
 
 
-def _live_table(stack: ExitStack) -> Callable[[Status], None]:
+def _live_table(stack: ExitStack) -> Callable[[BridgeStatus], None]:
     from rich.console import Console
 
     from link.bridge.table import LiveTable
 
     table = LiveTable(Console())
     stack.callback(table.close)
-    return table.draw
+    return table.update
 
 
-def _check(endpoints: Sequence[str], parser: Parser) -> None:
+def _check(endpoints: Sequence[str], parser: CommandLineParser) -> None:
     if len(endpoints) < 2:
         parser.error("a bridge has two ends or more, for example serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550")
     for endpoint in endpoints:
@@ -134,13 +134,13 @@ def _check(endpoints: Sequence[str], parser: Parser) -> None:
 
 def _endpoint(text: str) -> str:
     try:
-        return parse(text).text
+        return parse_endpoint(text).text
     except EndpointError as error:
         raise argparse.ArgumentTypeError(str(error)) from error
 
 
-def _parser() -> Parser:
-    parser = Parser(
+def _parser() -> CommandLineParser:
+    parser = CommandLineParser(
         prog="bridge",
         description="Joins MAVLink endpoints: forwards frames by system and component id and changes none.",
         epilog=EXAMPLES.format(endpoints=endpoint_help()),

@@ -8,10 +8,10 @@ from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 from itertools import accumulate
 
-from link.bridge.status import Status, StatusMeter
+from link.bridge.status import BridgeStatus, StatusMeter
 from link.routing.router import Delivery, Router
 from link.tlog.recorder import Recorder
-from link.transport.transport import Wire
+from link.transport.transport import Transport
 
 TICK = 0.05
 """s between two looks at half frames and silent peers: half of what a framer waits (framer.PARTIAL_DEADLINE)."""
@@ -30,8 +30,8 @@ class Bridge:
 
     def __init__(
         self,
-        wires: Sequence[Wire],
-        tell: Callable[[Status], None],
+        wires: Sequence[Transport],
+        tell: Callable[[BridgeStatus], None],
         *,
         recorder: Recorder | None = None,
         join: bool = True,
@@ -40,8 +40,8 @@ class Bridge:
         self._tell = tell
         self._recorder = recorder
         self._join = join
-        self._router = Router([(wire.stream, wire.fixed) for wire in wires])
-        self._router.tape = [] if recorder else None
+        self._router = Router([(wire.stream, wire.fixed_address) for wire in wires])
+        self._router.captured = [] if recorder else None
         self._meter = StatusMeter(wires, self._router)
         self._loop = asyncio.get_running_loop()
         self._ended: asyncio.Future[None] = self._loop.create_future()
@@ -56,7 +56,9 @@ class Bridge:
             timer.add_done_callback(self._timer_ended)
         try:
             for port, wire in enumerate(self._wires):
-                wire.start(self._loop, partial(self._arrived, port), partial(self._router.table.gone, port))
+                wire.start(
+                    self._loop, partial(self._arrived, port), partial(self._router.table.handle_disconnect, port)
+                )
             await self._ended
         finally:
             for timer in timers:
@@ -84,14 +86,14 @@ class Bridge:
         port, address, frames = delivery
         wire = self._wires[port]
         if len(frames) > 1 and self._join and not wire.stream:
-            frames = joined(frames)
+            frames = join_frames(frames)
         for data in frames:
             wire.send(data, address)
 
     def _record(self, recorder: Recorder) -> None:
-        tape = self._router.tape
+        tape = self._router.captured
         if tape:
-            self._router.tape = []
+            self._router.captured = []
             recorder.add(self._loop.time(), tape)
 
     def _tick(self) -> None:
@@ -113,7 +115,7 @@ class Bridge:
             await asyncio.sleep(due - self._loop.time())
 
 
-def joined(frames: Sequence[bytes]) -> list[bytes]:
+def join_frames(frames: Sequence[bytes]) -> list[bytes]:
     """Frames as datagrams of at most DATAGRAM bytes, in order; no frame is divided."""
     ends = list(accumulate(map(len, frames)))
     datagrams: list[bytes] = []

@@ -13,7 +13,7 @@ class RecorderError(Exception):
     """There is nowhere to record to; the message is one line."""
 
 
-def record_to(folder: Path) -> tuple[Path, Recorder]:
+def open_recorder(folder: Path) -> tuple[Path, Recorder]:
     """A recorder with a new file in `folder`, and where that is. Raises RecorderError."""
     stamp = datetime.datetime.now().astimezone().strftime("%Y-%m-%dT%H-%M-%S")
     try:
@@ -24,7 +24,7 @@ def record_to(folder: Path) -> tuple[Path, Recorder]:
     except OSError as error:
         raise RecorderError(f"--tlog {folder}: {error.strerror}") from error
     recorder = Recorder()
-    recorder.begin(lambda: file)
+    recorder.start(lambda: file)
     return path, recorder
 
 

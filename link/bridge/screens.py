@@ -16,21 +16,21 @@ import time
 from collections.abc import Callable
 
 from dialects.enums import Severity
-from link.bridge.status import Status
-from link.protocol.link_events import UpsAndDowns
+from link.bridge.status import BridgeStatus
+from link.protocol.link_events import UpDownEvents
 
 log = logging.getLogger(__name__)
 
 
-class Screen:
+class StatusWriter:
     """Hands each status to `draw` in a thread of its own; `draw` may block, and ends the screen by OSError."""
 
-    def __init__(self, draw: Callable[[Status], None]) -> None:
+    def __init__(self, draw: Callable[[BridgeStatus], None]) -> None:
         self._draw = draw
-        self._mailbox: queue.Queue[Status] = queue.Queue(1)
+        self._mailbox: queue.Queue[BridgeStatus] = queue.Queue(1)
         threading.Thread(target=self._run, name="screen", daemon=True).start()
 
-    def show(self, status: Status) -> None:
+    def update(self, status: BridgeStatus) -> None:
         """Replace what waits to be drawn."""
         with contextlib.suppress(queue.Empty):
             self._mailbox.get_nowait()
@@ -45,22 +45,22 @@ class Screen:
             log.warning("nobody reads the status any more; the bridge goes on")
 
 
-def print_json(status: Status) -> None:
+def print_json(status: BridgeStatus) -> None:
     """One line on stdout. Raises OSError when nobody reads."""
-    line = json.dumps({"time": round(time.time(), 3), **status.plain()})
+    line = json.dumps({"time": round(time.time(), 3), **status.to_dict()})
     os.write(sys.stdout.fileno(), line.encode() + b"\n")
 
 
-class Teller:
+class StatusLogger:
     """Logs what goes wrong and when it is right again, once each."""
 
     def __init__(self) -> None:
-        self._links = UpsAndDowns()
+        self._links = UpDownEvents()
 
-    def show(self, status: Status) -> None:
+    def update(self, status: BridgeStatus) -> None:
         """Say what has changed."""
         for link in status.links:
             why = link.problem and link.problem.removeprefix(f"{link.endpoint}: ")
-            if news := self._links.news(link.endpoint, why):
+            if news := self._links.update(link.endpoint, why):
                 level = logging.WARNING if news.severity <= Severity.ERROR else logging.INFO
                 log.log(level, "%s: %s", link.endpoint, news.text)

@@ -7,9 +7,9 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from link.protocol.frame import noise_hint
-from link.routing.route_report import PortReport, RouteReport
+from link.routing.route_report import RouteReport, TransportReport
 from link.routing.router import Router
-from link.transport.transport import Wire
+from link.transport.transport import Transport
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class RouteStatus:
 
 
 @dataclass(frozen=True, slots=True)
-class Status:
+class BridgeStatus:
     """All of it."""
 
     links: tuple[LinkStatus, ...]
@@ -59,7 +59,7 @@ class Status:
     refused_peers: int
     recorder_problem: str | None = None
 
-    def plain(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """For JSON."""
         return asdict(self)
 
@@ -67,19 +67,19 @@ class Status:
 class StatusMeter:
     """Makes rates of two readings."""
 
-    def __init__(self, wires: Sequence[Wire], router: Router) -> None:
+    def __init__(self, wires: Sequence[Transport], router: Router) -> None:
         self._wires = wires
         self._router = router
-        self._ports = router.table.ports()
+        self._ports = router.table.transport_reports()
         self._received: dict[tuple[int, int, int, Hashable], int] = {}
         self._at: float | None = None
 
-    def read(self, now: float, recorder_problem: str | None = None) -> Status:
+    def read(self, now: float, recorder_problem: str | None = None) -> BridgeStatus:
         """The status, with the rates since the last reading."""
         period = now - self._at if self._at is not None and now > self._at else 1.0
-        ports, before = self._router.table.ports(), self._ports
-        routes = self._router.table.routes(now)
-        status = Status(
+        ports, before = self._router.table.transport_reports(), self._ports
+        routes = self._router.table.route_reports(now)
+        status = BridgeStatus(
             links=tuple(
                 _link(wire, port, past, period) for wire, port, past in zip(self._wires, ports, before, strict=True)
             ),
@@ -115,7 +115,7 @@ def _key(route: RouteReport) -> tuple[int, int, int, Hashable]:
     return route.system, route.component, route.port, route.address
 
 
-def _link(wire: Wire, port: PortReport, past: PortReport, period: float) -> LinkStatus:
+def _link(wire: Transport, port: TransportReport, past: TransportReport, period: float) -> LinkStatus:
     name = wire.endpoint.text
     hint = noise_hint(name, port.bytes_in, port.frames_in) if wire.capacity is not None else None
     received, lost = port.received - past.received, port.lost - past.lost

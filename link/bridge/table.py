@@ -7,7 +7,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from link.bridge.status import LinkStatus, RouteStatus, Status
+from link.bridge.status import BridgeStatus, LinkStatus, RouteStatus
 
 LINK_COLUMNS = (
     "link", "peers", "in\n/s", "in\nB/s", "out\n/s", "out\nB/s", "loss", "CRC", "noise\nB", "unknown", "dropped",
@@ -27,23 +27,23 @@ class LiveTable:
         self._live = Live(console=console, auto_refresh=False)
         self._live.start()
 
-    def draw(self, status: Status) -> None:
+    def update(self, status: BridgeStatus) -> None:
         """Replace the picture."""
-        self._live.update(picture(status), refresh=True)
+        self._live.update(build_tables(status), refresh=True)
 
     def close(self) -> None:
         """Leave the last picture and give the terminal back."""
         self._live.stop()
 
 
-def picture(status: Status) -> Group:
+def build_tables(status: BridgeStatus) -> Group:
     """Both tables, and what is wrong below them."""
     problems = [link.problem for link in status.links] + [status.recorder_problem]
     lines = [Text(problem, style="red") for problem in problems if problem]
     return Group(_links(status), _routes(status), *lines)
 
 
-def _links(status: Status) -> Table:
+def _links(status: BridgeStatus) -> Table:
     table = _table("links", LINK_COLUMNS)
     for link in status.links:
         table.add_row(*_link(link), style="red" if link.problem else None)
@@ -53,11 +53,11 @@ def _links(status: Status) -> Table:
 def _link(link: LinkStatus) -> list[Text]:
     rates = (link.frames_in_per_s, link.bytes_in_per_s, link.frames_out_per_s, link.bytes_out_per_s)
     counts = (link.crc_errors, link.noise_bytes, link.unknown, link.dropped)
-    cells = [link.endpoint, str(link.peers), *map(short, rates), f"{link.loss:.1%}", *map(short, counts)]
+    cells = [link.endpoint, str(link.peers), *map(format_count, rates), f"{link.loss:.1%}", *map(format_count, counts)]
     return [Text(cell) for cell in cells]
 
 
-def short(number: float) -> str:
+def format_count(number: float) -> str:
     """At most five characters up to 10^13: 98765, 123k, 45.6M."""
     for unit, suffix in ((1.0, ""), (1e3, "k"), (1e6, "M"), (1e9, "G")):
         size = number / unit
@@ -66,7 +66,7 @@ def short(number: float) -> str:
     return f"{number:.0e}"
 
 
-def _routes(status: Status) -> Table:
+def _routes(status: BridgeStatus) -> Table:
     table = _table("routes", ROUTE_COLUMNS)
     for route in status.routes:
         table.add_row(*_route(route), style="yellow" if route.silence > QUIET_AFTER else None)
@@ -77,7 +77,7 @@ def _routes(status: Status) -> Table:
 
 def _route(route: RouteStatus) -> list[Text]:
     where = "" if route.address == route.endpoint else route.address
-    numbers = (short(route.frames_per_s), short(route.lost), f"{route.silence:.1f} s")
+    numbers = (format_count(route.frames_per_s), format_count(route.lost), f"{route.silence:.1f} s")
     return [Text(cell) for cell in (str(route.system), str(route.component), route.endpoint, where, *numbers)]
 
 

@@ -26,11 +26,11 @@ from dialects.messages import (
 )
 from link.core import LinkReport, Outgoing, Peer, Received, SourceCount
 from link.protocol.flow_control import FlowControl
-from link.protocol.frame import Counts, Frame, noise_hint, payload_of
+from link.protocol.frame import Frame, FramerCounts, noise_hint, payload_of
 from link.protocol.framer import Framer
-from link.protocol.log_tap import Tape
+from link.protocol.log_tap import LogTap
 from link.protocol.peer import PeerState
-from link.protocol.sequence import NEW, Order
+from link.protocol.sequence import NEW, FrameOrder
 
 MAX_PEERS = 24
 """Sixteen ground stations on one port, and room for half of them to restart: a program that comes back has a new port,
@@ -69,16 +69,16 @@ class Channel:
         self.name = name
         self.index = index
         self.ids = (system, component)
-        self.tape: Tape | None = None
+        self.log_tap: LogTap | None = None
         """Takes every frame that arrives."""
         self._capacity = capacity
         self._flow = FlowControl()
         self._stream = stream
         self._wanted = wanted
-        self._strangers = Framer(stream=False)
+        self._new_peer_framer = Framer(stream=False)
         self._peers: dict[Hashable, PeerState] = {}
         self._conversations = count()
-        self._gone = Counts()
+        self._past_counts = FramerCounts()
         self._bytes_received = self._bytes_sent = 0
         self._duplicates = self._late = self._rate_limited = self._refused_peers = 0
         self._own_id = False
@@ -93,7 +93,7 @@ class Channel:
         state = self._peers.get(address)
         if state is not None:
             return self._accept(state, state.framer.feed(data, now), now)
-        frames = self._strangers.feed(data, now)
+        frames = self._new_peer_framer.feed(data, now)
         if not frames and not self._stream:
             return []
         state = self._admit(address, now)
@@ -115,8 +115,8 @@ class Channel:
         """A place for a new address: a free one, or that of a peer who is silent or never introduced itself."""
         if len(self._peers) >= MAX_PEERS:
             leaving = min(
-                (each for each in self._peers.values() if not each.fixed and self._dispensable(each, now)),
-                key=lambda each: each.heard,
+                (each for each in self._peers.values() if not each.fixed and self._is_evictable(each, now)),
+                key=lambda each: each.last_heard,
                 default=None,
             )
             if leaving is None:
@@ -126,8 +126,8 @@ class Channel:
         state.connected = state.silent = self._stream
         return state
 
-    def _dispensable(self, state: PeerState, now: float) -> bool:
-        return not state.systems or now - state.heard > PEER_SILENCE
+    def _is_evictable(self, state: PeerState, now: float) -> bool:
+        return not state.systems or now - state.last_heard > PEER_SILENCE
 
     def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
         return PeerState(self._name(address), Framer(stream=self._stream), now, fixed, silent=fixed)
@@ -136,33 +136,33 @@ class Channel:
         """Of a new conversation."""
         return Peer(self.index, address, next(self._conversations))
 
-    def gone(self, address: Hashable) -> None:
+    def handle_disconnect(self, address: Hashable) -> None:
         """The connection to `address` has ended: half a frame is lost, and who comes next must introduce itself."""
         state = self._peers.get(address)
         if state is None:
             return
         self._forget(state)
         if state.fixed:
-            successor = self._peers[address] = self._new_peer(address, state.heard, fixed=True)
+            successor = self._peers[address] = self._new_peer(address, state.last_heard, fixed=True)
             successor.sequence = state.sequence
 
     def _forget(self, state: PeerState) -> None:
         del self._peers[state.peer.address]
-        self._gone.add(state.framer.counts)
+        self._past_counts.add(state.framer.counts)
 
     def _accept(self, state: PeerState, frames: list[Frame], now: float) -> list[Received]:
         accepted: list[Received] = []
-        if self.tape is not None and frames:
-            self.tape.heard(frames, now)
+        if self.log_tap is not None and frames:
+            self.log_tap.record_received(frames, now)
         for frame in frames:
             number, system, component, sequence, _ = frame
             sender = (system, component)
             if not system or sender == self.ids:  # component 0 is what pymavlink sends unless told otherwise
                 self._own_id |= sender == self.ids
                 continue
-            state.heard, state.silent = now, False
+            state.last_heard, state.silent = now, False
             source = state.sources.get(sender)
-            order = source.accept(sequence, number) if source else state.first_of(frame)
+            order = source.accept(sequence, number) if source else state.add_source(frame)
             if order is not NEW and self._is_old(order, number):
                 continue
             received = self._decode(state, frame, now)
@@ -170,14 +170,14 @@ class Channel:
                 accepted.append(received)
         return accepted
 
-    def _hear_radio(self, raw: bytes, now: float) -> None:
+    def _handle_radio_status(self, raw: bytes, now: float) -> None:
         status = codec.decode(RadioStatus.id, payload_of(raw))
         if isinstance(status, RadioStatus):
-            self._flow.radio_status(status.txbuf, now)
+            self._flow.handle_radio_status(status.txbuf, now)
 
-    def _is_old(self, order: Order, number: int) -> bool:
+    def _is_old(self, order: FrameOrder, number: int) -> bool:
         """A repeated frame, or state that a newer one has overtaken; what must be acknowledged is never too old."""
-        if order is Order.DUPLICATE:
+        if order is FrameOrder.DUPLICATE:
             self._duplicates += 1
             return True
         self._late += 1
@@ -186,11 +186,11 @@ class Channel:
     def _decode(self, state: PeerState, frame: Frame, now: float) -> Received | None:
         number, system, component, sequence, raw = frame
         if number == _RADIO_STATUS:
-            self._hear_radio(raw, now)
+            self._handle_radio_status(raw, now)
         if self._wanted is not None and number not in self._wanted:
             return None
         kind = "demand" if number in _DEMANDS else "command" if number in _COMMANDS else "rest"
-        room = state.buckets[kind].take(now)
+        room = state.buckets[kind].consume(now)
         if not room and kind != "command":
             self._rate_limited += 1
             return None
@@ -200,7 +200,7 @@ class Channel:
             return None
         if number == Heartbeat.id:
             state.systems.add(system)
-        return Received(message, system, component, sequence, state.peer, system in state.systems, state.asked_for)
+        return Received(message, system, component, sequence, state.peer, system in state.systems, state.is_expected)
 
     # ---- sending ----
 
@@ -225,7 +225,7 @@ class Channel:
         if among is not None:
             return self._known(among)
         target = getattr(message, "target_system", getattr(message, "target", 0))
-        return [state for state in self._peers.values() if state.hears(target)]
+        return [state for state in self._peers.values() if state.accepts_target(target)]
 
     def _known(self, peers: tuple[Peer, ...]) -> list[PeerState]:
         """Those that are on this link, in the conversation that is meant."""
@@ -238,21 +238,25 @@ class Channel:
 
     # ---- telling ----
 
-    def forget_silent(self, now: float) -> None:
+    def expire_peers(self, now: float) -> None:
         """Drop peers that have been silent for PEER_SILENCE; the one the user named stays, and connections do, for a
         new conversation."""
         for state in list(self._peers.values()):
-            if state.silent or now - state.heard <= PEER_SILENCE:
+            if state.silent or now - state.last_heard <= PEER_SILENCE:
                 continue
-            if state.asked_for:
+            if state.is_expected:
                 state.peer, state.silent = self._name(state.peer.address), True
             else:
                 self._forget(state)
 
     def report(self, down: str | None = None, *, now: float = 0.0, dropped: int = 0) -> LinkReport:
         """What this channel has counted. `down` and `dropped` come from the shell."""
-        counts = Counts()
-        for each in (self._gone, self._strangers.counts, *(state.framer.counts for state in self._peers.values())):
+        counts = FramerCounts()
+        for each in (
+            self._past_counts,
+            self._new_peer_framer.counts,
+            *(state.framer.counts for state in self._peers.values()),
+        ):
             counts.add(each)
         return LinkReport(
             name=self.name,
@@ -272,15 +276,15 @@ class Channel:
                 sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER)
             ),
             own_id=self._own_id,
-            down=down or self._nothing_but_noise(counts),
+            down=down or self._noise_problem(counts),
             capacity=self._capacity,
             headroom=self._flow.headroom(now) if self._capacity is not None else 1.0,
             dropped=dropped,
             sources=self._source_counts(),
-            audience=tuple(state.peer for state in self._peers.values() if state.hears(0)),
+            audience=tuple(state.peer for state in self._peers.values() if state.accepts_target(0)),
         )
 
-    def _nothing_but_noise(self, counts: Counts) -> str | None:
+    def _noise_problem(self, counts: FramerCounts) -> str | None:
         if self._capacity is None:
             return None
         return noise_hint(self.name, self._bytes_received, counts.frames + counts.unknown)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from dialects.codec import CRC_SIZE, HEADER_V1, HEADER_V2, INCOMPAT_SIGNED, MAGIC_V1, MAGIC_V2, SIGNATURE_SIZE
 
-NOISE_ENOUGH = 512
+NOISE_HINT_BYTES = 512
 """Bytes without a single frame after which somebody should be told: half a second of telemetry at 57600 baud is more,
 a boot message or ModemManager's "AT" is less."""
 
@@ -50,7 +50,7 @@ def read_header(data: bytes, start: int = 0) -> Header | None:
 
 
 @dataclass(slots=True)
-class Counts:
+class FramerCounts:
     """What a framer has seen so far."""
 
     frames: int = 0
@@ -64,7 +64,7 @@ class Counts:
     mismatches: dict[int, int] = field(default_factory=dict)
     """Known ids that arrive whole but with another definition's checksum -> how often."""
 
-    def add(self, more: Counts) -> None:
+    def add(self, more: FramerCounts) -> None:
         """Count what another framer has seen, too."""
         self.frames += more.frames
         self.crc_errors += more.crc_errors
@@ -77,6 +77,6 @@ class Counts:
 
 def noise_hint(name: str, received: int, frames: int) -> str | None:
     """What to tell of a wire that has brought `received` bytes, when none of them made a frame."""
-    if received < NOISE_ENOUGH or frames:
+    if received < NOISE_HINT_BYTES or frames:
         return None
     return f"{name}: bytes and no MAVLink frame among them; wrong baud rate?"

@@ -25,13 +25,13 @@ from dialects.codec import (
     MAGIC_V2,
     SIGNATURE_SIZE,
 )
-from link.protocol.frame import Counts, Frame, read_header
+from link.protocol.frame import Frame, FramerCounts, read_header
 
 PARTIAL_DEADLINE = 0.1
 """s that a stream may owe the rest of a frame. Longer than the longest frame takes at 57600 baud (280 bytes, 49 ms),
 shorter than the vehicle's patience with a driver (0.45 s): a forged header must not hide the frames behind it."""
 
-MISMATCHES_KEPT = 64
+MAX_MISMATCHES = 64
 _SHORTEST = HEADER_V2 + CRC_SIZE
 _MAGIC = re.compile(b"[\xfd\xfe]")
 _HEAD = struct.Struct("<BBBxBBBI")
@@ -68,7 +68,7 @@ class Framer:
     """
 
     def __init__(self, *, stream: bool, unknown: bool = False) -> None:
-        self.counts = Counts()
+        self.counts = FramerCounts()
         self._stream = stream
         self._unknown = unknown
         self._at_border = True
@@ -269,5 +269,5 @@ class Framer:
             return
         if not doubt.known:
             self.counts.unknown += 1
-        elif doubt.message_id in self.counts.mismatches or len(self.counts.mismatches) < MISMATCHES_KEPT:
+        elif doubt.message_id in self.counts.mismatches or len(self.counts.mismatches) < MAX_MISMATCHES:
             self.counts.mismatches[doubt.message_id] = self.counts.mismatches.get(doubt.message_id, 0) + 1

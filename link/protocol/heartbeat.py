@@ -12,12 +12,12 @@ class HeartbeatMonitor:
         self.timeout = timeout
         self._heard: float | None = None
 
-    def heard(self, now: float) -> None:
+    def update(self, now: float) -> None:
         """Something of the source was accepted."""
         self._heard = now
 
     @property
-    def ever(self) -> bool:
+    def ever_heard(self) -> bool:
         """Was it ever heard?"""
         return self._heard is not None
 
@@ -25,6 +25,6 @@ class HeartbeatMonitor:
         """Seconds since it was heard; infinite when it never was."""
         return math.inf if self._heard is None else now - self._heard
 
-    def alive(self, now: float) -> bool:
+    def is_alive(self, now: float) -> bool:
         """Was it heard within the timeout?"""
         return self.silence(now) <= self.timeout

@@ -12,7 +12,7 @@ CONNECTING = "connecting"
 """Why a link does not work that was only just begun: no news, because it is the usual way."""
 
 
-def problem(report: LinkReport) -> str | None:
+def link_problem(report: LinkReport) -> str | None:
     """What is wrong with a link, in one line."""
     if report.down:
         return report.down.removeprefix(f"{report.name}: ")
@@ -24,43 +24,43 @@ def problem(report: LinkReport) -> str | None:
     return None
 
 
-class News(NamedTuple):
+class LinkEvent(NamedTuple):
     """A line to tell."""
 
     text: str
     severity: Severity
 
 
-class UpsAndDowns:
+class UpDownEvents:
     """Which links are down, and why: what has changed is told once, and "back" is only what was there before."""
 
     def __init__(self) -> None:
         self._down: dict[Hashable, str] = {}
         self._worked: set[Hashable] = set()
 
-    def news(self, link: Hashable, why: str | None) -> News | None:
+    def update(self, link: Hashable, why: str | None) -> LinkEvent | None:
         """What is to be told of this link, which is down because of `why`, or works."""
         before = self._down.pop(link, None)
         if why:
             self._down[link] = why
-            return None if why in (before, CONNECTING) else News(why, Severity.ERROR)
+            return None if why in (before, CONNECTING) else LinkEvent(why, Severity.ERROR)
         again = link in self._worked
         self._worked.add(link)
-        return None if before is None else News("it is back" if again else "connected", Severity.NOTICE)
+        return None if before is None else LinkEvent("it is back" if again else "connected", Severity.NOTICE)
 
 
-class Troubles:
+class LinkEvents:
     """What was told of the links' problems: a link that is down and comes back may go down again, and that is news."""
 
     def __init__(self) -> None:
         self._told: set[str] = set()
-        self._links = UpsAndDowns()
+        self._links = UpDownEvents()
 
-    def news(self, report: LinkReport) -> News | None:
+    def update(self, report: LinkReport) -> LinkEvent | None:
         """What is to be told of this link now."""
-        trouble = problem(report)
-        change = self._links.news(report.index, trouble if report.down else None)
+        trouble = link_problem(report)
+        change = self._links.update(report.index, trouble if report.down else None)
         if change or report.down or not trouble or trouble in self._told:
             return change
         self._told.add(trouble)
-        return News(trouble, Severity.ERROR)
+        return LinkEvent(trouble, Severity.ERROR)

@@ -14,11 +14,11 @@ from dialects import messages as m
 from link.protocol.frame import Frame
 
 SETUP_SIGNING = 256
-UNTOLD = frozenset(each.id for each in (m.FileTransferProtocol, m.LogData, m.LogEntry)) | {SETUP_SIGNING}
+NOT_LOGGED = frozenset(each.id for each in (m.FileTransferProtocol, m.LogData, m.LogEntry)) | {SETUP_SIGNING}
 """Of our own messages."""
 
 
-class Tape:
+class LogTap:
     """Hands frames and their times to `add`."""
 
     def __init__(self, add: Callable[[float, Sequence[bytes]], None], *, system: int, component: int) -> None:
@@ -26,12 +26,12 @@ class Tape:
         self._ids = (system, component)
         self._sequence = 0
 
-    def heard(self, frames: Sequence[Frame], now: float) -> None:
+    def record_received(self, frames: Sequence[Frame], now: float) -> None:
         """Frames that were found whole, of anybody."""
         self._add(now, [raw for message_id, _, _, _, raw in frames if message_id != SETUP_SIGNING])
 
-    def said(self, message_id: int, payload: bytes, now: float) -> None:
+    def record_sent(self, message_id: int, payload: bytes, now: float) -> None:
         """A message of ours."""
-        if message_id not in UNTOLD:
+        if message_id not in NOT_LOGGED:
             self._add(now, (codec.frame(message_id, payload, self._sequence, *self._ids),))
             self._sequence = (self._sequence + 1) & 0xFF

@@ -8,7 +8,7 @@ from link.core import Peer
 from link.protocol.frame import Frame
 from link.protocol.framer import Framer
 from link.protocol.rate import TokenBucket
-from link.protocol.sequence import Order, Source
+from link.protocol.sequence import FrameOrder, SequenceTracker
 
 MAX_SOURCES = 64
 """Systems and components counted behind one peer."""
@@ -26,7 +26,7 @@ class PeerState:
 
     peer: Peer
     framer: Framer
-    heard: float
+    last_heard: float
     fixed: bool = False
     """The user named this address: it is sent to before it has spoken."""
     connected: bool = False
@@ -36,23 +36,23 @@ class PeerState:
     sequence: int = 0
     systems: set[int] = field(default_factory=set)
     """Systems whose HEARTBEAT came from here."""
-    sources: dict[tuple[int, int], Source] = field(default_factory=dict)
+    sources: dict[tuple[int, int], SequenceTracker] = field(default_factory=dict)
     buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
 
     @property
-    def asked_for(self) -> bool:
+    def is_expected(self) -> bool:
         """Does somebody wait for what we say, though he has said nothing himself?"""
         return self.fixed or self.connected
 
-    def hears(self, target: int) -> bool:
+    def accepts_target(self, target: int) -> bool:
         """Should a message for system `target` (0: for all) go here?"""
         if not self.systems:
-            return self.asked_for
+            return self.is_expected
         return target == 0 or target in self.systems
 
-    def first_of(self, frame: Frame) -> Order:
+    def add_source(self, frame: Frame) -> FrameOrder:
         """The first frame of a source that is new here; of too many sources no numbers are kept."""
         if len(self.sources) < MAX_SOURCES:
             message_id, system, component, sequence, _ = frame
-            self.sources[system, component] = Source(sequence, message_id)
-        return Order.NEW
+            self.sources[system, component] = SequenceTracker(sequence, message_id)
+        return FrameOrder.NEW

@@ -14,12 +14,12 @@ class TokenBucket:
         self._tokens = burst
         self._at: float | None = None
 
-    def limit(self, rate: float, burst: float) -> None:
+    def set_rate(self, rate: float, burst: float) -> None:
         """Another rate from now on; what was left stays, as far as it fits."""
         self._rate, self._burst = rate, burst
         self._tokens = min(burst, self._tokens)
 
-    def take(self, now: float, cost: float = 1.0) -> bool:
+    def consume(self, now: float, cost: float = 1.0) -> bool:
         """True when there was room for `cost`; nothing is taken otherwise."""
         if self._at is not None:
             self._tokens = min(self._burst, self._tokens + (now - self._at) * self._rate)

@@ -16,7 +16,7 @@ RESTART_AFTER = 4
 _WINDOW_BITS = (1 << LATE_WINDOW + 1) - 1
 
 
-class Order(Enum):
+class FrameOrder(Enum):
     """What the number of a frame says."""
 
     NEW = auto()
@@ -27,11 +27,11 @@ class Order(Enum):
     """This very number was here already."""
 
 
-NEW = Order.NEW
+NEW = FrameOrder.NEW
 """The usual case by a short way: a lookup in an enum costs as much as the rest of accept()."""
 
 
-class Source:
+class SequenceTracker:
     """One system and component, as heard from one address. `sequence` is the number of its first frame, 0..255."""
 
     __slots__ = ("_kinds", "_newest", "_old_run", "_seen", "lost", "received")
@@ -46,11 +46,11 @@ class Source:
         """Message id -> its newest number."""
         self._old_run = 0
 
-    def accept(self, sequence: int, message_id: int) -> Order:
+    def accept(self, sequence: int, message_id: int) -> FrameOrder:
         """Count a frame and say what it is."""
         ahead = (sequence - self._newest) & 0xFF
         if ahead == 0:
-            return Order.DUPLICATE
+            return FrameOrder.DUPLICATE
         if ahead > 0xFF - LATE_WINDOW:
             return self._accept_old(sequence, message_id, 256 - ahead)
         if ahead > 1:
@@ -62,7 +62,7 @@ class Source:
         self.received += 1
         return NEW
 
-    def _accept_old(self, sequence: int, message_id: int, behind: int) -> Order:
+    def _accept_old(self, sequence: int, message_id: int, behind: int) -> FrameOrder:
         seen = self._seen >> behind & 1
         last = self._kinds.get(message_id)
         in_order = last is None or (last - sequence) & 0xFF > LATE_WINDOW
@@ -75,16 +75,16 @@ class Source:
             self._kinds.clear()
             return self._new(sequence, message_id)
         if seen:
-            return Order.DUPLICATE
+            return FrameOrder.DUPLICATE
         self._fill(behind)
-        return Order.LATE
+        return FrameOrder.LATE
 
     def _fill(self, behind: int) -> None:
         self._seen |= 1 << behind
         self.lost = max(0, self.lost - 1)
 
-    def _new(self, sequence: int, message_id: int) -> Order:
+    def _new(self, sequence: int, message_id: int) -> FrameOrder:
         self._kinds[message_id] = sequence
         self._old_run = 0
         self.received += 1
-        return Order.NEW
+        return FrameOrder.NEW

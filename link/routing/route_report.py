@@ -25,7 +25,7 @@ class RouteReport:
 
 
 @dataclass(slots=True)
-class PortReport:
+class TransportReport:
     """What one wire has carried since the start."""
 
     peers: int = 0
@@ -41,7 +41,7 @@ class PortReport:
     unknown: int = 0
     """Frames of ids that we do not know, forwarded all the same."""
 
-    def copy(self) -> PortReport:
+    def copy(self) -> TransportReport:
         """Another one with the same counts."""
         return replace(self)
 

@@ -15,23 +15,23 @@ from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V2, MAGIC_V2
 from dialects.messages import RadioStatus, SystemTime
 from dialects.targets import TARGETS, target_of
 from link.protocol.frame import Frame, payload_of
-from link.routing.routes import Key, Recent, RoutedPeer, RouteTable, Source
+from link.routing.routes import RecentFrames, RoutedPeer, RoutedSource, RouteTable, SourceId
 
 SETUP_SIGNING = 256
-KEPT = frozenset({SETUP_SIGNING, RadioStatus.id})
+NOT_FORWARDED = frozenset({SETUP_SIGNING, RadioStatus.id})
 """Never forwarded: a key, and what concerns one radio only."""
 
-REDUNDANT_WITHIN = 1.0
+REDUNDANCY_WINDOW = 1.0
 """s in which the same frame over another link is the same frame: more than the slowest radio adds, and less than 256
 frames of one sender take, unless it sends more of them than redundant links carry."""
-MAX_FOLLOWED = 256
+MAX_TRACKED_SOURCES = 256
 """Systems and components whose frames are compared between redundant links."""
 MAX_TARGETS = 256
 """Targets of one source whose destinations are remembered."""
 
-_EVERYBODY: Key = (0, 0)
-_LOOKED_AT = KEPT | {SystemTime.id}
-_NOT_FOR_ALL = _LOOKED_AT | TARGETS.keys()
+_EVERYBODY: SourceId = (0, 0)
+_INSPECTED = NOT_FORWARDED | {SystemTime.id}
+_NOT_FOR_ALL = _INSPECTED | TARGETS.keys()
 """Any other message goes to everybody, whatever is in it."""
 
 
@@ -50,16 +50,16 @@ class Router:
     that come back are dropped.
     """
 
-    def __init__(self, ports: Sequence[tuple[bool, Hashable | None]], *, own: Key | None = None) -> None:
+    def __init__(self, ports: Sequence[tuple[bool, Hashable | None]], *, own: SourceId | None = None) -> None:
         self.table = RouteTable(ports)
         self.duplicates = 0
         """Frames that redundant links brought again."""
-        self.tape: list[bytes] | None = None
+        self.captured: list[bytes] | None = None
         """Where it is a list: every frame that arrives, in order, for a recorder to take away."""
         self._own = own
-        self._recent: dict[Key, Recent] = {}
+        self._recent: dict[SourceId, RecentFrames] = {}
         """One for all peers of a source, so that they can be compared."""
-        self._boot_times: dict[Key, int] = {}
+        self._boot_times: dict[SourceId, int] = {}
         self._loaded: list[RoutedPeer] = []
 
     def receive(self, port: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
@@ -68,7 +68,7 @@ class Router:
         for data, address in pieces:
             peer = peers.get(address)
             if peer is None:
-                self._hear_stranger(port, data, address, now)
+                self._receive_from_new_peer(port, data, address, now)
                 continue
             peer.bytes_in += len(data)
             frames = peer.framer.feed(data, now)
@@ -78,12 +78,12 @@ class Router:
 
     def tick(self, now: float) -> list[Delivery]:
         """Give up half frames that are overdue (call it every 50 ms or so) and forget who is silent."""
-        for peer in list(self.table.everybody()):
+        for peer in list(self.table.all_peers()):
             frames = peer.framer.expire(now)
             if frames:
                 self._forward(peer, frames, now)
         self.table.expire(now)
-        known = self.table.known()
+        known = self.table.known_sources()
         for followed in (self._recent, self._boot_times):
             for key in followed.keys() - known:
                 del followed[key]
@@ -91,26 +91,26 @@ class Router:
 
     # ---- the way of a frame ----
 
-    def _hear_stranger(self, port: int, data: bytes, address: Hashable, now: float) -> None:
+    def _receive_from_new_peer(self, port: int, data: bytes, address: Hashable, now: float) -> None:
         """Noise makes no peer: on UDP only a verified frame does. A connection is one as it is."""
-        peer = self.table.stranger(port, address, now)
+        peer = self.table.new_peer(port, address, now)
         if peer is None:
             return
         peer.bytes_in += len(data)
         frames = peer.framer.feed(data, now)
         if self.table.is_stream(port) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
-            self.table.admit(peer, now)
+            self.table.add_peer(peer, now)
             self._forward(peer, frames, now)
         else:
-            self.table.dismiss(peer)
+            self.table.reject_peer(peer)
 
     def _forward(self, peer: RoutedPeer, frames: list[Frame], now: float) -> None:  # noqa: C901 - calls cost more here
         """The hot path: a usual frame of a known source costs no call here but list.append, dict.get and target_of."""
         peer.heard = now
         sources, loaded, table = peer.sources, self._loaded, self.table
-        known: Source | None = None
-        if self.tape is not None:
-            self.tape += [raw for _, _, _, _, raw in frames]
+        known: RoutedSource | None = None
+        if self.captured is not None:
+            self.captured += [raw for _, _, _, _, raw in frames]
         for frame in frames:
             message_id, system, component, sequence, raw = frame
             if known is None or known.system != system or known.component != component:
@@ -122,16 +122,16 @@ class Router:
                 source.received += 1
                 source.heard, source.next = now, (sequence + 1) & 0xFF
             else:
-                source.count(sequence, now)
+                source.count_frame(sequence, now)
             recent = source.recent
             if recent is not None:
                 before = recent[sequence]
-                if before is not None and before[1] is not peer and self._came_before(before, raw, now):
+                if before is not None and before[1] is not peer and self._is_redundant(before, raw, now):
                     continue
                 recent[sequence] = (now, peer, raw)
             target = _EVERYBODY
             if message_id in _NOT_FOR_ALL:
-                if message_id in _LOOKED_AT and self._stays(source, message_id, raw):
+                if message_id in _INSPECTED and self._is_link_local(source, message_id, raw):
                     continue
                 target = target_of(message_id, raw)
             found = source.destinations.get(target) if source.epoch == table.epoch else None
@@ -140,38 +140,38 @@ class Router:
                     loaded.append(destination)
                 destination.waiting.append(raw)
 
-    def _learn(self, peer: RoutedPeer, frame: Frame, now: float) -> Source | None:
+    def _learn(self, peer: RoutedPeer, frame: Frame, now: float) -> RoutedSource | None:
         """The entry of a source that is new here; None for frames that go nowhere."""
         message_id, system, component, sequence, _ = frame
         key = (system, component)
         if not system or key == self._own:  # component 0 is what pymavlink sends unless told otherwise
             return None
-        source = Source(key, sequence, now)
+        source = RoutedSource(key, sequence, now)
         source.recent = self._recent.get(key)
-        if message_id not in CRC_EXTRA or not self.table.learn(peer, source):
+        if message_id not in CRC_EXTRA or not self.table.add_source(peer, source):
             return source  # this frame goes its way, but it teaches nothing
-        if source.recent is None and len(self._recent) < MAX_FOLLOWED:
+        if source.recent is None and len(self._recent) < MAX_TRACKED_SOURCES:
             source.recent = self._recent[key] = [None] * 256
         return source
 
-    def _came_before(self, before: tuple[float, RoutedPeer, bytes], raw: bytes, now: float) -> bool:
+    def _is_redundant(self, before: tuple[float, RoutedPeer, bytes], raw: bytes, now: float) -> bool:
         """Is it one that another link has brought already?"""
-        again = now - before[0] < REDUNDANT_WITHIN and _same(before[2], raw)
+        again = now - before[0] < REDUNDANCY_WINDOW and _same(before[2], raw)
         self.duplicates += again
         return again
 
-    def _stays(self, source: Source, message_id: int, raw: bytes) -> bool:
+    def _is_link_local(self, source: RoutedSource, message_id: int, raw: bytes) -> bool:
         """Messages that are more than freight: two stay here, SYSTEM_TIME tells of a restart and goes on."""
-        if message_id in KEPT:
+        if message_id in NOT_FORWARDED:
             return True
         boot_time = int.from_bytes(payload_of(raw)[8:12], "little")
         if boot_time < self._boot_times.get(source.key, 0):
-            self.table.keep_only(source)
-        if source.key in self._boot_times or len(self._boot_times) < MAX_FOLLOWED:
+            self.table.remove_other_routes(source)
+        if source.key in self._boot_times or len(self._boot_times) < MAX_TRACKED_SOURCES:
             self._boot_times[source.key] = boot_time
         return False
 
-    def _destinations(self, origin: RoutedPeer, source: Source, target: Key) -> tuple[RoutedPeer, ...]:
+    def _destinations(self, origin: RoutedPeer, source: RoutedSource, target: SourceId) -> tuple[RoutedPeer, ...]:
         """Where a frame for `target` goes; remembered until the table changes."""
         if source.epoch != self.table.epoch or len(source.destinations) > MAX_TARGETS:
             source.destinations, source.epoch = {}, self.table.epoch

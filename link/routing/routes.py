@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Sequence
 
 from link.protocol.framer import Framer
-from link.routing.route_report import PortReport, RouteReport
+from link.routing.route_report import RouteReport, TransportReport
 
-Key = tuple[int, int]
+SourceId = tuple[int, int]
 """System and component."""
 
-Recent = list["tuple[float, RoutedPeer, bytes] | None"]
+RecentFrames = list["tuple[float, RoutedPeer, bytes] | None"]
 """When a frame of this number came last, from whom, and its bytes."""
 
 PEER_SILENCE = 30.0
@@ -25,14 +25,14 @@ LATE = 32
 """Frames at most this much older than the newest are late and not a restart."""
 
 
-class Source:
+class RoutedSource:
     """One system and component, as heard from one peer."""
 
     __slots__ = (
         "component", "destinations", "epoch", "heard", "key", "lost", "next", "received", "recent", "system",
     )  # fmt: skip
 
-    def __init__(self, key: Key, sequence: int, now: float) -> None:
+    def __init__(self, key: SourceId, sequence: int, now: float) -> None:
         self.key = key
         self.system, self.component = key
         self.next = sequence
@@ -40,13 +40,13 @@ class Source:
         self.heard = now
         self.received = 0
         self.lost = 0
-        self.destinations: dict[Key, tuple[RoutedPeer, ...]] = {}
+        self.destinations: dict[SourceId, tuple[RoutedPeer, ...]] = {}
         """Target -> where its frames go; valid while `epoch` is the router's."""
         self.epoch = -1
-        self.recent: Recent | None = None
+        self.recent: RecentFrames | None = None
         """Its newest frame of each number, from whichever peer; None where nobody compares them."""
 
-    def count(self, sequence: int, now: float) -> None:
+    def count_frame(self, sequence: int, now: float) -> None:
         """One more frame of it."""
         self.heard = now
         self.received += 1
@@ -72,7 +72,7 @@ class RoutedPeer:
         """The user named it: it is sent to before it has spoken, and is never forgotten."""
         self.framer = Framer(stream=stream, unknown=True)
         self.heard = now
-        self.sources: dict[Key, Source] = {}
+        self.sources: dict[SourceId, RoutedSource] = {}
         self.waiting: list[bytes] = []
         """Frames to send to it now."""
         self.bytes_in = self.frames_out = self.bytes_out = 0
@@ -91,7 +91,7 @@ class RouteTable:
         """Changes with every entry that comes or goes: what was derived from the table is then worth nothing."""
         self._streams = [stream for stream, _ in ports]
         self._peers: list[dict[Hashable, RoutedPeer]] = [{} for _ in ports]
-        self._past = [PortReport() for _ in ports]
+        self._past = [TransportReport() for _ in ports]
         """What peers carried that are gone."""
         for port, (stream, fixed) in enumerate(ports):
             if fixed is not None:
@@ -105,12 +105,12 @@ class RouteTable:
         """Does this wire know no datagrams?"""
         return self._streams[port]
 
-    def everybody(self) -> Iterator[RoutedPeer]:
+    def all_peers(self) -> Iterator[RoutedPeer]:
         """All peers of all wires."""
         for peers in self._peers:
             yield from peers.values()
 
-    def stranger(self, port: int, address: Hashable, now: float) -> RoutedPeer | None:
+    def new_peer(self, port: int, address: Hashable, now: float) -> RoutedPeer | None:
         """Somebody who is not in the table yet; None when the wire is full. admit() takes him in."""
         peers = self._peers[port]
         if len(peers) < MAX_PEERS or self._most_silent(port, now):
@@ -118,20 +118,20 @@ class RouteTable:
         self.refused_peers += 1
         return None
 
-    def admit(self, peer: RoutedPeer, now: float) -> None:
+    def add_peer(self, peer: RoutedPeer, now: float) -> None:
         """Give a stranger a place, if need be that of the peer who has been silent longest."""
         peers = self._peers[peer.port]
         leaving = self._most_silent(peer.port, now) if len(peers) >= MAX_PEERS else None
         if leaving:
-            self.forget(leaving)
+            self.remove_peer(leaving)
         peers[peer.address] = peer
         self.epoch += 1
 
-    def dismiss(self, peer: RoutedPeer) -> None:
+    def reject_peer(self, peer: RoutedPeer) -> None:
         """Count what a stranger has sent, who was not let in."""
         self._past[peer.port].add(peer)
 
-    def learn(self, peer: RoutedPeer, source: Source) -> bool:
+    def add_source(self, peer: RoutedPeer, source: RoutedSource) -> bool:
         """Enter a source; False when this peer has too many."""
         if len(peer.sources) >= MAX_SOURCES:
             return False
@@ -139,23 +139,23 @@ class RouteTable:
         self.epoch += 1
         return True
 
-    def keep_only(self, source: Source) -> None:
+    def remove_other_routes(self, source: RoutedSource) -> None:
         """It has started anew, maybe on another wire: only where it speaks now is it at home."""
-        for peer in self.everybody():
+        for peer in self.all_peers():
             if peer.sources.get(source.key, source) is not source:
                 del peer.sources[source.key]
         self.epoch += 1
 
-    def gone(self, port: int, address: Hashable) -> None:
+    def handle_disconnect(self, port: int, address: Hashable) -> None:
         """The connection to `address` has ended."""
         peer = self._peers[port].get(address)
         if peer is None:
             return
-        self.forget(peer)
+        self.remove_peer(peer)
         if peer.fixed:
             self._peers[port][address] = RoutedPeer(port, address, peer.heard, stream=self._streams[port], fixed=True)
 
-    def forget(self, peer: RoutedPeer) -> None:
+    def remove_peer(self, peer: RoutedPeer) -> None:
         """Take a peer out; what it carried still counts."""
         del self._peers[peer.port][peer.address]
         self._past[peer.port].add(peer)
@@ -163,29 +163,29 @@ class RouteTable:
 
     def expire(self, now: float) -> None:
         """Forget who is silent."""
-        for peer in list(self.everybody()):
+        for peer in list(self.all_peers()):
             if not peer.fixed and not self._streams[peer.port] and now - peer.heard > PEER_SILENCE:
-                self.forget(peer)
+                self.remove_peer(peer)
                 continue
             for key in [key for key, source in peer.sources.items() if now - source.heard > ROUTE_SILENCE]:
                 del peer.sources[key]
                 self.epoch += 1
 
-    def known(self) -> set[Key]:
+    def known_sources(self) -> set[SourceId]:
         """Every source that was heard anywhere."""
-        return {key for peer in self.everybody() for key in peer.sources}
+        return {key for peer in self.all_peers() for key in peer.sources}
 
-    def candidates(self, target: Key) -> list[RoutedPeer]:
+    def candidates(self, target: SourceId) -> list[RoutedPeer]:
         """Who a frame for `target` concerns: everybody, or where just this component was heard, or else its system."""
         system, component = target
         if not system:
-            return list(self.everybody())
-        exact = [peer for peer in self.everybody() if target in peer.sources] if component else []
-        return exact or [peer for peer in self.everybody() if peer.has_system(system)]
+            return list(self.all_peers())
+        exact = [peer for peer in self.all_peers() if target in peer.sources] if component else []
+        return exact or [peer for peer in self.all_peers() if peer.has_system(system)]
 
-    def ports(self) -> list[PortReport]:
+    def transport_reports(self) -> list[TransportReport]:
         """What each wire has carried, by number."""
-        reports: list[PortReport] = []
+        reports: list[TransportReport] = []
         for past, peers in zip(self._past, self._peers, strict=True):
             report = past.copy()
             report.peers = sum(1 for peer in peers.values() if peer.sources)
@@ -194,11 +194,11 @@ class RouteTable:
             reports.append(report)
         return reports
 
-    def routes(self, now: float) -> list[RouteReport]:
+    def route_reports(self, now: float) -> list[RouteReport]:
         """Every system and component, where it was heard."""
         found = [
             RouteReport(*key, peer.port, peer.address, now - source.heard, source.received, source.lost)
-            for peer in self.everybody()
+            for peer in self.all_peers()
             for key, source in peer.sources.items()
         ]
         return sorted(found, key=lambda route: (route.system, route.component, route.port))

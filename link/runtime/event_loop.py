@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 
 
-class _Waits(selectors.SelectSelector):
+class _TimedSelector(selectors.SelectSelector):
     """Knows how long it has waited."""
 
     def __init__(self) -> None:
@@ -32,28 +32,28 @@ class _Waits(selectors.SelectSelector):
             self.waited += time.monotonic() - began
 
 
-class Loop(asyncio.SelectorEventLoop):
+class TimedEventLoop(asyncio.SelectorEventLoop):
     """Says how much of its time nothing was to do."""
 
     def __init__(self) -> None:
-        self._waits = _Waits()
+        self._waits = _TimedSelector()
         super().__init__(self._waits)
 
     @property
-    def waited(self) -> float:
+    def idle_time(self) -> float:
         """s so far."""
         return self._waits.waited
 
 
-def running_loop() -> Loop:
+def running_loop() -> TimedEventLoop:
     """Inside of `run_loop`. Raises RuntimeError elsewhere."""
     loop = asyncio.get_running_loop()
-    if not isinstance(loop, Loop):
+    if not isinstance(loop, TimedEventLoop):
         raise RuntimeError("this is not a loop of run_loop")
     return loop
 
 
 def run_loop(main: Coroutine[Any, Any, T]) -> T:
     """As asyncio.run."""
-    with asyncio.Runner(loop_factory=Loop) as runner:
+    with asyncio.Runner(loop_factory=TimedEventLoop) as runner:
         return runner.run(main)

@@ -9,12 +9,12 @@ CRITICAL, ERROR, WARNING, INFO, DEBUG = 2, 3, 4, 6, 7
 STDERR = 2
 
 
-def mark(severity: int) -> str:
+def priority_prefix(severity: int) -> str:
     """What stands in front of a line on stderr."""
-    return f"<{severity}>" if _listens() else ""
+    return f"<{severity}>" if _stderr_is_journal() else ""
 
 
-def _listens() -> bool:
+def _stderr_is_journal() -> bool:
     """Whether stderr goes to the journal.
 
     The variable alone does not say so, because all children inherit it, a terminal of a desktop among them; so it names

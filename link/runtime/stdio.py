@@ -12,7 +12,7 @@ import sys
 from typing import TextIO
 
 
-def secure() -> None:
+def ensure_open() -> None:
     """Call it first of all. Afterwards all three are open, and what no encoding can say is printed as an escape."""
     for number in range(3):
         try:
@@ -31,7 +31,7 @@ def _open_text(stream: TextIO | None, number: int) -> TextIO:
     return open(number, "w", closefd=False) if stream is None else stream
 
 
-def let_go_of_output() -> None:
+def discard_output() -> None:
     """Nobody reads it any more, or its disk is full: what waits to be written is lost, without a word at the end."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)

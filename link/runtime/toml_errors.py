@@ -22,7 +22,7 @@ KINDS = {
 BOUNDS = {">=": "at least", "<=": "at most", ">": "more than", "<": "less than"}
 
 
-def suggestion(word: str, known: Iterable[str]) -> str:
+def suggest(word: str, known: Iterable[str]) -> str:
     """What may have been meant."""
     known = list(known)
     near = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
@@ -33,7 +33,7 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     )
 
 
-def explained(error: msgspec.ValidationError, kind: Any, at: str, also: Iterable[str] = ()) -> str:
+def explain_error(error: msgspec.ValidationError, kind: Any, at: str, also: Iterable[str] = ()) -> str:
     """One line. `kind` is what the table should have been, `at` where it stands, `also` more keys it may have."""
     what, _, path = str(error).partition(" - at `$")
     path = path.removesuffix("`")
@@ -96,7 +96,7 @@ def _keys(struct: inspect.StructType) -> list[str]:
 
 
 def _unknown(found: re.Match[str], place: _Place) -> tuple[str, str]:
-    return f"{place.path}.{found[1]}", f"unknown key; {suggestion(found[1], place.keys())}"
+    return f"{place.path}.{found[1]}", f"unknown key; {suggest(found[1], place.keys())}"
 
 
 def _missing(found: re.Match[str], place: _Place) -> tuple[str, str]:
@@ -118,7 +118,7 @@ def _counted(found: re.Match[str], place: _Place) -> tuple[str, str]:
 
 
 def _unlisted(found: re.Match[str], place: _Place) -> tuple[str, str]:
-    return place.path, f"{found[1]} is not known; {suggestion(found[1].strip(chr(39)), place.choices())}"
+    return place.path, f"{found[1]} is not known; {suggest(found[1].strip(chr(39)), place.choices())}"
 
 
 _SAYINGS: dict[str, Callable[[re.Match[str], _Place], tuple[str, str]]] = {

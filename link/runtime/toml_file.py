@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-LARGEST = 2**63 - 1
+MAX_INTEGER = 2**63 - 1
 """TOML's own bound for whole numbers, which Python does not keep."""
-DEEPEST = 32
+MAX_DEPTH = 32
 """Tables and lists in each other. No file of ours has more than four; without a bound a dotted key goes as deep as it
 is long, and whoever walks down it ends with a RecursionError."""
 TOO_DEEP = "brackets in brackets, or tables in tables, too deep to be meant"
@@ -34,10 +34,10 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         what = f"byte {error.start + 1} is no text in UTF-8"
         raise TomlError(f"{path}: {what}; save the file as UTF-8, or name another one") from error
-    return tables(text, str(path))
+    return parse_toml(text, str(path))
 
 
-def tables(text: str, name: str) -> dict[str, Any]:
+def parse_toml(text: str, name: str) -> dict[str, Any]:
     """The tables of a file's text. Raises TomlError."""
     try:
         found = tomllib.loads(text)
@@ -65,21 +65,21 @@ def _in_words(error: tomllib.TOMLDecodeError) -> str:
 
 def _too_deep(table: dict[str, Any]) -> bool:
     level: list[Any] = [table]
-    for _ in range(DEEPEST):
+    for _ in range(MAX_DEPTH):
         insides = (each.values() if isinstance(each, dict) else each for each in level)
         level = [each for inside in insides for each in inside if isinstance(each, dict | list)]
     return bool(level)
 
 
-def unusable(value: Any, at: str = "") -> Iterator[str]:
+def find_unsupported(value: Any, at: str = "") -> Iterator[str]:
     """What TOML can say and nothing takes: numbers of more than 64 bits, and NUL in a text. A line each."""
     if isinstance(value, dict):
         for key, inside in value.items():
-            yield from unusable(inside, f"{at}.{key}" if at else key)
+            yield from find_unsupported(inside, f"{at}.{key}" if at else key)
     elif isinstance(value, list):
         for index, inside in enumerate(value):
-            yield from unusable(inside, f"{at}[{index}]")
+            yield from find_unsupported(inside, f"{at}[{index}]")
     elif isinstance(value, str) and "\0" in value:
         yield f"{at}: holds the character NUL; leave it out"
-    elif isinstance(value, int) and abs(value) > LARGEST:
+    elif isinstance(value, int) and abs(value) > MAX_INTEGER:
         yield f"{at}: a number too large to be meant"

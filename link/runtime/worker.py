@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 log = logging.getLogger(__name__)
 
-Job = Callable[[], None]
+WorkItem = Callable[[], None]
 
 
 class Worker:
@@ -18,10 +18,10 @@ class Worker:
     def __init__(self, name: str, limit: int) -> None:
         """`limit`: jobs that may wait; 0: any number, where the caller bounds them."""
         self._name = name
-        self._jobs: queue.Queue[Job | None] = queue.Queue(limit)
+        self._jobs: queue.Queue[WorkItem | None] = queue.Queue(limit)
         self._thread: threading.Thread | None = None
 
-    def put(self, job: Job) -> bool:
+    def submit(self, job: WorkItem) -> bool:
         """Have it run; False where too much waits already."""
         try:
             self._jobs.put_nowait(job)

@@ -14,7 +14,7 @@ from typing import Any
 
 from dialects import messages as m
 from link.services.ftp.protocol import crc32
-from link.services.param.server import Setting
+from link.services.param.server import ParamDefinition
 
 GENERAL_FILE, PARAMETER_FILE = "general.json.xz", "parameter.json.xz"
 PARAMETER_TYPE = 1
@@ -42,7 +42,7 @@ class Metadata:
         return m.ComponentMetadata(time_boot_ms, crc32(self.general), _uri(GENERAL_FILE).encode())
 
 
-def build(table: Sequence[Setting], *, vendor: str, model: str, version: str) -> Metadata:
+def build_metadata(table: Sequence[ParamDefinition], *, vendor: str, model: str, version: str) -> Metadata:
     """All files. `version` is that of the vehicle's program: three numbers with points between."""
     parameters = _compressed({"version": VERSION, "parameters": [_parameter(setting) for setting in table]})
     general = {
@@ -55,7 +55,7 @@ def build(table: Sequence[Setting], *, vendor: str, model: str, version: str) ->
     return Metadata(_compressed(general), parameters)
 
 
-def _parameter(setting: Setting) -> dict[str, Any]:
+def _parameter(setting: ParamDefinition) -> dict[str, Any]:
     described = {
         "name": setting.name,
         "type": "Float",

@@ -13,24 +13,24 @@ from link.protocol.rate import TokenBucket
 
 DEFAULT_RATE = 400_000.0
 """bytes/s to a peer on a network: 1600 file frames a second, two thirds of what link/protocol/channel.py takes from a peer."""
-MOST_FRAMES = 1600.0
+MAX_FRAME_RATE = 1600.0
 """frames/s to any peer, however short: what decodes them takes as long for a short one. MAVProxy lost one in six of
 3700 LOG_DATA a second, which its socket could not hold."""
 BURST_TIME = 0.05
 """s of the rate that may go at once: two and a half control cycles, so that a late cycle loses nothing."""
 MAX_PEERS = 32
-OVERHEAD = 12
+MAVLINK2_OVERHEAD = 12
 """Bytes of a MAVLink 2 frame around its payload."""
 
 
-class Pacer:
+class BulkPacer:
     """Says when the next bulk frame may go to a peer. `rate` gives the bytes/s for one."""
 
     def __init__(self, rate: Callable[[Peer], float] = lambda peer: DEFAULT_RATE) -> None:
         self._rate = rate
         self._buckets: dict[Peer, tuple[float, TokenBucket]] = {}
 
-    def take(self, peer: Peer, size: int, now: float) -> bool:
+    def consume(self, peer: Peer, size: int, now: float) -> bool:
         """True when a frame of `size` bytes may go to `peer` now."""
         rate = self._rate(peer)
         known = self._buckets.get(peer)
@@ -38,4 +38,4 @@ class Pacer:
             known = self._buckets[peer] = (rate, TokenBucket(rate, max(rate * BURST_TIME, codec.MAX_FRAME)))
             if len(self._buckets) > MAX_PEERS:
                 del self._buckets[next(iter(self._buckets))]
-        return known[1].take(now, max(size, rate / MOST_FRAMES))
+        return known[1].consume(now, max(size, rate / MAX_FRAME_RATE))

@@ -55,7 +55,7 @@ class TimesyncClient:
         return outbox
 
 
-def answer(received: Received, now: float, ids: tuple[int, int]) -> list[Outgoing]:
+def handle_request(received: Received, now: float, ids: tuple[int, int]) -> list[Outgoing]:
     """The echo to a PING for everybody, or to a TIMESYNC request for everybody or `ids` (system, component).
 
     Nothing for anything else: a TIMESYNC with tc1 and a PING with a target are answers.

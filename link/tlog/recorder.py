@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from link.runtime.worker import Worker
-from link.tlog.tlog import record
+from link.tlog.tlog import encode_record
 
 log = logging.getLogger(__name__)
 
@@ -23,7 +23,7 @@ MAX_BATCH = 256 * 1024
 """Bytes of frames that may come together."""
 PENDING = 32
 """Batches that may wait for the disk: 16 s, and at most 8 MB."""
-CLOSING = 2.0
+CLOSE_TIMEOUT = 2.0
 """s that the end of the program waits for the last write."""
 SLOW = "the disk is too slow, frames are missing"
 
@@ -62,7 +62,7 @@ class RawFile:
         """Bring it to the disk, for a power cut. Raises OSError."""
         os.fdatasync(self._descriptor)
 
-    def removed(self) -> bool:
+    def is_removed(self) -> bool:
         """Has somebody taken it out of its folder?"""
         return os.fstat(self._descriptor).st_nlink == 0
 
@@ -94,17 +94,19 @@ class Recorder:
         """Why it does not record, or not all, in one line."""
         return self._failure or (SLOW if self.lost else None)
 
-    def begin(self, open_file: Callable[[], LogFile]) -> None:
+    def start(self, open_file: Callable[[], LogFile]) -> None:
         """A new file, opened in the thread; the frames of the last moment are its first. What went wrong is over."""
         self.lost, self._failure, self.recording = 0, None, True
-        if not self._worker.put(lambda: self._open(open_file)):
+        if not self._worker.submit(lambda: self._open(open_file)):
             self._failure = SLOW
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Write the rest and close the file."""
         if self.recording:
             self._hand_over()
-            self._worker.put(self._close)  # where it finds no room, the next begin() or the end of the program closes
+            self._worker.submit(
+                self._close
+            )  # where it finds no room, the next begin() or the end of the program closes
             self.recording = False
 
     def add(self, now: float, frames: Sequence[bytes]) -> None:
@@ -120,18 +122,18 @@ class Recorder:
             self._handed_over = now
             self._hand_over()
 
-    def check(self, probe: Callable[[], None]) -> None:
+    def check_writable(self, probe: Callable[[], None]) -> None:
         """Have the thread see whether it could record: `probe` raises OSError where not."""
-        self._worker.put(lambda: self._try(probe))
+        self._worker.submit(lambda: self._try(probe))
 
     def close(self) -> None:
         """Write the rest and end."""
-        self.end()
-        self._worker.close(CLOSING)
+        self.stop()
+        self._worker.close(CLOSE_TIMEOUT)
 
     def _hand_over(self) -> None:
         batch, self._batch, self._size = self._batch, [], 0
-        if batch and self.recording and not self._failure and not self._worker.put(lambda: self._write(batch)):
+        if batch and self.recording and not self._failure and not self._worker.submit(lambda: self._write(batch)):
             self.lost += sum(len(frames) for _, frames in batch)
 
     # ---- in the thread ----
@@ -149,7 +151,7 @@ class Recorder:
         file = self._file
         if file is not None:
             stamped = ((int(now * 1e6) + self._since, frames) for now, frames in batch)
-            data = b"".join(record(at, raw) for at, frames in stamped for raw in frames)
+            data = b"".join(encode_record(at, raw) for at, frames in stamped for raw in frames)
             self._try(lambda: file.write(data))
 
     def _close(self) -> None:

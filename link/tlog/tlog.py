@@ -29,14 +29,14 @@ class Record(NamedTuple):
     raw: bytes
 
 
-def record(microseconds: int, raw: bytes) -> bytes:
+def encode_record(microseconds: int, raw: bytes) -> bytes:
     """The bytes of one record; none for SETUP_SIGNING, because its key belongs into no file."""
     if raw[:1] == _MAGIC_V2 and raw[7:10] == _SETUP_SIGNING:
         return b""
     return _STAMP.pack(microseconds) + raw
 
 
-def read(data: bytes) -> Iterator[Record]:
+def read_records(data: bytes) -> Iterator[Record]:
     """All whole records of a log, in order. What is damaged is skipped and never raises."""
     at, last, sure = 0, 0, True
     while at + _LEAST <= len(data):

@@ -21,7 +21,7 @@ def resolve(endpoint: Endpoint, kind: socket.SocketKind) -> tuple[tuple[str, int
     return (str(address[0]), int(address[1])), family
 
 
-def reason(endpoint: Endpoint, error: OSError) -> str:
+def bind_error_text(endpoint: Endpoint, error: OSError) -> str:
     """Why a socket could not be had, in one line."""
     if error.errno == errno.EADDRINUSE:
         return (

@@ -7,8 +7,8 @@ import socket
 from collections.abc import Callable, Hashable
 
 from link.transport.priority_queue import TransmitQueue
-from link.transport.stream_writer import Outlet
-from link.transport.transport import Arrived
+from link.transport.stream_writer import StreamWriter
+from link.transport.transport import ReceiveCallback
 
 BULK = 65536
 """Bytes of telemetry that may wait for one connection, then the oldest is dropped."""
@@ -23,7 +23,7 @@ class Connection:
     """One open connection. `ended` hears why it ended; whoever calls close() knows it already."""
 
     def __init__(
-        self, sock: socket.socket, address: Hashable, arrived: Arrived, ended: Callable[[Connection, str], None]
+        self, sock: socket.socket, address: Hashable, arrived: ReceiveCallback, ended: Callable[[Connection, str], None]
     ) -> None:
         _prepare(sock)
         self.address = address
@@ -31,7 +31,7 @@ class Connection:
         self._socket = sock
         self._arrived = arrived
         self._ended = ended
-        self._outlet = Outlet(sock.fileno(), self.queue, sock.send, self._failed)
+        self._outlet = StreamWriter(sock.fileno(), self.queue, sock.send, self._failed)
         self._loop = asyncio.get_running_loop()
         self._loop.add_reader(sock, self._readable)
 
@@ -42,7 +42,7 @@ class Connection:
     def close(self) -> None:
         """Hand over what is taken at once, and end it."""
         self._ended = lambda *_: None
-        self._outlet.finish()
+        self._outlet.flush_and_close()
         self._release()
 
     def _readable(self) -> None:

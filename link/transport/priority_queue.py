@@ -37,9 +37,9 @@ STALE = 0.5
 """s after which a waiting frame is worth less than none: about the vehicle's own patience with a demand (0.45 s)."""
 MAX_URGENT = 64
 """Control frames that may wait: 0.4 s of them at 57600 baud."""
-AHEAD = 0.020
+MAX_DRIVER_BACKLOG = 0.020
 """s of wire time that may lie in the driver's buffer, where nothing can overtake."""
-AHEAD_LEAST = 0.004
+MIN_DRIVER_BACKLOG = 0.004
 """s: below this any frame may go, however long it is, or the wire would run dry."""
 
 
@@ -64,7 +64,7 @@ class TransmitQueue:
         self._bulk_size = 0
         self._newest: dict[tuple[int, ...], _Entry] = {}
 
-    def put(self, data: bytes, now: float) -> None:
+    def push(self, data: bytes, now: float) -> None:
         """Add one whole frame."""
         header = read_header(data)
         if header is None or header.message_id not in URGENT:
@@ -85,7 +85,7 @@ class TransmitQueue:
             self._drop_bulk()
         return len(self._bulk[0].data) if self._bulk else 0
 
-    def take(self, now: float) -> bytes:
+    def pop(self, now: float) -> bytes:
         """The frame that goes next; empty when none waits."""
         if not self.next_size(now):
             return b""
@@ -149,7 +149,7 @@ def _stops(data: bytes) -> bool:
     return is_stop(codec.decode(header.message_id, data[start : start + data[1]]))
 
 
-class Pacer:
+class TransmitPacer:
     """Says when a wire of `capacity` bytes/s has room, so that no long queue forms in the driver behind it."""
 
     def __init__(self, capacity: float) -> None:
@@ -157,11 +157,11 @@ class Pacer:
         self._free_at = 0.0
         """When the wire will have sent what it was given."""
 
-    def wait(self, size: int, in_driver: int, now: float) -> float:
+    def delay(self, size: int, in_driver: int, now: float) -> float:
         """s until a frame of `size` bytes may go; `in_driver` bytes are there by its own word (0: it does not know)."""
         ahead = max(self._free_at - now, in_driver / self._capacity)
-        return max(0.0, min(ahead + size / self._capacity - AHEAD, ahead - AHEAD_LEAST))
+        return max(0.0, min(ahead + size / self._capacity - MAX_DRIVER_BACKLOG, ahead - MIN_DRIVER_BACKLOG))
 
-    def wrote(self, size: int, now: float) -> None:
+    def record_written(self, size: int, now: float) -> None:
         """`size` bytes went to the driver."""
         self._free_at = max(self._free_at, now) + size / self._capacity

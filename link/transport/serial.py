@@ -16,10 +16,10 @@ import serial
 
 from link.endpoint import Endpoint
 from link.transport.backoff import Backoff
-from link.transport.priority_queue import Pacer, TransmitQueue
-from link.transport.serial_faults import ABSENT, in_words
-from link.transport.stream_writer import Outlet
-from link.transport.transport import Arrived, Gone, LinkError
+from link.transport.priority_queue import TransmitPacer, TransmitQueue
+from link.transport.serial_faults import ABSENT_ERRNOS, serial_error_text
+from link.transport.stream_writer import StreamWriter
+from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
 
 BITS_PER_BYTE = 10
 """8 data bits, one start and one stop bit."""
@@ -30,31 +30,31 @@ BULK_LEAST = 600
 READ = 4096
 
 
-class SerialWire:
+class SerialTransport:
     """One serial port, by its path. `port` is open, or None when it must be waited for."""
 
     def __init__(self, endpoint: Endpoint, port: serial.Serial | None) -> None:
         self.endpoint = endpoint
         self.problem = None if port else _waiting(endpoint)
         self.stream = True
-        self.fixed: Hashable | None = endpoint.text
+        self.fixed_address: Hashable | None = endpoint.text
         self.capacity: float | None = endpoint.baud / BITS_PER_BYTE
         self._queue = TransmitQueue(max(BULK_LEAST, int(endpoint.baud / BITS_PER_BYTE * BULK_WAIT)))
         self._port = port
-        self._outlet: Outlet | None = None
+        self._outlet: StreamWriter | None = None
         self._backoff = Backoff()
         self._timer: asyncio.TimerHandle | None = None
         self._closed = False
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._arrived: Arrived = lambda _: None
-        self._gone: Gone = lambda _: None
+        self._arrived: ReceiveCallback = lambda _: None
+        self._gone: DisconnectCallback = lambda _: None
 
     @property
     def dropped(self) -> int:
         """Frames that the port had no room for."""
         return self._queue.dropped
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
         """Hand over what arrives, and wait for the port where it is missing."""
         self._loop, self._arrived, self._gone = loop, arrived, gone
         if self._port:
@@ -73,18 +73,18 @@ class SerialWire:
         if self._timer:
             self._timer.cancel()
         if self._outlet:
-            self._outlet.finish()
+            self._outlet.flush_and_close()
         self._release()
 
     def _use(self, loop: asyncio.AbstractEventLoop, port: serial.Serial) -> None:
         self._port, self.problem = port, None
         descriptor = port.fileno()
-        self._outlet = Outlet(
+        self._outlet = StreamWriter(
             descriptor,
             self._queue,
             lambda data: os.write(descriptor, data),
             lambda error: self._lose(error.strerror or str(error)),
-            pacer=Pacer(self.endpoint.baud / BITS_PER_BYTE),
+            pacer=TransmitPacer(self.endpoint.baud / BITS_PER_BYTE),
             in_driver=lambda: _in_driver(descriptor),
         )
         loop.add_reader(descriptor, self._readable, descriptor)
@@ -126,7 +126,7 @@ class SerialWire:
             port.close()
 
     def _try_later(self, loop: asyncio.AbstractEventLoop) -> None:
-        self._timer = loop.call_later(self._backoff.wait(), self._try, loop)
+        self._timer = loop.call_later(self._backoff.next_delay(), self._try, loop)
 
     def _try(self, loop: asyncio.AbstractEventLoop) -> None:
         try:
@@ -141,9 +141,9 @@ class SerialWire:
         self._try_later(loop)
 
 
-def open_serial(endpoint: Endpoint) -> SerialWire:
+def open_serial(endpoint: Endpoint) -> SerialTransport:
     """Open the port, or wait for it where it is missing. Raises LinkError for what waiting does not mend."""
-    return SerialWire(endpoint, _open(endpoint))
+    return SerialTransport(endpoint, _open(endpoint))
 
 
 def _waiting(endpoint: Endpoint) -> str:
@@ -163,9 +163,9 @@ def _open(endpoint: Endpoint) -> serial.Serial | None:
             raise
     except (OSError, termios.error) as error:  # SerialException is an OSError; termios's own is none
         fault = OSError(*error.args)
-        if fault.errno in ABSENT:
+        if fault.errno in ABSENT_ERRNOS:
             return None
-        raise LinkError(f"{endpoint.text}: {in_words(endpoint.path, fault)}") from error
+        raise LinkError(f"{endpoint.text}: {serial_error_text(endpoint.path, fault)}") from error
     except (ValueError, OverflowError) as error:
         raise LinkError(f"{endpoint.text}: the port does not take {endpoint.baud} baud; try 57600") from error
     return port

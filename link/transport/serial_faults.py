@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import errno
 
-ABSENT = (errno.ENOENT, errno.ENOTDIR, errno.ENODEV, errno.ENXIO, errno.EIO)
+ABSENT_ERRNOS = (errno.ENOENT, errno.ENOTDIR, errno.ENODEV, errno.ENXIO, errno.EIO)
 """There is no such port now; it may be plugged in later."""
 _BUSY = (errno.EAGAIN, errno.EBUSY)
 _FORBIDDEN = (errno.EACCES, errno.EPERM)
 
 
-def in_words(path: str, error: OSError) -> str:
+def serial_error_text(path: str, error: OSError) -> str:
     """What is wrong with the port at `path`, and what to do."""
-    if error.errno in ABSENT:
+    if error.errno in ABSENT_ERRNOS:
         return f"{path} is not there; is it plugged in?"
     if error.errno in _BUSY:
         return f"another program uses {path} (`fuser {path}` says which); stop it"

@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 
-from link.transport.priority_queue import Pacer, TransmitQueue
+from link.transport.priority_queue import TransmitPacer, TransmitQueue
 
-JOINED = 4096
+MAX_JOINED = 4096
 """Bytes handed over in one call where no pace is known: fewer calls behind a backlog, and a short one at that."""
 
 
-class Outlet:
+class StreamWriter:
     """The sending half of a stream. `write` puts bytes on it and returns how many it took, `failed` hears its OSError,
     `in_driver` tells how many bytes wait behind it."""
 
@@ -22,7 +22,7 @@ class Outlet:
         write: Callable[[bytes], int],
         failed: Callable[[OSError], None],
         *,
-        pacer: Pacer | None = None,
+        pacer: TransmitPacer | None = None,
         in_driver: Callable[[], int] = lambda: 0,
     ) -> None:
         self._descriptor = descriptor
@@ -39,11 +39,11 @@ class Outlet:
 
     def send(self, frame: bytes) -> None:
         """One frame, now or as soon as there is room."""
-        self._queue.put(frame, self._loop.time())
+        self._queue.push(frame, self._loop.time())
         if not self._blocked and self._timer is None:
             self._pump()
 
-    def finish(self) -> None:
+    def flush_and_close(self) -> None:
         """Hand over what waits, without regard to the pace, as far as it is taken at once; then close()."""
         self._pacer = None
         if not self._blocked:
@@ -65,7 +65,7 @@ class Outlet:
                 taken = self._write(self._rest)
                 self._rest = self._rest[taken:]
                 if self._pacer is not None:
-                    self._pacer.wrote(taken, self._loop.time())
+                    self._pacer.record_written(taken, self._loop.time())
         except BlockingIOError:
             self._block()
         except OSError as error:
@@ -84,17 +84,17 @@ class Outlet:
         size = self._queue.next_size(now)
         if not size:
             return False
-        wait = self._pacer.wait(size, self._in_driver(), now)
+        wait = self._pacer.delay(size, self._in_driver(), now)
         if wait > 0:
             self._timer = self._loop.call_later(wait, self._pump)
             return False
-        self._rest = self._queue.take(now)
+        self._rest = self._queue.pop(now)
         return True
 
     def _joined(self, now: float) -> bytes:
         frames: list[bytes] = []
         size = 0
-        while size < JOINED and (frame := self._queue.take(now)):
+        while size < MAX_JOINED and (frame := self._queue.pop(now)):
             frames.append(frame)
             size += len(frame)
         return b"".join(frames)

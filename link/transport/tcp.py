@@ -11,39 +11,39 @@ from collections.abc import Hashable
 from link.endpoint import Endpoint
 from link.protocol.link_events import CONNECTING
 from link.runtime.worker import Worker
-from link.transport.address import reason, resolve
+from link.transport.address import bind_error_text, resolve
 from link.transport.backoff import Backoff
 from link.transport.connection import Connection
-from link.transport.transport import Arrived, Gone, LinkError
+from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
 
 MAX_CONNECTIONS = 16
 """To one `tcpin`; more are closed at once."""
-CONNECT_WITHIN = 5.0
+CONNECT_TIMEOUT = 5.0
 """s, then the next try."""
 
 
-class TcpServer:
+class TcpServerTransport:
     """`tcpin`: each connection is a peer of its own."""
 
     def __init__(self, endpoint: Endpoint, sock: socket.socket) -> None:
         self.endpoint = endpoint
         self.problem: str | None = None
         self.stream = True
-        self.fixed: Hashable | None = None
+        self.fixed_address: Hashable | None = None
         self.capacity: float | None = None
         self._socket = sock
         self._connections: dict[Hashable, Connection] = {}
         self._dropped = 0
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._arrived: Arrived = lambda _: None
-        self._gone: Gone = lambda _: None
+        self._arrived: ReceiveCallback = lambda _: None
+        self._gone: DisconnectCallback = lambda _: None
 
     @property
     def dropped(self) -> int:
         """Frames that no connection had room for."""
         return self._dropped + sum(each.queue.dropped for each in self._connections.values())
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
         """Take connections."""
         self._loop, self._arrived, self._gone = loop, arrived, gone
         loop.add_reader(self._socket, self._accept)
@@ -83,14 +83,14 @@ class TcpServer:
         self._gone(connection.address)
 
 
-class TcpClient:
+class TcpClientTransport:
     """`tcpout`: one connection, tried until it stands, and again when it has ended."""
 
     def __init__(self, endpoint: Endpoint, address: tuple[str, int], family: socket.AddressFamily) -> None:
         self.endpoint = endpoint
         self.problem: str | None = f"{endpoint.text}: {CONNECTING}"
         self.stream = True
-        self.fixed: Hashable | None = endpoint.text
+        self.fixed_address: Hashable | None = endpoint.text
         self.capacity: float | None = None
         self._target = address, family
         self._names = Worker("names", limit=1)
@@ -100,15 +100,15 @@ class TcpClient:
         self._backoff = Backoff()
         self._dropped = 0
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._arrived: Arrived = lambda _: None
-        self._gone: Gone = lambda _: None
+        self._arrived: ReceiveCallback = lambda _: None
+        self._gone: DisconnectCallback = lambda _: None
 
     @property
     def dropped(self) -> int:
         """Frames that the connection had no room for."""
         return self._dropped + (self._connection.queue.dropped if self._connection else 0)
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
         """Begin to connect."""
         self._loop = loop
         self._arrived, self._gone = arrived, gone
@@ -130,7 +130,7 @@ class TcpClient:
         address, family = self._target
         sock = self._trying = socket.socket(family, socket.SOCK_STREAM)
         sock.setblocking(False)
-        self._timer = loop.call_later(CONNECT_WITHIN, self._refused, loop, "no answer")
+        self._timer = loop.call_later(CONNECT_TIMEOUT, self._refused, loop, "no answer")
         try:
             sock.connect(address)
         except BlockingIOError:
@@ -151,7 +151,7 @@ class TcpClient:
         loop.remove_writer(sock)
         self.problem = None
         self._backoff.reset()
-        self._connection = Connection(sock, self.fixed, self._arrived, self._ended)
+        self._connection = Connection(sock, self.fixed_address, self._arrived, self._ended)
 
     def _refused(self, loop: asyncio.AbstractEventLoop, why: str) -> None:
         self._give_up_trying()
@@ -167,8 +167,8 @@ class TcpClient:
     def _again(self, loop: asyncio.AbstractEventLoop, what: str) -> None:
         self.problem = f"{self.endpoint.text}: {what}; trying again"
         if self._target[0][0] != self.endpoint.host:  # a name, which may have another address by now
-            self._names.put(self._look_up)
-        self._timer = loop.call_later(self._backoff.wait(), self._connect, loop)
+            self._names.submit(self._look_up)
+        self._timer = loop.call_later(self._backoff.next_delay(), self._connect, loop)
 
     def _look_up(self) -> None:
         """In a thread, and no try waits for it: the name server may be what is away. Unknown: the last one stays."""
@@ -185,7 +185,7 @@ class TcpClient:
             sock.close()
 
 
-def open_tcpin(endpoint: Endpoint) -> TcpServer:
+def open_tcpin(endpoint: Endpoint) -> TcpServerTransport:
     """Open the port. Raises LinkError with one line that says what is wrong and what to do."""
     address, family = resolve(endpoint, socket.SOCK_STREAM)
     sock = socket.socket(family, socket.SOCK_STREAM)
@@ -196,10 +196,10 @@ def open_tcpin(endpoint: Endpoint) -> TcpServer:
         sock.listen(MAX_CONNECTIONS)
     except OSError as error:
         sock.close()
-        raise LinkError(reason(endpoint, error)) from error
-    return TcpServer(endpoint, sock)
+        raise LinkError(bind_error_text(endpoint, error)) from error
+    return TcpServerTransport(endpoint, sock)
 
 
-def open_tcpout(endpoint: Endpoint) -> TcpClient:
+def open_tcpout(endpoint: Endpoint) -> TcpClientTransport:
     """Ready to connect; that nobody listens yet is no error. Raises LinkError where the name is not known."""
-    return TcpClient(endpoint, *resolve(endpoint, socket.SOCK_STREAM))
+    return TcpClientTransport(endpoint, *resolve(endpoint, socket.SOCK_STREAM))

@@ -16,14 +16,14 @@ class LinkError(Exception):
     """A link cannot be opened; the message is one line that says what, where and what to do."""
 
 
-Arrived = Callable[[Sequence[tuple[bytes, Hashable]]], None]
+ReceiveCallback = Callable[[Sequence[tuple[bytes, Hashable]]], None]
 """Takes what arrived: bytes (a datagram, or any piece of a stream) and the address they came from; none yet from a new
 connection."""
-Gone = Callable[[Hashable], None]
+DisconnectCallback = Callable[[Hashable], None]
 """Hears that the connection to an address has ended."""
 
 
-class Wire(Protocol):
+class Transport(Protocol):
     """A socket or port, not blocking. It knows nothing of messages, only of frames that go first (priority_queue.py)."""
 
     endpoint: Endpoint
@@ -31,7 +31,7 @@ class Wire(Protocol):
     """Why it does not work now, in one line, or None."""
     stream: bool
     """Bytes have no datagram borders."""
-    fixed: Hashable | None
+    fixed_address: Hashable | None
     """The address that the user named, for wires that speak before they are spoken to."""
     capacity: float | None
     """Bytes/s that it takes, where that is known."""
@@ -40,7 +40,7 @@ class Wire(Protocol):
     def dropped(self) -> int:
         """Frames that it had no room for."""
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
         """Hand over what arrives, from now on."""
 
     def send(self, data: bytes, address: Hashable) -> None:
@@ -54,18 +54,18 @@ class Wire(Protocol):
 class Link:
     """A wire and the conversation on it."""
 
-    wire: Wire
+    transport: Transport
     channel: Channel
 
     @property
     def endpoint(self) -> Endpoint:
         """Where it ends."""
-        return self.wire.endpoint
+        return self.transport.endpoint
 
     def close(self) -> None:
         """Free the port."""
-        self.wire.close()
+        self.transport.close()
 
 
-Opener = Callable[[Endpoint], Wire]
+TransportFactory = Callable[[Endpoint], Transport]
 """Opens one kind of wire. Raises LinkError with one clear line."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from link.endpoint import parse
+from link.endpoint import parse_endpoint
 from link.transport.serial import open_serial
 from link.transport.tcp import open_tcpin, open_tcpout
-from link.transport.transport import LinkError, Opener, Wire
+from link.transport.transport import LinkError, Transport, TransportFactory
 from link.transport.udp import open_udp
 
-OPENERS: dict[str, Opener] = {
+TRANSPORTS: dict[str, TransportFactory] = {
     "udpin": open_udp,
     "udpout": open_udp,
     "tcpin": open_tcpin,
@@ -20,12 +20,12 @@ OPENERS: dict[str, Opener] = {
 """Scheme of link/endpoint.py -> what opens it."""
 
 
-def open_wires(endpoints: Sequence[str]) -> list[Wire]:
+def open_transports(endpoints: Sequence[str]) -> list[Transport]:
     """Open all endpoints, or none: raises EndpointError or LinkError."""
-    parsed = [parse(text) for text in endpoints]
-    wires: list[Wire] = []
+    parsed = [parse_endpoint(text) for text in endpoints]
+    wires: list[Transport] = []
     try:
-        wires.extend(OPENERS[endpoint.scheme](endpoint) for endpoint in parsed)
+        wires.extend(TRANSPORTS[endpoint.scheme](endpoint) for endpoint in parsed)
     except LinkError:
         for wire in wires:
             wire.close()

@@ -7,8 +7,8 @@ import socket
 from collections.abc import Hashable
 
 from link.endpoint import Endpoint
-from link.transport.address import reason, resolve
-from link.transport.transport import Arrived, Gone, LinkError
+from link.transport.address import bind_error_text, resolve
+from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
 
 BATCH = 64
 """Datagrams read before the loop gets its turn again: a flood must not starve the control loop (about 1 ms)."""
@@ -16,7 +16,7 @@ BUFFER = 65536
 """Bytes of the largest datagram."""
 
 
-class UdpWire:
+class UdpTransport:
     """One UDP socket: `udpin` waits on an address, `udpout` speaks to one first and hears only that one.
 
     The name of that one is looked up at the start and never again: UDP knows no end after which it could be.
@@ -26,13 +26,13 @@ class UdpWire:
         self.endpoint = endpoint
         self.problem: str | None = None
         self.stream = False
-        self.fixed: Hashable | None = endpoint.text if endpoint.scheme == "udpout" else None
+        self.fixed_address: Hashable | None = endpoint.text if endpoint.scheme == "udpout" else None
         self.capacity: float | None = None
         self.dropped = 0
         self._socket = sock
         self._loop: asyncio.AbstractEventLoop | None = None
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: Arrived, gone: Gone) -> None:
+    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
         """Hand arriving datagrams to `arrived` in batches; UDP knows no end of a connection."""
         self._loop = loop
         loop.add_reader(self._socket, self._readable, arrived)
@@ -40,7 +40,7 @@ class UdpWire:
     def send(self, data: bytes, address: Hashable) -> None:
         """One datagram, now or never."""
         try:
-            if self.fixed is not None:
+            if self.fixed_address is not None:
                 self._socket.send(data)
             else:
                 self._socket.sendto(data, address)  # type: ignore[call-overload]
@@ -57,7 +57,7 @@ class UdpWire:
             self._loop.remove_reader(self._socket)
         self._socket.close()
 
-    def _readable(self, arrived: Arrived) -> None:
+    def _readable(self, arrived: ReceiveCallback) -> None:
         batch: list[tuple[bytes, Hashable]] = []
         for _ in range(BATCH):
             try:
@@ -67,12 +67,12 @@ class UdpWire:
             except OSError as error:
                 self.problem = f"{self.endpoint.text}: {error.strerror}"
                 break
-            batch.append((data, self.fixed or address))
+            batch.append((data, self.fixed_address or address))
         if batch:
             arrived(batch)
 
 
-def open_udp(endpoint: Endpoint) -> UdpWire:
+def open_udp(endpoint: Endpoint) -> UdpTransport:
     """Open the socket. Raises LinkError with one line that says what is wrong and what to do."""
     address, family = resolve(endpoint, socket.SOCK_DGRAM)
     sock = socket.socket(family, socket.SOCK_DGRAM)
@@ -84,5 +84,5 @@ def open_udp(endpoint: Endpoint) -> UdpWire:
             sock.bind(address)
     except OSError as error:
         sock.close()
-        raise LinkError(reason(endpoint, error)) from error
-    return UdpWire(endpoint, sock)
+        raise LinkError(bind_error_text(endpoint, error)) from error
+    return UdpTransport(endpoint, sock)

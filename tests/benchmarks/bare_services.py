@@ -20,7 +20,7 @@ from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
-from link.services.ftp.protocol import MAX_DATA, FtpPacket, Op, parse
+from link.services.ftp.protocol import MAX_DATA, FtpOpcode, FtpPacket, parse_packet
 from tests.benchmarks.figures import BenchmarkError
 from tests.benchmarks.traffic import framed
 
@@ -90,7 +90,7 @@ class Server:
                 for index in range(self._parameters):
                     yield m.ParamValue(b"PARAMETER_%d" % index, 0.1 * index, 9, self._parameters, index)
             case m.FileTransferProtocol():
-                yield from (packet.message(*GROUND) for packet in self._packets(parse(message)))
+                yield from (packet.message(*GROUND) for packet in self._packets(parse_packet(message)))
             case _:
                 yield from self._mission(message)
 
@@ -111,15 +111,17 @@ class Server:
                 yield self._items[message.seq]
 
     def _packets(self, asked: FtpPacket) -> Iterator[FtpPacket]:
-        if asked.op != Op.BURST:
+        if asked.op != FtpOpcode.BURST:
             size = len(self._file).to_bytes(4, "little")
-            yield FtpPacket(asked.sequence + 1, Op.ACK, asked.session, size, 0, asked.op)
+            yield FtpPacket(asked.sequence + 1, FtpOpcode.ACK, asked.session, size, 0, asked.op)
             return
         for number in range(BURST):
             offset = asked.offset + number * MAX_DATA
             data = self._file[offset : offset + MAX_DATA]
             last = number == BURST - 1 or offset + MAX_DATA >= len(self._file)
-            yield FtpPacket(asked.sequence + 1 + number, Op.ACK, asked.session, data, offset, Op.BURST, last)
+            yield FtpPacket(
+                asked.sequence + 1 + number, FtpOpcode.ACK, asked.session, data, offset, FtpOpcode.BURST, last
+            )
             if last:
                 return
 
@@ -170,14 +172,14 @@ def download(line: Line) -> None:
 
 def fetch_file(line: Line) -> int:
     """By bursts; bytes that came. What is lost is not asked for again."""
-    line.say(FtpPacket(1, Op.OPEN, 0, b"file").message(*VEHICLE))
-    size = int.from_bytes(parse(line.await_(m.FileTransferProtocol)).data, "little")
+    line.say(FtpPacket(1, FtpOpcode.OPEN, 0, b"file").message(*VEHICLE))
+    size = int.from_bytes(parse_packet(line.await_(m.FileTransferProtocol)).data, "little")
     offset = got = 0
     while offset < size:
-        line.say(FtpPacket(3, Op.BURST, 0, b"", offset, size=MAX_DATA).message(*VEHICLE))
+        line.say(FtpPacket(3, FtpOpcode.BURST, 0, b"", offset, size=MAX_DATA).message(*VEHICLE))
         complete = False
         while not complete:
-            packet = parse(line.await_(m.FileTransferProtocol))
+            packet = parse_packet(line.await_(m.FileTransferProtocol))
             got += len(packet.data)
             offset, complete = packet.offset + len(packet.data), packet.burst_complete
     return got

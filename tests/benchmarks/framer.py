@@ -9,7 +9,7 @@ from typing import Any
 
 from dialects import codec, rover
 from dialects import messages as m
-from dialects.axes import Axes, manual_control
+from dialects.axes import Axes, build_manual_control
 from link.protocol.channel import Channel
 from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
@@ -155,11 +155,11 @@ def _sending(report: Report, options: Options) -> None:
 def _encoders() -> dict[str, dict[str, Work]]:
     mavlink: Any = rover.MAVLink(None, srcSystem=255, srcComponent=190)
     axes = Axes(0.6, -0.2)
-    message: Any = manual_control(axes, 1)
+    message: Any = build_manual_control(axes, 1)
     return {
         "numbers to bytes": {
             "pymavlink": _times(lambda: m.ManualControl(1, 600, 32767, 32767, -200, 0).pack(mavlink)),
-            "ours": _times(lambda: framed(manual_control(axes, 1), 7, 255, 190)),
+            "ours": _times(lambda: framed(build_manual_control(axes, 1), 7, 255, 190)),
         },
         "made message to bytes": {
             "pymavlink": _times(lambda: message.pack(mavlink)),
@@ -181,7 +181,7 @@ def _times(encode: Callable[[], object]) -> Work:
 
 def _noise(report: Report) -> None:
     """40 frames of a 20 Hz stream with one stray start byte before the first."""
-    frames = [framed(manual_control(Axes(0.5, 0.1), 1), number, 255, 190) for number in range(40)]
+    frames = [framed(build_manual_control(Axes(0.5, 0.1), 1), number, 255, 190) for number in range(40)]
     pieces = [b"\xfd" + frames[0], *frames[1:]]
     parser, framer = _parser(), Framer(stream=True)
     theirs = sum(each.get_msgId() >= 0 for piece in pieces for each in parser.parse_buffer(piece) or ())

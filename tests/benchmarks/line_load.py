@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dialects.enums import Autopilot, State, Type
+from dialects.enums import Autopilot, SystemState, VehicleType
 from dialects.messages import Heartbeat, Message, ParamRequestList
-from link.services.ftp.protocol import FtpPacket, Op
+from link.services.ftp.protocol import FtpOpcode, FtpPacket
 from tests.benchmarks.traffic import framed
 
 SYSTEM, COMPONENT = 254, 190
@@ -28,13 +28,13 @@ class Asker:
         if now < self._due:
             return b""
         self._due = now + PERIOD
-        heartbeat = Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3)
-        ask_file = [self._ftp(Op.RESET), self._ftp(Op.OPEN, FILE), self._ftp(Op.BURST)]
+        heartbeat = Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3)
+        ask_file = [self._ftp(FtpOpcode.RESET), self._ftp(FtpOpcode.OPEN, FILE), self._ftp(FtpOpcode.BURST)]
         return b"".join(map(self._frame, [heartbeat, ParamRequestList(*VEHICLE), *ask_file]))
 
-    def _ftp(self, op: Op, data: bytes = b"") -> Message:
+    def _ftp(self, op: FtpOpcode, data: bytes = b"") -> Message:
         self._questions = (self._questions + 2) & 0xFFFF
-        size = 239 if op is Op.BURST else None  # of a burst: how much each message shall bring
+        size = 239 if op is FtpOpcode.BURST else None  # of a burst: how much each message shall bring
         return FtpPacket(self._questions, op, 0, data, size=size).message(*VEHICLE)
 
     def _frame(self, message: Message) -> bytes:

@@ -15,8 +15,8 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 
-from dialects.axes import Axes, manual_control
-from dialects.enums import Autopilot, Command, State, Type
+from dialects.axes import Axes, build_manual_control
+from dialects.enums import Autopilot, Command, SystemState, VehicleType
 from dialects.messages import CommandLong, Heartbeat, Message
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table, spread
 from tests.benchmarks.programs import free_port, on_pipe, python, scratch
@@ -175,7 +175,7 @@ class Driver:
     def arm(self, stamps: Path) -> None:
         """Until the cycles reach the motors, and then to a steady speed."""
         for _ in range(10):
-            self._send(Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3))
+            self._send(Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3))
             self._watch.pause(0.2)
             self._send(CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
             self._demand(Axes(), NEUTRAL_FIRST)
@@ -190,8 +190,8 @@ class Driver:
     def _demand(self, axes: Axes, times: int) -> None:
         for number in range(times):
             if number % 10 == 0:
-                self._send(Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3))
-            self._send(manual_control(axes, 1))
+                self._send(Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3))
+            self._send(build_manual_control(axes, 1))
             self._watch.pause(DEMANDS)
 
     def _send(self, message: Message) -> None:

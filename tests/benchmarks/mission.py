@@ -111,7 +111,7 @@ def _mode(station: Station) -> int | None:
 
 
 def _way(place: Point) -> MissionItem:
-    latitude, longitude = HOME.globe(place)
+    latitude, longitude = HOME.to_global(place)
     params = (0.0, 0.0, 0.0, 0.0)
     return MissionItem(
         Command.NAV_WAYPOINT, RELATIVE_ALTITUDE, params, round(latitude * 1e7), round(longitude * 1e7), 0.0
@@ -144,7 +144,7 @@ def _beside(course: Course, place: Point) -> float:
 
 
 def _from_leg(leg: Leg, place: Point) -> float:
-    remaining, beside = leg.beside(place)
+    remaining, beside = leg.along_and_cross_track(place)
     if 0.0 <= remaining <= leg.start.distance(leg.end):
         return abs(beside)
     return min(leg.start.distance(place), leg.end.distance(place))

@@ -11,13 +11,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from dialects import rover as dialect
-from dialects.axes import Axes, manual_control
-from dialects.enums import Autopilot, Command, State, Type
+from dialects.axes import Axes, build_manual_control
+from dialects.enums import Autopilot, Command, SystemState, VehicleType
 from dialects.messages import CommandLong, Heartbeat, Message, RoverOperatorPresence
 from link.protocol.channel import Channel
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Spread, Table, spread
 from tests.benchmarks.traffic import framed
-from vehicle.control_loop import Machine
+from vehicle.control_loop import ControlLoop
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
 from vehicle.rover import Rover
@@ -109,7 +109,7 @@ class VehicleInMemory:
         motors = SimulatedMotors()
         self._motors = motors
         rover = Rover(Params({}), now=self._now)
-        self._machine = Machine(rover, motors, SimulatedBody(lambda: motors.outputs))
+        self._machine = ControlLoop(rover, motors, SimulatedBody(lambda: motors.outputs))
         self._channel = Channel("udpin:bench", 0, system=1, component=1)
         self._sequence = 0
 
@@ -121,18 +121,18 @@ class VehicleInMemory:
     def arm(self) -> None:
         """A ground station introduces itself, arms, and shows neutral."""
         arm = CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
-        for message in (Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3), arm):
+        for message in (Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3), arm):
             self.take(self._frame(message))
             self._wait(0.5)
         for _ in range(10):
-            self.take(self._frame(manual_control(Axes(), 1)))
+            self.take(self._frame(build_manual_control(Axes(), 1)))
             self.cycle()
 
     def demand(self, number: int) -> tuple[bytes, bytes]:
         """Proof of life and demand, each time another one."""
         alive = RoverOperatorPresence(1, 1, number, 0, 7, number, 0, 0)
         axes = Axes(0.5 + 0.3 * (number % 2), 0.1 * (number % 3))
-        return self._frame(alive), self._frame(manual_control(axes, 1))
+        return self._frame(alive), self._frame(build_manual_control(axes, 1))
 
     def take(self, data: bytes) -> None:
         """What the runner does with a datagram, down to the motors."""
@@ -143,7 +143,7 @@ class VehicleInMemory:
         """20 ms pass; what the rover says is thrown away. Its ground station's heartbeat comes when it is due."""
         before, self._now = int(self._now), self._now + CYCLE
         if int(self._now) != before:
-            self.take(self._frame(Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3)))
+            self.take(self._frame(Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3)))
         self._machine.tick(self._now)
         self._machine.messages_to_send()
 

@@ -14,7 +14,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from statistics import median
 
-from dialects.axes import Axes, manual_control
+from dialects.axes import Axes, build_manual_control
 from dialects.messages import RoverOperatorPresence
 from tests.benchmarks.baud_cable import BITS_PER_BYTE
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table, spread
@@ -129,7 +129,7 @@ def wired(baud: int) -> Iterator[Wired]:
 def frame_sizes() -> tuple[int, int]:
     """Bytes of the presence and of the MANUAL_CONTROL that a key sends; no value is 0, so nothing is cut off."""
     presence = RoverOperatorPresence(1, 1, 2**31, 2**31, 2**31, 2**31, 2**15, 3)
-    return len(framed(presence, 0)), len(framed(manual_control(Axes(0.5, 0.5), 1), 0))
+    return len(framed(presence, 0)), len(framed(build_manual_control(Axes(0.5, 0.5), 1), 0))
 
 
 def wire_time(baud: int) -> float:

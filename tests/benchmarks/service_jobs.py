@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 from dialects import messages as m
 from dialects.enums import Command, MissionResult, MissionType
-from link.services.ftp.protocol import MAX_DATA, FtpPacket, Op
+from link.services.ftp.protocol import MAX_DATA, FtpOpcode, FtpPacket
 from link.services.mission.items import MissionItem, to_message
 from tests.benchmarks import bare_services
 from tests.benchmarks.bare_services import GROUND, VEHICLE
@@ -148,7 +148,7 @@ def log_bytes(size: int) -> int:
 def _pieces(size: int) -> Iterator[m.Message]:
     for offset in range(0, size, MAX_DATA):
         data = bytes([255]) * min(MAX_DATA, size - offset)
-        yield FtpPacket(1, Op.ACK, 1, data, offset, Op.BURST).message(*GROUND)
+        yield FtpPacket(1, FtpOpcode.ACK, 1, data, offset, FtpOpcode.BURST).message(*GROUND)
 
 
 def _bytes(messages: Iterable[m.Message]) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from typing import Protocol
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, ModeFlag, Result, State, Type
+from dialects.enums import Autopilot, Command, ModeFlag, Result, SystemState, VehicleType
 from link.core import LinkReport, Outgoing, Received
 from link.runner import Runner, open_links
 from link.services.ftp.client import FtpClient
@@ -59,7 +59,7 @@ class Station:
         """Take one message."""
         self.newest[type(received.message).id] = received.message
         if isinstance(received.message, m.StatusText):
-            self.texts.append(m.text_of(received.message))
+            self.texts.append(m.decode_text(received.message))
         for client in self._clients:
             client.receive(received, now)
         self._look()
@@ -68,7 +68,9 @@ class Station:
         """Let time pass."""
         if now >= self._heartbeat_due:
             self._heartbeat_due = now + HEARTBEAT_PERIOD
-            self._outgoing.append(Outgoing(m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3)))
+            self._outgoing.append(
+                Outgoing(m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3))
+            )
         for client in self._clients:
             client.tick(now)
         self._look()

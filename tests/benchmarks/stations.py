@@ -15,8 +15,8 @@ from dataclasses import dataclass, field
 from statistics import median
 
 from dialects import messages as m
-from dialects.axes import Axes, manual_control
-from dialects.enums import Autopilot, Command, ModeFlag, State, Type
+from dialects.axes import Axes, build_manual_control
+from dialects.enums import Autopilot, Command, ModeFlag, SystemState, VehicleType
 from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Report, Row, Table
@@ -61,7 +61,7 @@ class Light:
 
     def beat(self) -> None:
         """HEARTBEAT."""
-        self.say(m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3))
+        self.say(m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3))
 
     def close(self) -> None:
         """Fall silent."""
@@ -102,7 +102,7 @@ class Crowd:
                     station.beat()
             if now >= self._demand_due:
                 self._demand_due += DEMAND
-                self._stations[0].say(manual_control(self._axes, 1))
+                self._stations[0].say(build_manual_control(self._axes, 1))
             self._watch.pause(min(end, self._demand_due, *self._beats_due) - time.monotonic())
 
     def drive(self) -> None:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import msgspec
 
-from vehicle.motors import checked
+from vehicle.motors import check_throttles
 
 PERIOD = 0.02
 """s, as the vehicle's own control cycle."""
@@ -78,7 +78,7 @@ class Motors:
         """Note the time first."""
         if self._enabled:
             self._stamps.add()
-        checked(throttles, self.count)
+        check_throttles(throttles, self.count)
 
     def close(self) -> None:
         """Let go of the file."""

@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("hatchling", reason="hatchling is not installed: pip install -e '.[dev]' has it")
 
 from dialects import rover
-from dialects.build import MODULE, add_fields, drop_texts, generate, lightened
+from dialects.build import MODULE, add_fields, drop_texts, generate, strip_unused
 
 ROOT = Path(__file__).parents[2]
 
@@ -127,7 +127,7 @@ mavlink_map = {}'''
 
 
 def test_tables_and_methods_that_nobody_here_uses_are_left_out_and_all_else_stays() -> None:
-    assert lightened(MODULE_OF_MAVGEN) == LIGHTENED
+    assert strip_unused(MODULE_OF_MAVGEN) == LIGHTENED
 
 
 def test_the_module_has_all_numbers_and_the_names_that_are_shown() -> None:

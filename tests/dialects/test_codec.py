@@ -22,9 +22,9 @@ from dialects.messages import (
     RoverDriveStatus,
     StatusText,
     boot_ms,
+    decode_text,
     is_stop,
     printable,
-    text_of,
 )
 
 GOLDEN = Path(__file__).with_name("golden_frames.json")
@@ -115,7 +115,7 @@ def test_text_is_utf8_and_harmless_to_a_terminal() -> None:
     raw = "Akku schwach: 9,8 V \x1b[2J\N{HEAVY BLACK HEART}".encode()
     message = codec.decode(StatusText.id, codec.encode_payload(StatusText(severity=4, text=raw)))
     assert isinstance(message, StatusText)
-    assert text_of(message) == "Akku schwach: 9,8 V \ufffd[2J\N{HEAVY BLACK HEART}"
+    assert decode_text(message) == "Akku schwach: 9,8 V \ufffd[2J\N{HEAVY BLACK HEART}"
     assert printable("a\nb\x7f\x9b") == "a\ufffdb\ufffd\ufffd"
 
 

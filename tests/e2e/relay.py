@@ -10,9 +10,9 @@ from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 
 from dialects import codec
-from dialects.axes import demand
+from dialects.axes import parse_manual_control
 from dialects.enums import ModeFlag
-from dialects.messages import Heartbeat, LocalPositionNed, ManualControl, Message, StatusText, text_of
+from dialects.messages import Heartbeat, LocalPositionNed, ManualControl, Message, StatusText, decode_text
 from link.protocol.frame import payload_of
 from link.protocol.framer import Framer
 from link.transport.memory import LossyPipe
@@ -97,7 +97,7 @@ class Relay:
 
     def texts(self) -> list[str]:
         """What the vehicle has said."""
-        return [text_of(seen.message) for seen in list(self._seen) if isinstance(seen.message, StatusText)]
+        return [decode_text(seen.message) for seen in list(self._seen) if isinstance(seen.message, StatusText)]
 
     def last_demand(self) -> float:
         """When the vehicle was last handed a MANUAL_CONTROL that asks for motion (monotonic); 0.0 for never."""
@@ -156,7 +156,7 @@ class Relay:
 
 
 def _asks_for_motion(message: Message) -> bool:
-    return isinstance(message, ManualControl) and any(demand(message))
+    return isinstance(message, ManualControl) and any(parse_manual_control(message))
 
 
 def _bound() -> socket.socket:

@@ -13,9 +13,9 @@ import pytest
 
 from dialects import codec
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, Type
+from dialects.enums import Autopilot, Command, VehicleType
 from link.protocol.framer import Framer
-from link.protocol.sequence import Source
+from link.protocol.sequence import SequenceTracker
 from tests.ports import free_port
 from tests.vehicle.ground import running
 
@@ -36,7 +36,7 @@ class Listener:
         self._system = system
         self._sequence = 0
         self._beat_due = 0.0
-        self.source: Source | None = None
+        self.source: SequenceTracker | None = None
         self.heard: dict[int, int] = {}
 
     def close(self) -> None:
@@ -54,7 +54,7 @@ class Listener:
         now = time.monotonic()
         if now >= self._beat_due:
             self._beat_due = now + (1.0 if self.source else 0.1)
-            self.send(m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, 4, 3))
+            self.send(m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, 4, 3))
         while True:
             try:
                 data = self.socket.recv(2048)
@@ -62,7 +62,7 @@ class Listener:
                 return
             for message_id, _, _, sequence, _ in self._framer.feed(data, now):
                 if self.source is None:
-                    self.source = Source(sequence, message_id)
+                    self.source = SequenceTracker(sequence, message_id)
                 else:
                     self.source.accept(sequence, message_id)
                 self.heard[message_id] = self.heard.get(message_id, 0) + 1

@@ -14,7 +14,7 @@ from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents import SetStyle
 from groundstation.processes import start_module
-from groundstation.ui.app import HelmApp
+from groundstation.ui.app import ConsoleApp
 from tests.groundstation.broken_helm import ORDER
 from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.groundstation.ui.frames import text
@@ -27,14 +27,14 @@ pytestmark = pytest.mark.e2e
 async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path: Path) -> None:
     endpoint = f"udpin:127.0.0.1:{free_port()}"
     client = StationClient.start([endpoint], log_file=tmp_path / "log")
-    app = HelmApp(client, Keymap("standard", KEYMAPS["standard"]))
+    app = ConsoleApp(client, Keymap("standard", KEYMAPS["standard"]))
     try:
         with UdpVehicle(endpoint) as vehicle:
             async with app.run_test(size=(80, 24)) as pilot:
                 await until(lambda: app.drive.snapshot.vehicle is not None)
                 await pilot.press("r", "y")
                 await until(lambda: vehicle.core.armed)
-                await until(lambda: app.drive.snapshot.helm.gate_open)
+                await until(lambda: app.drive.snapshot.operator.gate_open)
                 pressed = time.monotonic()
 
                 async def drives() -> bool:
@@ -61,7 +61,7 @@ async def test_a_bug_in_the_station_is_told_on_the_screen(monkeypatch: pytest.Mo
 
     monkeypatch.setattr(client_module, "start_module", start)
     station = StationClient.start([f"udpin:127.0.0.1:{free_port()}"])
-    app = HelmApp(station, Keymap("standard", KEYMAPS["standard"]))
+    app = ConsoleApp(station, Keymap("standard", KEYMAPS["standard"]))
     try:
         async with app.run_test(size=(80, 24)) as pilot:
             await until(lambda: app.drive.snapshot.number > 0)

@@ -17,11 +17,11 @@ class BrokenStation(Station):
 
     _bug = ""
 
-    def intend(self, intent: AnyIntent, now: float) -> None:
+    def handle_intent(self, intent: AnyIntent, now: float) -> None:
         if isinstance(intent, SetStyle) and intent.style.startswith(ORDER):
             self._bug = intent.style.removeprefix(ORDER)
         self._work("intend")
-        super().intend(intent, now)
+        super().handle_intent(intent, now)
 
     def _work(self, method: str) -> None:
         if self._bug == method:
@@ -38,7 +38,7 @@ def _with_bug(name: str) -> Callable[..., Any]:
     return call
 
 
-for _name in ("receive", "tick", "observe", "messages_to_send", "sent", "snapshot"):
+for _name in ("receive", "tick", "observe", "messages_to_send", "handle_sent", "snapshot"):
     setattr(BrokenStation, _name, _with_bug(_name))
 
 if __name__ == "__main__":

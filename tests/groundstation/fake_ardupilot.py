@@ -8,7 +8,7 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, DataStream, Result
 from dialects.messages import INVALID_AXIS, boot_ms
 from dialects.modes import Mode
-from groundstation.vehicles.stream_requests import WANTED
+from groundstation.vehicles.stream_requests import STREAM_RATES
 from link.core import Received
 from tests.groundstation.fake_vehicle import FakeVehicle
 
@@ -25,14 +25,14 @@ class FakeArduPilot(FakeVehicle):
         super().__init__(autopilot=autopilot, driver=None, mode=mode)
         self.answers = dict.fromkeys(NOT_KNOWN, Result.UNSUPPORTED)
         self.parameters = {"RC_OVERRIDE_TIME": LATCH, "FS_GCS_ENABLE": 0.0, "FS_THR_ENABLE": 1.0}
-        self.rates = dict.fromkeys(WANTED, 1.0)
+        self.rates = dict.fromkeys(STREAM_RATES, 1.0)
         """Hz, of each message that it sends."""
         self.turning: list[tuple[float, int, int]] = []
         """Time, steering and throttle whenever one of them changed."""
         self._station = station
         self._steering = self._throttle = 0
         self._demand_at = 0.0
-        self._due = dict.fromkeys(WANTED, 0.0)
+        self._due = dict.fromkeys(STREAM_RATES, 0.0)
 
     @property
     def moves(self) -> bool:
@@ -53,7 +53,7 @@ class FakeArduPilot(FakeVehicle):
             self._demand_at = now
         elif isinstance(message, m.RequestDataStream):
             group = DataStream(message.req_stream_id)
-            for number in (number for number, wanted in WANTED.items() if wanted.group is group):
+            for number in (number for number, wanted in STREAM_RATES.items() if wanted.group is group):
                 self.rates[number] = float(message.req_message_rate)
         self._allow_arming()
         super().receive(received, now)
@@ -73,7 +73,7 @@ class FakeArduPilot(FakeVehicle):
     def reboot(self) -> None:
         """Everything that was asked of it is forgotten."""
         self.armed = False
-        self.rates = dict.fromkeys(WANTED, 1.0)
+        self.rates = dict.fromkeys(STREAM_RATES, 1.0)
 
     def servo(self, value: int) -> int:
         """The pulse for -1000..1000, us."""

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import TypeVar
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Command, ModeFlag, Result, State, Type
+from dialects.enums import Autopilot, Command, ModeFlag, Result, SystemState, VehicleType
 from dialects.messages import boot_ms
 from dialects.modes import Mode, base_mode
-from groundstation.intents import AnyIntent, Gate, Lease
-from groundstation.snapshot import HelmView, Snapshot, VehicleView
-from groundstation.station.crash_neutral import Farewell
+from groundstation.intents import AnyIntent, RenewLease, SetKeyGate
+from groundstation.snapshot import OperatorView, Snapshot, VehicleView
+from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.core import LinkReport, Outgoing, Received
 from link.transport.memory import LossyPipe
@@ -85,12 +85,12 @@ class FakeVehicle:
 
     def beat(self) -> None:
         """HEARTBEAT, and CONTROL_STATUS where the vehicle tells who is in control."""
-        status = State.EMERGENCY if self.locked else State.ACTIVE if self.armed else State.STANDBY
+        status = SystemState.EMERGENCY if self.locked else SystemState.ACTIVE if self.armed else SystemState.STANDBY
         if self.autopilot == Autopilot.PX4:
             mode, flags = 1 << 16, ModeFlag.CUSTOM | (ModeFlag.ARMED if self.armed else 0)
         else:
             mode, flags = self.mode, base_mode(self.mode, armed=self.armed)
-        self.say(m.Heartbeat(Type.GROUND_ROVER, self.autopilot, flags, mode, status, 3))
+        self.say(m.Heartbeat(VehicleType.GROUND_ROVER, self.autopilot, flags, mode, status, 3))
         if self.driver is not None:
             self.say(m.ControlStatus(1, self.driver, [0] * 10))
 
@@ -143,12 +143,12 @@ class Cockpit:
     def __init__(self, vehicle: FakeVehicle | None = None, *, loss: float = 0.0) -> None:
         self.vehicle = vehicle or FakeVehicle()
         self.station = Station(["udpin:127.0.0.1:14550"], session=7, now=100.0)
-        self.core = Farewell(self.station)
+        self.core = CrashNeutral(self.station)
         up, down = LossyPipe(loss=loss, seed=1), LossyPipe(loss=loss, seed=2)
         self.world = World(self.core, self.vehicle, up=up, down=down)
         self.leasing = True
         self._lease_due = 0.0
-        self.do(Lease(), Gate(open=True))
+        self.do(RenewLease(), SetKeyGate(open=True))
 
     @property
     def now(self) -> float:
@@ -158,7 +158,7 @@ class Cockpit:
     def do(self, *intents: AnyIntent) -> None:
         """What the operator wants, now."""
         for intent in intents:
-            self.station.intend(intent, self.now)
+            self.station.handle_intent(intent, self.now)
         self.world.settle()
 
     def run(self, seconds: float) -> None:
@@ -168,7 +168,7 @@ class Cockpit:
     def _renew(self, now: float) -> None:
         if self.leasing and now >= self._lease_due:
             self._lease_due = now + 0.1
-            self.station.intend(Lease(), now)
+            self.station.handle_intent(RenewLease(), now)
 
     @property
     def snapshot(self) -> Snapshot:
@@ -183,9 +183,9 @@ class Cockpit:
         return view
 
     @property
-    def helm(self) -> HelmView:
+    def helm(self) -> OperatorView:
         """The operator's side."""
-        return self.snapshot.helm
+        return self.snapshot.operator
 
     @property
     def texts(self) -> list[str]:

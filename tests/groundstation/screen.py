@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any
 
 from groundstation.client import StationClient
-from groundstation.intents import Arm, ExactKeys, Gate, Lease, Push, Release
+from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.snapshot import Snapshot
 from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.ports import free_port
@@ -20,7 +20,7 @@ PATIENCE = 60.0
 """s for what must come, and comes in less than one: the machine is shared."""
 TRY = 3.0
 """s for a key to show; a screen or a station that the machine held up for 0.3 s wants it pressed again."""
-FORWARD = Push(key="i", throttle=1, steering=0)
+FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 
 
 class Screen:
@@ -30,7 +30,7 @@ class Screen:
         endpoints = endpoints or (f"udpin:127.0.0.1:{free_port()}",)
         self.client = StationClient.start([] if options.get("sitl") else endpoints, **options)
         self.snapshot = Snapshot()
-        self.client.send(Lease(), Gate(open=True))
+        self.client.send(RenewLease(), SetKeyGate(open=True))
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._renew, daemon=True)
         self._thread.start()
@@ -74,10 +74,10 @@ class Screen:
     def hold_forward(self) -> None:
         """Arm and hold `i`; returns when the station says that it sends the demand."""
         self.see(lambda snapshot: snapshot.vehicle is not None)
-        self.client.send(ExactKeys())
+        self.client.send(ReportKeyReleases())
         self.insist(lambda: self.client.send(Arm()), lambda seen: seen.vehicle is not None and seen.vehicle.armed)
-        self.see(lambda snapshot: snapshot.helm.gate_open)
-        self.insist(lambda: self.client.send(Release(key="i"), FORWARD), lambda seen: seen.helm.throttle > 0)
+        self.see(lambda snapshot: snapshot.operator.gate_open)
+        self.insist(lambda: self.client.send(DriveKeyUp(key="i"), FORWARD), lambda seen: seen.operator.throttle > 0)
 
     def insist(self, act: Callable[[], None], condition: Callable[[Snapshot], bool]) -> None:
         """Do it again until it shows."""
@@ -90,7 +90,7 @@ class Screen:
 
     def _renew(self) -> None:
         while not self._stop.wait(0.1):
-            self.client.send(Lease())
+            self.client.send(RenewLease())
 
 
 def until(condition: Callable[[], bool], within: float = PATIENCE) -> None:

@@ -15,8 +15,8 @@ import pytest
 from dialects import messages as m
 from groundstation import client as client_module
 from groundstation.client import StationClient, StationError
-from groundstation.intents import Arm, Gate, Lease, Push, Release, StartSimulator
-from groundstation.ipc import Batch, encode
+from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, RenewLease, SetKeyGate, StartSimulator
+from groundstation.ipc import IntentBatch, encode
 from groundstation.snapshot import Snapshot
 from tests.groundstation.screen import FORWARD, PATIENCE, Screen, children, running, until
 from tests.groundstation.udp_vehicle import UdpVehicle
@@ -53,7 +53,7 @@ def test_a_held_key_drives_and_its_release_is_neutral_at_once() -> None:
     with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
         screen.drive(vehicle)
         waits, released = Waits(screen.client.pid), time.monotonic()
-        screen.client.send(Release(key="i"))
+        screen.client.send(DriveKeyUp(key="i"))
         until(lambda: len(neutral(vehicle, released)) > 5)
         assert neutral(vehicle, released)[0] - released < 0.3 + waits.total()
         assert not moving(vehicle, neutral(vehicle, released)[0])
@@ -86,7 +86,7 @@ def test_the_terminals_keys_do_not_reach_the_station(number: signal.Signals) -> 
         os.kill(screen.client.pid, number)
         seen = screen.snapshot.number
         screen.see(lambda snapshot: snapshot.number > seen + 3)
-        assert screen.snapshot.helm.throttle > 0
+        assert screen.snapshot.operator.throttle > 0
 
 
 def test_killed_screen_is_neutral_and_the_station_ends() -> None:
@@ -135,7 +135,7 @@ def test_no_key_is_lost_at_5_ms() -> None:
         started = time.monotonic()
         for number in range(1000):
             key, direction = ("j", -1) if number % 2 else ("l", 1)
-            screen.client.send(Push(key=key, throttle=0, steering=direction))
+            screen.client.send(DriveKeyDown(key=key, throttle=0, steering=direction))
             pause = started + 0.005 * (number + 1) - time.monotonic()
             screen._stop.wait(max(0.0, pause))
         screen.see(lambda snapshot: counted(vehicle) + late(snapshot) >= before + 1000)
@@ -155,9 +155,9 @@ def late(snapshot: Snapshot) -> int:
 def test_intents_that_lay_in_the_pipe_of_a_frozen_station_do_not_act() -> None:
     with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
         screen.see(lambda snapshot: snapshot.vehicle is not None)
-        old = Batch(time.monotonic() - 2.0, (Arm(), FORWARD, Gate(open=False, reason="late but true")))
+        old = IntentBatch(time.monotonic() - 2.0, (Arm(), FORWARD, SetKeyGate(open=False, reason="late but true")))
         screen.client._pipe.send(encode(old))
-        screen.see(lambda snapshot: snapshot.helm.gate_reason == "late but true")
+        screen.see(lambda snapshot: snapshot.operator.gate_reason == "late but true")
         screen.see(lambda snapshot: any("late and was dropped" in line.text for line in snapshot.texts))
         assert vehicle.core.all(m.CommandLong) == [] or not vehicle.core.armed
 
@@ -232,7 +232,7 @@ def test_the_simulator_can_be_started_later() -> None:
     with Screen() as screen:
         screen.see(lambda snapshot: snapshot.waiting is not None)
         assert screen.snapshot.simulator is None
-        screen.client.send(Lease(), StartSimulator())
+        screen.client.send(RenewLease(), StartSimulator())
         sees_rover(screen)
         screen.client.send(StartSimulator())
         seen = screen.snapshot.number

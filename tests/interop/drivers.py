@@ -177,7 +177,7 @@ class Loop:
         elif kind == "VFR_HUD" and message.groundspeed > 0.1:
             self._sights.add("motion")
         elif kind == "STATUSTEXT":
-            self._texts.append(message.text if isinstance(message.text, str) else m.text_of(message))
+            self._texts.append(message.text if isinstance(message.text, str) else m.decode_text(message))
 
     def call(self, job: Callable[[], bool], what: str, within: float = PATIENCE) -> None:
         """Let the thread do it, again until it is true."""

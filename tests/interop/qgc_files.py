@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from dialects import messages as m
-from link.services.ftp.protocol import MAX_DATA, SEQUENCE, FtpError, FtpPacket, Op, parse
+from link.services.ftp.protocol import MAX_DATA, SEQUENCE_MASK, FtpError, FtpOpcode, FtpPacket, parse_packet
 
 if TYPE_CHECKING:
     from tests.interop.qgroundcontrol import QGroundControl
@@ -36,8 +36,8 @@ class Download:
 
     def run(self) -> bytes:
         """The content. Raises DownloadError."""
-        opened = self._ask(FtpPacket(0, Op.OPEN, data=self._path.encode()), tries=0)
-        if opened.op != Op.ACK:
+        opened = self._ask(FtpPacket(0, FtpOpcode.OPEN, data=self._path.encode()), tries=0)
+        if opened.op != FtpOpcode.ACK:
             raise DownloadError(f"{self._path}: {opened.data!r}")
         size = int.from_bytes(opened.data[:4], "little")
         self._burst(opened.session)
@@ -45,16 +45,16 @@ class Download:
             self._fill(opened.session)
         if len(self._content) != size:
             raise DownloadError(f"{self._path}: {len(self._content)} bytes of {size}")
-        self._ask(FtpPacket(0, Op.RESET))
+        self._ask(FtpPacket(0, FtpOpcode.RESET))
         return bytes(self._content)
 
     def _burst(self, session: int) -> None:
         """To the end of the file, which is told by a refusal."""
         ask = True
         while True:
-            request = FtpPacket(0, Op.BURST, session, offset=len(self._content), size=MAX_DATA)
+            request = FtpPacket(0, FtpOpcode.BURST, session, offset=len(self._content), size=MAX_DATA)
             piece = self._ask(request) if ask else self._next(request)
-            if piece.op == Op.NAK:
+            if piece.op == FtpOpcode.NAK:
                 assert piece.data == bytes([FtpError.END_OF_FILE])
                 return
             self._take(piece)
@@ -71,8 +71,8 @@ class Download:
 
     def _fill(self, session: int) -> None:
         offset, missing = self._holes[0]
-        piece = self._ask(FtpPacket(0, Op.READ, session, offset=offset, size=min(MAX_DATA, missing)))
-        assert (piece.op, piece.offset) == (Op.ACK, offset)
+        piece = self._ask(FtpPacket(0, FtpOpcode.READ, session, offset=offset, size=min(MAX_DATA, missing)))
+        assert (piece.op, piece.offset) == (FtpOpcode.ACK, offset)
         self._content[offset : offset + len(piece.data)] = piece.data
         offset, missing = offset + len(piece.data), missing - len(piece.data)
         self._holes[:1] = [(offset, missing)] if missing else []
@@ -86,21 +86,23 @@ class Download:
             if attempt or again:
                 self._ground.repeats += 1
                 self._expected -= 2
-            sequence = (self._expected + 1) & SEQUENCE
+            sequence = (self._expected + 1) & SEQUENCE_MASK
             self._expected = sequence + 1
             packet = FtpPacket(sequence, request.op, request.session, request.data, request.offset, size=request.size)
             self._ground.send(packet.message(1, 1))
             answer = self._heard(request)
             if answer is not None:
                 return answer
-        raise DownloadError(f"{self._path}: no answer to {Op(request.op).name}")
+        raise DownloadError(f"{self._path}: no answer to {FtpOpcode(request.op).name}")
 
     def _heard(self, request: FtpPacket) -> FtpPacket | None:
-        answer = self._ground.wait(m.FileTransferProtocol, self._limit, lambda each: self._fits(request, parse(each)))
-        return None if answer is None else parse(answer)
+        answer = self._ground.wait(
+            m.FileTransferProtocol, self._limit, lambda each: self._fits(request, parse_packet(each))
+        )
+        return None if answer is None else parse_packet(answer)
 
     def _fits(self, request: FtpPacket, answer: FtpPacket) -> bool:
         if answer.asked != request.op:
             return False
-        late = request.op == Op.BURST and answer.op == Op.ACK and answer.sequence >= self._expected
+        late = request.op == FtpOpcode.BURST and answer.op == FtpOpcode.ACK and answer.sequence >= self._expected
         return late or answer.sequence == self._expected

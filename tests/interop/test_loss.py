@@ -22,7 +22,7 @@ from tests.interop.conftest import HOME, Rover
 from tests.interop.conversation import PATIENCE, Conversation
 from tests.interop.qgroundcontrol import QGroundControl
 from tests.interop.script import Script, mavparm, mavwp
-from vehicle.autonomy.mission.executor import Progress
+from vehicle.autonomy.mission.executor import MissionState
 from vehicle.params import TABLE
 
 pytestmark = pytest.mark.interop
@@ -49,7 +49,7 @@ def long_plan(far_rover: Rover) -> bytes:
     with QGroundControl(far_rover.second_port, system=254) as near:
         near.meet()
         eventually(lambda: written(near, items))
-    return files.write([from_message(item) for item in items])
+    return files.encode_plan([from_message(item) for item in items])
 
 
 @pytest.fixture(autouse=True)
@@ -121,7 +121,7 @@ def test_qgroundcontrol(far_rover: Rover, long_plan: bytes) -> None:
         far_rover.stands()
         eventually(lambda: ground.command(Command.MISSION_START) is Result.ACCEPTED)
         far_rover.drives()
-        assert ground.wait(m.MissionCurrent, PATIENCE, lambda current: current.mission_state == Progress.COMPLETE)
+        assert ground.wait(m.MissionCurrent, PATIENCE, lambda current: current.mission_state == MissionState.COMPLETE)
         far_rover.stands()
         far_rover.is_at(END)
         assert ground.command(Command.COMPONENT_ARM_DISARM, 0) is Result.ACCEPTED

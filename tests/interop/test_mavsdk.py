@@ -11,7 +11,7 @@ import pytest
 from tests.interop import mavsdk_process, mavsdk_streams
 from tests.interop.conftest import HOME, Rover
 from tests.interop.mavsdk_process import Client
-from vehicle.commands.reboot import Leave
+from vehicle.commands.reboot import RebootRequest
 from vehicle.params import TABLE
 
 pytestmark = [pytest.mark.interop, mavsdk_process.needed]
@@ -70,9 +70,9 @@ def test_it_drives_by_hand(client: Callable[[str], Client], rover: Rover) -> Non
 
 
 @pytest.mark.parametrize("options", [("--param", "REBOOT_ENABLE=2")])
-@pytest.mark.parametrize(("word", "code"), [("reboot", Leave.RESTART), ("shutdown", Leave.POWER_OFF)])
+@pytest.mark.parametrize(("word", "code"), [("reboot", RebootRequest.RESTART), ("shutdown", RebootRequest.POWER_OFF)])
 def test_it_starts_again_and_is_turned_off(
-    client: Callable[[str], Client], rover: Rover, word: str, code: Leave, options: tuple[str, ...]
+    client: Callable[[str], Client], rover: Rover, word: str, code: RebootRequest, options: tuple[str, ...]
 ) -> None:
     sdk = client("leaving")
     sdk.say(word)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects import codec
-from dialects.axes import Axes, manual_control
+from dialects.axes import Axes, build_manual_control
 from dialects.messages import Heartbeat, Message
 
 
@@ -14,7 +14,7 @@ def frame(message: Message, sequence: int = 0, system: int = 255, component: int
 
 def demand(sequence: int, throttle: float = 0.5, target: int = 1) -> bytes:
     """A MANUAL_CONTROL frame of 23 bytes."""
-    return frame(manual_control(Axes(throttle, 0.1), target), sequence)
+    return frame(build_manual_control(Axes(throttle, 0.1), target), sequence)
 
 
 def heartbeat(sequence: int, system: int = 255, component: int = 190) -> bytes:

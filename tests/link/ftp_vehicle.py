@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from link.services.ftp.files import Content, Entry, Folder, MadeFiles, MemoryFolder, Query, Tree
-from link.services.ftp.protocol import FtpError, FtpPacket, Op, parse
+from link.services.ftp.files import Content, Entry, FileTree, Folder, GeneratedFolder, MemoryFolder, Query
+from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
 from link.services.ftp.server import FtpServer
-from link.services.pacing import Pacer
+from link.services.pacing import BulkPacer
 from tests.link.services_world import from_gcs, messages
 
 GENERAL = b'{"version": 1}'
@@ -64,18 +64,22 @@ class Vehicle:
             accept=only_plans,
             changed=lambda name, data: self.written.append((name, data)),
         )
-        self.tree = Tree(
-            MadeFiles({"general.json.xz": lambda query: GENERAL}),
-            {"@PARAM": MadeFiles({"param.pck": pack}), "logs": logs, "missions": self.missions},
+        self.tree = FileTree(
+            GeneratedFolder({"general.json.xz": lambda query: GENERAL}),
+            {"@PARAM": GeneratedFolder({"param.pck": pack}), "logs": logs, "missions": self.missions},
         )
         self.server = FtpServer(
-            self.tree, system=1, component=1, pacer=Pacer(lambda peer: self.rate), allowed=lambda received: self.allowed
+            self.tree,
+            system=1,
+            component=1,
+            pacer=BulkPacer(lambda peer: self.rate),
+            allowed=lambda received: self.allowed,
         )
 
     def send(self, packet: FtpPacket, now: float = 0.0, **who: Any) -> list[FtpPacket]:
         """What is answered at once."""
         outgoing = self.server.receive(from_gcs(packet.message(1, 1), **who), now)
-        return [parse(each) for each in messages(outgoing)]
+        return [parse_packet(each) for each in messages(outgoing)]
 
     def ask(self, op: int, data: bytes = b"", *, offset: int = 0, session: int = 0, **more: Any) -> FtpPacket:
         """The one answer to the next question."""
@@ -86,7 +90,7 @@ class Vehicle:
         return answer
 
     def tick(self, now: float) -> list[FtpPacket]:
-        return [parse(each) for each in messages(self.server.tick(now))]
+        return [parse_packet(each) for each in messages(self.server.tick(now))]
 
     def stored(self, path: bytes) -> bytes:
         """A whole file."""
@@ -101,7 +105,7 @@ class Vehicle:
 
 def error(packet: FtpPacket) -> FtpError:
     """Of a NAK."""
-    assert packet.op == Op.NAK
+    assert packet.op == FtpOpcode.NAK
     [number] = packet.data
     return FtpError(number)
 

@@ -9,18 +9,18 @@ from typing import Any
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Received
-from link.services.mission.commit import Forgotten, Keeping
-from link.services.mission.items import ItemRule, Items, MissionItem, Place, PlanRules
+from link.services.mission.commit import NullPlanWrite, PendingPlanWrite
+from link.services.mission.items import ItemRule, Items, MissionItem, PlanRules, PositionRule
 from link.services.mission.server import MissionServer
-from link.services.pacing import Pacer
+from link.services.pacing import BulkPacer
 from tests.link.services_world import from_gcs, messages
 
 NAV_WAYPOINT, NAV_LOITER_TIME, DO_JUMP, FENCE_CIRCLE = 16, 19, 177, 5003
 RULES = {
     MissionType.MISSION: PlanRules(
         {
-            NAV_WAYPOINT: ItemRule(Place.NEEDED),
-            NAV_LOITER_TIME: ItemRule(Place.OPTIONAL, {1: (0.0, 3600.0)}),
+            NAV_WAYPOINT: ItemRule(PositionRule.NEEDED),
+            NAV_LOITER_TIME: ItemRule(PositionRule.OPTIONAL, {1: (0.0, 3600.0)}),
             DO_JUMP: ItemRule(ranges={1: (0, 99), 2: (-1, 100)}),
         },
         capacity=300,
@@ -30,8 +30,8 @@ RULES = {
             else MissionResult.INVALID_PARAM1
         ),
     ),
-    MissionType.FENCE: PlanRules({FENCE_CIRCLE: ItemRule(Place.NEEDED, {1: (1, 1000)})}, capacity=10),
-    MissionType.RALLY: PlanRules({5100: ItemRule(Place.NEEDED)}, capacity=10),
+    MissionType.FENCE: PlanRules({FENCE_CIRCLE: ItemRule(PositionRule.NEEDED, {1: (1, 1000)})}, capacity=10),
+    MissionType.RALLY: PlanRules({5100: ItemRule(PositionRule.NEEDED)}, capacity=10),
 }
 
 
@@ -74,36 +74,36 @@ class Vehicle:
     unfits: list[tuple[MissionType, int | None, MissionResult]] = field(default_factory=list)
     selected: list[int] = field(default_factory=list)
     at: int = 0
-    pacer: Pacer | None = None
+    pacer: BulkPacer | None = None
 
     def __post_init__(self) -> None:
         self.server = MissionServer(self, RULES, system=1, component=1, pacer=self.pacer)
 
-    def may_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
+    def authorize_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         return self.verdict
 
-    def keep(self, kind: MissionType, items: Items) -> Keeping:
+    def write_plan(self, kind: MissionType, items: Items) -> PendingPlanWrite:
         if self.disk is None:
-            return Forgotten()
+            return NullPlanWrite()
         self.disk.append(Writing(kind, len(items)))
         return self.disk[-1]
 
-    def stays(self, kind: MissionType, items: Items, why: str | None) -> None:
+    def handle_change_failed(self, kind: MissionType, items: Items, why: str | None) -> None:
         self.stayed.append((kind, len(items), why))
 
-    def changed(self, kind: MissionType, items: Items) -> None:
+    def handle_plan_changed(self, kind: MissionType, items: Items) -> None:
         self.changes.append((kind, len(items)))
 
-    def unfit(
+    def handle_plan_rejected(
         self, kind: MissionType, wrong: tuple[int, MissionItem] | None, verdict: MissionResult, now: float
     ) -> None:
         self.unfits.append((kind, wrong[0] if wrong else None, verdict))
 
-    def select(self, sequence: int, received: Received, now: float) -> None:
+    def set_current_item(self, sequence: int, received: Received, now: float) -> None:
         self.selected.append(sequence)
         self.at = sequence
 
-    def current(self) -> m.MissionCurrent:
+    def build_mission_current(self) -> m.MissionCurrent:
         return m.MissionCurrent(self.at)
 
     def ask(self, message: m.Message, now: float = 0.0, **who: Any) -> list[Any]:

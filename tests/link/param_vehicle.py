@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from dialects import messages as m
-from link.services.pacing import Pacer
+from link.services.pacing import BulkPacer
 from link.services.param.server import ParamServer
-from link.services.param.values import REAL32, shortest
+from link.services.param.values import REAL32, shortest_float32
 from tests.link.services_world import from_gcs, messages
 
 
@@ -57,7 +57,7 @@ class Vehicle:
             self.values,
             system=1,
             component=1,
-            pacer=Pacer(lambda peer: self.rate),
+            pacer=BulkPacer(lambda peer: self.rate),
             allowed=lambda received: self.allowed,
             armed=lambda: self.armed,
             changed=lambda name, value: self.changed.append((name, value)),
@@ -72,7 +72,7 @@ class Vehicle:
 
 
 def values(answers: list[m.Message]) -> list[tuple[str, float]]:
-    return [(each.param_id, shortest(each.param_value)) for each in answers if isinstance(each, m.ParamValue)]
+    return [(each.param_id, shortest_float32(each.param_value)) for each in answers if isinstance(each, m.ParamValue)]
 
 
 def faults(answers: list[m.Message]) -> list[int]:

@@ -11,7 +11,7 @@ import tty
 from collections.abc import Callable, Hashable, Sequence
 from pathlib import Path
 
-from link.transport.transport import Wire
+from link.transport.transport import Transport
 
 
 class Cable:
@@ -86,7 +86,7 @@ class BaudCable(Cable):
 class Heard:
     """What a wire has handed over."""
 
-    def __init__(self, wire: Wire) -> None:
+    def __init__(self, wire: Transport) -> None:
         self.wire = wire
         self.data: list[tuple[bytes, Hashable]] = []
         self.gone: list[Hashable] = []

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from link.endpoint import SCHEMES, Endpoint, EndpointError, endpoint_help, parse
-from link.transport.transports import OPENERS
+from link.endpoint import SCHEMES, Endpoint, EndpointError, endpoint_help, parse_endpoint
+from link.transport.transports import TRANSPORTS
 
 
 @pytest.mark.parametrize(
@@ -32,7 +32,7 @@ from link.transport.transports import OPENERS
     ],
 )
 def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
-    assert parse(text) == endpoint
+    assert parse_endpoint(text) == endpoint
 
 
 @pytest.mark.parametrize(
@@ -69,7 +69,7 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
 )
 def test_what_is_not_understood_is_explained(text: str, told: str) -> None:
     with pytest.raises(EndpointError) as caught:
-        parse(text)
+        parse_endpoint(text)
     assert told in str(caught.value)
     assert repr(text) in str(caught.value) or text in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -78,4 +78,4 @@ def test_what_is_not_understood_is_explained(text: str, told: str) -> None:
 def test_the_table_is_the_help_and_every_scheme_can_be_opened() -> None:
     for scheme in SCHEMES.values():
         assert scheme.form in endpoint_help()
-    assert SCHEMES.keys() == OPENERS.keys()
+    assert SCHEMES.keys() == TRANSPORTS.keys()

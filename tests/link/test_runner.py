@@ -49,7 +49,7 @@ class Recorder:
         outbox, self.outbox = self.outbox, []
         return outbox
 
-    def sent(self, message: Message, sequence: int, now: float) -> None:
+    def handle_sent(self, message: Message, sequence: int, now: float) -> None:
         self.numbers.append((message, sequence))
 
     def _check(self) -> None:

@@ -8,20 +8,20 @@ from typing import TypeVar
 
 from dialects import codec
 from dialects import messages as m
-from dialects.axes import Axes, manual_control
-from dialects.enums import Autopilot, Command, Result, Type
+from dialects.axes import Axes, build_manual_control
+from dialects.enums import Autopilot, Command, Result, VehicleType
 from dialects.modes import Mode
 from link.core import Peer, Received
-from vehicle.accessories.accessory_set import Rack
-from vehicle.accessories.output import Output, Pulses
+from vehicle.accessories.accessory_set import AccessorySet
+from vehicle.accessories.output import AccessorySpec, PulseRange
 from vehicle.accessories.simulated import SimulatedAccessory
-from vehicle.commands.inbound import HEARD
+from vehicle.commands.inbound import INBOUND_IDS
 from vehicle.params import Params
-from vehicle.readings import Computer, Readings
+from vehicle.readings import ComputerReadings, Readings
 from vehicle.rover import Rover
-from vehicle.safety.states import State
-from vehicle.storage.logbook import Recording
-from vehicle.storage.plan_keeping import PlanKeeper
+from vehicle.safety.states import SafetyState
+from vehicle.storage.logbook import LogRecorder
+from vehicle.storage.plan_keeping import PlanStoreLike
 
 M = TypeVar("M", bound=m.Message)
 
@@ -30,13 +30,13 @@ DRIVER, OTHER = 255, 254
 AHEAD = Axes(throttle=1.0)
 NEUTRAL = Axes()
 
-BEAT = m.Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, 4, 3)
+BEAT = m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, 4, 3)
 
 EVERYTHING = Readings(
     roll=0.1, pitch=0.1, yaw=math.pi / 4, yaw_rate=0.0, velocity_north=0.5, velocity_east=0.5, speed=0.7,
     latitude=48.1, longitude=11.5, altitude=500.0, gps_fix=3, gps_satellites=12, gps_hdop=0.8,
     battery_voltage=12.0, battery_current=1.0, battery_remaining=0.9, wheel_speeds=(0.7, 0.7),
-    computer=Computer(temperature=50.0, load=0.2),
+    computer=ComputerReadings(temperature=50.0, load=0.2),
 )  # fmt: skip
 """A rover with every sensor."""
 
@@ -47,18 +47,18 @@ class Bench:
     A ground station that knows our dialect listens from the beginning: `station`, from where DRIVER speaks.
     """
 
-    plans: PlanKeeper | None = None
+    plans: PlanStoreLike | None = None
     """What keeps its plans; a class of its own may have one."""
 
-    recording: Recording | None = None
+    recording: LogRecorder | None = None
     """What writes its logs."""
 
-    outputs: Sequence[Output] = ()
+    outputs: Sequence[AccessorySpec] = ()
     """Its relays and servos."""
 
     def __init__(self, now: float = 100.0, **params: float) -> None:
         self.now = now
-        self.rack = Rack(self.outputs)
+        self.rack = AccessorySet(self.outputs)
         self.rack.open()
         self.rover = Rover(Params(params), now=now, plan_keeper=self.plans, recording=self.recording, rack=self.rack)
         self.readings = Readings()
@@ -83,7 +83,7 @@ class Bench:
 
     @property
     def armed(self) -> bool:
-        return self.rover.state is State.ARMED
+        return self.rover.state is SafetyState.ARMED
 
     @property
     def mode(self) -> Mode:
@@ -98,7 +98,7 @@ class Bench:
     def say(self, message: m.Message, system: int = DRIVER, *, introduced: bool = True, sequence: int | None = None,
             address: Hashable = "", named: bool = False) -> None:  # fmt: skip
         """One message of a ground station, and what the rover answers. As on a link, the rest is not even decoded."""
-        if type(message).id not in HEARD:
+        if type(message).id not in INBOUND_IDS:
             return
         self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
         peer = Peer(0, address or f"gcs {system}")
@@ -135,7 +135,7 @@ class Bench:
         return Result(acks[0].result)
 
     def stick(self, axes: Axes, system: int = DRIVER, target: int = 1) -> None:
-        self.say(manual_control(axes, target), system)
+        self.say(build_manual_control(axes, target), system)
 
     def arm(self, system: int = DRIVER, **kwargs: bool) -> Result | None:
         return self.command(Command.COMPONENT_ARM_DISARM, 1, system=system, **kwargs)
@@ -189,7 +189,7 @@ class Bench:
 
     def _read(self, message: m.StatusText) -> None:
         """Texts longer than a message come in chunks."""
-        text = m.text_of(message)
+        text = m.decode_text(message)
         if message.chunk_seq:
             self.texts[-1] += text
         else:
@@ -200,10 +200,10 @@ class Equipped(Bench):
     """With a relay for each way to be safe, and a servo."""
 
     outputs = (
-        Output("relay", 0, SimulatedAccessory),
-        Output("relay", 1, SimulatedAccessory, until="end"),
-        Output("relay", 2, SimulatedAccessory, until="disarm"),
-        Output("servo", 9, SimulatedAccessory, pulses=Pulses(1100, 1500, 1900)),
+        AccessorySpec("relay", 0, SimulatedAccessory),
+        AccessorySpec("relay", 1, SimulatedAccessory, until="end"),
+        AccessorySpec("relay", 2, SimulatedAccessory, until="disarm"),
+        AccessorySpec("servo", 9, SimulatedAccessory, pulses=PulseRange(1100, 1500, 1900)),
     )
 
 

@@ -8,14 +8,14 @@ from typing import TypeVar
 
 from dialects import codec
 from dialects import messages as m
-from dialects.axes import Axes, manual_control
+from dialects.axes import Axes, build_manual_control
 from dialects.enums import Command
 from link.core import LinkReport, Outgoing, Peer, Received
-from link.services.pacing import OVERHEAD
+from link.services.pacing import MAVLINK2_OVERHEAD
 from tests.vehicle.bench import BEAT, CYCLE, EVERYTHING
 from vehicle.params import Params
 from vehicle.rover import Rover
-from vehicle.storage.logbook import Recording
+from vehicle.storage.logbook import LogRecorder
 
 M = TypeVar("M", bound=m.Message)
 REPORT = 1.0
@@ -26,7 +26,7 @@ class Crowd:
     """`peers` speak as system 255, 254 and so on, after their HEARTBEAT; `capacity` is of each link, bytes/s."""
 
     def __init__(
-        self, *peers: Peer, capacity: dict[int, float] | None = None, recording: Recording | None = None
+        self, *peers: Peer, capacity: dict[int, float] | None = None, recording: LogRecorder | None = None
     ) -> None:
         self.now = 100.0
         self.rover = Rover(Params({}), now=self.now, recording=recording)
@@ -83,7 +83,7 @@ class Crowd:
             self._collect()
             demand += 1
             if driver is not None and demand % 5 == 0:
-                self.say(driver, manual_control(Axes(throttle=0.1 * (demand % 7)), 1))
+                self.say(driver, build_manual_control(Axes(throttle=0.1 * (demand % 7)), 1))
             self._tick_due += CYCLE
         self.now = end
 
@@ -133,4 +133,4 @@ class Crowd:
 
 def weight(messages: Sequence[tuple[float, m.Message]]) -> int:
     """Bytes on the wire."""
-    return sum(len(codec.encode_payload(message)) + OVERHEAD for _, message in messages)
+    return sum(len(codec.encode_payload(message)) + MAVLINK2_OVERHEAD for _, message in messages)

@@ -10,11 +10,11 @@ from dialects.modes import Mode
 from tests.vehicle.bench import CYCLE, DRIVER, Bench
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Origin, Point
-from vehicle.sim.body import Home, SimulatedBody
-from vehicle.sim.chassis import CHASSIS, Frame
-from vehicle.sim.noise import Noise
+from vehicle.sim.body import SimulatedBody, SimulatedHome
+from vehicle.sim.chassis import CHASSIS, ChassisDimensions
+from vehicle.sim.noise import SensorNoise
 
-HOME = Home(50.0, 8.0, 100.0)
+HOME = SimulatedHome(50.0, 8.0, 100.0)
 GROUND = Origin(HOME.latitude, HOME.longitude)
 TWIST = 0x5C7
 """Mask of velocity and yaw rate."""
@@ -24,8 +24,8 @@ ONLY_PLACE = 0xDF8
 class Field(Bench):
     """`truth` is where the plant is; the rover knows only what its sensors say."""
 
-    def __init__(self, seed: int | None = 1, noise: Noise | None = None, **params: float) -> None:
-        chassis = CHASSIS[DriveType(int(params.get("DRIVE_TYPE", 1)))](Frame())
+    def __init__(self, seed: int | None = 1, noise: SensorNoise | None = None, **params: float) -> None:
+        chassis = CHASSIS[DriveType(int(params.get("DRIVE_TYPE", 1)))](ChassisDimensions())
         self.body: SimulatedBody | None = None
         self.track: list[Point] = []
         self.blind: dict[str, object] = {}
@@ -89,7 +89,7 @@ class Field(Bench):
         self.say(m.SetPositionTargetLocalNed(0, 1, 1, frame, mask, north, east, 0, 0, 0, 0, 0, 0, 0, 0, 0))
 
     def reposition(self, place: Point, *, frame: int = 6, speed: float = -1, flags: int = 1) -> Result:
-        latitude, longitude = GROUND.globe(place)
+        latitude, longitude = GROUND.to_global(place)
         return self.command_int(
             Command.DO_REPOSITION, speed, flags, x=round(latitude * 1e7), y=round(longitude * 1e7), frame=frame
         )

@@ -15,9 +15,9 @@ from types import TracebackType
 from typing import Self
 
 from dialects import codec, rover
-from dialects.axes import Axes, manual_control
-from dialects.enums import Autopilot, Command, ModeFlag, Type
-from dialects.messages import CommandLong, Heartbeat, Message, StatusText, text_of
+from dialects.axes import Axes, build_manual_control
+from dialects.enums import Autopilot, Command, ModeFlag, VehicleType
+from dialects.messages import CommandLong, Heartbeat, Message, StatusText, decode_text
 
 PATIENCE = 60.0
 """s for what must come, and comes in one or two: the machine is shared."""
@@ -83,12 +83,12 @@ class Ground:
 
     def texts(self) -> list[str]:
         """What the vehicle has said."""
-        return [text_of(message) for message in self.heard if isinstance(message, StatusText)]
+        return [decode_text(message) for message in self.heard if isinstance(message, StatusText)]
 
     def _talk(self) -> None:
-        self.say(Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, 4, 3))
+        self.say(Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, 4, 3))
         if self.demand is not None:
-            self.say(manual_control(self.demand, 1))
+            self.say(build_manual_control(self.demand, 1))
 
     def say(self, message: Message) -> None:
         """Send it, once the vehicle has shown where it is."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from dialects.messages import Heartbeat
 from link.core import LinkReport, Outgoing, Peer, Received
-from vehicle.control_loop import Machine
+from vehicle.control_loop import ControlLoop
 from vehicle.drive.gate import Outputs
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.readings import Readings
@@ -47,7 +47,7 @@ class Script:
         self._happen("messages_to_send")
         return [Outgoing(HEARTBEAT)]
 
-    def stop_input(self, reason: str | None, now: float) -> None:
+    def update_estop_input(self, reason: str | None, now: float) -> None:
         if reason is not None:
             self.calls.append(f"pressed: {reason}")
             self.outputs = OFF
@@ -98,12 +98,12 @@ class Bench(SimulatedMotors):
             raise self.broken[verb]
 
 
-def machine(prove: Callable[[], None] = lambda: None) -> tuple[Machine, Script, Bench]:
+def machine(prove: Callable[[], None] = lambda: None) -> tuple[ControlLoop, Script, Bench]:
     mind, motors = Script(), Bench()
-    return Machine(mind, motors, NoSensors(), prove=prove), mind, motors
+    return ControlLoop(mind, motors, NoSensors(), prove=prove), mind, motors
 
 
-def driving() -> tuple[Machine, Script, Bench]:
+def driving() -> tuple[ControlLoop, Script, Bench]:
     """A machine whose wheels turn: the danger that the tests below must see end."""
     body, mind, motors = machine()
     mind.outputs = AHEAD

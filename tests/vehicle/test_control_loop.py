@@ -6,7 +6,7 @@ import pytest
 
 from link.core import Outgoing
 from tests.vehicle.script import AHEAD, HEARTBEAT, MESSAGE, OFF, TURN, Script, driving, machine
-from vehicle.control_loop import RETRY, Machine
+from vehicle.control_loop import MOTOR_RETRY_TIME, ControlLoop
 from vehicle.drive.gate import Outputs
 from vehicle.motors import MotorError
 from vehicle.motors.simulated import SimulatedMotors
@@ -79,7 +79,7 @@ def test_passes_on_what_the_rover_says() -> None:
 
 def test_refuses_a_driver_with_another_number_of_motors() -> None:
     with pytest.raises(MotorError, match="4 motors, this drive needs 2"):
-        Machine(Script(), SimulatedMotors(4), NoSensors())
+        ControlLoop(Script(), SimulatedMotors(4), NoSensors())
 
 
 # ---- motors that fail ----
@@ -111,10 +111,10 @@ def test_what_cannot_prove_itself_is_told_before_anything_turns_and_asked_again(
             raise MotorError(reasons.pop(0))
 
     body, mind, motors = machine(prove)
-    for now in (0.0, RETRY / 2, RETRY, RETRY * 1.5):
+    for now in (0.0, MOTOR_RETRY_TIME / 2, MOTOR_RETRY_TIME, MOTOR_RETRY_TIME * 1.5):
         body.tick(now)
     assert [call for call in mind.calls if call not in ("sense", "tick")] == ["failed: no timeout"]
-    body.tick(RETRY * 2)
+    body.tick(MOTOR_RETRY_TIME * 2)
     assert mind.calls[-1] == "repaired"
     assert not motors.enabled
 
@@ -136,7 +136,7 @@ def test_after_a_failure_it_is_proven_anew() -> None:
     motors.broken["set"] = MotorError("no answer on the bus")
     body.tick(0.02)
     motors.broken.clear()
-    body.tick(0.02 + RETRY)
+    body.tick(0.02 + MOTOR_RETRY_TIME)
     assert len(asked) == 2
     assert mind.calls[-1] == "repaired"
 
@@ -159,18 +159,18 @@ def test_motors_are_tried_again_at_rest_and_reported_repaired() -> None:
     body, mind, motors = driving()
     motors.broken["set"] = MotorError("no answer")
     body.tick(0.0)
-    body.tick(RETRY / 2)
+    body.tick(MOTOR_RETRY_TIME / 2)
     assert "repaired" not in mind.calls
-    body.tick(RETRY)
+    body.tick(MOTOR_RETRY_TIME)
     assert "repaired" not in mind.calls, "the fault is still there"
     del motors.broken["set"]
-    body.tick(RETRY * 1.5)
+    body.tick(MOTOR_RETRY_TIME * 1.5)
     assert "repaired" not in mind.calls, "not asked again so soon"
-    body.tick(RETRY * 2)
+    body.tick(MOTOR_RETRY_TIME * 2)
     assert mind.calls.count("repaired") == 1
     assert motors.outputs == (0.0, 0.0)
     assert not motors.enabled
-    body.tick(RETRY * 4)
+    body.tick(MOTOR_RETRY_TIME * 4)
     assert mind.calls.count("repaired") == 1
 
 
@@ -181,7 +181,7 @@ def test_a_second_failure_after_repair_is_told_again() -> None:
         motors.broken["set"] = MotorError("no answer")
         body.tick(start)
         motors.broken.clear()
-        body.tick(start + RETRY)
+        body.tick(start + MOTOR_RETRY_TIME)
     assert mind.calls.count("failed: no answer") == 2
     assert mind.calls.count("repaired") == 2
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from vehicle.params import ASCENDING, PARAMETERS, TABLE, ParamError, Parameter, Params, in_force
+from vehicle.params import ORDERED_PAIRS, PARAMETERS, TABLE, ParamError, Parameter, Params, merge_params
 
 
 @pytest.mark.parametrize("parameter", TABLE, ids=lambda parameter: parameter.name)
@@ -81,13 +81,13 @@ def test_a_smallest_that_is_not_smaller_is_refused(first: tuple[str, float], sec
     assert params[first[0]] == first[1]
 
 
-@pytest.mark.parametrize(("small", "large"), ASCENDING)
+@pytest.mark.parametrize(("small", "large"), ORDERED_PAIRS)
 def test_values_that_fit_may_come_in_any_order(small: str, large: str) -> None:
     fits = [(small, 60.0), (large, 61.0)]
     for each in (fits, fits[::-1]):
         params = Params(dict(each))
         assert (params[small], params[large]) == (60.0, 61.0)
-        params, left_out = in_force({}, kept=dict(each), usual={large: 30.0})
+        params, left_out = merge_params({}, kept=dict(each), usual={large: 30.0})
         assert (params[small], params[large], left_out) == (60.0, 61.0, [])
     assert PARAMETERS[small].default == PARAMETERS[small].low
     assert PARAMETERS[large].default == PARAMETERS[large].high
@@ -95,7 +95,7 @@ def test_values_that_fit_may_come_in_any_order(small: str, large: str) -> None:
 
 def test_the_later_wins() -> None:
     given, kept, usual = {"SPEED_MAX": 4.0}, {"SPEED_MAX": 3.0, "WP_SPEED": 3.0}, {"SPEED_MAX": 2.0, "WP_SPEED": 2.0}
-    params, left_out = in_force(given, kept=kept, usual={**usual, "RTL_SPEED": 2.0}, pinned=given)
+    params, left_out = merge_params(given, kept=kept, usual={**usual, "RTL_SPEED": 2.0}, pinned=given)
     assert [params[name] for name in ("SPEED_MAX", "WP_SPEED", "RTL_SPEED")] == [4.0, 3.0, 2.0]
     assert left_out == []
     pinned = [each.name for each in params.table if each.read_only and not PARAMETERS[each.name].read_only]
@@ -104,7 +104,7 @@ def test_the_later_wins() -> None:
 
 def test_kept_values_that_fit_no_more_are_left_out_and_told() -> None:
     kept = {"MOT1_MIN": 60.0, "MOT2_MIN": 10.0, "GONE": 1.0, "MAN_TIMEOUT": 99.0}
-    params, left_out = in_force({"MOT1_MAX": 50.0}, kept=kept, usual={})
+    params, left_out = merge_params({"MOT1_MAX": 50.0}, kept=kept, usual={})
     assert (params["MOT1_MIN"], params["MOT1_MAX"], params["MOT2_MIN"]) == (0.0, 50.0, 10.0)
     assert left_out == [
         "MOT1_MIN 60 must be smaller than MOT1_MAX 50",
@@ -115,6 +115,6 @@ def test_kept_values_that_fit_no_more_are_left_out_and_told() -> None:
 
 def test_what_is_given_and_contradicts_is_refused() -> None:
     with pytest.raises(ParamError, match="MOT1_MIN 60 must be smaller than MOT1_MAX 50"):
-        in_force({"MOT1_MAX": 50.0, "MOT1_MIN": 60.0}, kept={}, usual={})
+        merge_params({"MOT1_MAX": 50.0, "MOT1_MIN": 60.0}, kept={}, usual={})
     with pytest.raises(ParamError, match="MOT1_MIN 70 must be smaller than MOT1_MAX 60"):  # of the article's car
-        in_force({"MOT1_MIN": 70.0}, kept={}, usual={"MOT1_MAX": 60.0})
+        merge_params({"MOT1_MIN": 70.0}, kept={}, usual={"MOT1_MAX": 60.0})

@@ -14,19 +14,19 @@ from hypothesis import strategies as st
 
 from dialects import codec
 from dialects import messages as m
-from dialects.axes import Axes, manual_control
+from dialects.axes import Axes, build_manual_control
 from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.core import Peer, Received
 from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench
-from vehicle.modes import OFFERED
+from vehicle.modes import MODES
 from vehicle.params import Params
 from vehicle.safety import states
-from vehicle.safety.failsafe import Action
-from vehicle.safety.monitor import LATE
+from vehicle.safety.failsafe import FailsafeAction
+from vehicle.safety.monitor import LATE_CYCLE_TIME
 
 TIMEOUT = Params()["MAN_TIMEOUT"]
-STOP_TIME = 100 / Params()["MOT_DECEL"] + 3 * CYCLE + LATE
+STOP_TIME = 100 / Params()["MOT_DECEL"] + 3 * CYCLE + LATE_CYCLE_TIME
 """s from a lost permit to zero: the ramp, the cycles it takes to begin and to end, and one that comes late."""
 BAND = 0.03
 Step = tuple[Any, ...]
@@ -63,7 +63,7 @@ class Witness:
         self._lapse()
         if rover._control.owner != self.owner:
             self.owner, self.neutral_seen, self.last_demand = rover._control.owner, False, -math.inf
-        if rover.state is not states.State.ARMED:
+        if rover.state is not states.SafetyState.ARMED:
             self._disarmed()
             return
         self.tested = -math.inf
@@ -76,7 +76,10 @@ class Witness:
             falling = zip(rover.outputs.throttles, self.before, strict=True)
             assert all(abs(new) <= abs(old) for new, old in falling)
         assert all(math.isfinite(value) and abs(value) <= 1 for value in rover.outputs.throttles)
-        if not OFFERED[rover._safety.mode].manual or rover._safety.failsafes.action(now) >= Action.NEUTRAL:
+        if (
+            not MODES[rover._safety.mode].manual
+            or rover._safety.failsafes.lasting_action(now) >= FailsafeAction.NEUTRAL
+        ):
             assert all(abs(new) <= abs(old) for new, old in zip(rover.outputs.throttles, self.before, strict=True))
         self.before = rover.outputs.throttles
 
@@ -164,7 +167,7 @@ class Script:
         """A process that does not run cannot act; the first thing it does when it runs again must be right."""
         self.bench.freeze(seconds)
         self.bench.cycle()
-        if seconds > LATE:
+        if seconds > LATE_CYCLE_TIME:
             self.witness.tested = -math.inf
 
     def motor(self, works: bool) -> None:
@@ -244,5 +247,5 @@ def test_no_command_raises_or_goes_unanswered(command: int, params: list[float],
     bench = Bench()
     answer = bench.command(command, *params, target=target, introduced=introduced)
     assert target == 0 or answer is not None
-    bench.say(manual_control(Axes(), 1))
+    bench.say(build_manual_control(Axes(), 1))
     bench.wait(0.1)

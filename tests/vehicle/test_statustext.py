@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dialects.enums import Severity
-from dialects.messages import StatusText, text_of
-from vehicle.statustext import Texts
+from dialects.messages import StatusText, decode_text
+from vehicle.statustext import StatusTextQueue
 
 
 def raw(message: StatusText) -> bytes:
@@ -12,18 +12,18 @@ def raw(message: StatusText) -> bytes:
 
 
 def test_a_short_text_is_one_message() -> None:
-    texts = Texts()
-    texts.say(Severity.NOTICE, "Armed", 0.0)
-    (message,) = texts.due(0.0)
-    assert (text_of(message), message.severity, message.id) == ("Armed", Severity.NOTICE, 0)
-    assert texts.due(0.0) == []
+    texts = StatusTextQueue()
+    texts.send(Severity.NOTICE, "Armed", 0.0)
+    (message,) = texts.pop_due(0.0)
+    assert (decode_text(message), message.severity, message.id) == ("Armed", Severity.NOTICE, 0)
+    assert texts.pop_due(0.0) == []
 
 
 def test_a_long_text_comes_in_chunks_that_make_it_again() -> None:
-    texts = Texts()
+    texts = StatusTextQueue()
     text = "Größe " * 20
-    texts.say(Severity.INFO, text, 0.0)
-    messages = texts.due(0.0)
+    texts.send(Severity.INFO, text, 0.0)
+    messages = texts.pop_due(0.0)
     assert len({message.id for message in messages}) == 1
     assert messages[0].id != 0
     assert [message.chunk_seq for message in messages] == list(range(len(messages)))
@@ -32,71 +32,71 @@ def test_a_long_text_comes_in_chunks_that_make_it_again() -> None:
 
 
 def test_the_last_chunk_is_never_full() -> None:
-    texts = Texts()
-    texts.say(Severity.INFO, "x" * 100, 0.0)
-    assert [len(raw(message)) for message in texts.due(0.0)] == [50, 50, 0]
+    texts = StatusTextQueue()
+    texts.send(Severity.INFO, "x" * 100, 0.0)
+    assert [len(raw(message)) for message in texts.pop_due(0.0)] == [50, 50, 0]
 
 
 def test_fifty_bytes_need_no_chunks() -> None:
-    texts = Texts()
-    texts.say(Severity.INFO, "x" * 50, 0.0)
-    assert [message.id for message in texts.due(0.0)] == [0]
+    texts = StatusTextQueue()
+    texts.send(Severity.INFO, "x" * 50, 0.0)
+    assert [message.id for message in texts.pop_due(0.0)] == [0]
 
 
 def test_the_daemons_log_hears_each_text_whole_though_nobody_listens() -> None:
     heard: list[tuple[Severity, str]] = []
-    texts = Texts(lambda severity, text: heard.append((severity, text)))
+    texts = StatusTextQueue(lambda severity, text: heard.append((severity, text)))
     long = "Motor driver failed: " + "x" * 100
     for now in (0.0, 1.0):
-        texts.say(Severity.CRITICAL, long, now)
-    texts.say(Severity.NOTICE, "Disarmed", 1.0)
+        texts.send(Severity.CRITICAL, long, now)
+    texts.send(Severity.NOTICE, "Disarmed", 1.0)
     assert heard == [(Severity.CRITICAL, long), (Severity.NOTICE, "Disarmed")]
 
 
 def test_a_flood_does_not_fill_the_log() -> None:
     heard: list[str] = []
-    texts = Texts(lambda severity, text: heard.append(text))
+    texts = StatusTextQueue(lambda severity, text: heard.append(text))
     for number in range(1000):
-        texts.say(Severity.WARNING, f"No parameter P{number}", number / 1000)
+        texts.send(Severity.WARNING, f"No parameter P{number}", number / 1000)
     assert 30 <= len(heard) <= 40
     assert heard[0] == "No parameter P0"
 
 
 def test_the_same_is_not_said_again_for_a_while() -> None:
-    texts = Texts()
+    texts = StatusTextQueue()
     for now in (0.0, 1.0, 2.9):
-        texts.say(Severity.INFO, "PreArm: battery low", now)
-    assert len(texts.due(2.9)) == 1
-    texts.say(Severity.INFO, "PreArm: battery low", 3.1)
-    assert len(texts.due(3.1)) == 1
+        texts.send(Severity.INFO, "PreArm: battery low", now)
+    assert len(texts.pop_due(2.9)) == 1
+    texts.send(Severity.INFO, "PreArm: battery low", 3.1)
+    assert len(texts.pop_due(3.1)) == 1
 
 
 def test_once_is_once_until_it_is_forgotten() -> None:
-    texts = Texts()
+    texts = StatusTextQueue()
     for now in (0.0, 10.0):
-        texts.say_once("demand 9", Severity.INFO, "ignored", now)
-    assert len(texts.due(10.0)) == 1
-    texts.forget("demand")
-    texts.say_once("demand 9", Severity.INFO, "ignored", 20.0)
-    assert len(texts.due(20.0)) == 1
+        texts.send_once("demand 9", Severity.INFO, "ignored", now)
+    assert len(texts.pop_due(10.0)) == 1
+    texts.reset_once("demand")
+    texts.send_once("demand 9", Severity.INFO, "ignored", 20.0)
+    assert len(texts.pop_due(20.0)) == 1
 
 
 def test_at_most_ten_a_second_and_the_newest_survive() -> None:
-    texts = Texts()
+    texts = StatusTextQueue()
     sent = []
     for cycle in range(500):
         now = cycle * 0.02
-        texts.say(Severity.INFO, f"text {cycle}", now)
-        sent += texts.due(now)
+        texts.send(Severity.INFO, f"text {cycle}", now)
+        sent += texts.pop_due(now)
     assert 95 <= len(sent) <= 106
-    tail = [text_of(message) for message in texts.due(60.0)]
+    tail = [decode_text(message) for message in texts.pop_due(60.0)]
     assert len(tail) <= 5
     assert tail[0] > "text 460"
 
 
 def test_memory_is_bounded() -> None:
-    texts = Texts()
+    texts = StatusTextQueue()
     for number in range(10_000):
-        texts.say(Severity.INFO, f"{number} " * 100, number * 0.01)
+        texts.send(Severity.INFO, f"{number} " * 100, number * 0.01)
     assert len(texts._waiting) <= 30
-    assert len(texts._said) <= 301
+    assert len(texts._sent_at) <= 301

@@ -41,7 +41,7 @@ class Accessory(Protocol):
     driver, and tried again.
     """
 
-    def put(self, value: int) -> None:
+    def set(self, value: int) -> None:
         """Give it: of a relay 0 or 1, of a servo the pulse in us, or 0 for no pulses."""
 
     def close(self) -> None:

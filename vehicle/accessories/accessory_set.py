@@ -4,30 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from vehicle.accessories.output import Outlet, Output, Until
+from vehicle.accessories.output import AccessoryOutput, AccessorySpec, Until
 
 
-class Rack:
+class AccessorySet:
     """Opened when the motors are; before that nothing is given."""
 
-    def __init__(self, outputs: Iterable[Output] = ()) -> None:
-        self._outlets: dict[tuple[str, float], Outlet] = {
-            (output.kind, output.number): Outlet(output) for output in outputs
+    def __init__(self, outputs: Iterable[AccessorySpec] = ()) -> None:
+        self._outlets: dict[tuple[str, float], AccessoryOutput] = {
+            (output.kind, output.number): AccessoryOutput(output) for output in outputs
         }
 
-    def __iter__(self) -> Iterator[Outlet]:
+    def __iter__(self) -> Iterator[AccessoryOutput]:
         return iter(self._outlets.values())
 
-    def find(self, kind: str, number: float) -> Outlet | None:
+    def find(self, kind: str, number: float) -> AccessoryOutput | None:
         """The one of this number; None where there is none."""
         return self._outlets.get((kind, number))
 
     def values(self, kind: str) -> dict[int, int]:
         """Number -> what the hardware has, of those that are open."""
         return {
-            outlet.output.number: outlet.given
+            outlet.spec.number: outlet.actual
             for outlet in self
-            if outlet.output.kind == kind and outlet.given is not None
+            if outlet.spec.kind == kind and outlet.actual is not None
         }
 
     def open(self) -> None:
@@ -35,7 +35,7 @@ class Rack:
         for outlet in self:
             outlet.open()
 
-    def step(self, secured: Callable[[Until], str | None], now: float) -> list[tuple[Outlet, str]]:
+    def update(self, secured: Callable[[Until], str | None], now: float) -> list[tuple[AccessoryOutput, str]]:
         """One cycle. `secured` says why those that keep what they have until then must be safe now, or None; which of
         them were not is returned, and why they are now.
 
@@ -44,11 +44,11 @@ class Rack:
         """
         ended = []
         for outlet in self:
-            why = secured(outlet.output.until)
-            if why is not None and outlet.secure():
+            why = secured(outlet.spec.until)
+            if why is not None and outlet.set_safe():
                 ended.append((outlet, why))
         for outlet in self:
-            if not outlet.step(now):
+            if not outlet.update(now):
                 break
         return ended
 

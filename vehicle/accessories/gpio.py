@@ -45,7 +45,7 @@ class GpioRelay:
                 pin_factory=pin_factory,
             )
 
-    def put(self, value: int) -> None:
+    def set(self, value: int) -> None:
         """Switch it. Raises MotorError."""
         with self._translated("pin"):
             self._pin.value = bool(value)

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
 from vehicle.accessories import OFF, Accessory
-from vehicle.hardware.error_text import in_one_line
+from vehicle.hardware.error_text import format_error
 
-RETRY = 1.0
+RETRY_INTERVAL = 1.0
 """s after a failure until an accessory is tried again."""
 
 Until = Literal["end", "stop", "disarm"]
@@ -21,7 +21,7 @@ disarm: also until the vehicle is disarmed or a failsafe stops it; away from its
 """
 
 
-class Pulses(NamedTuple):
+class PulseRange(NamedTuple):
     """What a servo may get, us."""
 
     low: int
@@ -30,7 +30,7 @@ class Pulses(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Output:
+class AccessorySpec:
     """One line of the settings, understood."""
 
     kind: Literal["relay", "servo"]
@@ -41,7 +41,7 @@ class Output:
     start: int = OFF
     safe: int = OFF
     until: Until = "stop"
-    pulses: Pulses | None = None
+    pulses: PulseRange | None = None
     """Of a servo."""
     taken: Sequence[str] = ()
     shared: Mapping[str, str] = field(default_factory=dict)
@@ -51,7 +51,7 @@ class Output:
         """As the driver reads it."""
         return f"{self.kind} {self.number}"
 
-    def words(self, value: int) -> str:
+    def format_value(self, value: int) -> str:
         """A value as the driver reads it."""
         if self.kind == "relay":
             return "on" if value else "off"
@@ -59,7 +59,7 @@ class Output:
 
 
 @dataclass(slots=True)
-class Repeat:
+class RepeatState:
     """To and fro."""
 
     away: int
@@ -71,81 +71,81 @@ class Repeat:
     due: float
 
 
-class Outlet:
+class AccessoryOutput:
     """`step` each cycle; the rest at any moment. It never raises, whatever the accessory does."""
 
-    def __init__(self, output: Output) -> None:
-        self.output = output
-        self.wanted = output.start
-        self.given: int | None = None
+    def __init__(self, output: AccessorySpec) -> None:
+        self.spec = output
+        self.target = output.start
+        self.actual: int | None = None
         """What the hardware has; None before it is opened, after it is closed, and where it did not open."""
         self.fault: str | None = None
         """Why it does not do what is wanted, one line."""
         self._accessory: Accessory | None = None
-        self._repeat: Repeat | None = None
+        self._repeat: RepeatState | None = None
         self._retry_due = 0.0
 
     def open(self) -> None:
         """With its first value."""
-        self._attempt(self._make, self.output.start)
+        self._attempt(self._make, self.spec.start)
 
-    def put(self, value: int) -> None:
+    def set_value(self, value: int) -> None:
         """From now on, in place of whatever was asked before."""
-        self.wanted, self._repeat = value, None
+        self.target, self._repeat = value, None
 
-    def repeat(self, away: int | None, times: int, period: float, now: float) -> None:
+    def start_repeat(self, away: int | None, times: int, period: float, now: float) -> None:
         """Go away and come back so many times: a servo from its trim to `away`, a relay, where `away` is None, to the
         other state and back."""
         if away is None:
-            rest = self._repeat.rest if self._repeat else self.wanted
+            rest = self._repeat.rest if self._repeat else self.target
             away = int(not rest)
         else:
-            rest = self.output.pulses.trim if self.output.pulses else OFF
-        self._repeat = Repeat(away, rest, 2 * times, period, now)
+            rest = self.spec.pulses.trim if self.spec.pulses else OFF
+        self._repeat = RepeatState(away, rest, 2 * times, period, now)
 
-    def secure(self) -> bool:
+    def set_safe(self) -> bool:
         """Its safe value. True where that ends anything."""
-        ends = self.wanted != self.output.safe or self._repeat is not None
-        self.put(self.output.safe)
+        ends = self.target != self.spec.safe or self._repeat is not None
+        self.set_value(self.spec.safe)
         return ends
 
-    def step(self, now: float) -> bool:
+    def update(self, now: float) -> bool:
         """Let the hardware have what is wanted at this moment. False where it did not take it."""
         self._go_on(now)
-        done = self.wanted == self.given and self.fault is None  # after a failure nobody knows what it has
+        done = self.target == self.actual and self.fault is None  # after a failure nobody knows what it has
         if self._accessory is None or done or now < self._retry_due:
             return True
         self.fault = None
-        self._attempt(self._accessory.put, self.wanted)
+        self._attempt(self._accessory.set, self.target)
         if self.fault is not None:
-            self._retry_due = now + RETRY
+            self._retry_due = now + RETRY_INTERVAL
             return False
-        self.given = self.wanted
+        self.actual = self.target
         return True
 
     def close(self) -> None:
         """Its safe value, then the hardware is let go. May come twice."""
-        accessory, self._accessory, self.given = self._accessory, None, None
+        accessory, self._accessory, self.actual = self._accessory, None, None
         if accessory is not None:
-            self.secure()
-            self._attempt(accessory.put, self.output.safe)
+            self.set_safe()
+            self._attempt(accessory.set, self.spec.safe)
             self._attempt(accessory.close)
 
     def _make(self, value: int) -> None:
-        self._accessory = self.output.make(value)
-        self.given = value
+        self._accessory = self.spec.make(value)
+        self.actual = value
 
     def _attempt(self, step: Callable[..., None], *values: int) -> None:
         try:
             step(*values)
         except Exception as error:  # anybody's driver may raise anything
-            self.fault = in_one_line(error)
+            self.fault = format_error(error)
 
     def _go_on(self, now: float) -> None:
         repeat = self._repeat
         if repeat is None or now < repeat.due:
             return
-        self.wanted = repeat.rest if repeat.left % 2 else repeat.away
+        self.target = repeat.rest if repeat.left % 2 else repeat.away
         repeat.left -= 1
         repeat.due = now + repeat.period
         if not repeat.left:

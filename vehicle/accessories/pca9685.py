@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from vehicle.hardware.i2c import Bus
 from vehicle.motors import MotorError
-from vehicle.motors.pca9685_board import Board, BoardSettings, Number
+from vehicle.motors.pca9685_board import BoardSettings, Number, Pca9685Board
 from vehicle.motors.settings import channel_name
 
 
@@ -32,21 +32,21 @@ class Pca9685Servo:
     def __init__(self, settings: Pca9685ServoSettings, value: int, *, bus: Bus | None = None) -> None:
         """Raises MotorError."""
         self._channel = settings.channel
-        self._board = Board(settings, bus)
+        self._board = Pca9685Board(settings, bus)
         try:
-            self._board.certain(lambda: self._board.stop(self._channel))
-            self._board.certain(self._board.set_up)
-            self._board.certain(lambda: self._write(value))
+            self._board.retry(lambda: self._board.stop(self._channel))
+            self._board.retry(self._board.set_up)
+            self._board.retry(lambda: self._write(value))
         except BaseException:
             self._board.close()
             raise
 
-    def put(self, value: int) -> None:
+    def set(self, value: int) -> None:
         """One transfer, after a look whether the chip is still set up. Raises MotorError."""
         try:
             self._write(value)
         except OSError as error:
-            raise MotorError(self._board.said(error)) from error
+            raise MotorError(self._board.describe(error)) from error
 
     def close(self) -> None:
         """Let go of the bus."""
@@ -56,6 +56,6 @@ class Pca9685Servo:
         if not self._board.ready:
             raise MotorError("PCA9685: it has lost its power, restart the vehicle")
         if value:
-            self._board.give(self._channel, value * 1e-6)
+            self._board.set_pulse(self._channel, value * 1e-6)
         else:
             self._board.stop(self._channel)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from vehicle.accessories.settings import COMMON, Kind, understood
-from vehicle.hardware.error_text import in_one_line
+from vehicle.accessories.settings import COMMON, Kind, build_spec
+from vehicle.hardware.error_text import format_error
 
 
 def safe_stop(tables: Any) -> Iterator[tuple[bool, str]]:
@@ -16,7 +16,7 @@ def safe_stop(tables: Any) -> Iterator[tuple[bool, str]]:
             try:
                 yield True, _made_safe(kind, table)
             except Exception as error:  # whatever it is, the caller has nothing better to do than to say it
-                why = in_one_line(error)
+                why = format_error(error)
                 yield False, f"accessories.{kind}s[{index}]: may have its last value still: {why}"
 
 
@@ -26,8 +26,8 @@ def _listed(tables: Any, name: str) -> list[Any]:
 
 
 def _made_safe(kind: Kind, table: Any) -> str:
-    output = understood(kind, table)
+    output = build_spec(kind, table)
     accessory = output.make(output.safe)
-    accessory.put(output.safe)  # what it was made with is the driver's word only
+    accessory.set(output.safe)  # what it was made with is the driver's word only
     accessory.close()
-    return f"{output.name}: {output.words(output.safe)}"
+    return f"{output.name}: {output.format_value(output.safe)}"

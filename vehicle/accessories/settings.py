@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from link.runtime.toml_errors import explained
+from link.runtime.toml_errors import explain_error
 from vehicle.accessories import DRIVERS, LARGEST_RELAY, LARGEST_SERVO, OFF, Accessory
-from vehicle.accessories.output import Output, Pulses, Until
-from vehicle.motors import MotorError, MotorSettingsError, UnknownDriverError, driver_class
-from vehicle.motors.settings import NoSettings, parsed
+from vehicle.accessories.output import AccessorySpec, PulseRange, Until
+from vehicle.motors import MotorError, MotorSettingsError, UnknownDriverError, load_driver_class
+from vehicle.motors.settings import NoSettings, convert
 
 Width = Annotated[int, msgspec.Meta(ge=500, le=2500, description="microseconds")]
 
@@ -67,7 +67,7 @@ Kind = Literal["relay", "servo"]
 COMMON: dict[Kind, type[RelaySettings] | type[ServoSettings]] = {"relay": RelaySettings, "servo": ServoSettings}
 
 
-def tables_of(accessories: Accessories) -> Iterator[tuple[Kind, str, dict[str, Any]]]:
+def iter_tables(accessories: Accessories) -> Iterator[tuple[Kind, str, dict[str, Any]]]:
     """Kind, name in the file and table of each."""
     for index, table in enumerate(accessories.relays):
         yield "relay", f"accessories.relays[{index}]", table
@@ -75,36 +75,36 @@ def tables_of(accessories: Accessories) -> Iterator[tuple[Kind, str, dict[str, A
         yield "servo", f"accessories.servos[{index}]", table
 
 
-def outputs_of(accessories: Accessories) -> list[Output]:
+def build_specs(accessories: Accessories) -> list[AccessorySpec]:
     """What is in a file that has no problems. Raises UnknownDriverError, MotorSettingsError for one that has."""
-    return [understood(kind, table) for kind, _, table in tables_of(accessories)]
+    return [build_spec(kind, table) for kind, _, table in iter_tables(accessories)]
 
 
-def understood(kind: Kind, table: Mapping[str, Any]) -> Output:
+def build_spec(kind: Kind, table: Mapping[str, Any]) -> AccessorySpec:
     """One of them. Raises UnknownDriverError, MotorSettingsError."""
     name = table.get("driver")
     if not isinstance(name, str):
         raise UnknownDriverError(f"{kind} driver: missing")
     made_by, own_kind = _driver(kind, name)
     beside, own_table = _split(kind, table)
-    common = parsed(beside, COMMON[kind])
-    own: Any = parsed(own_table, own_kind or NoSettings)
+    common = convert(beside, COMMON[kind])
+    own: Any = convert(own_table, own_kind or NoSettings)
     make = made_by if own_kind is None else _with(made_by, own)
     taken, shared = getattr(own, "taken", ()), getattr(own, "shared", {})
     if isinstance(common, RelaySettings):
-        return Output("relay", common.number, make, name, int(common.start), int(common.safe), common.until,
+        return AccessorySpec("relay", common.number, make, name, int(common.start), int(common.safe), common.until,
                       taken=taken, shared=shared)  # fmt: skip
     _must_fit(common, own)
     safe = common.trim_us if common.safe == "trim" else OFF
-    pulses = Pulses(common.min_us, common.trim_us, common.max_us)
-    return Output("servo", common.number, make, name, safe, safe, common.until, pulses, taken, shared)
+    pulses = PulseRange(common.min_us, common.trim_us, common.max_us)
+    return AccessorySpec("servo", common.number, make, name, safe, safe, common.until, pulses, taken, shared)
 
 
-def problems(accessories: Accessories) -> list[str]:
+def find_problems(accessories: Accessories) -> list[str]:
     """A line for each part of the file that is wrong."""
     found: list[str] = []
     holders: dict[tuple[str, int], str] = {}
-    for kind, at, table in tables_of(accessories):
+    for kind, at, table in iter_tables(accessories):
         here = _problems(kind, at, table)
         if not here:
             first = holders.setdefault((kind, table["number"]), at)
@@ -126,7 +126,7 @@ def _problems(kind: Kind, at: str, table: Mapping[str, Any]) -> list[str]:
     if any(found):
         return [line for line in found if line]
     try:
-        understood(kind, table)
+        build_spec(kind, table)
     except MotorSettingsError as error:
         return [f"{at}: {error}"]
     return []
@@ -136,7 +136,7 @@ def _problem(table: Mapping[str, Any], kind: Any, at: str, also: tuple[str, ...]
     try:
         msgspec.convert(dict(table), kind)
     except msgspec.ValidationError as error:
-        return explained(error, kind, at, also)
+        return explain_error(error, kind, at, also)
     return None
 
 
@@ -146,7 +146,7 @@ def settings_type(kind: Kind, name: str) -> type | None:
 
 
 def _driver(kind: Kind, name: str) -> tuple[Any, type | None]:
-    found = driver_class(name, DRIVERS[kind], f"{kind} driver")
+    found = load_driver_class(name, DRIVERS[kind], f"{kind} driver")
     return found, getattr(found, "Settings", None)
 
 

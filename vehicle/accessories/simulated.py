@@ -9,7 +9,7 @@ class SimulatedAccessory:
     def __init__(self, value: int) -> None:
         self.value = value
 
-    def put(self, value: int) -> None:
+    def set(self, value: int) -> None:
         """Hold it."""
         self.value = value
 

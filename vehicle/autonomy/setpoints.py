@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from dialects import messages as m
 from vehicle.navigation.estimate import Estimate
-from vehicle.navigation.geo import Point, wrap
+from vehicle.navigation.geo import Point, wrap_angle
 
 LOCAL_NED, LOCAL_OFFSET_NED, BODY_NED, BODY_OFFSET_NED, BODY_FRD = 1, 7, 8, 9, 12
 """MAV_FRAME."""
@@ -28,22 +28,22 @@ ATTITUDE_YAW_RATE, ATTITUDE_THRUST, ATTITUDE_Q = 4, 64, 128
 """ATTITUDE_TARGET_TYPEMASK: "ignore" ..."""
 THRUST_BODY = 32
 """... and "thrust_body counts, and not thrust"."""
-OLDEST = 1.0
+SETPOINT_MAX_AGE = 1.0
 """s; an older setpoint is not driven by (bad input 47)."""
-REORDERED = 1.0
+REORDER_WINDOW = 1.0
 """s; a setpoint whose sender's clock went back was overtaken, unless nothing came for so long: then the sender has
 started anew."""
 CLOCK_DRIFT = 5e-4
 """s/s by which a sender's clock may be slower than ours; a crystal's is a tenth of it."""
-WRAP = 2**32
+TIME_BOOT_WRAP = 2**32
 """ms; where time_boot_ms begins again."""
-SHORTEST = 0.5
+QUATERNION_NORM_MIN = 0.5
 """Length of a quaternion, which should be 1: all zeros are somebody who has filled in nothing."""
-FARTHEST = 1e5
+TARGET_DISTANCE_MAX = 1e5
 """m; a place beyond is no place for a rover."""
 
 
-class Course(NamedTuple):
+class VelocityTarget(NamedTuple):
     """Drive at `speed`, negative backwards, turning at `turn_rate` or toward `heading`. Counts for GUIDED_TIMEOUT."""
 
     speed: float
@@ -51,7 +51,7 @@ class Course(NamedTuple):
     heading: float | None = None
 
 
-class Place(NamedTuple):
+class PositionTarget(NamedTuple):
     """Go there and stand. Counts until there is another target."""
 
     point: Point
@@ -59,14 +59,14 @@ class Place(NamedTuple):
     """m/s; None: the usual one."""
 
 
-Target = Course | Place
+Target = VelocityTarget | PositionTarget
 
 
 @dataclass(frozen=True, slots=True)
-class Refusal:
+class SetpointRejection:
     """Why a setpoint is none."""
 
-    why: str
+    reason: str
 
 
 class SenderClock:
@@ -90,10 +90,10 @@ class SenderClock:
         examples always 10. A clock that stops is another matter."""
         if not boot_ms:
             return 0.0
-        stood = self._look(boot_ms)
-        ahead = (boot_ms - self._newest + WRAP // 2) % WRAP - WRAP // 2
+        stood = self._is_stopped(boot_ms)
+        ahead = (boot_ms - self._newest + TIME_BOOT_WRAP // 2) % TIME_BOOT_WRAP - TIME_BOOT_WRAP // 2
         quiet = now - self._at
-        if ahead < 0 and quiet < REORDERED:
+        if ahead < 0 and quiet < REORDER_WINDOW:
             return None
         if not math.isfinite(quiet) or ahead < 0:
             self._least, unwrapped = math.inf, boot_ms
@@ -104,7 +104,7 @@ class SenderClock:
         self._least = difference if stood else min(self._least, difference)
         return difference - self._least
 
-    def _look(self, boot_ms: int) -> bool:
+    def _is_stopped(self, boot_ms: int) -> bool:
         """Did it stand until now?"""
         if self._first is None:
             self._first = boot_ms
@@ -120,25 +120,25 @@ Setpoint = m.SetPositionTargetLocalNed | m.SetPositionTargetGlobalInt | m.SetAtt
 SetPosition = m.SetPositionTargetLocalNed | m.SetPositionTargetGlobalInt
 
 
-def position_target(message: SetPosition, estimate: Estimate) -> Target | Refusal:
+def parse_position_target(message: SetPosition, estimate: Estimate) -> Target | SetpointRejection:
     """The target of SET_POSITION_TARGET_LOCAL_NED or _GLOBAL_INT."""
     mask = message.type_mask
     frames = LOCAL_FRAMES if isinstance(message, m.SetPositionTargetLocalNed) else GLOBAL_FRAMES
     if message.coordinate_frame not in frames:
-        return Refusal(f"frame {message.coordinate_frame} is not offered")
+        return SetpointRejection(f"frame {message.coordinate_frame} is not offered")
     if mask & ACCELERATION != ACCELERATION:
-        return Refusal("acceleration and force are not offered")
+        return SetpointRejection("acceleration and force are not offered")
     if mask & POSITION not in (0, POSITION):
-        return Refusal("half a position")
+        return SetpointRejection("half a position")
     if mask & (POSITION | VELOCITY | YAW | YAW_RATE) == POSITION | VELOCITY | YAW | YAW_RATE:
-        return Refusal("nothing is asked for")
+        return SetpointRejection("nothing is asked for")
     wrong = _no_numbers(message, mask)
     if wrong:
-        return Refusal(f"{wrong} is no number")
-    return _place(message, estimate) if not mask & POSITION else _course(message, estimate)
+        return SetpointRejection(f"{wrong} is no number")
+    return _position_target(message, estimate) if not mask & POSITION else _velocity_target(message, estimate)
 
 
-def attitude_target(message: m.SetAttitudeTarget, full_speed: float) -> Target | Refusal:
+def parse_attitude_target(message: m.SetAttitudeTarget, full_speed: float) -> Target | SetpointRejection:
     """The target of SET_ATTITUDE_TARGET: thrust is the share of `full_speed`, as in ArduRover.
 
     Thrust in the body's frame is the forward part of it: a rover has no other.
@@ -146,18 +146,18 @@ def attitude_target(message: m.SetAttitudeTarget, full_speed: float) -> Target |
     mask = message.type_mask
     thrust = message.thrust_body[0] if mask & THRUST_BODY else message.thrust
     if mask & ATTITUDE_THRUST and not mask & THRUST_BODY:
-        return Refusal("thrust is missing")
+        return SetpointRejection("thrust is missing")
     if mask & ATTITUDE_YAW_RATE and mask & ATTITUDE_Q:
-        return Refusal("neither attitude nor yaw rate")
+        return SetpointRejection("neither attitude nor yaw rate")
     used = [thrust] + ([message.body_yaw_rate] if not mask & ATTITUDE_YAW_RATE else list(message.q))
     if not all(map(math.isfinite, used)):
-        return Refusal("a value is no number")
+        return SetpointRejection("a value is no number")
     speed = max(-1.0, min(1.0, thrust)) * full_speed
     if not mask & ATTITUDE_YAW_RATE:
-        return Course(speed, turn_rate=message.body_yaw_rate)
-    if math.hypot(*message.q) < SHORTEST:
-        return Refusal("its quaternion is none")
-    return Course(speed, heading=_yaw(message.q))
+        return VelocityTarget(speed, turn_rate=message.body_yaw_rate)
+    if math.hypot(*message.q) < QUATERNION_NORM_MIN:
+        return SetpointRejection("its quaternion is none")
+    return VelocityTarget(speed, heading=_yaw(message.q))
 
 
 def _no_numbers(message: SetPosition, mask: int) -> str | None:
@@ -170,71 +170,75 @@ def _no_numbers(message: SetPosition, mask: int) -> str | None:
     return next((name for name, value in used if not math.isfinite(value)), None)
 
 
-def _place(message: SetPosition, estimate: Estimate) -> Target | Refusal:
+def _position_target(message: SetPosition, estimate: Estimate) -> Target | SetpointRejection:
     if not estimate.good:
-        return Refusal("position is not known")
+        return SetpointRejection("position is not known")
     point = _global_point(message, estimate) if not isinstance(message, m.SetPositionTargetLocalNed) else (
         _local_point(message, estimate))  # fmt: skip
-    if isinstance(point, Refusal):
+    if isinstance(point, SetpointRejection):
         return point
-    if not estimate.place.distance(point) <= FARTHEST:
-        return Refusal("too far away")
+    if not estimate.place.distance(point) <= TARGET_DISTANCE_MAX:
+        return SetpointRejection("too far away")
     velocity = (0.0 if message.type_mask & 8 else message.vx, 0.0 if message.type_mask & 16 else message.vy)
-    return Place(point, math.hypot(*velocity) or None)
+    return PositionTarget(point, math.hypot(*velocity) or None)
 
 
 def _local_point(message: m.SetPositionTargetLocalNed, estimate: Estimate) -> Point:
     if message.coordinate_frame == LOCAL_NED:
         return Point(message.x, message.y)
     turn = (estimate.yaw or 0.0) if message.coordinate_frame in BODY else 0.0
-    north, east = _turned(message.x, message.y, turn)
+    north, east = _rotated(message.x, message.y, turn)
     return Point(estimate.place.north + north, estimate.place.east + east)
 
 
-def _global_point(message: m.SetPositionTargetGlobalInt, estimate: Estimate) -> Point | Refusal:
-    return globe_point(message.lat_int, message.lon_int, estimate) or Refusal("no such place")
+def _global_point(message: m.SetPositionTargetGlobalInt, estimate: Estimate) -> Point | SetpointRejection:
+    return global_to_local(message.lat_int, message.lon_int, estimate) or SetpointRejection("no such place")
 
 
-def globe_point(latitude: float, longitude: float, estimate: Estimate) -> Point | None:
+def global_to_local(latitude: float, longitude: float, estimate: Estimate) -> Point | None:
     """Degrees x 1e7 on our ground; None for what is no place: 0/0, INT32_MAX and beyond the poles."""
     degrees = latitude / 1e7, longitude / 1e7
     sane = abs(degrees[0]) <= 90.0 and abs(degrees[1]) <= 180.0 and (latitude, longitude) != (0, 0)
-    return estimate.origin.point(*degrees) if sane and estimate.origin is not None else None
+    return estimate.origin.to_local(*degrees) if sane and estimate.origin is not None else None
 
 
-def _course(message: SetPosition, estimate: Estimate) -> Target | Refusal:
+def _velocity_target(message: SetPosition, estimate: Estimate) -> Target | SetpointRejection:
     mask = message.type_mask
     body = message.coordinate_frame in BODY
     ahead, right = (0.0 if mask & 8 else message.vx), (0.0 if mask & 16 else message.vy)
     if not body and mask & VELOCITY != VELOCITY:
         if estimate.yaw is None:
-            return Refusal("heading is not known")
+            return SetpointRejection("heading is not known")
         if not mask & YAW_RATE:
-            return Course(_turned(ahead, right, -estimate.yaw)[0], turn_rate=message.yaw_rate)
+            return VelocityTarget(_rotated(ahead, right, -estimate.yaw)[0], turn_rate=message.yaw_rate)
         if mask & YAW:
             speed = math.hypot(ahead, right)
-            return Course(speed, heading=math.atan2(right, ahead)) if speed else Course(0.0, turn_rate=0.0)
+            return (
+                VelocityTarget(speed, heading=math.atan2(right, ahead)) if speed else VelocityTarget(0.0, turn_rate=0.0)
+            )
     if not mask & YAW_RATE:
-        return Course(ahead, turn_rate=message.yaw_rate)
-    return _headed(message, estimate, ahead, right, body)
+        return VelocityTarget(ahead, turn_rate=message.yaw_rate)
+    return _heading_target(message, estimate, ahead, right, body)
 
 
-def _headed(message: SetPosition, estimate: Estimate, ahead: float, right: float, body: bool) -> Target | Refusal:
+def _heading_target(
+    message: SetPosition, estimate: Estimate, ahead: float, right: float, body: bool
+) -> Target | SetpointRejection:
     """By an explicit yaw, or by the direction of a velocity in the body's frame."""
     yaw = estimate.yaw
     if not message.type_mask & YAW:
         if yaw is None:
-            return Refusal("heading is not known")
+            return SetpointRejection("heading is not known")
         asked = message.yaw + (yaw if body else 0.0)
-        return Course(ahead if body else _turned(ahead, right, -yaw)[0], heading=wrap(asked))
+        return VelocityTarget(ahead if body else _rotated(ahead, right, -yaw)[0], heading=wrap_angle(asked))
     if not right:
-        return Course(ahead, turn_rate=0.0)
+        return VelocityTarget(ahead, turn_rate=0.0)
     if yaw is None:
-        return Refusal("heading is not known")
-    return Course(math.hypot(ahead, right), heading=wrap(yaw + math.atan2(right, ahead)))
+        return SetpointRejection("heading is not known")
+    return VelocityTarget(math.hypot(ahead, right), heading=wrap_angle(yaw + math.atan2(right, ahead)))
 
 
-def _turned(x: float, y: float, angle: float) -> tuple[float, float]:
+def _rotated(x: float, y: float, angle: float) -> tuple[float, float]:
     return x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)
 
 

@@ -12,24 +12,24 @@ from typing import Any
 
 from dialects.enums import DriveType
 from link.protocol.link_events import CONNECTING
-from link.transport.transport import LinkError, Wire
-from link.transport.transports import open_wires
+from link.transport.transport import LinkError, Transport
+from link.transport.transports import open_transports
 from vehicle.accessories import OFF
-from vehicle.accessories.output import Output
-from vehicle.accessories.settings import outputs_of
+from vehicle.accessories.output import AccessorySpec
+from vehicle.accessories.settings import build_specs
 from vehicle.config.config import Config, ConfigError, load
-from vehicle.config.conflicts import motors_among
-from vehicle.config.effective_params import Settled, settled
+from vehicle.config.conflicts import find_motor_conflicts
+from vehicle.config.effective_params import EffectiveParams, load_effective_params
 from vehicle.drive.mixer import MIXERS
-from vehicle.hardware.error_text import in_one_line
-from vehicle.motors import MotorError, open_motors, proof
+from vehicle.hardware.error_text import format_error
+from vehicle.motors import MotorError, arming_check, open_motors
 from vehicle.params import Params
 from vehicle.runtime.lock import MotorLock
 from vehicle.sensors.encoders import Encoders
-from vehicle.sensors.gps import Gpsd
+from vehicle.sensors.gps import GpsdClient
 from vehicle.sensors.pi_health import PiHealth
 from vehicle.sensors.power import PowerMonitor
-from vehicle.storage.dir_check import obstacle
+from vehicle.storage.dir_check import write_problem
 from vehicle.storage.recorder import LOGS
 
 GPS_WAIT = 3.0
@@ -39,28 +39,28 @@ POLL = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class CheckResult:
     """One item: what, whether it is well, and what was seen."""
 
     item: str
-    well: bool
-    seen: str
+    ok: bool
+    detail: str
     mistake: bool = False
     """It is not well because of the file, whatever the hardware does."""
 
     def __str__(self) -> str:
-        return f"{'ok  ' if self.well else 'FAIL'}  {self.item}: {self.seen}"
+        return f"{'ok  ' if self.ok else 'FAIL'}  {self.item}: {self.detail}"
 
 
-def findings(path: str, state: str | None = None) -> Iterator[Finding]:
+def run_checks(path: str, state: str | None = None) -> Iterator[CheckResult]:
     """Item by item as they are tried; the file alone where it has mistakes. `state`: folder of kept parameters."""
     try:
         config = load(path)
     except ConfigError as error:
-        yield from (Finding("settings", False, problem, mistake=True) for problem in error.problems)
+        yield from (CheckResult("settings", False, problem, mistake=True) for problem in error.problems)
         return
-    yield Finding("settings", True, path)
-    known = settled(config, state)
+    yield CheckResult("settings", True, path)
+    known = load_effective_params(config, state)
     yield _parameters(config, known)
     yield _folder("state", known.folder, "state or --state")
     if known.params["LOG_BACKEND_TYPE"]:
@@ -70,7 +70,7 @@ def findings(path: str, state: str | None = None) -> Iterator[Finding]:
     if config.motors:
         yield _tried("motors", lambda: _motors(config, known.params))
     else:
-        yield Finding("motors", False, 'none; add [motors] and driver = "NAME"', mistake=True)
+        yield CheckResult("motors", False, 'none; add [motors] and driver = "NAME"', mistake=True)
     yield from _accessories(config, known.params)
     yield from _sensors(config)
     for name, log in (("log.file", config.log.file), ("log.motors", config.log.motors)):
@@ -78,16 +78,16 @@ def findings(path: str, state: str | None = None) -> Iterator[Finding]:
             yield _tried(name, lambda log=Path(log): _log_file(log))  # type: ignore[misc]
 
 
-def _accessories(config: Config, params: Params) -> Iterator[Finding]:
+def _accessories(config: Config, params: Params) -> Iterator[CheckResult]:
     """Each is opened as it is when it is safe; a servo without pulses, so that it does not move."""
-    outputs = outputs_of(config.accessories)
-    for problem in motors_among(outputs, DriveType(int(params["DRIVE_TYPE"]))):
-        yield Finding("settings", False, problem, mistake=True)
+    outputs = build_specs(config.accessories)
+    for problem in find_motor_conflicts(outputs, DriveType(int(params["DRIVE_TYPE"]))):
+        yield CheckResult("settings", False, problem, mistake=True)
     for output in outputs:
         yield _tried(output.name, lambda output=output: _accessory(output, config.motors))  # type: ignore[misc]
 
 
-def _accessory(output: Output, motors: Mapping[str, Any]) -> str:
+def _accessory(output: AccessorySpec, motors: Mapping[str, Any]) -> str:
     value = output.safe if output.kind == "relay" else OFF
     with contextlib.ExitStack() as opened:
         if motors:  # a board that another vehicle drives by would be set up anew under its motors
@@ -95,11 +95,11 @@ def _accessory(output: Output, motors: Mapping[str, Any]) -> str:
         try:
             output.make(value).close()
         except Exception as error:  # anybody's driver may raise anything
-            raise _AbsentError(in_one_line(error)) from error
-    return f"{output.driver}, {output.words(value)}"
+            raise _AbsentError(format_error(error)) from error
+    return f"{output.driver}, {output.format_value(value)}"
 
 
-def _sensors(config: Config) -> Iterator[Finding]:
+def _sensors(config: Config) -> Iterator[CheckResult]:
     sensors = config.sensors
     if sensors.battery is not None:
         battery = PowerMonitor(sensors.battery)
@@ -116,16 +116,16 @@ class _AbsentError(Exception):
     """It does not answer."""
 
 
-def _tried(item: str, attempt: Callable[[], str]) -> Finding:
+def _tried(item: str, attempt: Callable[[], str]) -> CheckResult:
     try:
-        return Finding(item, True, attempt())
+        return CheckResult(item, True, attempt())
     except (MotorError, OSError, ImportError, LinkError, _AbsentError) as error:
-        return Finding(item, False, in_one_line(error))
+        return CheckResult(item, False, format_error(error))
 
 
-def _links(config: Config) -> Iterator[Finding]:
+def _links(config: Config) -> Iterator[CheckResult]:
     if not config.endpoints:
-        yield Finding(
+        yield CheckResult(
             "endpoints", False, 'none; where is the ground station? endpoints = ["udpin:0.0.0.0:14550"]', mistake=True
         )
     for endpoint in config.endpoints:
@@ -133,7 +133,7 @@ def _links(config: Config) -> Iterator[Finding]:
 
 
 def _link(endpoint: str) -> str:
-    [wire] = open_wires([endpoint])
+    [wire] = open_transports([endpoint])
     if connects := _connecting(wire):
         asyncio.run(_connected(wire))
     else:
@@ -143,11 +143,11 @@ def _link(endpoint: str) -> str:
     return "connects" if connects else "opens"
 
 
-def _connecting(wire: Wire) -> bool:
+def _connecting(wire: Transport) -> bool:
     return wire.problem == f"{wire.endpoint.text}: {CONNECTING}"
 
 
-async def _connected(wire: Wire) -> None:
+async def _connected(wire: Transport) -> None:
     """Until it is, or says why not."""
     wire.start(asyncio.get_running_loop(), lambda _: None, lambda _: None)
     while True:
@@ -157,9 +157,11 @@ async def _connected(wire: Wire) -> None:
             return
 
 
-def _folder(item: str, folder: Path, setting: str) -> Finding:
-    problem = obstacle(folder, setting)
-    return Finding(item, not problem, problem or f"{folder} {'can be written' if folder.exists() else 'can be made'}")
+def _folder(item: str, folder: Path, setting: str) -> CheckResult:
+    problem = write_problem(folder, setting)
+    return CheckResult(
+        item, not problem, problem or f"{folder} {'can be written' if folder.exists() else 'can be made'}"
+    )
 
 
 def _log_file(path: Path) -> str:
@@ -170,10 +172,10 @@ def _log_file(path: Path) -> str:
     return f"{path} can be written"
 
 
-def _parameters(config: Config, known: Settled) -> Finding:
+def _parameters(config: Config, known: EffectiveParams) -> CheckResult:
     problem = known.damage or "; ".join(f"a kept one is not used: {each}" for each in known.left_out)
-    seen = f"{len(config.params)} from the file, {known.kept} kept in {known.folder}"
-    return Finding("parameters", not problem, f"{seen}: {problem}" if problem else seen)
+    seen = f"{len(config.params)} from the file, {known.saved_count} kept in {known.folder}"
+    return CheckResult("parameters", not problem, f"{seen}: {problem}" if problem else seen)
 
 
 def _motors(config: Config, params: Params) -> str:
@@ -186,7 +188,7 @@ def _motors(config: Config, params: Params) -> str:
         opened.callback(motors.close)
         motors.set((0.0,) * motors.count)
         motors.disable()
-        proof(motors)()
+        arming_check(motors)()
         if motors.count != wanted:
             raise _AbsentError(f"the driver has {motors.count} motors, DRIVE_TYPE {kind:d} needs {wanted}")
         version = getattr(motors, "version", None)
@@ -206,7 +208,7 @@ def _battery(monitor: PowerMonitor) -> str:
 
 async def _gps(config: Config) -> str:
     assert config.sensors.gps is not None
-    gps, loop = Gpsd(config.sensors.gps), asyncio.get_running_loop()
+    gps, loop = GpsdClient(config.sensors.gps), asyncio.get_running_loop()
     try:
         end = loop.time() + GPS_WAIT
         while loop.time() < end:
@@ -214,7 +216,7 @@ async def _gps(config: Config) -> str:
             if gps.fault:
                 raise _AbsentError(gps.fault)
             if reading := gps.latest(loop.time()):
-                return f"fix type {reading.fix.fix}, {reading.sky.satellites or 0} satellites"
+                return f"fix type {reading.fix.fix_type}, {reading.sky.satellites or 0} satellites"
         raise _AbsentError("gpsd is there, and says nothing of a position: is a receiver connected to it?")
     finally:
         gps.close()

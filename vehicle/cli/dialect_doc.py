@@ -5,32 +5,36 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from dialects import messages as m
-from dialects.definition import Definition, private_enums, private_messages
+from dialects.definition import MessageDefinition, private_enums, private_messages
 from dialects.enums import Command, FenceItem
-from vehicle.autonomy.mission.rules import FENCE, MISSION, RALLY
+from vehicle.autonomy.mission.rules import FENCE_RULES, MISSION_RULES, RALLY_RULES
 from vehicle.commands.buttons import FUNCTIONS
 from vehicle.commands.dispatch import COMPONENT
-from vehicle.commands.inbound import TABLE as HEARD_TABLE
-from vehicle.commands.inbound import Who
-from vehicle.modes import OFFERED, PX4_ALIASES
+from vehicle.commands.inbound import INBOUND_MESSAGES as HEARD_TABLE
+from vehicle.commands.inbound import Access
+from vehicle.modes import MODES, PX4_ALIASES
 from vehicle.params import TABLE, Params
 from vehicle.rover import Rover
-from vehicle.telemetry.streams import STREAMS, Family
+from vehicle.telemetry.streams import STREAMS, DialectLevel
 
 ANY, KNOWN, DRIVER = "anybody", "introduced", "driver"
 STOPS = f"{DRIVER}; what stops: {ANY}"
 """Who may: without a word more the driver is the station in control, or any introduced one while nobody is."""
 
-TO_WHOM = {Family.COMMON: "", Family.NEWER: "who asks for newer ones", Family.ROVER: "who asks for ours"}
+TO_WHOM = {
+    DialectLevel.COMMON: "",
+    DialectLevel.NEWER: "who asks for newer ones",
+    DialectLevel.ROVER: "who asks for ours",
+}
 """Of streams; without a word everybody."""
 
 PLANS = {
-    "mission": (MISSION, ""),
+    "mission": (MISSION_RULES, ""),
     "fence": (
-        FENCE,
+        FENCE_RULES,
         "RETURN_POINT, at most one, is only kept and given back: nothing drives there, FENCE_ACTION decides",
     ),
-    "rally": (RALLY, ""),
+    "rally": (RALLY_RULES, ""),
 }
 """Plan -> its items, and what is to be said of them."""
 
@@ -90,7 +94,7 @@ or whose address the user named.
 """
 
 
-def document() -> str:
+def build_document() -> str:
     """The whole document."""
     return "\n".join(
         (
@@ -107,7 +111,7 @@ def document() -> str:
     )
 
 
-def answered() -> frozenset[int]:
+def answered_commands() -> frozenset[int]:
     """Commands that have a handler."""
     return Rover(Params(), now=0.0).commands
 
@@ -124,7 +128,7 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 def _streams() -> str:
     rows = [
         (stream.message.msgname, stream.message.id, f"{stream.rate:g}" if stream.rate else "on request",
-         "and on change" if stream.change else "", TO_WHOM[stream.family], stream.group.name if stream.group else "")
+         "and on change" if stream.change_key else "", TO_WHOM[stream.level], stream.group.name if stream.group else "")
         for stream in STREAMS
     ]  # fmt: skip
     more = (
@@ -138,9 +142,9 @@ def _streams() -> str:
 
 
 def _heard() -> str:
-    who = {Who.ANYBODY: ANY, Who.ASKERS: KNOWN, Who.INTRODUCED: KNOWN, Who.DRIVER: "station in control",
-           Who.NOBODY_ELSE: DRIVER}  # fmt: skip
-    rows = [(heard.message.msgname, heard.message.id, who[heard.who], heard.what) for heard in HEARD_TABLE]
+    who = {Access.ANYBODY: ANY, Access.CONNECTED: KNOWN, Access.INTRODUCED: KNOWN, Access.DRIVER: "station in control",
+           Access.DRIVER_OR_UNCLAIMED: DRIVER}  # fmt: skip
+    rows = [(heard.message.msgname, heard.message.id, who[heard.access], heard.description) for heard in HEARD_TABLE]
     return _table(("message", "id", "of whom", "what it does"), rows)
 
 
@@ -162,16 +166,16 @@ def _item_name(command: int) -> str:
 def _modes() -> str:
     pairs = {mode: f"{main}/{sub}" for (main, sub), mode in PX4_ALIASES.items()}
     rows = [
-        (f"{int(offer.mode)}", offer.mode.name, "driver" if offer.manual else "itself" if offer.own else "nobody",
-         "" if offer.need.value == "nothing" else offer.need.value, offer.standard or "", pairs.get(offer.mode, ""),
+        (f"{int(offer.mode)}", offer.mode.name, "driver" if offer.manual else "itself" if offer.autonomous else "nobody",
+         "" if offer.requirement.value == "nothing" else offer.requirement.value, offer.standard or "", pairs.get(offer.mode, ""),
          "" if offer.selectable else "not to be chosen")
-        for offer in OFFERED.values()
+        for offer in MODES.values()
     ]  # fmt: skip
     return _table(("custom_mode", "name", "who drives", "needs", "standard mode", "PX4's pair", ""), rows)
 
 
 def _buttons() -> str:
-    rows = [(number, function.words, ANY if function.stops else DRIVER) for number, function in FUNCTIONS.items()]
+    rows = [(number, function.label, ANY if function.stops else DRIVER) for number, function in FUNCTIONS.items()]
     return _table(("BTNn_FUNCTION", "as it is pressed", "of whom"), [(0, "nothing", ""), *rows])
 
 
@@ -192,14 +196,14 @@ def _private() -> str:
     for name, values in enums.items():
         if name in used:
             parts.append(
-                f"### {name}\n\n{_table(('value', 'name', ''), [(v.number, v.name, v.words) for v in values])}"
+                f"### {name}\n\n{_table(('value', 'name', ''), [(v.number, v.name, v.description) for v in values])}"
             )
     return _section("Messages of our own", "\n".join(parts))
 
 
-def _message(message: Definition) -> str:
+def _message(message: MessageDefinition) -> str:
     sender = "the vehicle listens" if message.id in {heard.message.id for heard in HEARD_TABLE} else "the vehicle tells"
-    fields = [(each.name, each.type, each.enum or each.unit, each.words) for each in message.fields]
+    fields = [(each.name, each.type, each.enum or each.unit, each.description) for each in message.fields]
     size = m.MESSAGES[message.id].unpacker.size
     title = f"### {message.name} ({message.id}, {size} bytes; {sender})"
-    return f"{title}\n\n{message.words}\n\n{_table(('field', 'type', 'unit, enum', ''), fields)}"
+    return f"{title}\n\n{message.description}\n\n{_table(('field', 'type', 'unit, enum', ''), fields)}"

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from link.runtime import stdio
-from link.runtime.command_line import Parser
+from link.runtime.command_line import CommandLineParser
 from vehicle.cli import subcommands
-from vehicle.cli.options import GROUND_STATION, USAGE, joined, new_parser, unknown_option
+from vehicle.cli.options import GROUND_STATION, USAGE, build_parser, find_unknown_option, join_home_option
 
 if TYPE_CHECKING:
     from vehicle.config.config import Config
-    from vehicle.config.run_settings import Settings
+    from vehicle.config.run_settings import RunSettings
 
 # The daemon, its loop and the dialect are imported when there is something to run: --help and a mistake answer at once.
 
@@ -28,36 +28,39 @@ SIMULATION_ONLY = ("home", "sim_battery", "sim_seed", "sim_truth")
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the vehicle; the exit code."""
-    stdio.secure()
+    stdio.ensure_open()
     words = list(sys.argv[1:] if argv is None else argv)
     if not words:
         sys.stderr.write(USAGE)
         return 2
-    if words[0] in subcommands.VERBS:
+    if words[0] in subcommands.SUBCOMMANDS:
         return subcommands.run(words)
     try:
-        parser = new_parser()
-        if unknown := unknown_option(words):
+        parser = build_parser()
+        if unknown := find_unknown_option(words):
             parser.error(unknown)
-        return _run(parser.parse_intermixed_args(joined(parser.checked(words))), parser)
+        return _run(parser.parse_intermixed_args(join_home_option(parser.reject_empty(words))), parser)
     except KeyboardInterrupt:  # before the daemon takes signals; no motor is open yet
         return 0
 
 
-def _run(asked: argparse.Namespace, parser: Parser) -> int:
+def _run(asked: argparse.Namespace, parser: CommandLineParser) -> int:
     from vehicle.runtime import daemon
-    from vehicle.runtime.log import Log
+    from vehicle.runtime.log import DaemonLog
 
     config = _config(asked, parser)
     settings = _settings(asked, config, parser)
     verbose = asked.verbose or config.log.verbose
     problem = None
     try:
-        log = Log(asked.log_file or config.log.file, verbose=verbose)
+        log = DaemonLog(asked.log_file or config.log.file, verbose=verbose)
     except OSError as error:
         if asked.log_file:
             parser.error(f"log file {asked.log_file}: {error.strerror}")
-        log, problem = Log(verbose=verbose), error.strerror  # a card that is read-only keeps no service from driving
+        log, problem = (
+            DaemonLog(verbose=verbose),
+            error.strerror,
+        )  # a card that is read-only keeps no service from driving
     try:
         if problem:
             logging.getLogger(__name__).warning("log.file %s: %s; going on without it", config.log.file, problem)
@@ -66,7 +69,7 @@ def _run(asked: argparse.Namespace, parser: Parser) -> int:
         log.close()
 
 
-def _config(asked: argparse.Namespace, parser: Parser) -> Config:
+def _config(asked: argparse.Namespace, parser: CommandLineParser) -> Config:
     """What the file says, with the options of the command line in its place."""
     from msgspec.structs import replace
 
@@ -85,13 +88,13 @@ def _config(asked: argparse.Namespace, parser: Parser) -> Config:
     return replace(config, endpoints=tuple(asked.endpoints) or config.endpoints or default)
 
 
-def _settings(asked: argparse.Namespace, config: Config, parser: Parser) -> Settings:
-    from vehicle.config.run_settings import Settings, Simulation
-    from vehicle.sim.body import Home
+def _settings(asked: argparse.Namespace, config: Config, parser: CommandLineParser) -> RunSettings:
+    from vehicle.config.run_settings import RunSettings, Simulation
+    from vehicle.sim.body import SimulatedHome
 
     _refuse_contradictions(asked, config, parser)
     simulation = Simulation(
-        home=Home(*asked.home) if asked.home else Home(),
+        home=SimulatedHome(*asked.home) if asked.home else SimulatedHome(),
         battery=1.0 if asked.sim_battery is None else asked.sim_battery,
         seed=1 if asked.sim_seed is None else asked.sim_seed,
         truth=asked.sim_truth,
@@ -99,7 +102,7 @@ def _settings(asked: argparse.Namespace, config: Config, parser: Parser) -> Sett
     pinned = dict(config.params)
     if config.identity.system is not None:
         pinned["MAV_SYSID"] = config.identity.system
-    return Settings(
+    return RunSettings(
         endpoints=config.endpoints,
         motors=config.motors,
         accessories=config.accessories,
@@ -120,9 +123,9 @@ def _state(asked: argparse.Namespace, config: Config) -> Path | None:
         return Path(asked.state) if asked.state else None
     if config.state:
         return Path(config.state)
-    from vehicle.storage.motor_copy import usual_state
+    from vehicle.storage.motor_copy import default_state_folder
 
-    return usual_state()
+    return default_state_folder()
 
 
 def _logs(asked: argparse.Namespace, config: Config) -> Path | None:
@@ -136,7 +139,7 @@ def _logs(asked: argparse.Namespace, config: Config) -> Path | None:
     return None if state is None else state / LOGS
 
 
-def _refuse_contradictions(asked: argparse.Namespace, config: Config, parser: Parser) -> None:
+def _refuse_contradictions(asked: argparse.Namespace, config: Config, parser: CommandLineParser) -> None:
     if asked.sim and asked.motors:
         parser.error("--sim brings its own motors: leave out --motors, or leave out --sim")
     if asked.sim:

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from dialects.enums import DriveType
-from vehicle.drive.gate import TRIAL_LARGEST as LARGEST
-from vehicle.drive.gate import TRIAL_LONGEST as LONGEST
+from vehicle.drive.gate import MOTOR_TEST_THROTTLE_MAX as LARGEST
+from vehicle.drive.gate import MOTOR_TEST_TIME_MAX as LONGEST
 from vehicle.drive.mixer import MIXERS
-from vehicle.drive.output_scaling import fits_of, fitted
+from vehicle.drive.output_scaling import build_output_scaling, scale_outputs
 from vehicle.motors import open_motors
 from vehicle.params import Params
 from vehicle.runtime.lock import MotorLock
@@ -29,14 +29,14 @@ class RefusedError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class MotorTestOptions:
     """What the motors get, and how long."""
 
     throttles: tuple[float, ...]
     time: float
 
 
-def wish(motor: str, throttle: float, seconds: float, params: Params) -> Wish:
+def build_options(motor: str, throttle: float, seconds: float, params: Params) -> MotorTestOptions:
     """What was asked for, checked. `motor` is a name of this kind of drive, or a number from 1. Raises RefusedError."""
     mixer = MIXERS[DriveType(int(params["DRIVE_TYPE"]))]
     names = mixer.motors
@@ -50,16 +50,16 @@ def wish(motor: str, throttle: float, seconds: float, params: Params) -> Wish:
         raise RefusedError(f"time {seconds:g} s is not more than 0 and at most {LONGEST:g}")
     wheels = [0.0] * len(names)
     wheels[known[motor.lower()]] = throttle
-    return Wish(fitted(wheels, mixer.driven, fits_of(params)), seconds)
+    return MotorTestOptions(scale_outputs(wheels, mixer.driven_count, build_output_scaling(params)), seconds)
 
 
-def turn(table: Mapping[str, Any], wanted: Wish) -> signal.Signals | None:
+def run_motor_test(table: Mapping[str, Any], wanted: MotorTestOptions) -> signal.Signals | None:
     """Turn it; neutral and without power whatever happens. The signal that ended it early, or None. Raises MotorError.
 
     `table` is [motors] of the settings.
     """
     settings = {key: value for key, value in table.items() if key != "driver"}
-    with contextlib.ExitStack() as opened, _held_back(SIGNALS):
+    with contextlib.ExitStack() as opened, _signals_blocked(SIGNALS):
         opened.callback(MotorLock(table).close)
         motors = open_motors(table["driver"], settings)
         opened.callback(motors.close)
@@ -78,7 +78,7 @@ def turn(table: Mapping[str, Any], wanted: Wish) -> signal.Signals | None:
 
 
 @contextlib.contextmanager
-def _held_back(signals: Sequence[signal.Signals]) -> Any:
+def _signals_blocked(signals: Sequence[signal.Signals]) -> Any:
     """Signals wait until they are asked for: none may come between a motor that turns and its end."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     try:

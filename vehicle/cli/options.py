@@ -9,8 +9,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from link.endpoint import EndpointError, endpoint_help, parse
-from link.runtime.command_line import Parser
+from link.endpoint import EndpointError, endpoint_help, parse_endpoint
+from link.runtime.command_line import CommandLineParser
 from vehicle.cli import subcommands
 from vehicle.motors import DRIVERS
 from vehicle.params import PARAMETERS, ParamError, Params
@@ -65,8 +65,8 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def new_parser() -> Parser:
-    parser = Parser(
+def build_parser() -> CommandLineParser:
+    parser = CommandLineParser(
         prog="vehicle",
         usage=USAGE.removeprefix("usage: ").rstrip(),
         description="The rover daemon: obeys one ground station over MAVLink and drives the motors, safely.",
@@ -79,7 +79,7 @@ def new_parser() -> Parser:
     return parser
 
 
-def unknown_option(words: Sequence[str]) -> str | None:
+def find_unknown_option(words: Sequence[str]) -> str | None:
     """Words on the first option that there is not; argparse would take its value for an endpoint and name that."""
     known = [*OPTIONS, "--help"]
     for word in words:
@@ -90,7 +90,7 @@ def unknown_option(words: Sequence[str]) -> str | None:
     return None
 
 
-def joined(words: list[str]) -> list[str]:
+def join_home_option(words: list[str]) -> list[str]:
     """argparse takes a southern latitude after --home for an option; joined by "=" it does not."""
     if "--home" not in words[:-1]:
         return words
@@ -100,7 +100,7 @@ def joined(words: list[str]) -> list[str]:
 
 def _endpoint(text: str) -> str:
     try:
-        return parse(text).text
+        return parse_endpoint(text).text
     except EndpointError as error:
         raise argparse.ArgumentTypeError(str(error)) from error
 

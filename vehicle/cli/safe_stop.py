@@ -16,16 +16,16 @@ def stop_all(config: str) -> None:
 
     Raises TomlError where neither is known: nothing is stopped then.
     """
-    from vehicle.storage.motor_copy import left_behind
+    from vehicle.storage.motor_copy import load_settings_copy
 
-    driven = left_behind(Path(config))
+    driven = load_settings_copy(Path(config))
     try:
-        named: Mapping[str, Any] = {**read_toml(config), "motors": motor_table(config)}
+        named: Mapping[str, Any] = {**read_toml(config), "motors": read_motor_table(config)}
     except TomlError as error:
         if driven is None:
             raise TomlError(f"{error}; nothing is stopped: cut the power of motors that turn, and mend it") from error
         named = driven
-        _told(journald.ERROR, f"{error}; so only what the vehicle drove is stopped")
+        _log(journald.ERROR, f"{error}; so only what the vehicle drove is stopped")
     both = [named] if driven is None else [driven, named]
     for motors in _different([parts["motors"] for parts in both]):
         _stop(motors)
@@ -33,7 +33,7 @@ def stop_all(config: str) -> None:
         _make_safe(accessories)
 
 
-def motor_table(path: str) -> dict[str, Any]:
+def read_motor_table(path: str) -> dict[str, Any]:
     """[motors] of a file, as it stands there. Raises TomlError."""
     table = read_toml(path).get("motors")
     if not isinstance(table, dict) or "driver" not in table:
@@ -50,7 +50,7 @@ def _make_safe(accessories: Any) -> None:
     from vehicle.accessories.safe_stop import safe_stop
 
     for well, words in safe_stop(accessories):
-        _told(journald.INFO if well else journald.ERROR, words)
+        _log(journald.INFO if well else journald.ERROR, words)
 
 
 def _stop(motors: Mapping[str, Any]) -> None:
@@ -59,12 +59,12 @@ def _stop(motors: Mapping[str, Any]) -> None:
     driver = str(motors["driver"])
     problems = safe_stop(driver, {key: value for key, value in motors.items() if key != "driver"})
     for problem in problems:
-        _told(journald.ERROR, problem)
+        _log(journald.ERROR, problem)
     if problems:
-        _told(journald.CRITICAL, f"{driver}: motors may still turn, cut their power")
+        _log(journald.CRITICAL, f"{driver}: motors may still turn, cut their power")
     else:
-        _told(journald.INFO, f"{driver}: motors neutral and without power")
+        _log(journald.INFO, f"{driver}: motors neutral and without power")
 
 
-def _told(severity: int, text: str) -> None:
-    sys.stderr.write(f"{journald.mark(severity)}vehicle safe-stop: {text}\n")
+def _log(severity: int, text: str) -> None:
+    sys.stderr.write(f"{journald.priority_prefix(severity)}vehicle safe-stop: {text}\n")

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from link.runtime import stdio
-from link.runtime.command_line import MISTAKE, Parser
+from link.runtime.command_line import USAGE_ERROR, CommandLineParser
 from link.runtime.toml_file import TomlError, read_toml
 
 DONE, FAULT = 0, 1
@@ -17,12 +17,12 @@ DONE, FAULT = 0, 1
 DEFAULT_FILE = "rover.toml"
 
 
-class VerbError(Exception):
+class SubcommandError(Exception):
     """What was asked for cannot be had; the text is one line."""
 
 
 @dataclass(frozen=True, slots=True)
-class Verb:
+class Subcommand:
     """One word: what it takes, what it does."""
 
     help: str
@@ -32,31 +32,31 @@ class Verb:
 
 def run(words: Sequence[str]) -> int:
     """Do what the first of `words` says; the exit code."""
-    parser = parser_of(words[0])
-    asked = parser.parse_args(parser.checked(words[1:]))
+    parser = build_parser(words[0])
+    asked = parser.parse_args(parser.reject_empty(words[1:]))
     try:
-        code = VERBS[words[0]].run(asked)
+        code = SUBCOMMANDS[words[0]].run(asked)
         sys.stdout.flush()
-    except (VerbError, TomlError) as error:
-        parser.exit(MISTAKE, f"{parser.prog}: {error}\n")
+    except (SubcommandError, TomlError) as error:
+        parser.exit(USAGE_ERROR, f"{parser.prog}: {error}\n")
     except OSError as error:
         # The verbs name those of their own files: this is the output, full or closed by its reader.
-        stdio.let_go_of_output()
+        stdio.discard_output()
         parser.exit(FAULT, f"{parser.prog}: {error.strerror or error}\n")
     return code
 
 
-def parser_of(word: str) -> Parser:
+def build_parser(word: str) -> CommandLineParser:
     """What reads the rest of the command line after this word."""
-    verb = VERBS[word]
-    parser = Parser(prog=f"vehicle {word}", description=f"{verb.help[0].upper()}{verb.help[1:]}.")
+    verb = SUBCOMMANDS[word]
+    parser = CommandLineParser(prog=f"vehicle {word}", description=f"{verb.help[0].upper()}{verb.help[1:]}.")
     verb.options(parser)
     return parser
 
 
 def help_lines() -> str:
     """The table as lines for --help."""
-    return "\n".join(f"  vehicle {name:<14} {verb.help}" for name, verb in VERBS.items())
+    return "\n".join(f"  vehicle {name:<14} {verb.help}" for name, verb in SUBCOMMANDS.items())
 
 
 def _file(parser: argparse.ArgumentParser) -> None:
@@ -77,42 +77,42 @@ def _nothing(parser: argparse.ArgumentParser) -> None:
 
 
 def _init(asked: argparse.Namespace) -> int:
-    from vehicle.config.template import sample
+    from vehicle.config.template import build_template
 
     try:
         with Path(asked.file).open("x", encoding="utf-8") as file:
-            file.write(sample())
+            file.write(build_template())
     except FileExistsError:
-        raise VerbError(f"{asked.file} is there already; name another file, or remove it") from None
+        raise SubcommandError(f"{asked.file} is there already; name another file, or remove it") from None
     except OSError as error:
-        raise VerbError(f"{asked.file}: {error.strerror}") from error
+        raise SubcommandError(f"{asked.file}: {error.strerror}") from error
     sys.stdout.write(f"wrote {asked.file}; edit it, then: vehicle check {asked.file}\n")
     return DONE
 
 
 def _schema(asked: argparse.Namespace) -> int:
-    from vehicle.config.schema import schema
+    from vehicle.config.schema import build_schema
 
-    sys.stdout.write(schema())
+    sys.stdout.write(build_schema())
     return DONE
 
 
 def _dialect(asked: argparse.Namespace) -> int:
-    from vehicle.cli.dialect_doc import document
+    from vehicle.cli.dialect_doc import build_document
 
-    sys.stdout.write(document())
+    sys.stdout.write(build_document())
     return DONE
 
 
 def _check(asked: argparse.Namespace) -> int:
-    from vehicle.cli.check import findings
+    from vehicle.cli.check import run_checks
 
     code = DONE
-    for finding in findings(asked.file, asked.state):
+    for finding in run_checks(asked.file, asked.state):
         sys.stdout.write(f"{finding}\n")
         sys.stdout.flush()
-        if not finding.well:
-            code = max(code, MISTAKE if finding.mistake else FAULT)
+        if not finding.ok:
+            code = max(code, USAGE_ERROR if finding.mistake else FAULT)
     return code
 
 
@@ -138,19 +138,19 @@ def _unit_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _systemd_unit(asked: argparse.Namespace) -> int:
-    from vehicle.cli.safe_stop import motor_table
-    from vehicle.cli.systemd_unit import Place, existing_groups, owner, power_unit, unit
+    from vehicle.cli.safe_stop import read_motor_table
+    from vehicle.cli.systemd_unit import UnitOptions, build_power_unit, build_unit, existing_groups, home_owner
 
     if asked.power:
-        sys.stdout.write(power_unit(asked.power))
+        sys.stdout.write(build_power_unit(asked.power))
         return DONE
     config, python = Path(asked.config).absolute(), Path(sys.executable)
-    table = motor_table(asked.config)
-    user = asked.user or owner(config, python)
+    table = read_motor_table(asked.config)
+    user = asked.user or home_owner(config, python)
     params = read_toml(asked.config).get("params")
     power = isinstance(params, dict) and params.get("REBOOT_ENABLE") == 2
-    place = Place(config, python, existing_groups(), user, str(table["driver"]), power)
-    sys.stdout.write(unit(place))
+    place = UnitOptions(config, python, existing_groups(), user, str(table["driver"]), power)
+    sys.stdout.write(build_unit(place))
     return DONE
 
 
@@ -164,28 +164,28 @@ def _motor_test_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _motor_test(asked: argparse.Namespace) -> int:
-    from vehicle.cli.motor_test import RefusedError, turn, wish
-    from vehicle.cli.safe_stop import motor_table
+    from vehicle.cli.motor_test import RefusedError, build_options, run_motor_test
+    from vehicle.cli.safe_stop import read_motor_table
     from vehicle.config.config import ConfigError, load
-    from vehicle.config.effective_params import settled
+    from vehicle.config.effective_params import load_effective_params
     from vehicle.motors import MotorError
 
     try:
         config = load(asked.config)
-        known = settled(config, asked.state)
+        known = load_effective_params(config, asked.state)
         if known.damage:  # the wheel might turn the other way than the vehicle would turn it
-            raise VerbError(f"{known.folder}: {known.damage}")
+            raise SubcommandError(f"{known.folder}: {known.damage}")
         for problem in known.left_out:
             sys.stderr.write(f"vehicle motor-test: a kept parameter is not used: {problem}\n")
-        wanted = wish(asked.motor, asked.throttle, asked.time, known.params)
-        motor_table(asked.config)
+        wanted = build_options(asked.motor, asked.throttle, asked.time, known.params)
+        read_motor_table(asked.config)
         if not asked.yes:
             _ask(
                 f"Motor {asked.motor} at {asked.throttle:+.0%} for {asked.time:g} s. Are the wheels in the air? [y/N] "
             )
-        ended = turn(config.motors, wanted)
+        ended = run_motor_test(config.motors, wanted)
     except (ConfigError, RefusedError) as error:
-        raise VerbError(str(error)) from error
+        raise SubcommandError(str(error)) from error
     except MotorError as error:
         sys.stderr.write(f"vehicle motor-test: {error}\n")
         return FAULT
@@ -196,20 +196,22 @@ def _motor_test(asked: argparse.Namespace) -> int:
 def _ask(question: str) -> None:
     """Raises VerbError unless somebody at a terminal says yes."""
     if not sys.stdin.isatty():
-        raise VerbError("a wheel is going to turn; with the wheels in the air say --yes")
+        raise SubcommandError("a wheel is going to turn; with the wheels in the air say --yes")
     sys.stderr.write(question)
     sys.stderr.flush()
     if sys.stdin.readline().strip().lower() not in ("y", "yes"):
-        raise VerbError("nothing was turned")
+        raise SubcommandError("nothing was turned")
 
 
-VERBS: dict[str, Verb] = {
-    "init": Verb("write a file of settings with every key and its default", _file, _init),
-    "check": Verb("check that file and try the hardware, without moving anything", _check_options, _check),
-    "schema": Verb("print the JSON schema of that file, for editors", _nothing, _schema),
-    "dialect": Verb("print what the vehicle speaks: messages, commands, modes, parameters", _nothing, _dialect),
-    "motor-test": Verb("turn one motor, slowly and shortly", _motor_test_options, _motor_test),
-    "safe-stop": Verb("stop the motors that a killed vehicle left turning", _config_option, _safe_stop),
-    "systemd-unit": Verb("print the systemd unit that runs the vehicle as a service", _unit_options, _systemd_unit),
+SUBCOMMANDS: dict[str, Subcommand] = {
+    "init": Subcommand("write a file of settings with every key and its default", _file, _init),
+    "check": Subcommand("check that file and try the hardware, without moving anything", _check_options, _check),
+    "schema": Subcommand("print the JSON schema of that file, for editors", _nothing, _schema),
+    "dialect": Subcommand("print what the vehicle speaks: messages, commands, modes, parameters", _nothing, _dialect),
+    "motor-test": Subcommand("turn one motor, slowly and shortly", _motor_test_options, _motor_test),
+    "safe-stop": Subcommand("stop the motors that a killed vehicle left turning", _config_option, _safe_stop),
+    "systemd-unit": Subcommand(
+        "print the systemd unit that runs the vehicle as a service", _unit_options, _systemd_unit
+    ),
 }
 """Every word, in the order of --help."""

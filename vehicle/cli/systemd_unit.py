@@ -9,8 +9,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from link.runtime.command_line import MISTAKE
-from vehicle.commands.reboot import Leave
+from link.runtime.command_line import USAGE_ERROR
+from vehicle.commands.reboot import RebootRequest
 
 HARDWARE_GROUPS = ("dialout", "gpio", "i2c", "video")
 """Groups that may use serial ports, pins, I2C and the supply's monitor on Raspberry Pi OS."""
@@ -100,7 +100,7 @@ SystemCallErrorNumber=EPERM
 WantedBy=multi-user.target
 """
 
-POWER: dict[str, Leave] = {"reboot": Leave.REBOOT, "poweroff": Leave.POWER_OFF}
+POWER: dict[str, RebootRequest] = {"reboot": RebootRequest.REBOOT, "poweroff": RebootRequest.POWER_OFF}
 """What the computer does -> the daemon's exit code that asks for it."""
 
 POWER_TEMPLATE = """\
@@ -120,7 +120,7 @@ ExecStart=/bin/sh -c 'test "$$MONITOR_EXIT_STATUS" != {code} || exec /usr/bin/sy
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class UnitOptions:
     """What the unit depends on beside the program."""
 
     config: Path
@@ -135,16 +135,16 @@ class Place:
     """REBOOT_ENABLE is 2: a ground station may reboot the computer and shut it down."""
 
 
-def unit(place: Place) -> str:
+def build_unit(place: UnitOptions) -> str:
     """The unit."""
     in_home = any(_in_home(path) for path in (place.config, place.python))
-    codes = (MISTAKE, *POWER.values()) if place.power else (MISTAKE,)
+    codes = (USAGE_ERROR, *POWER.values()) if place.power else (USAGE_ERROR,)
     prevents = "A mistake in the file waits for a person" + (", 81 and 82 ask for the computer" if place.power else "")
     groups = f"SupplementaryGroups={' '.join(place.groups)}\n" if place.groups else ""
     pwm = place.driver == PWM
     return TEMPLATE.format(
-        vehicle=f"{_word(place.python)} -m vehicle",
-        config=_word(place.config),
+        vehicle=f"{_quote(place.python)} -m vehicle",
+        config=_quote(place.config),
         user=f"User={place.user}" if place.user else "DynamicUser=yes",
         groups=groups,
         power_units="OnFailure=rover-reboot.service rover-poweroff.service\n" if place.power else "",
@@ -155,7 +155,7 @@ def unit(place: Place) -> str:
     )
 
 
-def power_unit(word: str) -> str:
+def build_power_unit(word: str) -> str:
     """The unit that does `word` of POWER."""
     return POWER_TEMPLATE.format(word=word, code=int(POWER[word]))
 
@@ -166,7 +166,7 @@ def existing_groups() -> tuple[str, ...]:
     return tuple(name for name in HARDWARE_GROUPS if name in known)
 
 
-def owner(config: Path, python: Path) -> str | None:
+def home_owner(config: Path, python: Path) -> str | None:
     """Whose home it lives in: homes are closed to others, so it has to run as that user. None outside of homes."""
     for path in (config, python):
         if _in_home(path) and path.exists():
@@ -180,6 +180,6 @@ def _in_home(path: Path) -> bool:
     return any(each.is_relative_to(home) for each in (path, path.resolve()) for home in HOMES)
 
 
-def _word(path: Path) -> str:
+def _quote(path: Path) -> str:
     """A word of a command line in a unit, where % and $ mean something."""
     return shlex.quote(str(path)).replace("%", "%%").replace("$", "$$")

@@ -6,13 +6,15 @@ from collections.abc import Sequence
 
 from dialects.enums import Command
 from link.services.mission.items import Items, MissionItem
-from vehicle.commands.accessories import READERS, AccessoryOrders
+from vehicle.commands.accessories import REQUEST_PARSERS, AccessoryCommands
 
 
-def impossible(orders: AccessoryOrders, items: Items) -> list[str]:
+def find_unsupported_items(orders: AccessoryCommands, items: Items) -> list[str]:
     """In words: a plan of another vehicle is driven without what this one has not, as ArduPilot drives it."""
     found = {
-        number: why for number, item in enumerate(items) if item.command in READERS and (why := orders.impossible(item))
+        number: why
+        for number, item in enumerate(items)
+        if item.command in REQUEST_PARSERS and (why := orders.unsupported_reason(item))
     }
     if not found:
         return []
@@ -20,10 +22,10 @@ def impossible(orders: AccessoryOrders, items: Items) -> list[str]:
     return [f"Mission: no accessory for items {numbers}, they will be passed over: {reasons}"]
 
 
-def run(orders: AccessoryOrders, items: Sequence[MissionItem], now: float) -> list[str]:
+def execute_items(orders: AccessoryCommands, items: Sequence[MissionItem], now: float) -> list[str]:
     """It is their turn; in words what was passed over."""
     return [
         f"Mission: passed over {Command(item.command).name} {item.params[0]:g}: {why}"
         for item in items
-        if (why := orders.run(item, now))
+        if (why := orders.execute_item(item, now))
     ]

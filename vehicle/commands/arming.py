@@ -13,48 +13,48 @@ from dialects.enums import Command, Result, Severity
 from dialects.messages import CommandInt, CommandLong, SetMode
 from dialects.modes import Mode
 from link.core import Outgoing, Received
-from link.services.command.server import CommandRequest, Handler, given
+from link.services.command.server import CommandHandler, CommandRequest, value_or_default
 from vehicle.drive.control import Control
-from vehicle.modes import asked_mode, mode_words, standard_mode
+from vehicle.modes import describe_mode, parse_mode, standard_mode
 from vehicle.safety.state_machine import Safety
-from vehicle.statustext import Texts
+from vehicle.statustext import StatusTextQueue
 
-FORCE = (21196, 2989)
+FORCE_VALUES = (21196, 2989)
 """COMPONENT_ARM_DISARM parameter 2 that skips soft checks: the specification's value and ArduPilot's second one."""
 SAFE, DANGEROUS = 0, 1
 """SAFETY_SWITCH_STATE."""
-ASK_AGAIN = 3.0
+FORWARD_INTERVAL = 3.0
 """s before the owner is asked again on behalf of the same ground station."""
 
 
-class Commands:
+class ArmingCommands:
     """Translates commands into the verbs of Safety and Control."""
 
-    def __init__(self, safety: Safety, control: Control, texts: Texts) -> None:
+    def __init__(self, safety: Safety, control: Control, texts: StatusTextQueue) -> None:
         self._safety = safety
         self._control = control
         self._texts = texts
         self._outbox: list[Outgoing] = []
         self._asked: tuple[int, float] = (0, -math.inf)
 
-    def handlers(self) -> dict[int, Handler]:
+    def handlers(self) -> dict[int, CommandHandler]:
         """The table for link.services.command.server.CommandServer."""
         return {
-            Command.COMPONENT_ARM_DISARM: Handler(self._arm_disarm, broadcast=True),
-            Command.RUN_PREARM_CHECKS: Handler(self._prearm_checks),
-            Command.DO_SET_MODE: Handler(self._set_mode, broadcast=True),
-            Command.DO_SET_STANDARD_MODE: Handler(self._set_standard_mode),
-            Command.DO_SET_SAFETY_SWITCH_STATE: Handler(self._safety_switch, broadcast=True),
-            Command.DO_FLIGHTTERMINATION: Handler(self._terminate, broadcast=True),
-            Command.REQUEST_OPERATOR_CONTROL: Handler(self._operator_control),
+            Command.COMPONENT_ARM_DISARM: CommandHandler(self._arm_disarm, broadcast=True),
+            Command.RUN_PREARM_CHECKS: CommandHandler(self._prearm_checks),
+            Command.DO_SET_MODE: CommandHandler(self._set_mode, broadcast=True),
+            Command.DO_SET_STANDARD_MODE: CommandHandler(self._set_standard_mode),
+            Command.DO_SET_SAFETY_SWITCH_STATE: CommandHandler(self._safety_switch, broadcast=True),
+            Command.DO_FLIGHTTERMINATION: CommandHandler(self._terminate, broadcast=True),
+            Command.REQUEST_OPERATOR_CONTROL: CommandHandler(self._operator_control),
         }
 
-    def for_everybody(self, message: CommandLong | CommandInt) -> bool:
+    def accepts_broadcast(self, message: CommandLong | CommandInt) -> bool:
         """A command to system 0 may stop a vehicle and nothing else: arming all rovers at once is nobody's wish."""
         first, main = message.param1, message.param2
         stops: dict[int, bool] = {
             Command.COMPONENT_ARM_DISARM: first == 0,
-            Command.DO_SET_MODE: asked_mode(first, main, message.param3) is Mode.HOLD,
+            Command.DO_SET_MODE: parse_mode(first, main, message.param3) is Mode.HOLD,
             Command.DO_SET_SAFETY_SWITCH_STATE: first == SAFE,
         }
         return stops.get(message.command, True)
@@ -64,10 +64,10 @@ class Commands:
         outbox, self._outbox = self._outbox, []
         return outbox
 
-    def set_mode(self, received: Received, message: SetMode, now: float) -> None:
+    def handle_set_mode(self, received: Received, message: SetMode, now: float) -> None:
         """SET_MODE, the old message without acknowledgement: a refusal is told by a text."""
         asked = (message.base_mode, message.custom_mode)
-        self._choose(asked_mode(*asked), mode_words(*asked), received.system, received.introduced, now)
+        self._choose(parse_mode(*asked), describe_mode(*asked), received.system, received.introduced, now)
 
     def _arm_disarm(self, request: CommandRequest, now: float) -> Result:
         arm, force = request.params[:2]
@@ -75,25 +75,25 @@ class Commands:
             return Result.DENIED
         if not arm:
             self._safety.disarm(f"by GCS {request.system}", now)
-            self._safety.interrupt()
+            self._safety.end_motor_test()
             return Result.ACCEPTED
         if not request.introduced:
             return self._refuse("arming", request, "no HEARTBEAT heard", now)
-        return Result.FAILED if self._safety.arm(request.system, now, force=force in FORCE) else Result.ACCEPTED
+        return Result.FAILED if self._safety.arm(request.system, now, force=force in FORCE_VALUES) else Result.ACCEPTED
 
     def _prearm_checks(self, request: CommandRequest, now: float) -> Result:
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
-        problems = self._safety.problems(now)
+        problems = self._safety.prearm_problems(now)
         for problem in problems:
-            self._texts.say(Severity.WARNING, f"PreArm: {problem}", now)
+            self._texts.send(Severity.WARNING, f"PreArm: {problem}", now)
         if not problems:
-            self._texts.say(Severity.INFO, "PreArm: ready to arm", now)
+            self._texts.send(Severity.INFO, "PreArm: ready to arm", now)
         return Result.ACCEPTED
 
     def _set_mode(self, request: CommandRequest, now: float) -> Result:
         asked = request.params[:3]
-        return self._choose(asked_mode(*asked), mode_words(*asked), request.system, request.introduced, now)
+        return self._choose(parse_mode(*asked), describe_mode(*asked), request.system, request.introduced, now)
 
     def _set_standard_mode(self, request: CommandRequest, now: float) -> Result:
         """SAFE_RECOVERY is RTL and MISSION is AUTO; for one that we have not the specification wants FAILED."""
@@ -107,14 +107,14 @@ class Commands:
 
     def _choose(self, mode: Mode | None, words: str, system: int, introduced: bool, now: float) -> Result:
         if mode is None:
-            self._texts.say(Severity.WARNING, f"Refused: {words} is not offered", now)
+            self._texts.send(Severity.WARNING, f"Refused: {words} is not offered", now)
             return Result.DENIED
         refusal = None
         if mode is not Mode.HOLD:
             refusal = self._stranger(system, introduced)
         refusal = refusal or self._safety.choose_mode(mode, now)
         if refusal:
-            self._texts.say(Severity.WARNING, f"Mode {mode.name} refused: {refusal}", now)
+            self._texts.send(Severity.WARNING, f"Mode {mode.name} refused: {refusal}", now)
         return Result.FAILED if refusal else Result.ACCEPTED
 
     def _safety_switch(self, request: CommandRequest, now: float) -> Result:
@@ -124,7 +124,7 @@ class Commands:
             return Result.ACCEPTED
         if position != DANGEROUS:
             return Result.DENIED
-        refusal = self._stranger(request.system, request.introduced) or self._safety.release(now)
+        refusal = self._stranger(request.system, request.introduced) or self._safety.release_estop(now)
         return self._refuse("release", request, refusal, now) if refusal else Result.ACCEPTED
 
     def _terminate(self, request: CommandRequest, now: float) -> Result:
@@ -135,16 +135,20 @@ class Commands:
 
     def _operator_control(self, request: CommandRequest, now: float) -> Result:
         """REQUEST_OPERATOR_CONTROL: 1 request, 0 release; parameter 2: others may take over without asking."""
-        action, takeover, gcs = request.params[0], given(request.params[1]), given(request.params[3])
+        action, takeover, gcs = (
+            request.params[0],
+            value_or_default(request.params[1]),
+            value_or_default(request.params[3]),
+        )
         if action not in (0, 1) or takeover not in (0, 1) or gcs not in (0, request.system):
             return Result.DENIED
         if not request.introduced:
             return self._refuse("control", request, "no HEARTBEAT heard", now)
         if action == 0:
             return self._give_up(request, now)
-        refusal = self._control.refusal(request.system, now)
+        refusal = self._control.takeover_denial_reason(request.system, now)
         if refusal is None:
-            self._control.take(request.system, now)
+            self._control.set_owner(request.system, now)
             self._control.takeover_allowed = bool(takeover)
             return Result.ACCEPTED
         self._ask_owner(request, now)
@@ -161,19 +165,19 @@ class Commands:
     def _ask_owner(self, request: CommandRequest, now: float) -> None:
         """Forward the request: the owner may release, or allow the takeover (development.xml, 32100)."""
         system, at = self._asked
-        if not self._control.owner or (system == request.system and now - at < ASK_AGAIN):
+        if not self._control.owner or (system == request.system and now - at < FORWARD_INTERVAL):
             return
         self._asked = (request.system, now)
-        params = (*map(given, request.params[:3]), float(request.system), 0.0, 0.0, 0.0)
+        params = (*map(value_or_default, request.params[:3]), float(request.system), 0.0, 0.0, 0.0)
         self._outbox.append(Outgoing(CommandLong(self._control.owner, 0, request.command, 0, *params)))
 
     def _stranger(self, system: int, introduced: bool) -> str | None:
         """Why `system` may not command, or None where it may."""
         if not introduced:
             return "no HEARTBEAT heard"
-        return self._control.stranger(system)
+        return self._control.denial_reason(system)
 
     def _refuse(self, what: str, request: CommandRequest, why: str, now: float,
                 severity: Severity = Severity.WARNING) -> Result:  # fmt: skip
-        self._texts.say(severity, f"GCS {request.system}: {what} refused: {why}", now)
+        self._texts.send(severity, f"GCS {request.system}: {what} refused: {why}", now)
         return Result.FAILED

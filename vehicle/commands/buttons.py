@@ -17,17 +17,17 @@ from link.core import Received
 from vehicle.drive.control import Control
 from vehicle.params import BUTTONS, Params
 from vehicle.safety.state_machine import Safety
-from vehicle.statustext import Texts
+from vehicle.statustext import StatusTextQueue
 
-SOURCES = 8
+STATIONS_MAX = 8
 """Stations whose buttons are remembered; as many as a link has peers."""
 
 
 @dataclass(frozen=True, slots=True)
-class Function:
+class ButtonFunction:
     """What a button may do."""
 
-    words: str
+    label: str
     run: Callable[[Safety, int, float], str | list[str] | None]
     """With the station's system id and the time. Returns why not."""
     stops: bool = False
@@ -40,17 +40,19 @@ def _chosen(mode: Mode) -> Callable[[Safety, int, float], str | None]:
 
 def _disarm(safety: Safety, system: int, now: float) -> None:
     safety.disarm(f"by a button of GCS {system}", now)
-    safety.interrupt()
+    safety.end_motor_test()
 
 
-FUNCTIONS: dict[int, Function] = {
-    1: Function("arm", lambda safety, system, now: safety.arm(system, now)),
-    2: Function("disarm", _disarm, stops=True),
-    3: Function("emergency stop", lambda safety, system, now: safety.emergency_stop(f"GCS {system}", now), stops=True),
-    4: Function("HOLD", _chosen(Mode.HOLD), stops=True),
-    5: Function("MANUAL", _chosen(Mode.MANUAL)),
-    6: Function("AUTO", _chosen(Mode.AUTO)),
-    7: Function("RTL", _chosen(Mode.RTL)),
+FUNCTIONS: dict[int, ButtonFunction] = {
+    1: ButtonFunction("arm", lambda safety, system, now: safety.arm(system, now)),
+    2: ButtonFunction("disarm", _disarm, stops=True),
+    3: ButtonFunction(
+        "emergency stop", lambda safety, system, now: safety.emergency_stop(f"GCS {system}", now), stops=True
+    ),
+    4: ButtonFunction("HOLD", _chosen(Mode.HOLD), stops=True),
+    5: ButtonFunction("MANUAL", _chosen(Mode.MANUAL)),
+    6: ButtonFunction("AUTO", _chosen(Mode.AUTO)),
+    7: ButtonFunction("RTL", _chosen(Mode.RTL)),
 }
 """BTNn_FUNCTION -> what it does; 0 is nothing."""
 
@@ -58,21 +60,21 @@ FUNCTIONS: dict[int, Function] = {
 class Buttons:
     """Remembers which are held."""
 
-    def __init__(self, params: Params, safety: Safety, control: Control, texts: Texts) -> None:
+    def __init__(self, params: Params, safety: Safety, control: Control, texts: StatusTextQueue) -> None:
         self._params = params
         self._safety = safety
         self._control = control
         self._texts = texts
         self._held: dict[int, tuple[int, float]] = {}
 
-    def take(self, received: Received, message: ManualControl, now: float) -> None:
+    def handle_manual_control(self, received: Received, message: ManualControl, now: float) -> None:
         """Do what is newly pressed; stops first."""
         if message.target != self._control.system or not received.introduced:
             return
         before, at = self._held.pop(received.system, (0, 0.0))
         known = at and now - at <= self._params["MAN_TIMEOUT"]
         self._held[received.system] = (message.buttons, now)
-        if len(self._held) > SOURCES:
+        if len(self._held) > STATIONS_MAX:
             del self._held[next(iter(self._held))]
         pressed = message.buttons & ~before if known else 0
         if pressed:
@@ -82,8 +84,8 @@ class Buttons:
         numbers = (int(self._params[f"BTN{bit}_FUNCTION"]) for bit in range(BUTTONS) if pressed >> bit & 1)
         wanted = [FUNCTIONS[number] for number in numbers if number in FUNCTIONS]
         for function in sorted(wanted, key=lambda each: not each.stops)[:1]:
-            stranger = None if function.stops else self._control.stranger(system)
+            stranger = None if function.stops else self._control.denial_reason(system)
             refusal = stranger or function.run(self._safety, system, now)
             if isinstance(refusal, str):  # arming says itself why not
-                text = f"GCS {system}: button for {function.words} refused: {refusal}"
-                self._texts.say(Severity.WARNING, text, now)
+                text = f"GCS {system}: button for {function.label} refused: {refusal}"
+                self._texts.send(Severity.WARNING, text, now)

@@ -11,12 +11,12 @@ import math
 from collections.abc import Callable
 
 from dialects.enums import Result, Severity
-from link.services.command.jobs import Job
+from link.services.command.jobs import CommandJob
 from link.services.command.server import CommandRequest
 from vehicle.autonomy.navigator import Navigator
-from vehicle.commands.access import Asking
+from vehicle.commands.access import CommandAccess
 from vehicle.safety.state_machine import Safety
-from vehicle.statustext import Texts
+from vehicle.statustext import StatusTextQueue
 
 SECONDS = 3.0
 """Of standing still: with 0.005 rad/s of noise the mean of 150 readings is good to 0.0004."""
@@ -26,16 +26,16 @@ GYRO = 1
 """Parameter 1, which is the gyro's; the others are those of other sensors: 0, or NaN for none."""
 
 
-class Calibration:
+class CalibrationCommand:
     """Begins it, for the driver while disarmed."""
 
-    def __init__(self, safety: Safety, navigator: Navigator, asking: Asking, texts: Texts) -> None:
+    def __init__(self, safety: Safety, navigator: Navigator, asking: CommandAccess, texts: StatusTextQueue) -> None:
         self._safety = safety
         self._navigator = navigator
         self._asking = asking
         self._texts = texts
 
-    def run(self, request: CommandRequest, now: float) -> Result | Job:
+    def handle_command(self, request: CommandRequest, now: float) -> Result | CommandJob:
         """A job where it can be done."""
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
@@ -43,12 +43,12 @@ class Calibration:
         if gyro != GYRO or any(value and not math.isnan(value) for value in others):
             return Result.UNSUPPORTED
         if self._navigator.turn_rate is None:
-            return self._asking.refuse(request, "there is no gyro", now)
+            return self._asking.reject(request, "there is no gyro", now)
         self._say(f"Gyro calibration: {SECONDS:g} s without moving", now)
         return GyroCalibration(self._safety, self._navigator, self._say, now)
 
     def _say(self, text: str, now: float) -> None:
-        self._texts.say(Severity.INFO, text, now)
+        self._texts.send(Severity.INFO, text, now)
 
 
 class GyroCalibration:

@@ -12,44 +12,44 @@ from dialects import messages as m
 from link.core import Outgoing, Received
 from link.services import timesync
 from link.services.command.server import CommandServer
-from vehicle.accessories.accessory_set import Rack
+from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.autonomy.navigator import Navigator
-from vehicle.commands.accessories import AccessoryOrders
+from vehicle.commands.accessories import AccessoryCommands
 from vehicle.commands.actuator_test import ActuatorTest
-from vehicle.commands.arming import Commands
-from vehicle.commands.files import Services
-from vehicle.commands.guided import Orders
-from vehicle.commands.mission import Plans
-from vehicle.commands.origin import OriginSetting
-from vehicle.commands.params import Keeper, ParamService
-from vehicle.commands.preflight import Preflight
-from vehicle.commands.reboot import Leave
-from vehicle.commands.requests import Requests
+from vehicle.commands.arming import ArmingCommands
+from vehicle.commands.files import FileServices
+from vehicle.commands.guided import GuidedCommands
+from vehicle.commands.mission import MissionService
+from vehicle.commands.origin import OriginCommands
+from vehicle.commands.params import ParamService, ParamStoreLike
+from vehicle.commands.preflight import PreflightCommands
+from vehicle.commands.reboot import RebootRequest
+from vehicle.commands.requests import MessageRequests
 from vehicle.drive.control import Control
 from vehicle.drive.drive import Drive
 from vehicle.params import Params
 from vehicle.safety.state_machine import Safety
-from vehicle.statustext import Texts
-from vehicle.storage.logbook import Logbook, Recording
-from vehicle.storage.plan_keeping import PlanKeeper
+from vehicle.statustext import StatusTextQueue
+from vehicle.storage.logbook import Logbook, LogRecorder
+from vehicle.storage.plan_keeping import PlanStoreLike
 from vehicle.telemetry.bandwidth import Bandwidth
-from vehicle.telemetry.link_status import Links
+from vehicle.telemetry.link_status import LinkStatusReporter
 from vehicle.telemetry.telemetry import Telemetry
-from vehicle.telemetry.view import View
+from vehicle.telemetry.view import TelemetryView
 
 COMPONENT = 1
 """MAV_COMP_ID_AUTOPILOT1: QGroundControl makes a vehicle only of this one."""
 
 
-class Keepers(NamedTuple):
+class Stores(NamedTuple):
     """What outlives the program; without them it ends with it."""
 
-    params: Keeper | None = None
-    plans: PlanKeeper | None = None
-    logs: Recording | None = None
+    params: ParamStoreLike | None = None
+    plans: PlanStoreLike | None = None
+    logs: LogRecorder | None = None
 
 
-class Answers:
+class Dispatcher:
     """`order` for what may move the rover, `receive` for the rest, `tick` for what is under way."""
 
     def __init__(
@@ -59,15 +59,15 @@ class Answers:
         control: Control,
         navigator: Navigator,
         drive: Drive,
-        texts: Texts,
+        texts: StatusTextQueue,
         *,
         telemetry: Telemetry,
         bandwidth: Bandwidth,
-        links: Links,
+        links: LinkStatusReporter,
         trials: ActuatorTest,
-        keepers: Keepers,
-        rack: Rack,
-        look: Callable[[float], View],
+        keepers: Stores,
+        rack: AccessorySet,
+        look: Callable[[float], TelemetryView],
     ) -> None:
         """`rack` holds the accessories; `look` is the rover at a moment."""
         self._safety = safety
@@ -78,20 +78,20 @@ class Answers:
         self._params = ParamService(
             params, control, texts, ids=self._ids, pacer=pacer, armed=lambda: safety.armed, keeper=keepers.params
         )
-        self._commands = Commands(safety, control, texts)
-        self._orders = Orders(params, safety, control, navigator, texts)
-        self._origin = OriginSetting(safety, control, navigator, texts, look)
+        self._commands = ArmingCommands(safety, control, texts)
+        self._orders = GuidedCommands(params, safety, control, navigator, texts)
+        self._origin = OriginCommands(safety, control, navigator, texts, look)
         motors = drive.mixer.servos
-        self._accessories = AccessoryOrders(rack, safety, control, texts, motors)
-        self._plans = Plans(
+        self._accessories = AccessoryCommands(rack, safety, control, texts, motors)
+        self._plans = MissionService(
             safety, control, navigator, texts, motors, self._accessories, pacer=pacer, keeper=keepers.plans
         )
         self.logbook = Logbook(params, control, texts, lambda: safety.armed, keepers.logs)
-        self._services = Services(
+        self._services = FileServices(
             params, control, self.logbook, missions=self._plans.folder(), ids=self._ids, pacer=pacer
         )
-        self._preflight = Preflight(params, safety, control, navigator, self._params, self._plans, texts)
-        self._requests = Requests(telemetry, look, self._services.messages(), links)
+        self._preflight = PreflightCommands(params, safety, control, navigator, self._params, self._plans, texts)
+        self._requests = MessageRequests(telemetry, look, self._services.message_builders(), links)
         tables = (self._commands, self._requests, self._orders, self._origin, self._plans, self._accessories, trials,
                   self._preflight)  # fmt: skip
         handlers = {command: handler for each in tables for command, handler in each.handlers().items()}
@@ -102,11 +102,11 @@ class Answers:
         """What is answered with more than UNSUPPORTED."""
         return self._server.commands
 
-    def leaving(self, now: float) -> Leave | None:
+    def reboot_request(self, now: float) -> RebootRequest | None:
         """How the program is to end because a ground station asked for it, or None."""
-        return self._preflight.leaving(now)
+        return self._preflight.reboot_request(now)
 
-    def order(self, received: Received, now: float) -> list[Outgoing] | None:
+    def dispatch_command(self, received: Received, now: float) -> list[Outgoing] | None:
         """Take what changes the rover or what it tells, and answer it; None where it is nothing of the kind."""
         answers: list[Outgoing] = []
         match received.message:
@@ -115,22 +115,22 @@ class Answers:
             case m.CommandCancel():
                 answers = self._server.receive(received, now)
             case m.SetPositionTargetLocalNed() | m.SetPositionTargetGlobalInt() | m.SetAttitudeTarget() as message:
-                if self._orders.setpoint(received, message, now):
+                if self._orders.handle_setpoint(received, message, now):
                     self._navigator.step(self._safety, now)
             case m.SetGpsGlobalOrigin(target_system=self._system) as message:
                 answers = self._origin.receive(received, message, now)
             case m.SetMode(target_system=self._system) as message:
-                self._commands.set_mode(received, message, now)
+                self._commands.handle_set_mode(received, message, now)
             case _:
                 return None
-        self._navigator.renew(self._safety, now)
+        self._navigator.restart_mode(self._safety, now)
         return answers
 
-    def receive(self, received: Received, now: float) -> list[Outgoing]:
+    def dispatch(self, received: Received, now: float) -> list[Outgoing]:
         """Answer what moves nothing."""
         self._preflight.receive(received, now)
         return [
-            *timesync.answer(received, now, self._ids),
+            *timesync.handle_request(received, now, self._ids),
             *self._plans.receive(received, now),
             *self._params.receive(received, now),
             *self._services.receive(received, now),
@@ -145,16 +145,16 @@ class Answers:
             *self._plans.tick(now),
             *self.logbook.tick(now),
         ]
-        self._accessories.step(now)
+        self._accessories.update(now)
         return outgoing
 
-    def observe(self, now: float) -> None:
+    def handle_link_reports(self, now: float) -> None:
         """The links have reported."""
         self._params.observe(now)
-        self.logbook.observe(now)
+        self.logbook.check_health(now)
 
     def _command(self, message: m.CommandLong | m.CommandInt, received: Received, now: float) -> list[Outgoing]:
-        if message.target_system == 0 and not self._commands.for_everybody(message):
+        if message.target_system == 0 and not self._commands.accepts_broadcast(message):
             return []
         answers = self._server.receive(received, now)
         for each in (self._commands, self._requests, self._origin):

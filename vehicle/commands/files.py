@@ -10,21 +10,21 @@ from collections.abc import Callable
 from dialects import messages as m
 from link.core import Outgoing, Received
 from link.services import metadata
-from link.services.ftp.files import Folder, MadeFiles, Query, Tree
+from link.services.ftp.files import FileTree, Folder, GeneratedFolder, Query
 from link.services.ftp.server import FtpServer
 from link.services.log.server import LogServer
-from link.services.pacing import Pacer
+from link.services.pacing import BulkPacer
 from link.services.param.pack import pack
 from vehicle.drive.control import Control
 from vehicle.params import Params
 from vehicle.storage.logbook import Logbook
 from vehicle.telemetry.build_status import VERSION
-from vehicle.telemetry.view import View
+from vehicle.telemetry.view import TelemetryView
 
 VENDOR, MODEL = "mavhelm", "rover"
 
 
-class Services:
+class FileServices:
     """Answers for one system and component. Reading is for everybody, writing for the driver in control."""
 
     def __init__(
@@ -35,27 +35,27 @@ class Services:
         *,
         missions: Folder,
         ids: tuple[int, int],
-        pacer: Pacer,
+        pacer: BulkPacer,
     ) -> None:
         system, component = ids
         table = params.table
-        self._metadata = metadata.build(table, vendor=VENDOR, model=MODEL, version=".".join(map(str, VERSION)))
-        described = MadeFiles({name: _constant(data) for name, data in self._metadata.files.items()})
-        packed = MadeFiles({"param.pck": lambda query: pack(table, params, query)})
+        self._metadata = metadata.build_metadata(table, vendor=VENDOR, model=MODEL, version=".".join(map(str, VERSION)))
+        described = GeneratedFolder({name: _constant(data) for name, data in self._metadata.files.items()})
+        packed = GeneratedFolder({"param.pck": lambda query: pack(table, params, query)})
         self._ftp = FtpServer(
-            Tree(described, {"@PARAM": packed, "logs": logbook.folder(), "missions": missions}),
+            FileTree(described, {"@PARAM": packed, "logs": logbook.folder(), "missions": missions}),
             system=system,
             component=component,
             pacer=pacer,
-            allowed=lambda received: control.stranger(received.system) is None,
+            allowed=lambda received: control.denial_reason(received.system) is None,
         )
         self._log = LogServer(
             logbook.recording.folder,
             system=system,
             component=component,
             pacer=pacer,
-            when=logbook.recording.when,
-            erase=logbook.erase,
+            when=logbook.recording.unix_time,
+            erase=logbook.handle_log_erase,
         )
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
@@ -66,7 +66,7 @@ class Services:
         """The next of what is under way, as far as the links have room."""
         return self._ftp.tick(now) + self._log.tick(now)
 
-    def messages(self) -> dict[int, Callable[[View], m.Message]]:
+    def message_builders(self) -> dict[int, Callable[[TelemetryView], m.Message]]:
         """What REQUEST_MESSAGE may ask for, by id."""
         return {m.ComponentMetadata.id: lambda view: self._metadata.message(view.boot_ms)}
 

@@ -8,18 +8,18 @@ from typing import Protocol
 
 from dialects.enums import Severity
 from link.core import Outgoing, Received
-from link.services.pacing import Pacer
+from link.services.pacing import BulkPacer
 from link.services.param.server import ParamServer
 from link.transport.backoff import Backoff
 from vehicle.drive.control import Control
 from vehicle.params import ParamError, Params
-from vehicle.statustext import Texts
+from vehicle.statustext import StatusTextQueue
 
-RETRY = (2.0, 60.0)
+SAVE_RETRY_TIMES = (2.0, 60.0)
 """s until what could not be saved is tried again: at first, and at most."""
 
 
-class Keeper(Protocol):
+class ParamStoreLike(Protocol):
     """Remembers values for the next start."""
 
     @property
@@ -30,20 +30,20 @@ class Keeper(Protocol):
     def idle(self) -> bool:
         """What was to be remembered is, or cannot be."""
 
-    def keep(self, name: str, value: float) -> None:
+    def set(self, name: str, value: float) -> None:
         """Remember it, soon. Never blocks and never raises."""
 
     def save(self) -> None:
         """Write once more what is remembered."""
 
 
-class NoKeeper:
+class NullParamStore:
     """Values end with the program, as in the simulator."""
 
     problem: str | None = None
     idle = True
 
-    def keep(self, name: str, value: float) -> None:
+    def set(self, name: str, value: float) -> None:
         """Forget it."""
 
     def save(self) -> None:
@@ -57,31 +57,31 @@ class ParamService:
         self,
         params: Params,
         control: Control,
-        texts: Texts,
+        texts: StatusTextQueue,
         *,
         ids: tuple[int, int],
-        pacer: Pacer,
+        pacer: BulkPacer,
         armed: Callable[[], bool],
-        keeper: Keeper | None = None,
+        keeper: ParamStoreLike | None = None,
     ) -> None:
         self._params = params
         self._control = control
         self._texts = texts
-        self._keeper = keeper or NoKeeper()
-        self._backoff = Backoff(*RETRY)
+        self._store = keeper or NullParamStore()
+        self._backoff = Backoff(*SAVE_RETRY_TIMES)
         self._retry_due: float | None = None
         """When what could not be saved is tried again; None while all is saved."""
-        params.untold.clear()
+        params.unannounced.clear()
         self._server = ParamServer(
             params.table,
             params,
             system=ids[0],
             component=ids[1],
             pacer=pacer,
-            allowed=lambda received: control.stranger(received.system) is None,
+            allowed=lambda received: control.denial_reason(received.system) is None,
             armed=armed,
-            changed=self._changed,
-            say=lambda text, now: texts.say(Severity.WARNING, text, now),
+            changed=self._handle_change,
+            say=lambda text, now: texts.send(Severity.WARNING, text, now),
         )
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
@@ -90,26 +90,26 @@ class ParamService:
 
     def tick(self, now: float) -> list[Outgoing]:
         """The next values of running lists, and those that the vehicle itself has changed."""
-        announced = self._server.announce(sorted(self._params.untold)) if self._params.untold else []
-        self._params.untold.clear()
+        announced = self._server.broadcast(sorted(self._params.unannounced)) if self._params.unannounced else []
+        self._params.unannounced.clear()
         return announced + self._server.tick(now)
 
     def observe(self, now: float) -> None:
         """About once a second: are values kept? Else they are tried again, ever less often: a disk gets room again."""
-        if problem := self._keeper.problem:
+        if problem := self._store.problem:
             text = f"Parameters are not saved: {problem}; trying again"
-            self._texts.say_once(f"keeper {problem}", Severity.WARNING, text, now)
+            self._texts.send_once(f"keeper {problem}", Severity.WARNING, text, now)
             self._retry(now)
         elif self._retry_due is not None:
             self._retry_due = None
             self._backoff.reset()
-            self._texts.forget("keeper ")
-            self._texts.say(Severity.NOTICE, "Parameters are saved now", now)
+            self._texts.reset_once("keeper ")
+            self._texts.send(Severity.NOTICE, "Parameters are saved now", now)
 
     @property
-    def forgets(self) -> bool:
+    def is_volatile(self) -> bool:
         """What is set ends with the program."""
-        return isinstance(self._keeper, NoKeeper)
+        return isinstance(self._store, NullParamStore)
 
     @property
     def damage(self) -> str | None:
@@ -119,23 +119,23 @@ class ParamService:
     @property
     def problem(self) -> str | None:
         """Why values are not kept, one line."""
-        return self._keeper.problem
+        return self._store.problem
 
     @property
     def idle(self) -> bool:
         """Nothing is being written."""
-        return self._keeper.idle
+        return self._store.idle
 
     def save(self) -> None:
         """Once more: what is set was written already, where the disk took it."""
-        self._keeper.save()
+        self._store.save()
 
     def reset(self, now: float) -> None:
         """Defaults for all that a ground station may set; who listens is told what that changed.
 
         What this run was given stays in force until its end, but only its default is kept.
         """
-        before, run = {name: self._params[name] for name in self._params}, self._params.run
+        before, run = {name: self._params[name] for name in self._params}, self._params.run_values
         table = [each for each in self._params.table if not each.read_only]
         for _ in range(2):  # one value may have to make room for another
             for each in table:
@@ -144,21 +144,21 @@ class ParamService:
         changed = {each.name for each in table if self._params[each.name] != before[each.name]}
         for each in table:
             if each.name in changed or each.name in run:
-                self._keep(each.name, each.default)
-        self._params.untold = changed
-        self._texts.say(Severity.NOTICE, f"Parameters: {len(changed)} back to their defaults", now)
+                self._save_value(each.name, each.default)
+        self._params.unannounced = changed
+        self._texts.send(Severity.NOTICE, f"Parameters: {len(changed)} back to their defaults", now)
 
     def _retry(self, now: float) -> None:
-        if self._retry_due is not None and now >= self._retry_due and self._keeper.idle:
-            self._keeper.save()
+        if self._retry_due is not None and now >= self._retry_due and self._store.idle:
+            self._store.save()
             self._retry_due = None
         if self._retry_due is None:
-            self._retry_due = now + self._backoff.wait()
+            self._retry_due = now + self._backoff.next_delay()
 
-    def _changed(self, name: str, value: float) -> None:
-        self._params.untold.discard(name)  # its answer tells everybody
-        self._keep(name, value)
+    def _handle_change(self, name: str, value: float) -> None:
+        self._params.unannounced.discard(name)  # its answer tells everybody
+        self._save_value(name, value)
 
-    def _keep(self, name: str, value: float) -> None:
+    def _save_value(self, name: str, value: float) -> None:
         self._params.damage = None  # somebody sees to the parameters
-        self._keeper.keep(name, value)
+        self._store.set(name, value)

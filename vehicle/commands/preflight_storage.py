@@ -11,11 +11,11 @@ from functools import partial
 from typing import Protocol
 
 from dialects.enums import MissionResult, Result
-from link.services.command.jobs import Job
-from link.services.command.server import CommandRequest, given
-from link.services.mission.commit import PATIENCE, Change
-from vehicle.commands.access import Asking
-from vehicle.commands.mission import Plans
+from link.services.command.jobs import CommandJob
+from link.services.command.server import CommandRequest, value_or_default
+from link.services.mission.commit import WRITE_TIMEOUT, PlanChange
+from vehicle.commands.access import CommandAccess
+from vehicle.commands.mission import MissionService
 from vehicle.commands.params import ParamService
 from vehicle.safety.state_machine import Safety
 
@@ -28,26 +28,26 @@ LOGGING = (-1, 0, 1)
 """Parameter 3: stop, nothing, the usual rate. LOG_DISARMED says when to record, and there are no other rates."""
 
 
-class Storage:
+class PreflightStorage:
     """Begins it, for the driver while disarmed."""
 
-    def __init__(self, params: ParamService, plans: Plans, safety: Safety, asking: Asking) -> None:
+    def __init__(self, params: ParamService, plans: MissionService, safety: Safety, asking: CommandAccess) -> None:
         self._params = params
         self._plans = plans
         self._safety = safety
         self._asking = asking
 
-    def run(self, request: CommandRequest, now: float) -> Result | Job:
+    def run(self, request: CommandRequest, now: float) -> Result | CommandJob:
         """Parameter 1: what happens to parameters; 2: to plans. NaN: nothing."""
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
-        params, plans = given(request.params[0], NOTHING), given(request.params[1], NOTHING)
-        if params not in PARAMETERS or plans not in PLANS or given(request.params[2]) not in LOGGING:
+        params, plans = value_or_default(request.params[0], NOTHING), value_or_default(request.params[1], NOTHING)
+        if params not in PARAMETERS or plans not in PLANS or value_or_default(request.params[2]) not in LOGGING:
             return Result.DENIED
         wanted = [kept for kept, wish in ((self._params, params), (self._plans, plans)) if wish not in (NOTHING, READ)]
         if why := self._unsavable(params == WRITE, plans == WRITE):
-            return self._asking.refuse(request, why, now)
-        erased = self._plans.erase() if plans == RESET else None
+            return self._asking.reject(request, why, now)
+        erased = self._plans.clear() if plans == RESET else None
         if plans == RESET and erased is None:
             return Result.TEMPORARILY_REJECTED  # somebody uploads
         if plans == WRITE:
@@ -56,20 +56,20 @@ class Storage:
             self._params.save()
         if params in (RESET, RESET_ALL):
             self._params.reset(now)
-        saving = Saving(wanted, erased, partial(self._asking.refuse, request), now)
+        saving = SaveJob(wanted, erased, partial(self._asking.reject, request), now)
         result = saving.step(now)
         return saving if result is None else result
 
     def _unsavable(self, params: bool, plans: bool) -> str | None:
         """Why parameters, or plans, cannot be saved when that is asked for."""
-        if (params and self._params.forgets) or (plans and self._plans.forgets):
+        if (params and self._params.is_volatile) or (plans and self._plans.is_volatile):
             return "nothing is kept in this run"
         if params and self._params.damage:  # a file of nothing would be a good one at the next start
             return f"{self._params.damage}; set one to go on"
         return None
 
 
-class Kept(Protocol):
+class WriteStatus(Protocol):
     """Parameters, or plans."""
 
     @property
@@ -81,13 +81,13 @@ class Kept(Protocol):
         """Why what was last to be written is not."""
 
 
-class Saving:
+class SaveJob:
     """What was wanted is on its way to the disk: a `link.services.command.jobs.Job`."""
 
     percent: int | None = None
 
     def __init__(
-        self, kept: Sequence[Kept], erased: Change | None, refuse: Callable[[str, float], Result], now: float
+        self, kept: Sequence[WriteStatus], erased: PlanChange | None, refuse: Callable[[str, float], Result], now: float
     ) -> None:
         self._kept = kept
         self._erased = erased
@@ -97,7 +97,7 @@ class Saving:
     def step(self, now: float) -> Result | None:
         """Look whether it is there."""
         if not all(each.idle for each in self._kept):
-            return None if now - self._began < PATIENCE else self._refuse("the disk does not answer", now)
+            return None if now - self._began < WRITE_TIMEOUT else self._refuse("the disk does not answer", now)
         problem = next(filter(None, (each.problem for each in self._kept)), None)
         if self._erased and self._erased.verdict is not MissionResult.ACCEPTED:
             problem = problem or "the plans could not be erased"

@@ -9,17 +9,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from enum import IntEnum
 
-from link.services.command.server import given
+from link.services.command.server import value_or_default
 
-DELAY = 0.5
+REBOOT_DELAY = 0.5
 """s between the answer and the end: a client whose answer was lost repeats, and is answered again."""
 
 
-US = (0, 1)
+OWN_COMPONENTS = (0, 1)
 """Component ids in parameter 4 of PREFLIGHT_REBOOT_SHUTDOWN that mean this program: all, and the autopilot."""
 
 
-class Leave(IntEnum):
+class RebootRequest(IntEnum):
     """Exit codes; free ones between those of sysexits.h and systemd's own."""
 
     RESTART = 80
@@ -30,36 +30,36 @@ class Leave(IntEnum):
     """Turn the computer off."""
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """As the driver reads it."""
-        return {Leave.RESTART: "restarting", Leave.REBOOT: "rebooting the computer",
-                Leave.POWER_OFF: "shutting the computer down"}[self]  # fmt: skip
+        return {RebootRequest.RESTART: "restarting", RebootRequest.REBOOT: "rebooting the computer",
+                RebootRequest.POWER_OFF: "shutting the computer down"}[self]  # fmt: skip
 
 
-LEAVES: dict[tuple[float, float], Leave] = {
-    (1, 0): Leave.RESTART,
-    (0, 1): Leave.REBOOT,
-    (1, 1): Leave.REBOOT,
-    (0, 2): Leave.POWER_OFF,
-    (1, 2): Leave.POWER_OFF,
-    (2, 0): Leave.POWER_OFF,
-    (2, 2): Leave.POWER_OFF,
+REBOOT_REQUESTS: dict[tuple[float, float], RebootRequest] = {
+    (1, 0): RebootRequest.RESTART,
+    (0, 1): RebootRequest.REBOOT,
+    (1, 1): RebootRequest.REBOOT,
+    (0, 2): RebootRequest.POWER_OFF,
+    (1, 2): RebootRequest.POWER_OFF,
+    (2, 0): RebootRequest.POWER_OFF,
+    (2, 2): RebootRequest.POWER_OFF,
 }
 """REBOOT_SHUTDOWN_ACTION for the autopilot, for the computer on board -> what happens. The rest is not offered.
 
 The autopilot shut down is the computer turned off: a program that has only ended could not be begun again from afar."""
 
 
-def asked_leave(params: Sequence[float]) -> Leave | None:
+def parse_reboot_request(params: Sequence[float]) -> RebootRequest | None:
     """What parameters 1..4 of PREFLIGHT_REBOOT_SHUTDOWN ask for; None for what is not offered.
 
     3 and 4 are an action and the component it is for. Other components are no part of this vehicle: what is asked of
     them is passed over where we are asked for something, too (MAVSDK 4 sends NaN for all but the first, older ones
     1, 1, 1, 1 and 2, 2, 2, 2).
     """
-    program, computer, action, of = map(given, params[:4])
-    if action and of in US:
+    program, computer, action, of = map(value_or_default, params[:4])
+    if action and of in OWN_COMPONENTS:
         if program not in (0, action):
             return None
         program = action
-    return LEAVES.get((program, computer))
+    return REBOOT_REQUESTS.get((program, computer))

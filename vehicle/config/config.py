@@ -11,14 +11,14 @@ from typing import Annotated, Any, get_type_hints
 
 import msgspec
 
-from link.endpoint import EndpointError, parse
-from link.runtime.toml_errors import explained, suggestion
-from link.runtime.toml_file import TomlError, read_toml, tables, unusable
+from link.endpoint import EndpointError, parse_endpoint
+from link.runtime.toml_errors import explain_error, suggest
+from link.runtime.toml_file import TomlError, find_unsupported, parse_toml, read_toml
 from vehicle.accessories import settings as accessory_settings
 from vehicle.accessories.settings import Accessories
-from vehicle.config.conflicts import clashes
-from vehicle.motors import DRIVERS, PROFILES, USUAL_PARAMS, MotorError, UnknownDriverError, settings_type
-from vehicle.motors.settings import RETIRED, Around, NoSettings
+from vehicle.config.conflicts import find_conflicts
+from vehicle.motors import DRIVERS, PROFILE_PARAMS, PROFILES, MotorError, UnknownDriverError, settings_type
+from vehicle.motors.settings import RETIRED, CommonMotorSettings, NoSettings
 from vehicle.params import PARAMETERS, ParamError, Params
 from vehicle.sensors.suite import SensorSettings
 
@@ -79,16 +79,16 @@ def load(path: str | Path) -> Config:
         raise ConfigError(f"{error}{hint}") from error
 
 
-def parsed(text: str, name: str) -> Config:
+def parse_config(text: str, name: str) -> Config:
     """The settings of a file's text. Raises ConfigError."""
     try:
-        return _understood(tables(text, name), name)
+        return _understood(parse_toml(text, name), name)
     except TomlError as error:
         raise ConfigError(str(error)) from error
 
 
 def _understood(table: Mapping[str, Any], name: str) -> Config:
-    problems = [f"{name}: {problem}" for problem in list(unusable(table)) or _problems(table)]
+    problems = [f"{name}: {problem}" for problem in list(find_unsupported(table)) or _problems(table)]
     if problems:
         raise ConfigError(*problems)
     return msgspec.convert(table, Config)
@@ -100,12 +100,12 @@ def _problems(table: Mapping[str, Any]) -> list[str]:
     problems: list[str] = []
     for key, value in table.items():
         if key not in kinds:
-            problems.append(f"{key}: unknown key; {suggestion(key, kinds)}")
+            problems.append(f"{key}: unknown key; {suggest(key, kinds)}")
             continue
         try:
             msgspec.convert(value, kinds[key])
         except msgspec.ValidationError as error:
-            problems.append(explained(error, kinds[key], key))
+            problems.append(explain_error(error, kinds[key], key))
         else:
             problems += _CHECKS[key](value) if key in _CHECKS else []
     return problems or _contradictions(table)
@@ -115,7 +115,7 @@ def _endpoint_problems(endpoints: list[str]) -> list[str]:
     problems = []
     for index, text in enumerate(endpoints):
         try:
-            parse(text)
+            parse_endpoint(text)
         except EndpointError as error:
             problems.append(f"endpoints[{index}]: {error}")
     return problems
@@ -135,16 +135,18 @@ def _motor_problems(table: Mapping[str, Any]) -> list[str]:
     except MotorError:  # its library is missing: no mistake in the file, and said when the driver is opened
         return []
     settings = {**PROFILES.get(name, {}), **{key: value for key, value in table.items() if key != "driver"}}
-    beside = {key: value for key, value in settings.items() if key in Around.__struct_fields__}
+    beside = {key: value for key, value in settings.items() if key in CommonMotorSettings.__struct_fields__}
     own = {key: value for key, value in settings.items() if key not in beside}
-    return _problem(beside, Around) + _problem(own, kind or NoSettings, Around.__struct_fields__)
+    return _problem(beside, CommonMotorSettings) + _problem(
+        own, kind or NoSettings, CommonMotorSettings.__struct_fields__
+    )
 
 
 def _problem(table: Mapping[str, Any], kind: Any, also: tuple[str, ...] = ()) -> list[str]:
     try:
         msgspec.convert(dict(table), kind)
     except msgspec.ValidationError as error:
-        return [explained(error, kind, "motors", also)]
+        return [explain_error(error, kind, "motors", also)]
     return []
 
 
@@ -155,7 +157,7 @@ def _param_problems(table: Mapping[str, Any]) -> list[str]:
 
 def _param_problem(name: str, value: Any) -> str | None:
     if name not in PARAMETERS:
-        return f"unknown parameter; {suggestion(name.upper(), PARAMETERS)}"
+        return f"unknown parameter; {suggest(name.upper(), PARAMETERS)}"
     if isinstance(value, bool) or not isinstance(value, int | float):
         return "must be a number"
     try:
@@ -168,16 +170,16 @@ def _param_problem(name: str, value: Any) -> str | None:
 def _contradictions(table: Mapping[str, Any]) -> list[str]:
     if "system" in table.get("identity", {}) and "MAV_SYSID" in table.get("params", {}):
         return ["params.MAV_SYSID: identity.system says the same thing; keep one of them"]
-    usual = USUAL_PARAMS.get(table.get("motors", {}).get("driver", ""), {})
+    usual = PROFILE_PARAMS.get(table.get("motors", {}).get("driver", ""), {})
     try:
         Params({**usual, **table.get("params", {})})
     except ParamError as error:
         return [f"params: {error}"]
-    return clashes(table)
+    return find_conflicts(table)
 
 
 def _accessory_problems(table: Mapping[str, Any]) -> list[str]:
-    return accessory_settings.problems(msgspec.convert(table, Accessories))
+    return accessory_settings.find_problems(msgspec.convert(table, Accessories))
 
 
 _CHECKS: dict[str, Callable[[Any], list[str]]] = {

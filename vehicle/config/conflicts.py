@@ -14,16 +14,16 @@ from typing import Any
 import msgspec
 
 from dialects.enums import DriveType
-from link.endpoint import parse
-from vehicle.accessories.output import Output
-from vehicle.accessories.settings import Accessories, tables_of, understood
+from link.endpoint import parse_endpoint
+from vehicle.accessories.output import AccessorySpec
+from vehicle.accessories.settings import Accessories, build_spec, iter_tables
 from vehicle.drive.mixer import MIXERS
 from vehicle.motors import PROFILES, MotorError, settings_type
-from vehicle.motors.settings import Around, pin_name, port_name
+from vehicle.motors.settings import CommonMotorSettings, pin_name, port_name
 from vehicle.sensors.suite import SensorSettings
 
 
-def clashes(table: Mapping[str, Any]) -> list[str]:
+def find_conflicts(table: Mapping[str, Any]) -> list[str]:
     """A line for each thing that is taken twice. `table` is the whole file, right in all its parts."""
     holders: dict[str, tuple[str, str | None]] = {}
     problems = []
@@ -38,7 +38,7 @@ def clashes(table: Mapping[str, Any]) -> list[str]:
     return problems + _near_motors(table)
 
 
-def motors_among(outputs: Iterable[Output], kind: DriveType) -> list[str]:
+def find_motor_conflicts(outputs: Iterable[AccessorySpec], kind: DriveType) -> list[str]:
     """A line for each servo that has the number of a motor."""
     motors = MIXERS[kind].servos
     return [
@@ -51,7 +51,7 @@ def motors_among(outputs: Iterable[Output], kind: DriveType) -> list[str]:
 def _taken(table: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
     """Holder, what it takes, and what it says of it where others may have it too."""
     for index, text in enumerate(table.get("endpoints", ())):
-        if path := parse(text).path:
+        if path := parse_endpoint(text).path:
             yield f"endpoints[{index}]", port_name(path), None
     parts = _motors(table["motors"]) if "motors" in table else {}
     sensors = msgspec.convert(table.get("sensors", {}), SensorSettings)
@@ -66,7 +66,7 @@ def _taken(table: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
 def _motors(table: Mapping[str, Any]) -> dict[str, Any]:
     driver = table["driver"]
     settings = {**PROFILES.get(driver, {}), **{key: value for key, value in table.items() if key != "driver"}}
-    around = msgspec.convert({"safety": settings.pop("safety", None)}, Around)
+    around = msgspec.convert({"safety": settings.pop("safety", None)}, CommonMotorSettings)
     try:
         kind = settings_type(driver)
     except MotorError:  # its library is missing: said when the driver is opened
@@ -75,10 +75,10 @@ def _motors(table: Mapping[str, Any]) -> dict[str, Any]:
     return {"motors": own, "motors.safety": around.safety}
 
 
-def _accessories(table: Mapping[str, Any]) -> Iterator[tuple[str, Output]]:
+def _accessories(table: Mapping[str, Any]) -> Iterator[tuple[str, AccessorySpec]]:
     accessories = msgspec.convert(table.get("accessories", {}), Accessories)
-    for kind, at, each in tables_of(accessories):
-        yield at, understood(kind, each)
+    for kind, at, each in iter_tables(accessories):
+        yield at, build_spec(kind, each)
 
 
 def _near_motors(table: Mapping[str, Any]) -> list[str]:

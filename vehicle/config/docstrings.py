@@ -18,7 +18,7 @@ def _own_docs(kind: type) -> dict[str, str]:
     assert isinstance(body, ast.ClassDef)
     pairs = zip(body.body, body.body[1:], strict=False)
     return {
-        field.target.id: words(text.value.value)
+        field.target.id: first_paragraph(text.value.value)
         for field, text in pairs
         if isinstance(field, ast.AnnAssign)
         and isinstance(field.target, ast.Name)
@@ -28,6 +28,6 @@ def _own_docs(kind: type) -> dict[str, str]:
     }
 
 
-def words(text: str | None) -> str:
+def first_paragraph(text: str | None) -> str:
     """The first paragraph, as one line."""
     return " ".join(inspect.cleandoc(text or "").partition("\n\n")[0].split())

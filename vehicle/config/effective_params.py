@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.config.config import Config
-from vehicle.motors import USUAL_PARAMS
-from vehicle.params import Params, in_force
-from vehicle.storage.motor_copy import usual_state
+from vehicle.motors import PROFILE_PARAMS
+from vehicle.params import Params, merge_params
+from vehicle.storage.motor_copy import default_state_folder
 from vehicle.storage.param_store import ParamStore
 
 SERVICE = Path("/var/lib/mavhelm")
@@ -17,13 +17,13 @@ SERVICE = Path("/var/lib/mavhelm")
 
 
 @dataclass(frozen=True, slots=True)
-class Settled:
+class EffectiveParams:
     """What is in force, and where it is from."""
 
     params: Params
     folder: Path
     """Where the vehicle keeps what ground stations set."""
-    kept: int
+    saved_count: int
     """How many of the kept ones count."""
     left_out: tuple[str, ...]
     """Kept ones that do not fit any more, a line each."""
@@ -31,20 +31,20 @@ class Settled:
     """Why the kept ones could not be read, and what to do."""
 
 
-def settled(config: Config, folder: str | None = None) -> Settled:
+def load_effective_params(config: Config, folder: str | None = None) -> EffectiveParams:
     """As vehicle/runtime/factory.py does it: defaults, a known car's, kept ones, the file's. `folder` wins over the file's."""
-    where = state_of(folder or config.state)
+    where = state_folder_of(folder or config.state)
     store = ParamStore(where)
-    usual = USUAL_PARAMS.get(config.motors.get("driver", ""), {})
-    params, left_out = in_force(config.params, kept=store.values, usual=usual)
+    usual = PROFILE_PARAMS.get(config.motors.get("driver", ""), {})
+    params, left_out = merge_params(config.params, kept=store.values, usual=usual)
     count = len(store.values.keys() - config.params.keys()) - len(left_out)
     damage = store.damage and f"{store.damage}; start the vehicle and set one from a ground station, which ends this"
-    return Settled(params, where, count, tuple(left_out), damage)
+    return EffectiveParams(params, where, count, tuple(left_out), damage)
 
 
-def state_of(configured: str | None) -> Path:
+def state_folder_of(configured: str | None) -> Path:
     """The folder of the vehicle: of the service where there is one, which this program is not."""
     if configured:
         return Path(configured)
     beside_service = "STATE_DIRECTORY" not in os.environ and os.path.lexists(SERVICE)
-    return SERVICE if beside_service else usual_state()
+    return SERVICE if beside_service else default_state_folder()

@@ -9,14 +9,14 @@ from typing import Any
 
 from vehicle.accessories.settings import Accessories
 from vehicle.sensors.suite import SensorSettings
-from vehicle.sim.body import Home
+from vehicle.sim.body import SimulatedHome
 
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
     """Wishes for the simulated rover."""
 
-    home: Home = field(default_factory=Home)
+    home: SimulatedHome = field(default_factory=SimulatedHome)
     battery: float = 1.0
     """Charge at the start, 0..1."""
     seed: int = 1
@@ -26,7 +26,7 @@ class Simulation:
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class RunSettings:
     """What the command line or a file asks for."""
 
     endpoints: tuple[str, ...]

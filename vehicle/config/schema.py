@@ -13,23 +13,23 @@ from vehicle.accessories.settings import COMMON
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
 from vehicle.config.docstrings import field_docs
-from vehicle.config.template import about
+from vehicle.config.template import parameter_help
 from vehicle.motors import DRIVERS, PROFILES, MotorError, settings_type
-from vehicle.motors.settings import Around, NoSettings
+from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import TABLE, Parameter
 
 
-def schema() -> str:
+def build_schema() -> str:
     """The JSON schema."""
     kinds = {name: kind for name in DRIVERS if (kind := _settings(name)) is not None}
     accessories = {
         (kind, name): settings_type_of(kind, name) or NoSettings for kind in COMMON for name in ACCESSORIES[kind]
     }
-    structs = [Config, Around, *COMMON.values(), *dict.fromkeys([*kinds.values(), *accessories.values()])]
+    structs = [Config, CommonMotorSettings, *COMMON.values(), *dict.fromkeys([*kinds.values(), *accessories.values()])]
     _, parts = msgspec.json.schema_components(structs, ref_template="#/$defs/{name}")
     _describe(parts, _structs(structs))
     whole = parts.pop("Config")
-    around = parts.pop("Around")
+    around = parts.pop("CommonMotorSettings")
     own = {kind.__name__: parts.pop(kind.__name__) for kind in dict.fromkeys([*kinds.values(), *accessories.values()])}
     common = {kind: parts.pop(each.__name__) for kind, each in COMMON.items()}
     for which, known in common.items():
@@ -101,7 +101,7 @@ def _parameter_schema(parameter: Parameter) -> dict[str, Any]:
     return {
         "type": "integer" if parameter.whole else "number",
         "minimum": parameter.low, "maximum": parameter.high, "default": parameter.default,
-        "description": about(parameter),
+        "description": parameter_help(parameter),
     }  # fmt: skip
 
 

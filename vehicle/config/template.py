@@ -13,9 +13,9 @@ from vehicle.accessories import DRIVERS as ACCESSORY_DRIVERS
 from vehicle.accessories.settings import COMMON, Accessories, Kind
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
-from vehicle.config.docstrings import field_docs, words
-from vehicle.motors import DRIVERS, PROFILES, USUAL_PARAMS, MotorError, settings_type
-from vehicle.motors.settings import Around, NoSettings
+from vehicle.config.docstrings import field_docs, first_paragraph
+from vehicle.motors import DRIVERS, PROFILE_PARAMS, PROFILES, MotorError, settings_type
+from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import TABLE, Parameter
 from vehicle.sensors.suite import SensorSettings
 
@@ -64,11 +64,11 @@ HEAD = """\
 """
 
 
-def sample() -> str:
+def build_template() -> str:
     """The sample file."""
     config = msgspec.convert({**TOP, "endpoints": LISTENING, "motors": SIMULATED}, Config)
     sensors = msgspec.convert(SENSORS, SensorSettings)
-    around = msgspec.convert(AROUND, Around)
+    around = msgspec.convert(AROUND, CommonMotorSettings)
     parts = [
         HEAD,
         _line("endpoints", list(config.endpoints), Config, active=True),
@@ -79,7 +79,7 @@ def sample() -> str:
         *(_driver(name) for name in DRIVERS if name != "simulated"),
         "\n# ---- for any driver\n" + _body(around, "motors"),
         "\n[sensors]\n" + _body(sensors, "sensors"),
-        f"\n[accessories]\n{_comment(words(Accessories.__doc__))}# docs/pi.md has their wiring.\n",
+        f"\n[accessories]\n{_comment(first_paragraph(Accessories.__doc__))}# docs/pi.md has their wiring.\n",
         *(_accessory(kind, name) for kind, drivers in ACCESSORIES.items() for name in drivers),
         "\n[params]\n# A parameter that is set here is set here only: ground stations can read it and not change it.\n",
         *(_parameter(parameter) for parameter in TABLE),
@@ -90,7 +90,7 @@ def sample() -> str:
 
 def _driver(name: str) -> str:
     if name in PROFILES:
-        usual = ", ".join(f"{key} = {value:g}" for key, value in USUAL_PARAMS.get(name, {}).items())
+        usual = ", ".join(f"{key} = {value:g}" for key, value in PROFILE_PARAMS.get(name, {}).items())
         also = f"# Unless you set them, its parameters are {usual}.\n" if usual else ""
         return f'\n# ---- {name}: a known car, with its settings\n{also}#driver = "{name}"\n'
     try:
@@ -98,7 +98,7 @@ def _driver(name: str) -> str:
     except MotorError as error:  # its library is missing here
         return f'\n# ---- {name}: {error}\n#driver = "{name}"\n'
     settings: msgspec.Struct = msgspec.convert(EXAMPLES[name], kind)
-    return f'\n# ---- {name}: {words(kind.__doc__)}\n#driver = "{name}"\n{_body(settings, "motors")}'
+    return f'\n# ---- {name}: {first_paragraph(kind.__doc__)}\n#driver = "{name}"\n{_body(settings, "motors")}'
 
 
 def _accessory(kind: Kind, name: str) -> str:
@@ -135,7 +135,7 @@ def _body(struct: msgspec.Struct, path: str) -> str:
 
 
 def _table(header: str, name: str, owner: type, value: msgspec.Struct, path: str) -> str:
-    about = field_docs(owner).get(name) or words(type(value).__doc__)
+    about = field_docs(owner).get(name) or first_paragraph(type(value).__doc__)
     return f"\n{_comment(about)}#{header}\n" + _body(value, path)
 
 
@@ -155,10 +155,10 @@ def _state(owner: type, name: str) -> str:
 
 
 def _parameter(parameter: Parameter) -> str:
-    return f"{_comment(about(parameter))}#{parameter.name} = {parameter.default:g}\n"
+    return f"{_comment(parameter_help(parameter))}#{parameter.name} = {parameter.default:g}\n"
 
 
-def about(parameter: Parameter) -> str:
+def parameter_help(parameter: Parameter) -> str:
     """What it does and what it may be."""
     unit = f" {parameter.unit}" if parameter.unit else ""
     return f"{parameter.description} ({parameter.low:g} to {parameter.high:g}{unit})"

@@ -32,14 +32,14 @@ class Demand(NamedTuple):
     direct: bool = False
     """Made by the vehicle's own controllers: no dead band and no softness."""
 
-    def neutral(self, band: float) -> bool:
+    def is_neutral(self, band: float) -> bool:
         """All sticks are at rest."""
         throttle, steering = self.throttle, self.steering
         if throttle is None or steering is None:
             return False
         return abs(throttle) <= band and abs(steering) <= band and abs(self.sideways or 0.0) <= band
 
-    def moving(self, band: float) -> bool:
+    def requests_motion(self, band: float) -> bool:
         """Any stick asks for motion."""
         return abs(self.throttle or 0.0) > band or abs(self.steering or 0.0) > band or abs(self.sideways or 0.0) > band
 
@@ -51,15 +51,15 @@ def from_manual_control(
 
     `sideways`: this vehicle can, and y, which the specification calls roll, asks for it.
     """
-    throttle, steering = axes.demand(message)
-    side = message.y / axes.FULL if sideways and abs(message.y) <= axes.FULL else None
+    throttle, steering = axes.parse_manual_control(message)
+    side = message.y / axes.FULL_DEFLECTION if sideways and abs(message.y) <= axes.FULL_DEFLECTION else None
     if throttle is None and steering is None and side is None:
         return None
     return Demand(throttle, steering, now, system, sequence, side)
 
 
 @dataclass(frozen=True, slots=True)
-class Channel:
+class OverrideChannel:
     """One overridden channel."""
 
     pulse: int
@@ -67,24 +67,24 @@ class Channel:
     time: float
 
 
-class Override:
+class RcOverride:
     """The channels that RC_CHANNELS_OVERRIDE holds; each is given back or goes stale by itself."""
 
     COUNT = 18
 
     def __init__(self) -> None:
-        self.channels: dict[int, Channel] = {}
+        self.channels: dict[int, OverrideChannel] = {}
         """Channel 1..18 -> what holds it."""
-        self.nonsense = False
+        self.has_invalid_value = False
         """The newest message had a value that is neither a pulse nor one of the special numbers."""
 
-    def take(self, message: RcChannelsOverride, now: float) -> bool:
+    def update(self, message: RcChannelsOverride, now: float) -> bool:
         """Take a message; True where it speaks of throttle or steering (setting them or giving them back)."""
-        self.nonsense = False
+        self.has_invalid_value = False
         spoken = [self._set(number, getattr(message, f"chan{number}_raw"), now) for number in range(1, self.COUNT + 1)]
         return spoken[THROTTLE_CHANNEL - 1] or spoken[STEERING_CHANNEL - 1]
 
-    def demand(self, system: int, sequence: int, now: float, timeout: float) -> Demand:
+    def build_demand(self, system: int, sequence: int, now: float, timeout: float) -> Demand:
         """Throttle and steering of the channels that are not older than `timeout` s.
 
         Steering that nobody holds is at rest, because MAVProxy's `rc 3 1500` holds the throttle only.
@@ -100,7 +100,7 @@ class Override:
             sequence,
         )
 
-    def _fresh(self, number: int, now: float, timeout: float) -> Channel | None:
+    def _fresh(self, number: int, now: float, timeout: float) -> OverrideChannel | None:
         channel = self.channels.get(number)
         return channel if channel and now - channel.time <= timeout else None
 
@@ -111,9 +111,9 @@ class Override:
             self.channels.pop(number, None)
             return True
         if not PULSE_MIN <= value <= PULSE_MAX:
-            self.nonsense = True
+            self.has_invalid_value = True
             return False
-        self.channels[number] = Channel(value, now)
+        self.channels[number] = OverrideChannel(value, now)
         return True
 
 

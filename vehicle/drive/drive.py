@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dialects.enums import DriveType, Limit
+from dialects.enums import DriveLimit, DriveType
 from vehicle.drive.demand import Demand
-from vehicle.drive.gate import Clearance, Gate, Outputs, Permit, Trial
-from vehicle.drive.mixer import MIXERS, AtLimit, clamp, deadband, expo, pivot_share
-from vehicle.drive.output_scaling import fits_of, fitted
+from vehicle.drive.gate import Clearance, Gate, MotorTest, Outputs, Permit
+from vehicle.drive.mixer import MIXERS, MixerLimits, clamp, deadband, expo, pivot_scale
+from vehicle.drive.output_scaling import build_output_scaling, scale_outputs
 from vehicle.drive.slew import Slew, SlewLimits
 from vehicle.params import Params
 
 SATURATED, SPEED, SLEW, REVERSE_DELAY = (
-    each.value for each in (Limit.SATURATED, Limit.SPEED, Limit.SLEW, Limit.REVERSE_DELAY)
+    each.value for each in (DriveLimit.SATURATED, DriveLimit.SPEED, DriveLimit.SLEW, DriveLimit.REVERSE_DELAY)
 )
 """Bits as plain numbers: sums of flags cost a microsecond each, and a demand is to be at the motors within 30."""
-HALF = 0.5
+LIMITED_THROTTLE_MAX = 0.5
 """Largest throttle while a failsafe limits the speed (vehicle.md, battery low)."""
 
 
@@ -31,7 +31,7 @@ class Drive:
         self.outputs = Outputs((0.0,) * len(self.mixer.motors), enabled=False)
         self._params = params
         self._slews = [Slew() for _ in self.mixer.motors]
-        self._driven = self.mixer.driven
+        self._driven = self.mixer.driven_count
         self._gate = Gate(len(self._slews), self._driven)
         self._tune()
         self._tested: int | None = None
@@ -39,9 +39,9 @@ class Drive:
         self._at = now
 
     @property
-    def limits(self) -> Limit:
+    def limits(self) -> DriveLimit:
         """Why the outputs differ from the demand, as far as this side knows."""
-        return Limit(self._limits)
+        return DriveLimit(self._limits)
 
     @property
     def wheels(self) -> tuple[float, ...]:
@@ -50,23 +50,23 @@ class Drive:
         return self._gate.wheels
 
     @property
-    def driving(self) -> tuple[float, ...]:
+    def driven_wheels(self) -> tuple[float, ...]:
         """Of `wheels` those that move the rover."""
         return self._gate.wheels[: self._driven]
 
     @property
-    def refused(self) -> int:
+    def rejected_cycles(self) -> int:
         """Cycles in a row in which the gate got values that are no values."""
         return self._gate.refused
 
-    def step(self, demand: Demand | None, clearance: Clearance, *, limited: bool, now: float) -> Outputs:
+    def update(self, demand: Demand | None, clearance: Clearance, *, limited: bool, now: float) -> Outputs:
         """The outputs of this moment. `limited`: a failsafe asks for half speed."""
         permit = clearance.permit
         dt, self._at = max(0.0, now - self._at), now
         self._limits = 0
-        if self._tuned != self._params.changes:
+        if self._tuned != self._params.generation:
             self._tune()
-        trial = clearance.trial if permit is Permit.TEST else None
+        trial = clearance.motor_test if permit is Permit.TEST else None
         motor = None if trial is None else trial.motor
         if permit is Permit.NONE or motor != self._tested:  # no test ramps down, nor into another one or a drive
             for slew in self._slews:
@@ -75,8 +75,8 @@ class Drive:
         wanted = demand if permit is Permit.DRIVE else None
         wheels = self._ramped(self._targets(wanted, limited) if trial is None else self._alone(trial), dt)
         self._note_limits()
-        motors = fitted(wheels, self._driven, self._fits)
-        self.outputs = self._gate.judge(wheels, motors, permit, 100 / self._params["MOT_DECEL"], now, trial)
+        motors = scale_outputs(wheels, self._driven, self._fits)
+        self.outputs = self._gate.filter(wheels, motors, permit, 100 / self._params["MOT_DECEL"], now, trial)
         if self.wheels != wheels:  # refused: no ramp goes on from there
             for slew in self._slews:
                 slew.reset()
@@ -85,24 +85,24 @@ class Drive:
     def _targets(self, demand: Demand | None, limited: bool) -> tuple[float, ...]:
         if demand is None:
             return (0.0,) * len(self._slews)
-        throttle, steering, sideways = shape(demand, self._params)
+        throttle, steering, sideways = shape_demand(demand, self._params)
         throttle, sideways = self._cap(throttle, limited), self._cap(sideways, limited)
         mixed = self.mixer.mix(throttle, steering, sideways, self._at_limit)
         if mixed.saturated:
             self._limits |= SATURATED
         if self._driven < len(self._slews):
             return mixed.throttles
-        share = pivot_share(throttle, steering, sideways, self._params["MOT_PIVOT_MAX"] / 100)
+        share = pivot_scale(throttle, steering, sideways, self._params["MOT_PIVOT_MAX"] / 100)
         return tuple([share * value for value in mixed.throttles])
 
-    def _alone(self, trial: Trial) -> tuple[float, ...]:
+    def _alone(self, trial: MotorTest) -> tuple[float, ...]:
         """One motor, the others at rest."""
         return tuple(trial.throttle if index == trial.motor else 0.0 for index in range(len(self._slews)))
 
     def _cap(self, throttle: float, limited: bool) -> float:
         largest = self._params["MOT_THR_MAX"] / 100
         if limited:
-            largest = min(largest, HALF)
+            largest = min(largest, LIMITED_THROTTLE_MAX)
         if abs(throttle) > largest:
             self._limits |= SPEED
         return clamp(throttle, largest)
@@ -113,9 +113,9 @@ class Drive:
 
     def _tune(self) -> None:
         """What follows from parameters, as long as they do not change."""
-        params, self._tuned = self._params, self._params.changes
-        self._fits = fits_of(params)
-        self._at_limit = AtLimit(params["MOT_STR_THR_MIX"], params["MOT_THST_ASYM"])
+        params, self._tuned = self._params, self._params.generation
+        self._fits = build_output_scaling(params)
+        self._at_limit = MixerLimits(params["MOT_STR_THR_MIX"], params["MOT_THST_ASYM"])
         accel, decel = params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100
         wheel = SlewLimits(accel, decel, params["MOT_REV_DELAY"])
         servo = SlewLimits(accel, decel)  # its gears do not mind a reversal; the rover would go straight on meanwhile
@@ -129,7 +129,7 @@ class Drive:
                 self._limits |= REVERSE_DELAY
 
 
-def shape(demand: Demand, params: Params) -> tuple[float, float, float]:
+def shape_demand(demand: Demand, params: Params) -> tuple[float, float, float]:
     """Throttle, steering and sideways as the driver means them: dead band and softness."""
     throttle, steering, sideways = demand.throttle or 0.0, demand.steering or 0.0, demand.sideways or 0.0
     if demand.direct:

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
-SLACK = 0.05
+RAMP_TOLERANCE = 0.05
 """s that a deceleration may take longer than its ramp: two cycles of 20 ms and a little, because it begins in one."""
 
-TRIAL_LARGEST, TRIAL_LONGEST = 0.3, 3.0
+MOTOR_TEST_THROTTLE_MAX, MOTOR_TEST_TIME_MAX = 0.3, 3.0
 """Throttle and s of a motor test: enough to see a wheel turn, too little to run away with a rover that stands on it.
 What the motor gets of it follows its parameters, as when driving."""
 
@@ -33,7 +33,7 @@ class Permit(Enum):
 
     NONE = "none"
     """Zero at once: disarmed, emergency stop, fault, a late cycle."""
-    FALL = "fall"
+    RAMP_DOWN = "fall"
     """Ramp down to zero, nothing else: stale demand, HOLD, failsafe, no neutral seen."""
     DRIVE = "drive"
     """Follow the demand."""
@@ -42,7 +42,7 @@ class Permit(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
+class MotorTest:
     """One request to see one motor turn."""
 
     number: int
@@ -65,7 +65,7 @@ class Clearance(NamedTuple):
     """s since the demand in use came from the driver in control; None without one."""
     timeout: float = 0.0
     """s that a demand counts."""
-    trial: Trial | None = None
+    motor_test: MotorTest | None = None
     """The motor test under way. It means nothing while armed."""
 
     @property
@@ -74,9 +74,9 @@ class Clearance(NamedTuple):
         if self.late:
             return Permit.NONE
         if not self.armed:
-            return Permit.NONE if self.trial is None else Permit.TEST
+            return Permit.NONE if self.motor_test is None else Permit.TEST
         fresh = self.demand_age is not None and 0.0 <= self.demand_age <= self.timeout
-        return Permit.DRIVE if fresh and self.neutral_seen and not self.held else Permit.FALL
+        return Permit.DRIVE if fresh and self.neutral_seen and not self.held else Permit.RAMP_DOWN
 
 
 class Gate:
@@ -91,16 +91,16 @@ class Gate:
         """What the wheels were let do by the last judgement."""
         self._still = self._before = (0.0,) * motors
         self._driven = motors if driven is None else driven
-        self._fall_began: float | None = None
-        self._trials = TrialClock()
+        self._ramp_began: float | None = None
+        self._trials = MotorTestTimer()
 
-    def judge(
+    def filter(
         self, wheels: Sequence[float], motors: Sequence[float], permit: Permit, fall_time: float, now: float,
-        trial: Trial | None = None,
+        trial: MotorTest | None = None,
     ) -> Outputs:  # fmt: skip
         """What may go to the motors. `fall_time` is the longest a deceleration to zero may take, s; `trial` is what
         TEST is for."""
-        self._note_fall(permit, now)
+        self._note_ramp(permit, now)
         fits = self._trials.permits(wheels, trial if permit is Permit.TEST else None, now)
         sound = permit is not Permit.NONE and self._sound(wheels, motors)
         passed = sound and (fits if permit is Permit.TEST else self._falling(wheels, fall_time, now))
@@ -120,20 +120,20 @@ class Gate:
         self.refused = 0 if sound else self.refused + 1
         return sound
 
-    def _note_fall(self, permit: Permit, now: float) -> None:
-        if permit is not Permit.FALL:
-            self._fall_began = None
-        elif self._fall_began is None:
-            self._fall_began = now
+    def _note_ramp(self, permit: Permit, now: float) -> None:
+        if permit is not Permit.RAMP_DOWN:
+            self._ramp_began = None
+        elif self._ramp_began is None:
+            self._ramp_began = now
 
     def _falling(self, wheels: Sequence[float], fall_time: float, now: float) -> bool:
-        if self._fall_began is None:
+        if self._ramp_began is None:
             return True
         smaller = all(abs(new) <= abs(old) for new, old in zip(wheels, self._before, strict=True))
-        return smaller and (now - self._fall_began <= fall_time + SLACK or not any(wheels))
+        return smaller and (now - self._ramp_began <= fall_time + RAMP_TOLERANCE or not any(wheels))
 
 
-class TrialClock:
+class MotorTestTimer:
     """The gate's own watch on motor tests: each request is given its time once, and what was interrupted is over."""
 
     def __init__(self) -> None:
@@ -142,7 +142,7 @@ class TrialClock:
         self._number = 0
         self._began = 0.0
 
-    def permits(self, wheels: Sequence[float], trial: Trial | None, now: float) -> bool:
+    def permits(self, wheels: Sequence[float], trial: MotorTest | None, now: float) -> bool:
         """Called in every cycle; None where none is permitted, which ends the one before."""
         if trial is None or trial.number != self._number:
             self._spent, self._number = max(self._spent, self._number), 0
@@ -151,5 +151,5 @@ class TrialClock:
         if not self._number:
             self._number, self._began = trial.number, now
         others = any(value for index, value in enumerate(wheels) if index != trial.motor)
-        slow = all(abs(value) <= TRIAL_LARGEST for value in wheels)  # false for NaN
-        return slow and not others and 0.0 <= now - self._began < TRIAL_LONGEST
+        slow = all(abs(value) <= MOTOR_TEST_THROTTLE_MAX for value in wheels)  # false for NaN
+        return slow and not others and 0.0 <= now - self._began < MOTOR_TEST_TIME_MAX

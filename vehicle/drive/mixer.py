@@ -13,14 +13,14 @@ from typing import NamedTuple
 from dialects.enums import DriveType
 
 
-class Mixed(NamedTuple):
+class MixerOutput(NamedTuple):
     """Motor values -1..1 in motor order, and whether the demand had to be cut to fit."""
 
     throttles: tuple[float, ...]
     saturated: bool = False
 
 
-class AtLimit(NamedTuple):
+class MixerLimits(NamedTuple):
     """What a mixer goes by where not all fits (MOT_STR_THR_MIX, MOT_THST_ASYM)."""
 
     mix: float = 0.5
@@ -33,7 +33,7 @@ class AtLimit(NamedTuple):
 class Mixer:
     """How one arrangement of wheels is driven."""
 
-    mix: Callable[[float, float, float, AtLimit], Mixed]
+    mix: Callable[[float, float, float, MixerLimits], MixerOutput]
     motors: tuple[str, ...]
     servos: tuple[int, ...]
     """Servo output (1..16) of each motor in SERVO_OUTPUT_RAW: ArduRover's default wiring."""
@@ -41,12 +41,12 @@ class Mixer:
     """It can move to the side without turning."""
 
     @property
-    def driven(self) -> int:
+    def driven_count(self) -> int:
         """Motors, the first ones, that turn wheels; a steering servo does not."""
         return sum(motor != "steering" for motor in self.motors)
 
 
-def skid(throttle: float, steering: float, sideways: float, limit: AtLimit) -> Mixed:
+def skid(throttle: float, steering: float, sideways: float, limit: MixerLimits) -> MixerOutput:
     """Left, right. Steering is clockwise positive.
 
     ArduRover's rule (AP_MotorsUGV::output_skid_steering): a motor that pushes less backwards is asked for more there,
@@ -61,7 +61,7 @@ def skid(throttle: float, steering: float, sideways: float, limit: AtLimit) -> M
     if excess > 1.0:
         steer, push = _shared(steer, push, excess, lowest, best, limit.mix)
     sides = _strengthened(push + steer, limit.asymmetry), _strengthened(push - steer, limit.asymmetry)
-    return Mixed(sides, saturated=excess > 1.0 or fits != (steering, throttle))
+    return MixerOutput(sides, saturated=excess > 1.0 or fits != (steering, throttle))
 
 
 def _shared(
@@ -81,9 +81,9 @@ def _strengthened(side: float, asymmetry: float) -> float:
     return _unit(side * asymmetry if side < 0.0 else side)
 
 
-def ackermann(throttle: float, steering: float, sideways: float, limit: AtLimit) -> Mixed:
+def ackermann(throttle: float, steering: float, sideways: float, limit: MixerLimits) -> MixerOutput:
     """Throttle and steering servo, apart, as in a car."""
-    return Mixed((throttle, steering))
+    return MixerOutput((throttle, steering))
 
 
 FOUR_WHEELS: tuple[tuple[int, int, int], ...] = ((1, 1, 1), (1, -1, -1), (1, 1, -1), (1, -1, 1))
@@ -92,11 +92,11 @@ FOUR_WHEELS: tuple[tuple[int, int, int], ...] = ((1, 1, 1), (1, -1, -1), (1, 1, 
 mecanum wheels form an X."""
 
 
-def four_wheels(throttle: float, steering: float, sideways: float, limit: AtLimit) -> Mixed:
+def four_wheels(throttle: float, steering: float, sideways: float, limit: MixerLimits) -> MixerOutput:
     """Each wheel its sum; beyond the limit all are cut by the same factor, so that the direction stays."""
     sums = [throttle * ahead + steering * turn + sideways * side for ahead, turn, side in FOUR_WHEELS]
     largest = max(1.0, *(abs(each) for each in sums))
-    return Mixed(tuple(_unit(each / largest) for each in sums), saturated=largest > 1.0)
+    return MixerOutput(tuple(_unit(each / largest) for each in sums), saturated=largest > 1.0)
 
 
 def _unit(value: float) -> float:
@@ -111,7 +111,7 @@ def clamp(value: float, largest: float) -> float:
     return -largest if value < -largest else value
 
 
-def pivot_share(throttle: float, steering: float, sideways: float, pivot: float) -> float:
+def pivot_scale(throttle: float, steering: float, sideways: float, pivot: float) -> float:
     """What is left of the motors' values: all where nothing turns, `pivot` on the spot, in between by how much of each.
 
     MOT_PIVOT_MAX, of drives that turn by their wheels: on the spot they skid, and that takes more than it should give.

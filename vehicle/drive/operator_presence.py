@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from dialects.enums import Operator
+from dialects.enums import OperatorFlag
 from dialects.messages import UINT16_MAX, RoverOperatorPresence, boot_ms
 
 _WRAP = 2**32
 
 
-class Presence:
+class OperatorPresence:
     """The newest word on the operator."""
 
     def __init__(self) -> None:
@@ -22,7 +22,7 @@ class Presence:
         self._input_at = -math.inf
         self._input_lost = False
 
-    def take(self, message: RoverOperatorPresence, since_boot: float, now: float) -> bool:
+    def handle(self, message: RoverOperatorPresence, since_boot: float, now: float) -> bool:
         """Take the newest; True where a new driving session began."""
         new_session = self.known and message.session_id != self._session
         self.known = True
@@ -30,10 +30,10 @@ class Presence:
         self.echo_age = _echo_age(message.echo_time_boot_ms, since_boot)
         age = message.last_input_age_ms
         self._input_at = -math.inf if age == UINT16_MAX else now - age / 1000
-        self._input_lost = bool(message.flags & Operator.INPUT_LOST)
+        self._input_lost = bool(message.flags & OperatorFlag.INPUT_LOST)
         return new_session
 
-    def lost(self, timeout: float, now: float) -> bool:
+    def is_lost(self, timeout: float, now: float) -> bool:
         """No key or stick event for `timeout` s, or the input device is gone."""
         return self.known and (self._input_lost or now - self._input_at > timeout)
 

@@ -13,11 +13,13 @@ from typing import NamedTuple
 from vehicle.drive.mixer import clamp
 from vehicle.params import MOTORS, Params
 
-NAMES = tuple(tuple(f"MOT{n}_{what}" for what in ("REVERSED", "MIN", "MAX", "TRIM")) for n in range(1, MOTORS + 1))
+PARAM_NAMES = tuple(
+    tuple(f"MOT{n}_{what}" for what in ("REVERSED", "MIN", "MAX", "TRIM")) for n in range(1, MOTORS + 1)
+)
 """The parameters of each motor."""
 
 
-class Fit(NamedTuple):
+class OutputScaling(NamedTuple):
     """One motor's; shares of full, the first smaller than the second. Made when a parameter changes."""
 
     reversed: bool = False
@@ -30,22 +32,22 @@ class Fit(NamedTuple):
     curve: float = 0.0
     """MOT_THST_EXPO, -1..1."""
 
-    def drive(self, throttle: float) -> float:
+    def scale_throttle(self, throttle: float) -> float:
         """What a motor that drives gets, for -1..1. The trim never turns it on, round, or beyond its largest."""
         if throttle == 0.0:
             return 0.0
         direction = math.copysign(1.0, -throttle if self.reversed else throttle)
-        size = self.smallest + (self.largest - self.smallest) * thrust(abs(throttle), self.curve)
+        size = self.smallest + (self.largest - self.smallest) * linearize_thrust(abs(throttle), self.curve)
         return direction * min(self.largest, max(0.0, size + direction * self.trim))
 
-    def steer(self, steering: float) -> float:
+    def scale_steering(self, steering: float) -> float:
         """What a steering servo gets, for -1..1: its centre is the trim, its ends are the largest either way."""
         turned = -steering if self.reversed else steering
         reach = self.largest - self.trim if turned >= 0.0 else self.largest + self.trim
         return clamp(self.trim + turned * reach, self.largest)
 
 
-def thrust(throttle: float, curve: float) -> float:
+def linearize_thrust(throttle: float, curve: float) -> float:
     """Throttle 0..1 that gives this share of the thrust: ArduRover's MOT_THST_EXPO, its formula without its 0/0."""
     if curve == 0.0 or throttle == 0.0 or math.isnan(throttle):  # what is no number stays none, for the last gate
         return throttle
@@ -53,16 +55,18 @@ def thrust(throttle: float, curve: float) -> float:
     return min(1.0, 2.0 * throttle / (1.0 - curve + root))
 
 
-def fits_of(params: Params) -> list[Fit]:
+def build_output_scaling(params: Params) -> list[OutputScaling]:
     """Of every motor that there may be."""
     curve, found = params["MOT_THST_EXPO"], []
-    for names in NAMES:
+    for names in PARAM_NAMES:
         reversed_, smallest, largest, trim = [params[name] for name in names]
-        found.append(Fit(reversed_ != 0.0, smallest / 100, largest / 100, trim / 100, curve))
+        found.append(OutputScaling(reversed_ != 0.0, smallest / 100, largest / 100, trim / 100, curve))
     return found
 
 
-def fitted(wheels: Sequence[float], driven: int, each: Sequence[Fit]) -> tuple[float, ...]:
+def scale_outputs(wheels: Sequence[float], driven: int, each: Sequence[OutputScaling]) -> tuple[float, ...]:
     """What the motors get, of which the first `driven` drive; each -1..1 where its wheel's value is."""
     pairs = enumerate(zip(wheels, each, strict=False))
-    return tuple([fit.drive(wheel) if at < driven else fit.steer(wheel) for at, (wheel, fit) in pairs])
+    return tuple(
+        [fit.scale_throttle(wheel) if at < driven else fit.scale_steering(wheel) for at, (wheel, fit) in pairs]
+    )

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 
-def in_one_line(error: BaseException) -> str:
+def format_error(error: BaseException) -> str:
     """What it says, or its type where it says nothing."""
     return " ".join(str(error).split()) or type(error).__name__

@@ -7,14 +7,14 @@ import errno
 import fcntl
 from typing import Protocol
 
-from vehicle.hardware.install_hints import HOW
+from vehicle.hardware.install_hints import INSTALL_HINT
 
 I2C_TIMEOUT = 0x0702
 """ioctl, in units of 10 ms (linux/i2c-dev.h)."""
-PATIENCE = 2
+I2C_TIMEOUT_TICKS = 2
 """20 ms: a device that holds the clock low must not hold the control loop for the kernel's whole second."""
 
-UNANSWERED = (errno.EREMOTEIO, errno.ENXIO, errno.ETIMEDOUT)
+NO_RESPONSE_ERRNOS = (errno.EREMOTEIO, errno.ENXIO, errno.ETIMEDOUT)
 """What the kernel says where a chip does not."""
 
 
@@ -42,7 +42,7 @@ def open_bus(number: int) -> Bus:
     try:
         from smbus2 import SMBus
     except ImportError as error:
-        raise ImportError(f"{error}; {HOW}") from error
+        raise ImportError(f"{error}; {INSTALL_HINT}") from error
     try:
         bus = SMBus(number)
     except FileNotFoundError as error:
@@ -52,13 +52,13 @@ def open_bus(number: int) -> Bus:
         hint = "add yourself to its group: sudo usermod -aG i2c $USER, log in again"
         raise OSError(error.errno, f"{error.strerror}: {hint}", error.filename) from error
     with contextlib.suppress(OSError):  # an adapter that cannot set it keeps its own
-        fcntl.ioctl(bus.fd or -1, I2C_TIMEOUT, PATIENCE)
+        fcntl.ioctl(bus.fd or -1, I2C_TIMEOUT, I2C_TIMEOUT_TICKS)
     return bus
 
 
-def in_words(error: OSError, bus: int) -> str:
+def explain_bus_error(error: OSError, bus: int) -> str:
     """What is wrong with a chip on this bus, and what to do."""
     words = error.strerror or str(error)
-    if error.errno in UNANSWERED:
+    if error.errno in NO_RESPONSE_ERRNOS:
         return f"{words}: nothing answers there; its wires, power and address? `i2cdetect -y {bus}` lists who does"
     return words

@@ -4,5 +4,5 @@ from __future__ import annotations
 
 import sys
 
-HOW = f"install it: {sys.executable} -m pip install 'mavhelm[pi]'"
+INSTALL_HINT = f"install it: {sys.executable} -m pip install 'mavhelm[pi]'"
 """With the Python that is running: the system's own pip refuses on Debian 12 and later, and would install elsewhere."""

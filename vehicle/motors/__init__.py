@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from vehicle.motors.settings import Around
+    from vehicle.motors.settings import CommonMotorSettings
 
 DRIVERS: dict[str, str] = {
     "simulated": "vehicle.motors.simulated:SimulatedMotors",
@@ -42,7 +42,7 @@ PROFILES: dict[str, dict[str, Any]] = {
 article-car is the car of the Circuit Cellar articles, parts 1 and 2: left motor, right motor, BCM pins.
 """
 
-USUAL_PARAMS: dict[str, dict[str, float]] = {
+PROFILE_PARAMS: dict[str, dict[str, float]] = {
     "article-car": {"MOT1_MAX": 60, "MOT2_MAX": 60, "MOT_PIVOT_MAX": 66.7},
 }
 """Name of a driver -> parameters that a known car has instead of the defaults; whoever sets one wins.
@@ -95,7 +95,7 @@ class Motors(Protocol):
         """Neutral, then disabled, then let go of the hardware."""
 
 
-def stop_input(motors: Motors) -> Callable[[], str | None]:
+def estop_reader(motors: Motors) -> Callable[[], str | None]:
     """What asks the emergency stop beside `motors`: why it stops them, or None while closed; may raise MotorError.
 
     It is asked each control cycle, with and without power. A driver has one if it has a method `stop_pressed`.
@@ -108,7 +108,7 @@ def _never() -> None:
     """There is no such stop."""
 
 
-def proof(motors: Motors) -> Callable[[], None]:
+def arming_check(motors: Motors) -> Callable[[], None]:
     """What raises MotorError as long as `motors` must not be armed, as where a controller's timeout is not certain.
 
     It is asked without power, at the start and after each failure. A driver has one if it has a method `prove`.
@@ -121,7 +121,7 @@ def _nothing() -> None:
     """There is nothing to prove."""
 
 
-def checked(throttles: Sequence[float], count: int) -> tuple[float, ...]:
+def check_throttles(throttles: Sequence[float], count: int) -> tuple[float, ...]:
     """`throttles` as a tuple, once it is certain that every one may go to a motor. Raises MotorError.
 
     Every driver calls it first in `set`: the last gate of the rover already holds the limits, but a driver must be
@@ -144,7 +144,9 @@ def open_motors(name: str, settings: Mapping[str, Any] | None = None) -> Motors:
     """
     driver, own, around = _understood(name, settings)
     with ExitStack() as opened:
-        guard = around.guard()  # first: its enable pin takes the power away before the driver touches anything
+        guard = (
+            around.open_safety_pins()
+        )  # first: its enable pin takes the power away before the driver touches anything
         if guard is not None:
             opened.callback(guard.close)
         motors = _fitting(name, _made(name, driver, own))
@@ -156,7 +158,7 @@ def open_motors(name: str, settings: Mapping[str, Any] | None = None) -> Motors:
 
 def settings_type(name: str) -> type | None:
     """The msgspec.Struct of a driver's own settings; None where it has none. Raises UnknownDriverError."""
-    kind: type | None = getattr(driver_class(name), "Settings", None)
+    kind: type | None = getattr(load_driver_class(name), "Settings", None)
     return kind
 
 
@@ -183,21 +185,21 @@ def _line(error: Exception) -> str:
     return text if isinstance(error, MotorError) else f"{type(error).__name__}: {text}"
 
 
-def _understood(name: str, settings: Mapping[str, Any] | None) -> tuple[Any, Any, Around]:
+def _understood(name: str, settings: Mapping[str, Any] | None) -> tuple[Any, Any, CommonMotorSettings]:
     """The driver's class, its own settings or None where it takes none, and what goes around it."""
     from msgspec.structs import fields
 
-    from vehicle.motors.settings import parsed, split
+    from vehicle.motors.settings import convert, split_table
 
-    driver, kind = driver_class(name), settings_type(name)
-    around, own = split({**PROFILES.get(name, {}), **(settings or {})})
+    driver, kind = load_driver_class(name), settings_type(name)
+    around, own = split_table({**PROFILES.get(name, {}), **(settings or {})})
     if kind is not None:
         if not own and (required := [field.encode_name for field in fields(kind) if field.required]):
             raise MotorSettingsError(
                 f"motor driver {name!r} needs settings, at least {', '.join(required)}: "
                 "[motors] of a file for --config, which `vehicle init` writes"
             )
-        return driver, parsed(own, kind), around
+        return driver, convert(own, kind), around
     if own:
         raise MotorSettingsError(f"motor driver {name!r} takes no settings, so {', '.join(own)} cannot be set")
     return driver, None, around
@@ -221,7 +223,7 @@ def _fitting(name: str, motors: Any) -> Motors:
     return fitting
 
 
-def driver_class(name: str, table: Mapping[str, str] = DRIVERS, what: str = "motor driver") -> Any:
+def load_driver_class(name: str, table: Mapping[str, str] = DRIVERS, what: str = "motor driver") -> Any:
     """The class of a driver: `name` is one of `table`, or "module:Class". Raises UnknownDriverError.
 
     `what` it is stands in its texts.

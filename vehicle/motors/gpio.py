@@ -14,9 +14,9 @@ from typing import Annotated, Any
 
 import msgspec
 
-from vehicle.motors import checked
+from vehicle.motors import check_throttles
 from vehicle.motors.pins import Motor, PhaseEnableMotor, translated
-from vehicle.motors.settings import Pin, pin_name, refuse_doubles
+from vehicle.motors.settings import Pin, pin_name, reject_duplicates
 
 
 class TwoInputs(
@@ -62,7 +62,7 @@ class GpioSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return [pin for bridge in self.bridges for pin in bridge.pins]
 
     def __post_init__(self) -> None:
-        refuse_doubles(self.pins)
+        reject_duplicates(self.pins)
 
     @property
     def taken(self) -> list[str]:
@@ -101,7 +101,7 @@ class GpioMotors:
 
     def set(self, throttles: Sequence[float]) -> None:
         """PWM on each bridge; nothing while disabled."""
-        values = checked(throttles, self.count)
+        values = check_throttles(throttles, self.count)
         if self.enabled:
             with translated("motor pins"):
                 for bridge, value in zip(self._bridges, values, strict=True):

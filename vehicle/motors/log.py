@@ -52,21 +52,21 @@ class LoggedMotors:
         """Disable the motors; they stand, so that is written."""
         self._motors.disable()
         self._enabled = False
-        self._note(self._neutral)
+        self._write_change(self._neutral)
 
     def set(self, throttles: Sequence[float]) -> None:
         """Set the motors; written once they have it, and only where they are enabled: else nothing turns."""
         self._motors.set(throttles)
         if self._enabled:
-            self._note(tuple(throttles))
+            self._write_change(tuple(throttles))
 
     def close(self) -> None:
         """Close the motors."""
         self._motors.close()
         self._enabled = False
-        self._note(self._neutral)
+        self._write_change(self._neutral)
 
-    def _note(self, throttles: tuple[float, ...]) -> None:
+    def _write_change(self, throttles: tuple[float, ...]) -> None:
         if throttles != self._logged:
             self._logged = throttles
             values = " ".join(f"{throttle:.4f}" for throttle in throttles)

@@ -14,14 +14,14 @@ from typing import Annotated
 import msgspec
 
 from vehicle.hardware.i2c import Bus
-from vehicle.motors import MotorError, checked
-from vehicle.motors.error_budget import Patience
-from vehicle.motors.pca9685_board import Board, BoardSettings, Number
+from vehicle.motors import MotorError, check_throttles
+from vehicle.motors.error_budget import ErrorBudget
+from vehicle.motors.pca9685_board import BoardSettings, Number, Pca9685Board
 from vehicle.motors.pulses import Idle, Pulse
-from vehicle.motors.settings import channel_name, i2c_pins, refuse_doubles
+from vehicle.motors.settings import channel_name, i2c_pins, reject_duplicates
 
 
-class Channel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Pca9685Channel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One output of the board."""
 
     channel: Number
@@ -31,13 +31,13 @@ class Channel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Pca9685Settings(BoardSettings, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Channels in motor order."""
 
-    channels: Annotated[tuple[Channel, ...], msgspec.Meta(min_length=1, max_length=8)]
+    channels: Annotated[tuple[Pca9685Channel, ...], msgspec.Meta(min_length=1, max_length=8)]
     idle: Idle = "neutral"
 
     def __post_init__(self) -> None:
-        refuse_doubles([channel.channel for channel in self.channels])
+        reject_duplicates([channel.channel for channel in self.channels])
         for channel in self.channels:
-            channel.pulse.must_fit(self.frequency)
+            channel.pulse.check_period(self.frequency)
 
     @property
     def taken(self) -> list[str]:
@@ -63,11 +63,11 @@ class Pca9685Motors:
         self.enabled = False
         self._settings = settings
         self._clock = clock
-        self._patience = Patience()
-        self._board = Board(settings, bus)
+        self._error_budget = ErrorBudget()
+        self._board = Pca9685Board(settings, bus)
         try:
-            self._board.certain(self._calm)
-            self._board.certain(self._board.set_up)
+            self._board.retry(self._set_idle)
+            self._board.retry(self._board.set_up)
         except MotorError:
             self._board.close()
             raise
@@ -75,29 +75,29 @@ class Pca9685Motors:
     def enable(self) -> None:
         """Neutral pulses from now on. Raises MotorError where the chip is not as it was set up."""
         if not self.enabled:
-            self._board.certain(self._board.set_up)  # one that lost its power meanwhile has forgotten everything
-            self._board.certain(self._all_neutral)
-            self._patience.worked()
+            self._board.retry(self._board.set_up)  # one that lost its power meanwhile has forgotten everything
+            self._board.retry(self._all_neutral)
+            self._error_budget.reset()
             self.enabled = True
 
     def disable(self) -> None:
         """Neutral pulses or none, as `idle` says."""
         self.enabled = False
         if self._board.is_open:
-            self._board.certain(self._calm)
+            self._board.retry(self._set_idle)
 
     def set(self, throttles: Sequence[float]) -> None:
         """A width for each channel; nothing while disabled."""
-        values = checked(throttles, self.count)
+        values = check_throttles(throttles, self.count)
         if not self.enabled:
             return
         try:
             for channel, value in zip(self._settings.channels, values, strict=True):
-                self._board.give(channel.channel, channel.pulse.width(value))
+                self._board.set_pulse(channel.channel, channel.pulse.width(value))
         except OSError as error:
-            self._patience.failed(self._board.said(error), self._clock())
+            self._error_budget.add_failure(self._board.describe(error), self._clock())
         else:
-            self._patience.worked()
+            self._error_budget.reset()
 
     def close(self) -> None:
         """As disabled, then the bus is let go."""
@@ -105,16 +105,16 @@ class Pca9685Motors:
             steps.callback(self._board.close)
             self.disable()
 
-    def _calm(self) -> None:
+    def _set_idle(self) -> None:
         """What `idle` says, on every channel that gives pulses; one that gives none is left so. A board that was set up
         otherwise, as before its `frequency` was changed, would make another width of neutral: its pulses end."""
         neutral = self._settings.idle == "neutral" and self._board.ready
         for channel in self._settings.channels:
-            if neutral and self._board.pulsing(channel.channel):
-                self._board.give(channel.channel, channel.pulse.width(0.0))
+            if neutral and self._board.has_pulse(channel.channel):
+                self._board.set_pulse(channel.channel, channel.pulse.width(0.0))
             else:
                 self._board.stop(channel.channel)
 
     def _all_neutral(self) -> None:
         for channel in self._settings.channels:
-            self._board.give(channel.channel, channel.pulse.width(0.0))
+            self._board.set_pulse(channel.channel, channel.pulse.width(0.0))

@@ -11,7 +11,7 @@ from typing import Annotated
 
 import msgspec
 
-from vehicle.hardware.i2c import Bus, in_words, open_bus
+from vehicle.hardware.i2c import Bus, explain_bus_error, open_bus
 from vehicle.motors import MotorError
 from vehicle.motors.settings import chip_name
 
@@ -62,7 +62,7 @@ class BoardSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_
         return (self.prescale + 1) / self.oscillator
 
 
-class Board:
+class Pca9685Board:
     """Open until `close`. What it cannot do is an OSError, or a MotorError of `certain`."""
 
     def __init__(self, settings: BoardSettings, bus: Bus | None = None) -> None:
@@ -75,24 +75,26 @@ class Board:
         """Not closed yet."""
         return self._bus is not None
 
-    def certain(self, step: Callable[[], None]) -> None:
+    def retry(self, step: Callable[[], None]) -> None:
         """Run `step` until it works. Raises MotorError where it does not."""
         for left in reversed(range(TRIES)):
             try:
                 return step()
             except OSError as error:
                 if not left:
-                    raise MotorError(self.said(error)) from error
+                    raise MotorError(self.describe(error)) from error
         return None
 
-    def said(self, error: OSError) -> str:
+    def describe(self, error: OSError) -> str:
         """One line."""
         settings = self._settings
-        return f"PCA9685 at 0x{settings.address:02x} on I2C bus {settings.bus}: {in_words(error, settings.bus)}"
+        return (
+            f"PCA9685 at 0x{settings.address:02x} on I2C bus {settings.bus}: {explain_bus_error(error, settings.bus)}"
+        )
 
     def set_up(self) -> None:
         """Mode and frequency, read back. Frequency can only be set asleep, which stops all 16 channels for it."""
-        bus, address, prescale = self._wire, self._settings.address, self._settings.prescale
+        bus, address, prescale = self._open_bus, self._settings.address, self._settings.prescale
         if self.ready:
             return
         bus.write_byte_data(address, MODE1, AWAKE | SLEEP)
@@ -108,18 +110,18 @@ class Board:
         """It is as it was set up, and has not lost its power since."""
         return self._registers() == (AWAKE, TOTEM_POLE, self._settings.prescale)
 
-    def pulsing(self, channel: int) -> bool:
+    def has_pulse(self, channel: int) -> bool:
         """A channel gives pulses, by this process or one before it."""
-        return not self._wire.read_byte_data(self._settings.address, _register(channel) + 3) & FULL_OFF
+        return not self._open_bus.read_byte_data(self._settings.address, _register(channel) + 3) & FULL_OFF
 
-    def give(self, channel: int, width: float) -> None:
+    def set_pulse(self, channel: int, width: float) -> None:
         """Pulses of `width` s. One transfer: on at 0, off at the width, full-off cleared."""
         off = round(width / self._settings.step)
-        self._wire.write_i2c_block_data(self._settings.address, _register(channel), [0, 0, off & 0xFF, off >> 8])
+        self._open_bus.write_i2c_block_data(self._settings.address, _register(channel), [0, 0, off & 0xFF, off >> 8])
 
     def stop(self, channel: int) -> None:
         """No pulses."""
-        self._wire.write_byte_data(self._settings.address, _register(channel) + 3, FULL_OFF)
+        self._open_bus.write_byte_data(self._settings.address, _register(channel) + 3, FULL_OFF)
 
     def close(self) -> None:
         """Let go of the bus; the board goes on as it is. May come twice."""
@@ -128,13 +130,13 @@ class Board:
             bus.close()
 
     @property
-    def _wire(self) -> Bus:
+    def _open_bus(self) -> Bus:
         if self._bus is None:
             raise MotorError("PCA9685: closed")
         return self._bus
 
     def _registers(self) -> tuple[int, int, int]:
-        bus, address = self._wire, self._settings.address
+        bus, address = self._open_bus, self._settings.address
         mode1 = bus.read_byte_data(address, MODE1) & ~RESTART
         return mode1, bus.read_byte_data(address, MODE2), bus.read_byte_data(address, PRE_SCALE)
 

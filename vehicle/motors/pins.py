@@ -8,8 +8,8 @@ import tempfile
 from collections.abc import Iterator
 from importlib import import_module
 
-from vehicle.hardware.error_text import in_one_line
-from vehicle.hardware.install_hints import HOW
+from vehicle.hardware.error_text import format_error
+from vehicle.hardware.install_hints import INSTALL_HINT
 from vehicle.motors import MotorError
 
 
@@ -41,7 +41,7 @@ try:
     from gpiozero import DigitalInputDevice, DigitalOutputDevice, Motor, PhaseEnableMotor, RotaryEncoder
     from gpiozero.exc import GPIOZeroError
 except ImportError as error:
-    raise MotorError(f"{error}; {HOW}") from error
+    raise MotorError(f"{error}; {INSTALL_HINT}") from error
 
 FAULTS: tuple[type[BaseException], ...] = (GPIOZeroError, OSError, ImportError, *_lgpio_errors)
 
@@ -50,14 +50,14 @@ __all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMot
 
 HINTS = {
     "unable to locate Pi revision": "is this a Raspberry Pi? Elsewhere simulated pins do (docs/pi.md, Without a Pi)",
-    "No module named 'lgpio'": HOW,
+    "No module named 'lgpio'": INSTALL_HINT,
     "can not open gpiochip": "add yourself to its group: sudo usermod -aG gpio $USER, log in again",
 }
 """What gpiozero and lgpio say -> what to do."""
 
 
 def _in_words(error: BaseException) -> str:
-    words = in_one_line(error)
+    words = format_error(error)
     return "; ".join([words, *(hint for start, hint in HINTS.items() if words.startswith(start))])
 
 

@@ -10,13 +10,13 @@ from typing import Any
 
 import serial
 
-from link.transport.serial_faults import in_words
+from link.transport.serial_faults import serial_error_text
 
-QUEUE = 64
+SEND_QUEUE_MAX = 64
 """Bytes that may wait in the kernel: about eight frames. More are old demands, and the newest must not stand behind."""
 
 
-class Port:
+class SerialPort:
     """Opened by path, and again by path after it was lost: a USB adapter may be unplugged. All raise OSError."""
 
     def __init__(self, path: str, baud: int) -> None:
@@ -37,14 +37,14 @@ class Port:
         try:
             self._serial = serial.Serial(self.path, self._baud, timeout=0, write_timeout=0, exclusive=True)
         except (OSError, termios.error) as error:  # termios's own are no OSErrors: it went while it was set up
-            raise OSError(in_words(self.path, OSError(*error.args))) from error
-        self.drain()
+            raise OSError(serial_error_text(self.path, OSError(*error.args))) from error
+        self.discard_input()
         return True
 
     def write(self, frame: bytes) -> None:
         """Not pyserial's own write: in its non-blocking mode it spins for ever on a full buffer (3.5)."""
         with self._closing():
-            if self._serial.out_waiting > QUEUE:
+            if self._serial.out_waiting > SEND_QUEUE_MAX:
                 raise BlockingIOError(f"{self.path}: the port does not take what is sent")
             written = os.write(self._serial.fileno(), frame)
             if written != len(frame):
@@ -61,12 +61,12 @@ class Port:
                 raise OSError(f"{self.path}: the port is gone")
             return data
 
-    def drain(self) -> None:
+    def discard_input(self) -> None:
         """Forget what has come."""
         with self._closing():
             self._serial.reset_input_buffer()
 
-    def flush(self) -> None:
+    def discard_output(self) -> None:
         """Forget what waits to be sent."""
         with self._closing():
             self._serial.reset_output_buffer()

@@ -29,7 +29,7 @@ class Pulse(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         if not self.min_us <= self.trim_us < self.max_us:
             raise ValueError(f"min {self.min_us:g} <= trim {self.trim_us:g} < max {self.max_us:g} us must hold")
 
-    def must_fit(self, frequency: float) -> None:
+    def check_period(self, frequency: float) -> None:
         """Raises ValueError where the longest pulse fills its period: the output would never be low again."""
         period = 1e6 / frequency
         if self.max_us > 0.95 * period:  # also where a chip's own clock makes the period some percent shorter

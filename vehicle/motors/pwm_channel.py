@@ -20,7 +20,7 @@ def write_file(path: Path, text: str) -> None:
     path.write_text(text)
 
 
-class Channel:
+class SysfsPwmChannel:
     """One exported channel. Every order of writes below is one the kernel takes: duty is never more than period."""
 
     def __init__(self, directory: Path, frequency: float, write: Callable[[Path, str], None]) -> None:
@@ -30,38 +30,38 @@ class Channel:
         self._write = write
 
     @property
-    def running(self) -> bool:
+    def is_running(self) -> bool:
         """The output is enabled, by us or by a process before us."""
         return self._read("enable") == 1
 
     def set_period(self) -> None:
         """Ours, in place of another; without a pulse in between."""
         if self._read("period") != self.period:
-            self.duty(0)
-            self._put("period", self.period)
+            self.set_duty(0)
+            self._write_value("period", self.period)
 
-    def duty(self, nanoseconds: int) -> None:
+    def set_duty(self, nanoseconds: int) -> None:
         """Length of the pulse."""
-        self._put("duty_cycle", nanoseconds)
+        self._write_value("duty_cycle", nanoseconds)
 
     def start(self) -> None:
         """Let the duty out."""
-        self._put("enable", 1)
+        self._write_value("enable", 1)
 
     def stop(self) -> None:
         """Duty 0 first: some drivers leave the pin at the level it had."""
         with contextlib.ExitStack() as steps:
-            steps.callback(self._put, "enable", 0)
-            self.duty(0)
+            steps.callback(self._write_value, "enable", 0)
+            self.set_duty(0)
 
     def _read(self, name: str) -> int:
         return int((self._directory / name).read_text())
 
-    def _put(self, name: str, value: int) -> None:
+    def _write_value(self, name: str, value: int) -> None:
         self._write(self._directory / name, str(value))
 
 
-def exported(root: Path, device: str, channel: int, write: Callable[[Path, str], None]) -> Path:
+def export_channel(root: Path, device: str, channel: int, write: Callable[[Path, str], None]) -> Path:
     """The channel's directory. Raises MotorError, OSError."""
     chip = _chip(root, device)
     channels = int((chip / "npwm").read_text())

@@ -15,8 +15,8 @@ from typing import Annotated
 import msgspec
 from fastcrc.crc16 import xmodem
 
-from vehicle.motors import checked
-from vehicle.motors.serial_controller import Wire, tenths
+from vehicle.motors import check_throttles
+from vehicle.motors.serial_controller import SerialController, tenths
 from vehicle.motors.settings import port_name, uart_pins
 
 SET_TIMEOUT, READ_TIMEOUT, READ_VERSION, DRIVE_BOTH = 14, 15, 21, 34
@@ -64,8 +64,8 @@ class RoboClawMotors:
         self.enabled = False
         self._settings = settings
         self._tenths = tenths(settings.timeout)
-        self._wire = Wire(f"RoboClaw 0x{settings.address:02x}", settings.port, settings.baud, clock)
-        self.port = self._wire.port
+        self._controller = SerialController(f"RoboClaw 0x{settings.address:02x}", settings.port, settings.baud, clock)
+        self.port = self._controller.port
         self._unanswered = 0
         self._tries = TRIES
         with contextlib.ExitStack() as opened:
@@ -77,52 +77,54 @@ class RoboClawMotors:
         """Raises MotorError where the controller's timeout cannot be set and read back."""
         if self.enabled:
             return
-        self._tell(DRIVE_BOTH, _duties((0.0, 0.0)))
+        self._send_acknowledged(DRIVE_BOTH, _duties((0.0, 0.0)))
         self.prove()  # again: it forgets with its power
-        self._wire.reminded()
+        self._controller.timeout_sent()
         self.enabled = True
 
     def prove(self) -> None:
         """Set the controller's timeout and read it back. Raises MotorError."""
-        self._tell(SET_TIMEOUT, bytes([self._tenths]))
-        found = self._ask(READ_TIMEOUT, lambda data: len(data) == 1)[0]
+        self._send_acknowledged(SET_TIMEOUT, bytes([self._tenths]))
+        found = self._query(READ_TIMEOUT, lambda data: len(data) == 1)[0]
         if found != self._tenths:
-            raise self._wire.fault(f"its serial timeout is {found / 10:g} s and not {self._tenths / 10:g} s as set")
+            raise self._controller.build_error(
+                f"its serial timeout is {found / 10:g} s and not {self._tenths / 10:g} s as set"
+            )
 
     def disable(self) -> None:
         """Duty 0 on both, and the controller has said that it took it. Raises MotorError."""
         self.enabled = False
-        self._tell(DRIVE_BOTH, _duties((0.0, 0.0)))
+        self._send_acknowledged(DRIVE_BOTH, _duties((0.0, 0.0)))
 
     def set(self, throttles: Sequence[float]) -> None:
         """Both duties in one frame; nothing while disabled."""
-        values = checked(throttles, self.count)
+        values = check_throttles(throttles, self.count)
         if not self.enabled:
             return
-        with self._wire.patient() as now:
+        with self._controller.tolerate_errors() as now:
             self._collect(now)
             self._send(DRIVE_BOTH, _duties(values))
-            if self._wire.must_remind(now):
+            if self._controller.is_timeout_due(now):
                 self._send(SET_TIMEOUT, bytes([self._tenths]))
 
     def version(self) -> str:
         """Model and firmware, as it calls itself. Waits for the reply: not for the control loop. Raises MotorError."""
-        return self._ask(READ_VERSION, lambda data: data.endswith(b"\0")).decode("ascii", "replace").strip("\n\0")
+        return self._query(READ_VERSION, lambda data: data.endswith(b"\0")).decode("ascii", "replace").strip("\n\0")
 
     def close(self) -> None:
         """As disabled, then the port is let go."""
-        self._wire.close(self.disable)
+        self._controller.close(self.disable)
 
     def _collect(self, now: float) -> None:
         """Replies to what was sent before. Any reply means that it lives and takes our frames."""
         replies = self.port.read()
         if ACK in replies:
             self._unanswered = max(0, self._unanswered - replies.count(ACK))
-            self._wire.patience.worked()
+            self._controller.error_budget.reset()
         elif self._unanswered:
-            self._wire.patience.waiting(self._wire.said("no reply"), now)
+            self._controller.error_budget.check_silence(self._controller.describe("no reply"), now)
 
-    def _tell(self, command: int, data: bytes) -> None:
+    def _send_acknowledged(self, command: int, data: bytes) -> None:
         """Send until it is acknowledged, together with all that was sent before. Raises MotorError."""
         reason = ""
         for _ in range(self._tries):
@@ -137,9 +139,9 @@ class RoboClawMotors:
             except OSError as error:
                 reason = str(error)
         self._tries = 1  # a controller known to be dead is asked in each cycle: that must not hold the loop up
-        raise self._wire.fault(reason)
+        raise self._controller.build_error(reason)
 
-    def _ask(self, command: int, complete: Callable[[bytes], bool]) -> bytes:
+    def _query(self, command: int, complete: Callable[[bytes], bool]) -> bytes:
         """The data of a reply, once it is `complete` and its CRC is right. Raises MotorError."""
         reason = ""
         question = bytes([self._settings.address, command])
@@ -149,12 +151,12 @@ class RoboClawMotors:
                 self._start_over()
                 self.port.write(question)
                 reply = self._reply(complete)
-                if complete(reply[:-2]) and _sealed(question + reply):
+                if complete(reply[:-2]) and _crc_matches(question + reply):
                     return reply[:-2]
                 reason = f"a bad reply, {reply.hex(' ') or 'none'}"
             except OSError as error:
                 reason = str(error)
-        raise self._wire.fault(reason)
+        raise self._controller.build_error(reason)
 
     def _connect(self) -> None:
         if self.port.open():
@@ -163,7 +165,7 @@ class RoboClawMotors:
     def _start_over(self) -> None:
         """Forget replies that are still to come: a frame in the making is thrown away after the time waited for it."""
         self._unanswered = 0
-        self.port.drain()
+        self.port.discard_input()
 
     def _send(self, command: int, data: bytes) -> None:
         frame = bytes([self._settings.address, command]) + data
@@ -192,5 +194,5 @@ def _duties(throttles: Sequence[float]) -> bytes:
     return b"".join(round(throttle * FULL).to_bytes(2, "big", signed=True) for throttle in throttles)
 
 
-def _sealed(frame: bytes) -> bool:
+def _crc_matches(frame: bytes) -> bool:
     return xmodem(frame[:-2]) == int.from_bytes(frame[-2:], "big")

@@ -15,8 +15,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from vehicle.motors import checked
-from vehicle.motors.serial_controller import Wire, tenths
+from vehicle.motors import check_throttles
+from vehicle.motors.serial_controller import SerialController, tenths
 from vehicle.motors.settings import port_name, uart_pins
 
 BAUDING = bytes([170])
@@ -62,8 +62,8 @@ class SabertoothMotors:
         self.count = 2
         self.enabled = False
         self._settings = settings
-        self._wire = Wire(f"Sabertooth {settings.address}", settings.port, settings.baud, clock)
-        self.port = self._wire.port
+        self._controller = SerialController(f"Sabertooth {settings.address}", settings.port, settings.baud, clock)
+        self.port = self._controller.port
         with contextlib.ExitStack() as opened:
             opened.callback(self.port.close)
             self.disable()
@@ -74,16 +74,16 @@ class SabertoothMotors:
         if self.enabled:
             return
         self.prove()
-        with self._wire.certain():
+        with self._controller.raise_errors():
             self.port.open()
             self.port.write(BAUDING + self._timeout() + self._drive((0.0, 0.0)))
-        self._wire.reminded()
+        self._controller.timeout_sent()
         self.enabled = True
 
     def prove(self) -> None:
         """Raises MotorError unless the timeout was proven by hand."""
         if not self._settings.timeout_proven:
-            raise self._wire.fault(
+            raise self._controller.build_error(
                 "its timeout cannot be read back: pull its signal wire with the wheels in the air, "
                 "see them stop, then set timeout_proven = true"
             )
@@ -91,25 +91,25 @@ class SabertoothMotors:
     def disable(self) -> None:
         """Stop both, ahead of all that still waits to be sent. Raises MotorError where the port does not take it."""
         self.enabled = False
-        with self._wire.certain():
+        with self._controller.raise_errors():
             self.port.open()
-            self.port.flush()
+            self.port.discard_output()
             # Two half frames at most: the one that was cut, and what follows until its end is found again.
             self.port.write(BAUDING + self._timeout() + self._drive((0.0, 0.0)) * REPEATS)
 
     def set(self, throttles: Sequence[float]) -> None:
         """A frame for each motor; nothing while disabled."""
-        values = checked(throttles, self.count)
+        values = check_throttles(throttles, self.count)
         if not self.enabled:
             return
-        with self._wire.patient() as now:
-            reminder = BAUDING + self._timeout() if self._wire.must_remind(now) else b""
+        with self._controller.tolerate_errors() as now:
+            reminder = BAUDING + self._timeout() if self._controller.is_timeout_due(now) else b""
             self.port.write(reminder + self._drive(values))
-            self._wire.patience.worked()
+            self._controller.error_budget.reset()
 
     def close(self) -> None:
         """As disabled, then the port is let go."""
-        self._wire.close(self.disable)
+        self._controller.close(self.disable)
 
     def _timeout(self) -> bytes:
         return self._packet(SET_TIMEOUT, tenths(self._settings.timeout))

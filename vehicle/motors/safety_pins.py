@@ -11,9 +11,9 @@ import contextlib
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from vehicle.motors import MotorError, Motors, StopPressedError, proof
+from vehicle.motors import MotorError, Motors, StopPressedError, arming_check
 from vehicle.motors.pins import DigitalInputDevice, DigitalOutputDevice, translated
-from vehicle.motors.settings import Safety
+from vehicle.motors.settings import SafetyPinSettings
 
 PRESSED = "the emergency stop is pressed, or its wire is open"
 
@@ -21,7 +21,7 @@ PRESSED = "the emergency stop is pressed, or its wire is open"
 class SafetyPins:
     """The pins themselves. Made with the power off."""
 
-    def __init__(self, safety: Safety, *, pin_factory: Any = None) -> None:
+    def __init__(self, safety: SafetyPinSettings, *, pin_factory: Any = None) -> None:
         """Raises MotorError."""
         self.tripped = False
         """The stop was open at some time since the power was switched on."""
@@ -41,14 +41,14 @@ class SafetyPins:
                 self._estop.when_deactivated = self._trip
             opened.pop_all()
 
-    def pressed(self) -> bool:
+    def poll_pressed(self) -> bool:
         """The stop is open, or was since the last call. Raises MotorError where it cannot be read."""
         noticed = self._noticed
         if noticed:  # and only then, or an edge in gpiozero's thread between the two lines would be forgotten
             self._noticed = False
         return self._open() or noticed
 
-    def check(self) -> None:
+    def require_closed(self) -> None:
         """Raises StopPressedError where the stop is open, or was since the power was switched on; MotorError."""
         if self._open():
             self._trip()
@@ -58,12 +58,12 @@ class SafetyPins:
     def power_on(self) -> None:
         """Let the motors have power. Raises MotorError where the stop is open."""
         self.tripped = False
-        self.check()
+        self.require_closed()
         with translated("enable pin"):
             if self._enable is not None:
                 self._enable.on()
         try:
-            self.check()  # pressed in between: its edge came before `on`
+            self.require_closed()  # pressed in between: its edge came before `on`
         except MotorError:
             self.power_off()
             raise
@@ -76,7 +76,7 @@ class SafetyPins:
                     steps.callback(pin.off)
         self.tripped = False
 
-    def beat(self) -> None:
+    def toggle_heartbeat(self) -> None:
         """Change the heartbeat pin."""
         if self._heartbeat is not None:
             with translated("heartbeat pin"):
@@ -115,7 +115,7 @@ class GuardedMotors:
         """The driver first, from neutral, then the power. Raises StopPressedError while the stop is open."""
         if not self._enabled:
             self._pins.tripped = False  # what was while there was no power is the rover's to remember
-        self._pins.check()
+        self._pins.require_closed()
         self._motors.enable()
         if not self._enabled:
             self._power_on()
@@ -127,18 +127,18 @@ class GuardedMotors:
 
     def set(self, throttles: Sequence[float]) -> None:
         """Set the motors and beat. Raises StopPressedError while the stop is open."""
-        self._pins.check()
+        self._pins.require_closed()
         self._motors.set(throttles)
         if self._enabled:
-            self._pins.beat()
+            self._pins.toggle_heartbeat()
 
     def prove(self) -> None:
         """What the driver has to prove; the pins need no proof."""
-        proof(self._motors)()
+        arming_check(self._motors)()
 
     def stop_pressed(self) -> str | None:
         """Why the stop stops, or None: see vehicle.motors.stop_input."""
-        return PRESSED if self._pins.pressed() else None
+        return PRESSED if self._pins.poll_pressed() else None
 
     def close(self) -> None:
         """Power off, driver closed, pins let go."""

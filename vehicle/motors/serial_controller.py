@@ -6,10 +6,10 @@ import contextlib
 from collections.abc import Callable, Iterator
 
 from vehicle.motors import MotorError
-from vehicle.motors.error_budget import Patience
-from vehicle.motors.port import Port
+from vehicle.motors.error_budget import ErrorBudget
+from vehicle.motors.port import SerialPort
 
-REMIND = 1.0
+TIMEOUT_RESEND_PERIOD = 1.0
 """s between settings of the timeout while driving: a controller that lost its power for a moment has forgotten it."""
 
 
@@ -18,12 +18,12 @@ def tenths(timeout: float) -> int:
     return int(timeout * 10 + 1e-9)
 
 
-class Wire:
+class SerialController:
     """What is said of it has the controller's name."""
 
     def __init__(self, name: str, path: str, baud: int, clock: Callable[[], float]) -> None:
-        self.port = Port(path, baud)
-        self.patience = Patience()
+        self.port = SerialPort(path, baud)
+        self.error_budget = ErrorBudget()
         self._name = f"{name} on {path}"
         self._clock = clock
         self._reminded = 0.0
@@ -35,38 +35,38 @@ class Wire:
                 steps.callback(self.port.close)
                 silence()
 
-    def reminded(self) -> None:
+    def timeout_sent(self) -> None:
         """The timeout was set just now, and all is well."""
-        self.patience.worked()
+        self.error_budget.reset()
         self._reminded = self._clock()
 
-    def must_remind(self, now: float) -> bool:
+    def is_timeout_due(self, now: float) -> bool:
         """The timeout is to be set again; asked once, it counts as done."""
-        due = now - self._reminded >= REMIND
+        due = now - self._reminded >= TIMEOUT_RESEND_PERIOD
         self._reminded = now if due else self._reminded
         return due
 
     @contextlib.contextmanager
-    def patient(self) -> Iterator[float]:
+    def tolerate_errors(self) -> Iterator[float]:
         """Gives the time. A port that does not take a frame is put up with for a moment; then raises MotorError."""
         now = self._clock()
         try:
             yield now
         except OSError as error:
-            self.patience.failed(self.said(str(error)), now)
+            self.error_budget.add_failure(self.describe(str(error)), now)
 
     @contextlib.contextmanager
-    def certain(self) -> Iterator[None]:
+    def raise_errors(self) -> Iterator[None]:
         """Raises MotorError where the port does not take what is written."""
         try:
             yield
         except OSError as error:
-            raise self.fault(str(error)) from error
+            raise self.build_error(str(error)) from error
 
-    def fault(self, reason: str) -> MotorError:
+    def build_error(self, reason: str) -> MotorError:
         """To be raised."""
-        return MotorError(self.said(reason))
+        return MotorError(self.describe(reason))
 
-    def said(self, reason: str) -> str:
+    def describe(self, reason: str) -> str:
         """One line."""
         return f"{self._name}: {reason}"

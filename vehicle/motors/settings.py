@@ -53,7 +53,7 @@ I2C_PINS = {0: (0, 1), 1: (2, 3)}
 """Without overlays."""
 
 
-class Safety(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class SafetyPinSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Pins beside the motors: an emergency stop, a power switch and a sign of life (vehicle/motors/safety_pins.py)."""
 
     estop_pin: Pin | None = None
@@ -71,7 +71,7 @@ class Safety(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return [pin for pin in (self.estop_pin, self.enable_pin, self.heartbeat_pin) if pin is not None]
 
     def __post_init__(self) -> None:
-        refuse_doubles(self.pins)
+        reject_duplicates(self.pins)
 
     @property
     def taken(self) -> list[str]:
@@ -79,12 +79,12 @@ class Safety(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return [pin_name(pin) for pin in self.pins]
 
 
-class Around(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class CommonMotorSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What every driver takes beside its own settings."""
 
-    safety: Safety | None = None
+    safety: SafetyPinSettings | None = None
 
-    def guard(self) -> SafetyPins | None:
+    def open_safety_pins(self) -> SafetyPins | None:
         """The safety pins, with the power off. Raises MotorError."""
         if self.safety is None:
             return None
@@ -113,29 +113,29 @@ RETIRED = {
 safe-stop must stop the motors with any file."""
 
 
-def split(table: Mapping[str, Any]) -> tuple[Around, dict[str, Any]]:
+def split_table(table: Mapping[str, Any]) -> tuple[CommonMotorSettings, dict[str, Any]]:
     """What goes around the driver, and the rest, which is its own. Raises MotorSettingsError."""
-    names = Around.__struct_fields__
-    around = parsed({key: value for key, value in table.items() if key in names}, Around)
+    names = CommonMotorSettings.__struct_fields__
+    around = convert({key: value for key, value in table.items() if key in names}, CommonMotorSettings)
     return around, {key: value for key, value in table.items() if key not in names and key not in RETIRED}
 
 
-def parsed(table: Mapping[str, Any], kind: type[T]) -> T:
+def convert(table: Mapping[str, Any], kind: type[T]) -> T:
     """`table` as a `kind`. Raises MotorSettingsError, one line that says where."""
     try:
         return msgspec.convert(dict(table), kind)
     except msgspec.ValidationError as error:
-        raise MotorSettingsError(f"motor settings{told(error)}") from error
+        raise MotorSettingsError(f"motor settings{format_validation_error(error)}") from error
 
 
-def told(error: msgspec.ValidationError) -> str:
+def format_validation_error(error: msgspec.ValidationError) -> str:
     """What is wrong and where, to stand after the name of the table."""
     what, _, path = str(error).partition(" - at `$")
     where = path.strip(".`")
     return f": {where}: {what}" if where else f": {what}"
 
 
-def refuse_doubles(numbers: list[int]) -> None:
+def reject_duplicates(numbers: list[int]) -> None:
     """Raises ValueError where a pin or channel has two jobs."""
     doubles = sorted({number for number in numbers if numbers.count(number) > 1})
     if doubles:

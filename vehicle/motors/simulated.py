@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from vehicle.motors import checked
+from vehicle.motors import check_throttles
 
 
 class SimulatedMotors:
@@ -33,7 +33,7 @@ class SimulatedMotors:
 
     def set(self, throttles: Sequence[float]) -> None:
         """Hold `throttles`. Raises MotorError as every driver does."""
-        self._throttles = checked(throttles, self.count)
+        self._throttles = check_throttles(throttles, self.count)
 
     def close(self) -> None:
         """Neutral and disabled; there is no hardware to let go of."""

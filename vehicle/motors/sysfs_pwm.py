@@ -13,10 +13,10 @@ from typing import Annotated, Any
 
 import msgspec
 
-from vehicle.motors import MotorError, checked, pwm_channel
+from vehicle.motors import MotorError, check_throttles, pwm_channel
 from vehicle.motors.pulses import Idle, Pulse
-from vehicle.motors.pwm_channel import Channel, exported
-from vehicle.motors.settings import Pin, pin_name, refuse_doubles
+from vehicle.motors.pwm_channel import SysfsPwmChannel, export_channel
+from vehicle.motors.settings import Pin, pin_name, reject_duplicates
 
 Number = Annotated[int, msgspec.Meta(ge=0, le=7)]
 PWM_PINS = (12, 13, 18, 19)
@@ -44,7 +44,7 @@ class ServoPwm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_fiel
     frequency: Annotated[float, msgspec.Meta(ge=40, le=400)] = 50.0
 
     def __post_init__(self) -> None:
-        self.pulse.must_fit(self.frequency)
+        self.pulse.check_period(self.frequency)
 
 
 Output = BridgePwm | ServoPwm
@@ -61,7 +61,7 @@ class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         names = [(output.device, output.channel) for output in self.outputs]
         if len(set(names)) < len(names):
             raise ValueError("a channel is used twice")
-        refuse_doubles(self.pins)
+        reject_duplicates(self.pins)
 
     @property
     def pins(self) -> list[int]:
@@ -79,48 +79,48 @@ class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return PWM_PINS
 
 
-class Bridge:
+class BridgeOutput:
     """One motor on a bridge."""
 
-    def __init__(self, channel: Channel, direction: Any) -> None:
+    def __init__(self, channel: SysfsPwmChannel, direction: Any) -> None:
         self._channel = channel
         self._direction = direction
         self._backward = False
 
-    def calm(self) -> None:
+    def set_idle(self) -> None:
         """No duty, output off."""
         self._channel.stop()
         self._channel.set_period()
 
     def start(self) -> None:
         """Duty 0, then on."""
-        self._channel.duty(0)
+        self._channel.set_duty(0)
         self._channel.start()
 
     def set(self, throttle: float) -> None:
         """The duty is 0 while the direction changes, so that no full pulse goes the wrong way."""
         if throttle != 0.0 and (throttle < 0.0) != self._backward:
-            self._channel.duty(0)
+            self._channel.set_duty(0)
             self._backward = throttle < 0.0
             self._direction.value = self._backward
-        self._channel.duty(round(abs(throttle) * self._channel.period))
+        self._channel.set_duty(round(abs(throttle) * self._channel.period))
 
     def close(self) -> None:
         """Let go of the pin."""
         self._direction.close()
 
 
-class Servo:
+class ServoOutput:
     """One motor behind an ESC, or a steering servo."""
 
-    def __init__(self, channel: Channel, pulse: Pulse, idle: Idle) -> None:
+    def __init__(self, channel: SysfsPwmChannel, pulse: Pulse, idle: Idle) -> None:
         self._channel = channel
         self._pulse = pulse
         self._idle = idle
 
-    def calm(self) -> None:
+    def set_idle(self) -> None:
         """What `idle` says where there are pulses; where there are none, none."""
-        if self._channel.running and self._idle == "neutral":
+        if self._channel.is_running and self._idle == "neutral":
             self._channel.set_period()
             self.set(0.0)
         else:
@@ -134,7 +134,7 @@ class Servo:
 
     def set(self, throttle: float) -> None:
         """The width of the pulse."""
-        self._channel.duty(round(self._pulse.width(throttle) * 1e9))
+        self._channel.set_duty(round(self._pulse.width(throttle) * 1e9))
 
     def close(self) -> None:
         """Nothing to let go of: the channel stays exported, so that its permissions stay too."""
@@ -157,13 +157,15 @@ class SysfsPwmMotors:
         root, write = root or pwm_channel.ROOT, write or pwm_channel.write_file
         self.count = len(settings.outputs)
         self.enabled = False
-        self._outputs: list[Bridge | Servo] = []
+        self._outputs: list[BridgeOutput | ServoOutput] = []
         with contextlib.ExitStack() as opened, _translated():
             for wanted in settings.outputs:
-                channel = Channel(exported(root, wanted.device, wanted.channel, write), wanted.frequency, write)
+                channel = SysfsPwmChannel(
+                    export_channel(root, wanted.device, wanted.channel, write), wanted.frequency, write
+                )
                 output = _output(wanted, channel, settings.idle, pin_factory)
                 opened.callback(output.close)
-                output.calm()
+                output.set_idle()
                 self._outputs.append(output)
             opened.pop_all()
 
@@ -180,11 +182,11 @@ class SysfsPwmMotors:
         self.enabled = False
         with _translated(), contextlib.ExitStack() as steps:
             for output in self._outputs:
-                steps.callback(output.calm)
+                steps.callback(output.set_idle)
 
     def set(self, throttles: Sequence[float]) -> None:
         """Set each output; nothing while disabled."""
-        values = checked(throttles, self.count)
+        values = check_throttles(throttles, self.count)
         if self.enabled:
             with _translated():
                 for output, value in zip(self._outputs, values, strict=True):
@@ -207,12 +209,12 @@ def _translated() -> Iterator[None]:
         raise MotorError(f"hardware PWM: {error.filename or 'sysfs'}: {error.strerror or error}") from error
 
 
-def _output(wanted: Output, channel: Channel, idle: Idle, pin_factory: Any) -> Bridge | Servo:
+def _output(wanted: Output, channel: SysfsPwmChannel, idle: Idle, pin_factory: Any) -> BridgeOutput | ServoOutput:
     match wanted:
         case ServoPwm():
-            return Servo(channel, wanted.pulse, idle)
+            return ServoOutput(channel, wanted.pulse, idle)
         case BridgePwm():
             from vehicle.motors.pins import DigitalOutputDevice, translated
 
             with translated("direction pin"):
-                return Bridge(channel, DigitalOutputDevice(wanted.direction, pin_factory=pin_factory))
+                return BridgeOutput(channel, DigitalOutputDevice(wanted.direction, pin_factory=pin_factory))

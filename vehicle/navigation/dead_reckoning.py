@@ -12,7 +12,7 @@ import math
 from vehicle.navigation.geo import Point
 
 
-class Gain:
+class AveragingGain:
     """How much of an error is taken away by the n-th of measurements that come each `dt`: a mean, settling at `time` s.
 
     What it begins with is worth `credit` measurements.
@@ -28,7 +28,7 @@ class Gain:
         return max(1.0 / self._count, dt / (self.time + dt))
 
 
-class Reckoning:
+class DeadReckoning:
     """A place, and the part of it that was driven and that no fix has replaced yet. m, rad."""
 
     def __init__(self) -> None:
@@ -40,11 +40,11 @@ class Reckoning:
         """Where we are."""
         return Point(self.north, self.east)
 
-    def put(self, place: Point) -> None:
+    def set_position(self, place: Point) -> None:
         """Count from elsewhere: it is the same place."""
         self.north, self.east = place
 
-    def step(self, way: float, yaw: float) -> None:
+    def advance(self, way: float, yaw: float) -> None:
         """Drive `way` along `yaw`."""
         north, east = way * math.cos(yaw), way * math.sin(yaw)
         self.north += north
@@ -52,18 +52,18 @@ class Reckoning:
         self._driven_north += north
         self._driven_east += east
 
-    def pull(self, north: float, east: float, gain: float) -> None:
+    def correct_position(self, north: float, east: float, gain: float) -> None:
         """A fix lies that far off and is believed by `gain`, 0..1."""
         self.north += gain * north
         self.east += gain * east
         self._driven_north *= 1.0 - gain
         self._driven_east *= 1.0 - gain
 
-    def turn(self, angle: float) -> None:
+    def correct_heading(self, angle: float) -> None:
         """It was driven with a heading that was wrong by a small `angle`."""
         self._correct(-angle * self._driven_east, angle * self._driven_north)
 
-    def stretch(self, factor: float) -> None:
+    def correct_scale(self, factor: float) -> None:
         """It was driven with wheels that were wrong by `factor`."""
         self._correct((factor - 1.0) * self._driven_north, (factor - 1.0) * self._driven_east)
 

@@ -33,7 +33,7 @@ class Estimate(NamedTuple):
     def velocity(self) -> Point:
         """m/s north and east; 0 where the speed or heading is not known."""
         yaw = self.yaw or 0.0
-        return Point(0.0, 0.0).moved(yaw, self.speed or 0.0).moved(yaw + math.pi / 2, self.sideways)
+        return Point(0.0, 0.0).offset(yaw, self.speed or 0.0).offset(yaw + math.pi / 2, self.sideways)
 
     @property
     def ground_speed(self) -> float:
@@ -41,6 +41,6 @@ class Estimate(NamedTuple):
         return math.hypot(self.speed or 0.0, self.sideways)
 
     @property
-    def globe(self) -> tuple[float, float] | None:
+    def lat_lon(self) -> tuple[float, float] | None:
         """Latitude and longitude in degrees."""
-        return None if self.origin is None else self.origin.globe(self.place)
+        return None if self.origin is None else self.origin.to_global(self.place)

@@ -18,10 +18,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from vehicle.navigation.dead_reckoning import Gain, Reckoning
+from vehicle.navigation.dead_reckoning import AveragingGain, DeadReckoning
 from vehicle.navigation.estimate import Estimate
-from vehicle.navigation.geo import Origin, Point, wrap
-from vehicle.navigation.wheel_odometry import Wheels
+from vehicle.navigation.geo import Origin, Point, wrap_angle
+from vehicle.navigation.wheel_odometry import WheelOdometry
 from vehicle.readings import Readings
 
 HEADING_TIME = 3.0
@@ -47,9 +47,9 @@ GPS_LOST = 3.0
 GPS_SAME = 1.0
 """s after which an unchanged fix counts as a new one: a receiver at rest may repeat itself."""
 FIX_3D = 3
-OUTLIER = 5.0
+OUTLIER_DISTANCE = 5.0
 """m; a fix this far off, and more than three times the accuracy, is left out ..."""
-OUTLIERS = 10
+OUTLIERS_MAX = 10
 """... but this many in a row are right and we are wrong."""
 ACCURACY_MAX = 5.0
 """m; with less the position is not good."""
@@ -57,7 +57,7 @@ DRIFT = 0.03
 """m of error for each metre by wheels."""
 BLIND_DRIFT = 0.1
 """m/s of error without wheels and GPS."""
-LONGEST_STEP = 0.5
+DT_MAX = 0.5
 """s; after a longer gap nobody knows what happened."""
 
 
@@ -67,28 +67,28 @@ class Estimator:
     def __init__(self, aside: Sequence[int] = ()) -> None:
         """`aside`: what a motion to the right gives to each wheel, of a drive that can (vehicle/drive/mixer.py, FOUR_WHEELS)."""
         self.estimate = Estimate()
-        self._wheels = Wheels(aside)
+        self._wheels = WheelOdometry(aside)
         self._at: float | None = None
         self._yaw: float | None = None
         self._bias = self._offset = 0.0
-        self._offset_gain = Gain(OFFSET_TIME)
+        self._offset_gain = AveragingGain(OFFSET_TIME)
         self._speed: float | None = None
         self._sideways = 0.0
-        self._reckoning = Reckoning()
-        self._place_gain = Gain(POSITION_TIME)
+        self._reckoning = DeadReckoning()
+        self._place_gain = AveragingGain(POSITION_TIME)
         self._origin: Origin | None = None
         self._fix: tuple[float | None, ...] = ()
         self._fix_at = -math.inf
         self._outliers = self._resets = 0
         self._drift = 0.0
 
-    def sense(self, readings: Readings, now: float) -> Estimate:
+    def update(self, readings: Readings, now: float) -> Estimate:
         """Take the readings of this cycle; numbers that cannot be are taken for missing ones."""
-        dt = 0.0 if self._at is None else max(0.0, min(LONGEST_STEP, now - self._at))
+        dt = 0.0 if self._at is None else max(0.0, min(DT_MAX, now - self._at))
         self._at = now
-        rate = sane_rate(readings)
+        rate = valid_yaw_rate(readings)
         self._turn(rate, _sane(readings.yaw, 1e6), dt)
-        wheels, sideways = self._wheels.speed(readings), self._wheels.sideways(readings)
+        wheels, sideways = self._wheels.speed(readings), self._wheels.sideways_speed(readings)
         if wheels is not None:
             self._speed = wheels
         if sideways is not None:
@@ -100,15 +100,15 @@ class Estimator:
         self.estimate = self._believed(rate, wheels, now)
         return self.estimate
 
-    def rebase(self, origin: Origin) -> None:
+    def set_origin(self, origin: Origin) -> None:
         """`origin` is 0/0 from now on, and the rover where it is on the globe. Nothing before the first fix."""
         if self._origin is not None:
-            self._reckoning.put(origin.point(*self._origin.globe(self._reckoning.place)))
+            self._reckoning.set_position(origin.to_local(*self._origin.to_global(self._reckoning.place)))
             self._origin = origin
             self._resets += 1
             self.estimate = self.estimate._replace(place=self._reckoning.place, origin=origin, resets=self._resets)
 
-    def set_bias(self, bias: float) -> bool:
+    def set_gyro_bias(self, bias: float) -> bool:
         """What the gyro says at rest, rad/s; False where that is no bias."""
         fits = abs(bias) <= BIAS_MAX
         if fits:
@@ -122,19 +122,19 @@ class Estimator:
         if rate is not None:
             self._yaw += (rate - self._bias) * dt
         if compass is not None:
-            error = wrap(compass + self._offset - self._yaw)
+            error = wrap_angle(compass + self._offset - self._yaw)
             self._yaw += error * dt / (HEADING_TIME + dt) if rate is not None else error
             if rate is not None:
                 self._learn_bias(-error * dt / (HEADING_TIME * BIAS_TIME))
-        self._yaw = wrap(self._yaw)
+        self._yaw = wrap_angle(self._yaw)
 
     def _move(self, dt: float, wheels: bool) -> None:
         if self._yaw is None or self._speed is None:
             return
         way, right = self._speed * dt, self._sideways * dt
-        self._reckoning.step(way, self._yaw)
+        self._reckoning.advance(way, self._yaw)
         if right:
-            self._reckoning.step(right, self._yaw + math.pi / 2)
+            self._reckoning.advance(right, self._yaw + math.pi / 2)
         self._drift += DRIFT * math.hypot(way, right) if wheels else BLIND_DRIFT * dt
 
     def _new_fix(self, readings: Readings, now: float) -> tuple[float, float] | None:
@@ -158,31 +158,31 @@ class Estimator:
         dt = min(GPS_SAME, now - self._fix_at)
         self._fix_at = now
         if self._origin is None:  # what was driven before the first fix stays as it is
-            self._origin = Origin(*Origin(*fix).globe(Point(-self._reckoning.north, -self._reckoning.east)))
-        error = self._origin.point(*fix)
+            self._origin = Origin(*Origin(*fix).to_global(Point(-self._reckoning.north, -self._reckoning.east)))
+        error = self._origin.to_local(*fix)
         north_off, east_off = error.north - self._reckoning.north, error.east - self._reckoning.east
         if self._is_outlier(math.hypot(north_off, east_off)):
             return
         self._place_gain.time = POSITION_TIME if wheels else WHEELLESS_TIME
         gain = self._place_gain.next(dt)
-        self._reckoning.pull(north_off, east_off, gain)
+        self._reckoning.correct_position(north_off, east_off, gain)
         self._drift *= 1.0 - gain
 
     def _is_outlier(self, distance: float) -> bool:
-        if distance <= max(OUTLIER, 3.0 * self._drift):
+        if distance <= max(OUTLIER_DISTANCE, 3.0 * self._drift):
             self._outliers = 0
             return False
         self._outliers += 1
-        if self._outliers < OUTLIERS:
+        if self._outliers < OUTLIERS_MAX:
             return True
-        self._place_gain = Gain(POSITION_TIME)  # begins with a gain of 1: the fix is believed
+        self._place_gain = AveragingGain(POSITION_TIME)  # begins with a gain of 1: the fix is believed
         self._outliers = 0
         self._resets += 1
         return False
 
     def _take_aside(self, north: float, east: float, readings: Readings) -> None:
         """Where the drive can move sideways and its wheels do not say so."""
-        if self._yaw is not None and self._wheels.sideways(readings) is None:
+        if self._yaw is not None and self._wheels.sideways_speed(readings) is None:
             across = east * math.cos(self._yaw) - north * math.sin(self._yaw)
             self._sideways = (self._sideways + across) / 2
 
@@ -197,21 +197,21 @@ class Estimator:
             self._learn_scale(along)
         course = math.atan2(east, north) - math.atan2(self._sideways, self._speed or 0.0)
         if self._yaw is None:
-            self._yaw = wrap(course)
+            self._yaw = wrap_angle(course)
             return
-        change = wrap(course - self._yaw) * self._offset_gain.next(FIX_PERIOD)
+        change = wrap_angle(course - self._yaw) * self._offset_gain.next(FIX_PERIOD)
         if compass:
-            self._offset = wrap(self._offset + change)
-            self._reckoning.turn(change)
+            self._offset = wrap_angle(self._offset + change)
+            self._reckoning.correct_heading(change)
         else:
             self._learn_bias(-change / BIAS_TIME)
-        self._yaw = wrap(self._yaw + change)
+        self._yaw = wrap_angle(self._yaw + change)
 
     def _learn_scale(self, along: float) -> None:
         speed = self._speed or 0.0
         if abs(speed) < COURSE_SPEED:
             return
-        self._reckoning.stretch(self._wheels.learn(along, speed, FIX_PERIOD))
+        self._reckoning.correct_scale(self._wheels.update_scale(along, speed, FIX_PERIOD))
 
     def _learn_bias(self, change: float) -> None:
         self._bias = max(-BIAS_MAX, min(BIAS_MAX, self._bias + change))
@@ -235,7 +235,7 @@ class Estimator:
         )
 
 
-def sane_rate(readings: Readings) -> float | None:
+def valid_yaw_rate(readings: Readings) -> float | None:
     """rad/s as the gyro says it, where that is a number that can be."""
     return _sane(readings.yaw_rate, 50.0)
 

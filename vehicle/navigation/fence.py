@@ -7,14 +7,14 @@ from collections.abc import Iterator
 
 from dialects.enums import FenceItem
 from link.services.mission.items import Items
-from vehicle.navigation.fence_area import Area
+from vehicle.navigation.fence_area import FenceArea
 from vehicle.navigation.geo import Origin, Point
 from vehicle.params import Params
 
 POLYGONS = (FenceItem.POLYGON_INCLUSION, FenceItem.POLYGON_EXCLUSION)
 CIRCLE, AREAS = 2, 4
 """Bits of FENCE_TYPE, as ArduPilot's."""
-FAR = 100.0
+BREACH_DISTANCE_MAX = 100.0
 """m outside from which on nothing drives by itself any more: that far out the position itself is in doubt."""
 
 
@@ -27,7 +27,7 @@ class Fence:
         self._params = params
         self._items: Items = ()
         """What draws its areas."""
-        self._areas: list[Area] = []
+        self._areas: list[FenceArea] = []
         self._origin: Origin | None = None
 
     @property
@@ -36,22 +36,22 @@ class Fence:
         return bool(self._params["FENCE_ENABLE"])
 
     @property
-    def there(self) -> bool:
+    def is_present(self) -> bool:
         """It counts, or areas were uploaded that would."""
         return self.enabled or bool(self._items)
 
     @property
-    def missing(self) -> str | None:
+    def unavailable_reason(self) -> str | None:
         """Why nobody may drive inside it, though it counts."""
         return f"{self.damage}, upload it again or set FENCE_ENABLE 0" if self.enabled and self.damage else None
 
     @property
-    def drawn(self) -> bool:
+    def has_boundary(self) -> bool:
         """There is a line that nobody may cross."""
         kinds = int(self._params["FENCE_TYPE"])
         return self.enabled and bool(kinds & CIRCLE or (kinds & AREAS and self._items))
 
-    def enable(self, wish: bool) -> str | None:
+    def set_enabled(self, wish: bool) -> str | None:
         """Let it count, or not. Returns why that stays as it is: the file of settings says it."""
         if wish != self.enabled and "FENCE_ENABLE" in self._params.pinned:
             return f"the file of settings has FENCE_ENABLE {int(self.enabled)}"
@@ -64,24 +64,24 @@ class Fence:
         self.damage = damage
         self._origin = None
 
-    def room(self, place: Point, origin: Origin | None, home: Point | None) -> float:
+    def distance_to_edge(self, place: Point, origin: Origin | None, home: Point | None) -> float:
         """m to the nearest edge, negative beyond it; infinite where there is none."""
-        return min((area.room(place) for area in self._in_force(origin, home)), default=math.inf)
+        return min((area.distance_to_edge(place) for area in self._in_force(origin, home)), default=math.inf)
 
-    def ahead(self, place: Point, course: float, origin: Origin | None, home: Point | None) -> float:
+    def distance_ahead(self, place: Point, course: float, origin: Origin | None, home: Point | None) -> float:
         """m to the first edge on a course; infinite where there is none."""
-        return min((area.ahead(place, course) for area in self._in_force(origin, home)), default=math.inf)
+        return min((area.distance_ahead(place, course) for area in self._in_force(origin, home)), default=math.inf)
 
-    def _in_force(self, origin: Origin | None, home: Point | None) -> Iterator[Area]:
+    def _in_force(self, origin: Origin | None, home: Point | None) -> Iterator[FenceArea]:
         if not self.enabled or origin is None:
             return
         kinds = int(self._params["FENCE_TYPE"])
         if kinds & CIRCLE and home is not None:
-            yield Area((home,), self._params["FENCE_RADIUS"], inside=True)
+            yield FenceArea((home,), self._params["FENCE_RADIUS"], inclusion=True)
         if kinds & AREAS:
             yield from self._areas_on(origin)
 
-    def _areas_on(self, origin: Origin) -> list[Area]:
+    def _areas_on(self, origin: Origin) -> list[FenceArea]:
         """In metres; reckoned once for an origin."""
         if origin != self._origin:
             self._origin = origin
@@ -89,21 +89,21 @@ class Fence:
         return self._areas
 
 
-def without_effect(items: Items) -> list[str]:
+def find_ineffective_items(items: Items) -> list[str]:
     """What a fence plan holds for others, in words: as in ArduRover, nothing drives to a return point."""
     if any(item.command == FenceItem.RETURN_POINT for item in items):
         return ["Fence: return point kept but not driven to; FENCE_ACTION says what a breach does"]
     return []
 
 
-def _areas(items: Items, origin: Origin) -> list[Area]:
+def _areas(items: Items, origin: Origin) -> list[FenceArea]:
     found, index = [], 0
     while index < len(items):
         item = items[index]
         size = int(item.params[0]) if item.command in POLYGONS else 1
-        corners = tuple(origin.point(each.latitude, each.longitude) for each in items[index : index + size])
+        corners = tuple(origin.to_local(each.latitude, each.longitude) for each in items[index : index + size])
         radius = 0.0 if item.command in POLYGONS else item.params[0]
         inside = item.command in (FenceItem.POLYGON_INCLUSION, FenceItem.CIRCLE_INCLUSION)
-        found.append(Area(corners, radius, inside))
+        found.append(FenceArea(corners, radius, inside))
         index += size
     return found

@@ -10,20 +10,20 @@ from vehicle.navigation.geo import Point
 
 
 @dataclass(frozen=True, slots=True)
-class Area:
+class FenceArea:
     """A circle (one corner and a radius) or a polygon, to stay inside or outside of."""
 
     corners: tuple[Point, ...]
     radius: float
-    inside: bool
+    inclusion: bool
     """It is where the rover may be."""
 
-    def room(self, place: Point) -> float:
+    def distance_to_edge(self, place: Point) -> float:
         """m from its edge on the right side, negative on the wrong one."""
         depth = self.radius - self.corners[0].distance(place) if self.radius else self._depth(place)
-        return depth if self.inside else -depth
+        return depth if self.inclusion else -depth
 
-    def ahead(self, place: Point, course: float) -> float:
+    def distance_ahead(self, place: Point, course: float) -> float:
         """m to its edge, straight on; infinite where that leads past it."""
         if self.radius:
             return _to_circle(self.corners[0], self.radius, place, course)

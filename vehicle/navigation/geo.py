@@ -23,7 +23,7 @@ class Point(NamedTuple):
         """rad clockwise from north, of there from here."""
         return math.atan2(other.east - self.east, other.north - self.north)
 
-    def moved(self, bearing: float, distance: float) -> Point:
+    def offset(self, bearing: float, distance: float) -> Point:
         """The point `distance` m from here."""
         return Point(self.north + distance * math.cos(bearing), self.east + distance * math.sin(bearing))
 
@@ -44,7 +44,7 @@ class Origin(NamedTuple):
     latitude: float
     longitude: float
 
-    def point(self, latitude: float, longitude: float) -> Point:
+    def to_local(self, latitude: float, longitude: float) -> Point:
         """Degrees as metres."""
         east = math.remainder(longitude - self.longitude, 360.0)
         return Point(
@@ -52,7 +52,7 @@ class Origin(NamedTuple):
             math.radians(east) * EARTH_RADIUS * math.cos(math.radians(self.latitude)),
         )
 
-    def globe(self, point: Point) -> tuple[float, float]:
+    def to_global(self, point: Point) -> tuple[float, float]:
         """Metres as latitude and longitude."""
         width = EARTH_RADIUS * max(1e-6, math.cos(math.radians(self.latitude)))
         return (
@@ -61,6 +61,6 @@ class Origin(NamedTuple):
         )
 
 
-def wrap(angle: float) -> float:
+def wrap_angle(angle: float) -> float:
     """The same direction as -pi..pi."""
     return math.remainder(angle, math.tau)

@@ -12,21 +12,21 @@ from typing import NamedTuple
 from dialects.enums import DriveType
 from vehicle.drive.mixer import clamp
 from vehicle.navigation.estimate import Estimate
-from vehicle.navigation.geo import Point, wrap
-from vehicle.navigation.speed_control import STAND, Motion
+from vehicle.navigation.geo import Point, wrap_angle
+from vehicle.navigation.speed_control import STATIONARY, DesiredMotion
 from vehicle.params import Params
 
 LOOKAHEAD_TIME = 1.0
 """s ahead on the line; with ATC_STR_ANG_P 2 the error decays with a damping of 0.7 ..."""
-LOOKAHEAD = 0.6
+LOOKAHEAD_MIN = 0.6
 """... and m at least, so that a slow rover does not snake."""
-CRAWL = 0.12
+APPROACH_SPEED_MIN = 0.12
 """m/s: the slowest approach; more than what an encoder can just see."""
-PIVOTED = math.radians(5)
+PIVOT_TOLERANCE = math.radians(5)
 """rad; a pivot ends this near its heading."""
 GRAVITY = 9.81
 """m/s/s"""
-STOPPED_SHORT = 0.15
+STOP_RADIUS = 0.15
 """m from a point where the rover is to stand: closer than its own length, and than the GPS knows."""
 
 
@@ -41,7 +41,7 @@ class Leg(NamedTuple):
         """rad"""
         return self.start.bearing(self.end)
 
-    def beside(self, place: Point) -> tuple[float, float]:
+    def along_and_cross_track(self, place: Point) -> tuple[float, float]:
         """m still to go along the line, and m to the right of it."""
         bearing = self.bearing
         north, east = self.end.north - place.north, self.end.east - place.east
@@ -49,7 +49,7 @@ class Leg(NamedTuple):
         return along, north * math.sin(bearing) - east * math.cos(bearing)
 
 
-class Guide:
+class PathFollower:
     """One path at a time; `begin` with each new one."""
 
     def __init__(self, params: Params, kind: DriveType) -> None:
@@ -63,77 +63,77 @@ class Guide:
         self._pivots = kind is not DriveType.ACKERMANN
         self._pivoting = False
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Another path: a pivot that was under way is not wanted any more."""
         self._pivoting = False
         self.leg = self.course = None
 
-    def follow(self, leg: Leg, estimate: Estimate, speed: float, end_speed: float) -> Motion:
+    def follow_leg(self, leg: Leg, estimate: Estimate, speed: float, end_speed: float) -> DesiredMotion:
         """Along a leg with up to `speed` m/s, and `end_speed` at its end."""
         self.leg = leg
-        remaining, beside = leg.beside(estimate.place)
-        ahead = max(LOOKAHEAD, LOOKAHEAD_TIME * abs(estimate.speed or 0.0))
+        remaining, beside = leg.along_and_cross_track(estimate.place)
+        ahead = max(LOOKAHEAD_MIN, LOOKAHEAD_TIME * abs(estimate.speed or 0.0))
         braking = math.sqrt(end_speed**2 + 2.0 * self._params["ATC_DECEL_MAX"] * max(0.0, remaining))
         course = leg.bearing + math.atan2(-beside, ahead)
-        return self.head(course, estimate, min(speed, max(CRAWL, braking)))
+        return self.steer_course(course, estimate, min(speed, max(APPROACH_SPEED_MIN, braking)))
 
-    def orbit(self, centre: Point, radius: float, estimate: Estimate, speed: float) -> Motion:
+    def orbit(self, centre: Point, radius: float, estimate: Estimate, speed: float) -> DesiredMotion:
         """Clockwise around `centre`; counter-clockwise where the radius is negative."""
         side = math.copysign(1.0, radius)
         out = centre.distance(estimate.place) - abs(radius)
-        ahead = max(LOOKAHEAD, LOOKAHEAD_TIME * abs(estimate.speed or 0.0))
+        ahead = max(LOOKAHEAD_MIN, LOOKAHEAD_TIME * abs(estimate.speed or 0.0))
         tangent = centre.bearing(estimate.place) + side * math.pi / 2
         inward = side * math.atan2(out, ahead)
-        motion = self.head(tangent + inward, estimate, min(speed, math.sqrt(self._grip * abs(radius))))
-        turning = side * motion.speed / max(abs(radius), LOOKAHEAD)  # the circle itself, besides the error
+        motion = self.steer_course(tangent + inward, estimate, min(speed, math.sqrt(self._grip * abs(radius))))
+        turning = side * motion.speed / max(abs(radius), LOOKAHEAD_MIN)  # the circle itself, besides the error
         if self._pivoting:
             return motion
-        return Motion(motion.speed, self.limited(motion.turn_rate + turning, motion.speed, estimate))
+        return DesiredMotion(motion.speed, self.limit_turn_rate(motion.turn_rate + turning, motion.speed, estimate))
 
-    def head(self, course: float, estimate: Estimate, speed: float) -> Motion:
+    def steer_course(self, course: float, estimate: Estimate, speed: float) -> DesiredMotion:
         """On a course, at up to `speed` m/s as far as the course is ahead."""
         self.course = course
         nose = (estimate.yaw or 0.0) + (math.pi if self.reverse else 0.0)
-        error = wrap(course - nose)
+        error = wrap_angle(course - nose)
         if self._must_pivot(error):
             rate = math.radians(self._params["WP_PIVOT_RATE"])
-            return Motion(0.0, clamp(self._params["ATC_STR_ANG_P"] * error, rate))
-        slowed = max(CRAWL, speed * math.cos(error)) if abs(error) < math.pi / 2 else CRAWL
+            return DesiredMotion(0.0, clamp(self._params["ATC_STR_ANG_P"] * error, rate))
+        slowed = max(APPROACH_SPEED_MIN, speed * math.cos(error)) if abs(error) < math.pi / 2 else APPROACH_SPEED_MIN
         along = min(speed, slowed)
         motion = -along if self.reverse else along
-        return Motion(motion, self.limited(self._params["ATC_STR_ANG_P"] * error, motion, estimate))
+        return DesiredMotion(motion, self.limit_turn_rate(self._params["ATC_STR_ANG_P"] * error, motion, estimate))
 
-    def steer(self, heading: float, estimate: Estimate, speed: float) -> Motion:
+    def steer_heading(self, heading: float, estimate: Estimate, speed: float) -> DesiredMotion:
         """Nose on a heading, forward or, with a negative speed, backward; stops for a sharp turn where it can pivot."""
         self.course = heading
-        error = wrap(heading - (estimate.yaw or 0.0))
+        error = wrap_angle(heading - (estimate.yaw or 0.0))
         if self._must_pivot(error):
             return self.pivot(heading, estimate)
-        return Motion(speed, self.limited(self._params["ATC_STR_ANG_P"] * error, speed, estimate))
+        return DesiredMotion(speed, self.limit_turn_rate(self._params["ATC_STR_ANG_P"] * error, speed, estimate))
 
-    def pivot(self, heading: float, estimate: Estimate) -> Motion:
+    def pivot(self, heading: float, estimate: Estimate) -> DesiredMotion:
         """Turn on the spot to a heading; STAND once there, and where the wheels cannot do it."""
-        error = wrap(heading - (estimate.yaw or 0.0))
-        if not self._pivots or abs(error) < PIVOTED:
-            return STAND
+        error = wrap_angle(heading - (estimate.yaw or 0.0))
+        if not self._pivots or abs(error) < PIVOT_TOLERANCE:
+            return STATIONARY
         rate = math.radians(self._params["WP_PIVOT_RATE"])
-        return Motion(0.0, clamp(self._params["ATC_STR_ANG_P"] * error, rate))
+        return DesiredMotion(0.0, clamp(self._params["ATC_STR_ANG_P"] * error, rate))
 
     def corner_speed(self, angle: float, speed: float) -> float:
         """m/s at which a corner of `angle` rad is taken."""
         if abs(angle) > self._pivot_angle:
-            return 0.0 if self._pivots else CRAWL
-        return max(CRAWL, speed * math.cos(angle))
+            return 0.0 if self._pivots else APPROACH_SPEED_MIN
+        return max(APPROACH_SPEED_MIN, speed * math.cos(angle))
 
     @property
     def _pivot_angle(self) -> float:
         return math.radians(self._params["WP_PIVOT_ANGLE"])
 
     def _must_pivot(self, error: float) -> bool:
-        self._pivoting = self._pivots and abs(error) > (PIVOTED if self._pivoting else self._pivot_angle)
+        self._pivoting = self._pivots and abs(error) > (PIVOT_TOLERANCE if self._pivoting else self._pivot_angle)
         return self._pivoting
 
-    def limited(self, rate: float, speed: float, estimate: Estimate) -> float:
+    def limit_turn_rate(self, rate: float, speed: float, estimate: Estimate) -> float:
         """A turn rate, cut to ATC_STR_RAT_MAX and to what ATC_TURN_MAX_G allows at this speed."""
         fastest = max(abs(speed), abs(estimate.speed or 0.0))
         largest = math.radians(self._params["ATC_STR_RAT_MAX"])
@@ -145,6 +145,6 @@ class Guide:
         return self._params["ATC_TURN_MAX_G"] * GRAVITY
 
 
-def arrived(leg: Leg, place: Point, radius: float) -> bool:
+def has_arrived(leg: Leg, place: Point, radius: float) -> bool:
     """Within `radius` of the end, or past it."""
-    return leg.end.distance(place) <= radius or leg.beside(place)[0] <= 0.0
+    return leg.end.distance(place) <= radius or leg.along_and_cross_track(place)[0] <= 0.0

@@ -10,18 +10,18 @@ from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point
 from vehicle.params import Params
 
-KM = 1000.0
+METERS_PER_KM = 1000.0
 
 
-class Haven(NamedTuple):
+class ReturnPoint(NamedTuple):
     """A place to return to."""
 
     point: Point
-    words: str
+    name: str
     """As the driver reads it."""
 
 
-class Havens:
+class ReturnPoints:
     """Home and the rally points."""
 
     def __init__(self, params: Params, home: Callable[[], Point | None], breach: Callable[[Point], float]) -> None:
@@ -35,24 +35,24 @@ class Havens:
         """Other rally points; they have passed the rules of vehicle/autonomy/mission/rules.py."""
         self._items = items
 
-    def best(self, estimate: Estimate) -> Haven | None:
+    def nearest(self, estimate: Estimate) -> ReturnPoint | None:
         """The nearest from here; None where there is no home and no rally point.
 
         Home counts where RALLY_INCL_HOME says so, and where no rally point is within RALLY_LIMIT_KM (0: any distance).
         """
         home, rally = self._home(), self._nearest_rally(estimate)
         if home is None or rally is None:
-            return rally if home is None else Haven(home, "home")
+            return rally if home is None else ReturnPoint(home, "home")
         nearer = estimate.place.distance(home) <= estimate.place.distance(rally.point)
-        return Haven(home, "home") if nearer and self._params["RALLY_INCL_HOME"] else rally
+        return ReturnPoint(home, "home") if nearer and self._params["RALLY_INCL_HOME"] else rally
 
-    def _nearest_rally(self, estimate: Estimate) -> Haven | None:
+    def _nearest_rally(self, estimate: Estimate) -> ReturnPoint | None:
         if estimate.origin is None:
             return None
-        points = [estimate.origin.point(item.latitude, item.longitude) for item in self._items]
+        points = [estimate.origin.to_local(item.latitude, item.longitude) for item in self._items]
         within = [point for point in points if not self._breach(point)]
         point = min(within, key=estimate.place.distance, default=None)
-        limit = self._params["RALLY_LIMIT_KM"] * KM
+        limit = self._params["RALLY_LIMIT_KM"] * METERS_PER_KM
         if point is None or (limit and estimate.place.distance(point) > limit):
             return None
-        return Haven(point, f"rally point {points.index(point)}")
+        return ReturnPoint(point, f"rally point {points.index(point)}")

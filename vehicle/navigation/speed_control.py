@@ -14,9 +14,9 @@ from vehicle.drive.mixer import clamp
 from vehicle.navigation.estimate import Estimate
 from vehicle.params import Params
 
-TRIM_MAX = 0.5
+INTEGRAL_MAX = 0.5
 """Largest share of full throttle or steering that the integrals may take: a rover held fast must not wind up."""
-SLOW = 0.2
+STEERING_SPEED_MIN = 0.2
 """m/s; wheels that steer turn nothing at rest, so their angle is reckoned for this speed at least."""
 
 
@@ -24,17 +24,17 @@ LONGEST_STEP = 0.1
 """s; controllers reckon with no longer cycle than the one that zeroes the motors."""
 
 
-class Motion(NamedTuple):
+class DesiredMotion(NamedTuple):
     """What is wanted: m/s along the nose, and rad/s clockwise."""
 
     speed: float
     turn_rate: float
 
 
-STAND = Motion(0.0, 0.0)
+STATIONARY = DesiredMotion(0.0, 0.0)
 
 
-class Pilot:
+class SpeedTurnController:
     """The two controllers. `step` each cycle while it drives, `reset` when it does not."""
 
     def __init__(self, params: Params, kind: DriveType) -> None:
@@ -48,16 +48,16 @@ class Pilot:
         """Forget ramps and integrals."""
         self._speed = self._speed_trim = self._turn_trim = 0.0
 
-    def step(self, wanted: Motion, estimate: Estimate, now: float) -> tuple[float, float]:
+    def step(self, wanted: DesiredMotion, estimate: Estimate, now: float) -> tuple[float, float]:
         """Throttle and steering, -1..1."""
         dt = self._passed(now)
         throttle = self._throttle(wanted.speed, estimate.speed, dt)
-        if wanted == STAND:
+        if wanted == STATIONARY:
             self._turn_trim = 0.0
             return throttle, 0.0
         return throttle, self._steering(wanted.turn_rate, estimate, dt)
 
-    def turn(self, rate: float, estimate: Estimate, now: float) -> float:
+    def steering_for_rate(self, rate: float, estimate: Estimate, now: float) -> float:
         """Steering for a turn rate, where the throttle is somebody else's."""
         return self._steering(rate, estimate, self._passed(now))
 
@@ -73,7 +73,7 @@ class Pilot:
             error = rate - measured
             flip = -1.0 if self._kind is DriveType.ACKERMANN and speed < 0.0 else 1.0
             if abs(steering) < 1.0:
-                self._turn_trim = clamp(self._turn_trim + params["ATC_STR_RAT_I"] * error * dt, TRIM_MAX)
+                self._turn_trim = clamp(self._turn_trim + params["ATC_STR_RAT_I"] * error * dt, INTEGRAL_MAX)
             steering += flip * (params["ATC_STR_RAT_P"] * error + self._turn_trim)
         return clamp(steering, 1.0)
 
@@ -81,7 +81,7 @@ class Pilot:
         params = self._params
         if self._kind is not DriveType.ACKERMANN:
             return clamp(params["ATC_STR_RAT_FF"] * rate, 1.0)
-        reckoned = math.copysign(max(abs(speed), SLOW), speed)
+        reckoned = math.copysign(max(abs(speed), STEERING_SPEED_MIN), speed)
         full = math.atan(params["WHEELBASE"] / params["TURN_RADIUS"])
         return clamp(math.atan(rate * params["WHEELBASE"] / reckoned) / full, 1.0)
 
@@ -98,7 +98,7 @@ class Pilot:
         if measured is not None:
             error = self._speed - measured
             if abs(throttle) < 1.0:
-                self._speed_trim = clamp(self._speed_trim + params["ATC_SPEED_I"] * error * dt, TRIM_MAX)
+                self._speed_trim = clamp(self._speed_trim + params["ATC_SPEED_I"] * error * dt, INTEGRAL_MAX)
             throttle += params["ATC_SPEED_P"] * error + self._speed_trim
         return clamp(throttle, 1.0)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from vehicle.navigation.dead_reckoning import Gain
+from vehicle.navigation.dead_reckoning import AveragingGain
 from vehicle.readings import Readings
 
 SCALE_TIME = 120.0
@@ -17,20 +17,20 @@ FASTEST = 50.0
 """m/s; more is no speed of a rover's wheel."""
 
 
-class Wheels:
+class WheelOdometry:
     """Readings in, m/s out."""
 
     def __init__(self, aside: Sequence[float] = ()) -> None:
         """`aside`: what a motion to the right gives to each wheel, of a drive that can (vehicle/drive/mixer.py, FOUR_WHEELS)."""
         self._aside = tuple(aside)
         self._scale = 1.0
-        self._gain = Gain(SCALE_TIME, SCALE_CREDIT)
+        self._gain = AveragingGain(SCALE_TIME, SCALE_CREDIT)
 
     def speed(self, readings: Readings) -> float | None:
         """Along the nose; None where it is not measured."""
         return self._sane(readings.speed)
 
-    def sideways(self, readings: Readings) -> float | None:
+    def sideways_speed(self, readings: Readings) -> float | None:
         """To the right; None where it is not measured: that takes an encoder on each wheel."""
         if not self._aside:
             return 0.0
@@ -39,7 +39,7 @@ class Wheels:
             return None
         return self._sane(sum(wheel * part for wheel, part in zip(wheels, self._aside, strict=True)) / len(wheels))
 
-    def learn(self, along: float, speed: float, period: float) -> float:
+    def update_scale(self, along: float, speed: float, period: float) -> float:
         """GPS says `along` where the wheels say `speed`, once each `period` s. The factor of their new scale."""
         before = self._scale
         scale = before + (along - speed) / speed * before * self._gain.next(period)

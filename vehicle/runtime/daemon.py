@@ -16,26 +16,26 @@ from collections.abc import Sequence
 
 from dialects.enums import Severity
 from link.endpoint import EndpointError
-from link.protocol.log_tap import Tape
+from link.protocol.log_tap import LogTap
 from link.runner import Runner, open_links
-from link.runtime.command_line import MISTAKE
+from link.runtime.command_line import USAGE_ERROR
 from link.runtime.event_loop import run_loop, running_loop
 from link.transport.transport import LinkError
 from vehicle.commands.dispatch import COMPONENT
-from vehicle.commands.inbound import HEARD
-from vehicle.config.run_settings import Settings, SettingsError
-from vehicle.control_loop import Machine
+from vehicle.commands.inbound import INBOUND_IDS
+from vehicle.config.run_settings import RunSettings, SettingsError
+from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError, UnknownDriverError
 from vehicle.params import ParamError
 from vehicle.rover import Rover
-from vehicle.runtime.factory import build, params_of, rack_of, recorder_of
-from vehicle.runtime.host_info import HostMeter, uid_of
-from vehicle.runtime.lock import state_lock
-from vehicle.runtime.shutdown import Cycles, Ending
+from vehicle.runtime.factory import build_accessories, build_control_loop, build_params, build_recorder
+from vehicle.runtime.host_info import HostMonitor, read_uid
+from vehicle.runtime.lock import lock_state_folder
+from vehicle.runtime.shutdown import CycleObserver, Shutdown
 from vehicle.runtime.systemd import Notifier
 from vehicle.storage.param_store import ParamStore
 from vehicle.storage.plan_store import PlanStore
-from vehicle.telemetry.host import Host
+from vehicle.telemetry.host import HostInfo
 
 log = logging.getLogger(__name__)
 
@@ -62,13 +62,13 @@ yet at boot, a port that a program still has.
 """
 
 
-def run(settings: Settings) -> int:
+def run(settings: RunSettings) -> int:
     """Run until asked to stop; the exit code. What goes wrong becomes one line of the log."""
     try:
         return run_loop(_serve(settings))
     except (SettingsError, EndpointError, ParamError, UnknownDriverError) as error:
         log.error("%s", error)
-        return MISTAKE
+        return USAGE_ERROR
     except LinkError as error:
         log.error("%s", error)
         return FAULT
@@ -92,14 +92,14 @@ def _journal(severity: Severity, text: str) -> None:
     log.log(LEVELS[severity], "%s", text)
 
 
-async def _serve(settings: Settings) -> int:
+async def _serve(settings: RunSettings) -> int:
     loop = running_loop()
-    now, host = loop.time(), Host(uid=uid_of())
+    now, host = loop.time(), HostInfo(uid=read_uid())
     with contextlib.ExitStack() as opened:
         if settings.state is not None:
-            opened.enter_context(state_lock(settings.state))
+            opened.enter_context(lock_state_folder(settings.state))
         keeper = None if settings.state is None else ParamStore(settings.state)
-        params = params_of(settings, keeper)
+        params = build_params(settings, keeper)
         if keeper is not None:
             opened.callback(keeper.close)
         plans = None if settings.state is None else PlanStore(settings.state)
@@ -110,8 +110,8 @@ async def _serve(settings: Settings) -> int:
         notifier = Notifier()
         opened.callback(notifier.close)
         system = int(params["MAV_SYSID"])
-        recorder = recorder_of(settings, system, opened)
-        rack = rack_of(settings, params)
+        recorder = build_recorder(settings, system, opened)
+        rack = build_accessories(settings, params)
         rover = Rover(
             params,
             now=now,
@@ -122,32 +122,32 @@ async def _serve(settings: Settings) -> int:
             told=_journal,
             rack=rack,
         )
-        meter = HostMeter(host, lambda: loop.waited, time.time, now)
-        cycles = Cycles(rover, notifier, meter)
-        machine = build(settings, params, rover, opened, cycles.completed, rack)
+        meter = HostMonitor(host, lambda: loop.idle_time, time.time, now)
+        cycles = CycleObserver(rover, notifier, meter)
+        machine = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
         tape = recorder.tape if recorder else None
         try:
             return await _drive(machine, settings.endpoints, system, notifier, cycles, tape)
         except BaseException as error:
-            machine.abandon(error, loop.time())
+            machine.abort(error, loop.time())
             raise
         finally:
             machine.close()
 
 
 async def _drive(
-    machine: Machine,
+    machine: ControlLoop,
     endpoints: Sequence[str],
     system: int,
     notifier: Notifier,
-    cycles: Cycles,
-    tape: Tape | None,
+    cycles: CycleObserver,
+    tape: LogTap | None,
 ) -> int:
-    links = open_links(endpoints, system=system, component=COMPONENT, wanted=HEARD)
+    links = open_links(endpoints, system=system, component=COMPONENT, wanted=INBOUND_IDS)
     runner = Runner(machine, links, period=PERIOD, tape=tape)
-    ending = Ending(machine, runner, notifier.stopping)
-    cycles.ending = ending
-    ending.listen(asyncio.get_running_loop())
+    ending = Shutdown(machine, runner, notifier.stopping)
+    cycles.shutdown = ending
+    ending.install_handlers(asyncio.get_running_loop())
     gc.collect()
     gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
     status = f"system {system}, {', '.join(endpoints)}"

@@ -11,45 +11,45 @@ from dataclasses import replace
 from msgspec import to_builtins
 
 from dialects.enums import DriveType
-from vehicle.accessories.accessory_set import Rack
-from vehicle.accessories.output import Output, Pulses
-from vehicle.accessories.settings import outputs_of
+from vehicle.accessories.accessory_set import AccessorySet
+from vehicle.accessories.output import AccessorySpec, PulseRange
+from vehicle.accessories.settings import build_specs
 from vehicle.accessories.simulated import SimulatedAccessory
 from vehicle.commands.dispatch import COMPONENT
-from vehicle.config.conflicts import clashes, motors_among
-from vehicle.config.run_settings import Settings, SettingsError, Simulation
-from vehicle.control_loop import Machine
+from vehicle.config.conflicts import find_conflicts, find_motor_conflicts
+from vehicle.config.run_settings import RunSettings, SettingsError, Simulation
+from vehicle.control_loop import ControlLoop
 from vehicle.drive.mixer import MIXERS
-from vehicle.motors import USUAL_PARAMS, Motors, open_motors, proof, stop_input
+from vehicle.motors import PROFILE_PARAMS, Motors, arming_check, estop_reader, open_motors
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
-from vehicle.params import Params, in_force
+from vehicle.params import Params, merge_params
 from vehicle.rover import Rover
 from vehicle.runtime.lock import MotorLock
 from vehicle.sensors import NoSensors, Sensors
 from vehicle.sensors.suite import open_sensors
 from vehicle.sim.battery import Battery
 from vehicle.sim.body import SimulatedBody
-from vehicle.sim.chassis import CHASSIS, Frame
-from vehicle.sim.truth import WatchedBody
-from vehicle.storage.motor_copy import copied
+from vehicle.sim.chassis import CHASSIS, ChassisDimensions
+from vehicle.sim.truth import RecordedBody
+from vehicle.storage.motor_copy import settings_copy
 from vehicle.storage.param_store import ParamStore
 from vehicle.storage.recorder import VehicleRecorder
 
 log = logging.getLogger(__name__)
 
-SIMULATED = (
-    *(Output("relay", number, SimulatedAccessory) for number in (0, 1)),
-    *(Output("servo", number, SimulatedAccessory, pulses=Pulses(1000, 1500, 2000)) for number in (9, 10)),
+SIMULATED_ACCESSORIES = (
+    *(AccessorySpec("relay", number, SimulatedAccessory) for number in (0, 1)),
+    *(AccessorySpec("servo", number, SimulatedAccessory, pulses=PulseRange(1000, 1500, 2000)) for number in (9, 10)),
 )
 """Accessories of a simulation that was told of none: so that there are some to try."""
 
 
-def params_of(settings: Settings, keeper: ParamStore | None) -> Params:
+def build_params(settings: RunSettings, keeper: ParamStore | None) -> Params:
     """Defaults, a known car's, what was kept, the file of settings, this run: the later wins. Raises ParamError."""
-    usual = {} if settings.simulation else USUAL_PARAMS.get(settings.motors["driver"], {})
+    usual = {} if settings.simulation else PROFILE_PARAMS.get(settings.motors["driver"], {})
     given, kept = {**settings.pinned, **settings.params}, keeper.values if keeper else {}
-    params, left_out = in_force(given, kept=kept, usual=usual, pinned=settings.pinned.keys(), run=settings.params)
+    params, left_out = merge_params(given, kept=kept, usual=usual, pinned=settings.pinned.keys(), run=settings.params)
     for problem in left_out:
         log.warning("a kept parameter is not used: %s", problem)
     params.damage = keeper.damage if keeper else None
@@ -59,21 +59,21 @@ def params_of(settings: Settings, keeper: ParamStore | None) -> Params:
     return params
 
 
-def rack_of(settings: Settings, params: Params) -> Rack:
+def build_accessories(settings: RunSettings, params: Params) -> AccessorySet:
     """The accessories, not open yet. Raises SettingsError where one of them might be a motor."""
-    outputs = outputs_of(settings.accessories)
-    problems = motors_among(outputs, DriveType(int(params["DRIVE_TYPE"])))
+    outputs = build_specs(settings.accessories)
+    problems = find_motor_conflicts(outputs, DriveType(int(params["DRIVE_TYPE"])))
     if settings.simulation is None:  # the file was right with the motors that it names, which need not be these
-        problems += clashes({"motors": settings.motors, "accessories": to_builtins(settings.accessories)})
+        problems += find_conflicts({"motors": settings.motors, "accessories": to_builtins(settings.accessories)})
     if problems:
         raise SettingsError(problems[0])
     if settings.simulation is not None:
         outputs = [replace(output, make=SimulatedAccessory) for output in outputs]
-        return Rack(outputs or SIMULATED)
-    return Rack(outputs)
+        return AccessorySet(outputs or SIMULATED_ACCESSORIES)
+    return AccessorySet(outputs)
 
 
-def recorder_of(settings: Settings, system: int, opened: contextlib.ExitStack) -> VehicleRecorder | None:
+def build_recorder(settings: RunSettings, system: int, opened: contextlib.ExitStack) -> VehicleRecorder | None:
     if settings.logs is None:
         return None
     recorder = VehicleRecorder(settings.logs, system=system, component=COMPONENT)
@@ -81,14 +81,14 @@ def recorder_of(settings: Settings, system: int, opened: contextlib.ExitStack) -
     return recorder
 
 
-def build(
-    settings: Settings,
+def build_control_loop(
+    settings: RunSettings,
     params: Params,
     rover: Rover,
     opened: contextlib.ExitStack,
     completed: Callable[[float], None],
-    rack: Rack,
-) -> Machine:
+    rack: AccessorySet,
+) -> ControlLoop:
     """The rover in its body, with its accessories open; what must be closed after the motors is in `opened`. Raises
     MotorError, SettingsError."""
     if settings.simulation is None:
@@ -97,8 +97,8 @@ def build(
         motors, sensors = _simulated_body(settings.simulation, params)
     try:
         logged = _logged(motors, settings.motor_log)
-        prove = proof(motors)
-        machine = Machine(rover, logged, sensors, stop_input=stop_input(motors), prove=prove, completed=completed)
+        prove = arming_check(motors)
+        machine = ControlLoop(rover, logged, sensors, stop_input=estop_reader(motors), prove=prove, completed=completed)
         opened.callback(rack.close)
         rack.open()
         return machine
@@ -107,11 +107,11 @@ def build(
         raise
 
 
-def _body(settings: Settings, opened: contextlib.ExitStack) -> tuple[Motors, Sensors]:
+def _body(settings: RunSettings, opened: contextlib.ExitStack) -> tuple[Motors, Sensors]:
     opened.callback(MotorLock(settings.motors).close)
     accessories = {name: tables for name, tables in to_builtins(settings.accessories).items() if tables}
     parts = {"motors": dict(settings.motors), "accessories": accessories}
-    opened.enter_context(copied(parts, settings.config))
+    opened.enter_context(settings_copy(parts, settings.config))
     own = {key: value for key, value in settings.motors.items() if key != "driver"}
     motors = open_motors(settings.motors["driver"], own)
     if settings.sensors is None:
@@ -128,7 +128,9 @@ def _body(settings: Settings, opened: contextlib.ExitStack) -> tuple[Motors, Sen
 def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sensors]:
     kind = DriveType(int(params["DRIVE_TYPE"]))
     motors = SimulatedMotors(len(MIXERS[kind].motors))
-    frame = Frame(top_speed=params["SPEED_MAX"], track_width=params["TRACK_WIDTH"], wheelbase=params["WHEELBASE"])
+    frame = ChassisDimensions(
+        top_speed=params["SPEED_MAX"], track_width=params["TRACK_WIDTH"], wheelbase=params["WHEELBASE"]
+    )
     body = SimulatedBody(
         lambda: motors.outputs,
         chassis=CHASSIS[kind](frame),
@@ -140,7 +142,7 @@ def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sen
 
 
 def _watched(body: SimulatedBody, path: str | None) -> Sensors:
-    return body if path is None else WatchedBody(body, _lines("truth", path), time.monotonic_ns)
+    return body if path is None else RecordedBody(body, _lines("truth", path), time.monotonic_ns)
 
 
 def _logged(motors: Motors, path: str | None) -> Motors:

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from vehicle.telemetry.host import Host
+from vehicle.telemetry.host import HostInfo
 
 APPLICATION = bytes.fromhex("6d41a9f2c07b4c1e9d5be0a1187f3c52")
 """Ours alone, made by chance; it never changes, or every vehicle would be another one."""
@@ -17,7 +17,7 @@ PERIOD = 1.0
 """s between two looks."""
 
 
-def uid_of(root: Path = Path("/")) -> bytes:
+def read_uid(root: Path = Path("/")) -> bytes:
     """16 bytes that stay the same on this computer, empty where it has no id. `root` is for tests.
 
     /etc/machine-id is to be kept to oneself (its manual page): what is told is its keyed hash, made as
@@ -33,10 +33,12 @@ def uid_of(root: Path = Path("/")) -> bytes:
     return bytes(uid)
 
 
-class HostMeter:
+class HostMonitor:
     """Keeps what changes of a Host: its load and its epoch."""
 
-    def __init__(self, host: Host, waited: Callable[[], float], wall_clock: Callable[[], float], now: float) -> None:
+    def __init__(
+        self, host: HostInfo, waited: Callable[[], float], wall_clock: Callable[[], float], now: float
+    ) -> None:
         """`waited`: s that the loop has had nothing to do, so far; `wall_clock`: Unix time, s."""
         self._host = host
         self._waited = waited
@@ -44,7 +46,7 @@ class HostMeter:
         self._before = (now, waited())
         host.epoch = wall_clock() - now
 
-    def look(self, now: float) -> None:
+    def update(self, now: float) -> None:
         """Called in each control cycle."""
         at, waited = self._before
         if now - at < PERIOD:

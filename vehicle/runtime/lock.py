@@ -68,7 +68,7 @@ def _name(motors: Mapping[str, Any]) -> str | None:
 
 
 @contextlib.contextmanager
-def state_lock(folder: Path) -> Iterator[None]:
+def lock_state_folder(folder: Path) -> Iterator[None]:
     """Hold `folder`, which is made where it is missing, to the end. Raises SettingsError where another vehicle does.
 
     One that cannot be made or opened is no matter here: whoever writes into it says so.

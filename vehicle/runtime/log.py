@@ -33,7 +33,7 @@ class _Brief(logging.Formatter):
     }
 
     def format(self, record: logging.LogRecord) -> str:
-        mark = journald.mark(self.SEVERITIES.get(record.levelno, journald.INFO))
+        mark = journald.priority_prefix(self.SEVERITIES.get(record.levelno, journald.INFO))
         words = " ".join(record.getMessage().split())
         return f"{mark}vehicle: " + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in words)
 
@@ -53,7 +53,7 @@ class _Queued(logging.Handler):
             return  # losing the newest line is the rule above
 
 
-class Log:
+class DaemonLog:
     """The running log. Make one, `close` it last."""
 
     def __init__(self, path: str | None = None, *, verbose: bool = False) -> None:

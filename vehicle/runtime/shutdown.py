@@ -8,11 +8,11 @@ import signal
 from collections.abc import Callable
 
 from link.runner import Runner
-from vehicle.commands.reboot import Leave
-from vehicle.control_loop import Machine
+from vehicle.commands.reboot import RebootRequest
+from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError
 from vehicle.rover import Rover
-from vehicle.runtime.host_info import HostMeter
+from vehicle.runtime.host_info import HostMonitor
 from vehicle.runtime.systemd import Notifier
 
 log = logging.getLogger(__name__)
@@ -24,10 +24,10 @@ SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Asked to stop: by the service manager, by Ctrl-C, by a terminal that was closed."""
 
 
-class Ending:
+class Shutdown:
     """How the run ends from outside the cores: asked by a signal, or by a fault in a callback of the loop."""
 
-    def __init__(self, machine: Machine, runner: Runner, stopping: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, machine: ControlLoop, runner: Runner, stopping: Callable[[], None] = lambda: None) -> None:
         """`stopping` is called once the motors stand."""
         self._stopping = stopping
         self._machine = machine
@@ -36,7 +36,7 @@ class Ending:
         self._fault: Exception | None = None
         self._code = STOPPED
 
-    def listen(self, loop: asyncio.AbstractEventLoop) -> None:
+    def install_handlers(self, loop: asyncio.AbstractEventLoop) -> None:
         """Take signals and what callbacks raise."""
         for number in SIGNALS:
             loop.add_signal_handler(number, self._end, f"stopped by {number.name}, motors neutral")
@@ -50,11 +50,11 @@ class Ending:
         log.info("%s", self._reason)
         return self._code
 
-    def leave(self, leave: Leave) -> None:
+    def handle_reboot_request(self, leave: RebootRequest) -> None:
         """A ground station asked for it."""
         if self._reason is None:
             self._code = int(leave)
-        self._end(f"{leave.words} as a ground station asked, motors neutral")
+        self._end(f"{leave.label} as a ground station asked, motors neutral")
 
     def _end(self, reason: str, fault: Exception | None = None, message: str = "") -> None:
         """The same order as everywhere: motors, last messages (Runner.run sends them), end."""
@@ -70,20 +70,20 @@ class Ending:
         self._runner.stop()
 
 
-class Cycles:
+class CycleObserver:
     """What follows from a completed control cycle: the watchdog is fed, the host is looked at, and a wish to leave is
     heard."""
 
-    def __init__(self, rover: Rover, notifier: Notifier, meter: HostMeter) -> None:
-        self.ending: Ending | None = None
+    def __init__(self, rover: Rover, notifier: Notifier, meter: HostMonitor) -> None:
+        self.shutdown: Shutdown | None = None
         self._rover = rover
         self._notifier = notifier
         self._meter = meter
 
-    def completed(self, now: float) -> None:
+    def handle_cycle(self, now: float) -> None:
         """One more."""
         self._notifier.alive(now)
-        self._meter.look(now)
-        leave = self._rover.leaving(now)
-        if leave is not None and self.ending is not None:
-            self.ending.leave(leave)
+        self._meter.update(now)
+        leave = self._rover.reboot_request(now)
+        if leave is not None and self.shutdown is not None:
+            self.shutdown.handle_reboot_request(leave)

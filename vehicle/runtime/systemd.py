@@ -12,7 +12,7 @@ import os
 import socket
 from collections.abc import Mapping
 
-OFTEN = 4
+WATCHDOG_DIVISOR = 4
 """Times in a watchdog's time that it hears from a healthy daemon: with 1 s, each quarter, though a cycle is 0.02 s."""
 
 
@@ -21,22 +21,22 @@ class Notifier:
 
     def __init__(self, environment: Mapping[str, str] = os.environ) -> None:
         self._socket = _connected(environment.get("NOTIFY_SOCKET", ""))
-        self._period = _watchdog(environment) / OFTEN
+        self._period = _watchdog(environment) / WATCHDOG_DIVISOR
         self._due = -math.inf
 
     def ready(self, status: str) -> None:
         """Everything is open, and the control loop runs."""
-        self._say(f"READY=1\nSTATUS={status}")
+        self._send(f"READY=1\nSTATUS={status}")
 
     def alive(self, now: float) -> None:
         """A control cycle was completed at `now`."""
         if now >= self._due and self._period < math.inf:
             self._due = now + self._period
-            self._say("WATCHDOG=1")
+            self._send("WATCHDOG=1")
 
     def stopping(self) -> None:
         """The motors stand, the end has begun."""
-        self._say("STOPPING=1")
+        self._send("STOPPING=1")
 
     def close(self) -> None:
         """Say no more."""
@@ -44,7 +44,7 @@ class Notifier:
             self._socket.close()
             self._socket = None
 
-    def _say(self, text: str) -> None:
+    def _send(self, text: str) -> None:
         if self._socket is not None:
             with contextlib.suppress(OSError):  # nobody listens, or it is full: the loop does not wait for that
                 self._socket.send(text.encode())

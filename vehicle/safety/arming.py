@@ -6,17 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from vehicle.params import Params
-from vehicle.safety.states import State
+from vehicle.safety.states import SafetyState
 
 
 @dataclass(frozen=True, slots=True)
-class Facts:
+class ArmingFacts:
     """What the checks look at."""
 
     params: Params
-    state: State
+    state: SafetyState
     terminated: bool = False
-    pressed: str | None = None
+    estop_reason: str | None = None
     """Why the emergency stop's own input stops the vehicle."""
     fault: str | None = None
     mode: str | None = None
@@ -32,31 +32,31 @@ class Facts:
 
 
 @dataclass(frozen=True, slots=True)
-class Check:
+class ArmingCheck:
     """`find` returns what is wrong, in words a driver understands, or None."""
 
-    find: Callable[[Facts], str | None]
+    find: Callable[[ArmingFacts], str | None]
     hard: bool
     """Arming by force does not skip it."""
 
 
-def _emergency_stop(facts: Facts) -> str | None:
+def _emergency_stop(facts: ArmingFacts) -> str | None:
     if facts.terminated:
         return "terminated, restart the vehicle"
-    if facts.pressed is not None:
-        return facts.pressed
-    return "emergency stop, release it first" if facts.state is State.ESTOP else None
+    if facts.estop_reason is not None:
+        return facts.estop_reason
+    return "emergency stop, release it first" if facts.state is SafetyState.ESTOP else None
 
 
-def _motor_driver(facts: Facts) -> str | None:
+def _motor_driver(facts: ArmingFacts) -> str | None:
     return f"motor driver: {facts.fault}" if facts.fault else None
 
 
-def _running(facts: Facts) -> str | None:
-    return f"vehicle is in state {facts.state.value}" if facts.state in (State.BOOT, State.OFF) else None
+def _running(facts: ArmingFacts) -> str | None:
+    return f"vehicle is in state {facts.state.value}" if facts.state in (SafetyState.BOOT, SafetyState.OFF) else None
 
 
-def _settings(facts: Facts) -> str | None:
+def _settings(facts: ArmingFacts) -> str | None:
     """Each value is in its range; these must also fit together."""
     params = facts.params
     if params["BATT_LOW_VOLT"] and params["BATT_CRT_VOLT"] > params["BATT_LOW_VOLT"]:
@@ -66,20 +66,20 @@ def _settings(facts: Facts) -> str | None:
     return None
 
 
-def _saved_settings(facts: Facts) -> str | None:
+def _saved_settings(facts: ArmingFacts) -> str | None:
     damage = facts.params.damage
     return f"{damage}, defaults in force; set one to go on" if damage else None
 
 
-def _mode(facts: Facts) -> str | None:
+def _mode(facts: ArmingFacts) -> str | None:
     return f"the mode cannot work: {facts.mode}" if facts.mode else None
 
 
-def _fence(facts: Facts) -> str | None:
+def _fence(facts: ArmingFacts) -> str | None:
     return facts.fence
 
 
-def _battery(facts: Facts) -> str | None:
+def _battery(facts: ArmingFacts) -> str | None:
     if facts.battery_silent:
         return "battery sensor is silent"
     if facts.battery_critical:
@@ -87,29 +87,29 @@ def _battery(facts: Facts) -> str | None:
     return "battery low" if facts.battery_low else None
 
 
-def _computer(facts: Facts) -> str | None:
+def _computer(facts: ArmingFacts) -> str | None:
     return facts.computer if facts.params["FS_PI_ACT"] else None
 
 
-def _sticks(facts: Facts) -> str | None:
+def _sticks(facts: ArmingFacts) -> str | None:
     return "throttle or steering not neutral" if facts.sticks_moving else None
 
 
-CHECKS: tuple[Check, ...] = (
-    Check(_emergency_stop, hard=True),
-    Check(_motor_driver, hard=True),
-    Check(_running, hard=True),
-    Check(_settings, hard=True),
-    Check(_saved_settings, hard=True),
-    Check(_mode, hard=True),
-    Check(_fence, hard=True),
-    Check(_battery, hard=False),
-    Check(_computer, hard=False),
-    Check(_sticks, hard=False),
+CHECKS: tuple[ArmingCheck, ...] = (
+    ArmingCheck(_emergency_stop, hard=True),
+    ArmingCheck(_motor_driver, hard=True),
+    ArmingCheck(_running, hard=True),
+    ArmingCheck(_settings, hard=True),
+    ArmingCheck(_saved_settings, hard=True),
+    ArmingCheck(_mode, hard=True),
+    ArmingCheck(_fence, hard=True),
+    ArmingCheck(_battery, hard=False),
+    ArmingCheck(_computer, hard=False),
+    ArmingCheck(_sticks, hard=False),
 )
 
 
-def problems(facts: Facts, *, force: bool = False) -> list[str]:
+def find_problems(facts: ArmingFacts, *, force: bool = False) -> list[str]:
     """What forbids to arm, worst first; empty where nothing does."""
     found = (check.find(facts) for check in CHECKS if check.hard or not force)
     return [problem for problem in found if problem]

@@ -8,11 +8,11 @@ from vehicle.params import Params
 
 CRITICAL_TIMER = 3.0
 """s below BATT_CRT_VOLT: shorter than BATT_LOW_TIMER, because a lithium cell is damaged there."""
-SILENT = 5.0
+SENSOR_TIMEOUT = 5.0
 """s without a reading (ArduPilot's battery sensor timeout)."""
 
 
-class BatteryWatch:
+class BatteryMonitor:
     """Times since when the voltage has been too low, None while it is not."""
 
     def __init__(self, params: Params) -> None:
@@ -27,7 +27,7 @@ class BatteryWatch:
         """There is a battery sensor, or should be."""
         return self._expected or self._seen is not None
 
-    def sense(self, voltage: float | None, now: float, *, expected: bool = False) -> None:
+    def update(self, voltage: float | None, now: float, *, expected: bool = False) -> None:
         """Take a reading; None or a bad number is no reading. `expected`: the vehicle should have this sensor."""
         self._expected = expected
         if voltage is None or not math.isfinite(voltage):
@@ -44,9 +44,9 @@ class BatteryWatch:
         """When the failsafe "battery critical" began, or None."""
         return self._after(self._critical, CRITICAL_TIMER, now)
 
-    def silent(self, now: float) -> bool:
+    def is_silent(self, now: float) -> bool:
         """A battery sensor that there should be has never answered, or one that there was has stopped."""
-        return self._expected if self._seen is None else now - self._seen > SILENT
+        return self._expected if self._seen is None else now - self._seen > SENSOR_TIMEOUT
 
     @staticmethod
     def _began(since: float | None, low: bool, now: float) -> float | None:

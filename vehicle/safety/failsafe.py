@@ -15,7 +15,7 @@ from dialects.enums import Failsafe
 from vehicle.params import Params
 
 
-class Action(IntEnum):
+class FailsafeAction(IntEnum):
     """What a failsafe does; the larger number wins."""
 
     WARN = 0
@@ -31,17 +31,17 @@ class Action(IntEnum):
     DISARM = 5
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """As the driver reads it."""
         return ("warning", "half speed", "stopping", "RTL", "HOLD", "disarmed")[self]
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class FailsafeStep:
     """What happens `after` s (a number, or the parameter that holds it) of the condition."""
 
     after: str | float
-    action: Action
+    action: FailsafeAction
     only_if: str | None = None
     """A parameter that turns the step off when it is 0 ..."""
     value: float | None = None
@@ -58,40 +58,40 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class FailsafeRule:
     """One condition."""
 
-    words: str
-    steps: tuple[Step, ...]
+    label: str
+    steps: tuple[FailsafeStep, ...]
     blocks_modes: bool = False
     """While it lasts no mode with motion can be chosen."""
 
 
-RULES: dict[Failsafe, Rule] = {
-    Failsafe.MANUAL_LOSS: Rule("manual control lost", (
-        Step(0, Action.NEUTRAL), Step("FS_TIMEOUT", Action.HOLD), Step("FS_DISARM_T", Action.DISARM))),
-    Failsafe.GCS_LOSS: Rule("ground station lost", (
-        Step(0, Action.HOLD), Step(60, Action.DISARM))),
-    Failsafe.OPERATOR: Rule("no sign of the operator", (
-        Step(0, Action.NEUTRAL), Step("FS_TIMEOUT", Action.HOLD), Step("FS_DISARM_T", Action.DISARM))),
-    Failsafe.BATTERY_LOW: Rule("battery low", (
-        Step(0, Action.LIMIT), Step(0, Action.HOLD, only_if="FS_LOW_ACT"))),
-    Failsafe.BATTERY_CRITICAL: Rule("battery critical", (
-        Step(0, Action.HOLD), Step(10, Action.DISARM)), blocks_modes=True),
-    Failsafe.OVERHEAT: Rule("Pi too hot or its supply too weak", (
-        Step(0, Action.LIMIT), Step("FS_PI_TIMER", Action.HOLD, only_if="FS_PI_ACT", value=2))),
-    Failsafe.GUIDED_LOSS: Rule("setpoints lost", (
-        Step(0, Action.NEUTRAL), Step(4, Action.HOLD))),
-    Failsafe.POSITION: Rule("position lost", (
-        Step(0, Action.NEUTRAL), Step(1, Action.HOLD))),
-    Failsafe.FENCE: Rule("beyond the fence", (
-        Step(0, Action.WARN),
-        Step(0, Action.RTL, only_if="FENCE_ACTION", value=1),
-        Step(0, Action.HOLD, only_if="FENCE_ACTION", value=2))),
-    Failsafe.TILT: Rule("tilted", (
-        Step(0.5, Action.DISARM),)),
-    Failsafe.BLOCKED: Rule("blocked", (
-        Step(2, Action.HOLD, only_if="FS_CRASH_CHECK"), Step(2, Action.DISARM, only_if="FS_CRASH_CHECK", value=2))),
+RULES: dict[Failsafe, FailsafeRule] = {
+    Failsafe.MANUAL_LOSS: FailsafeRule("manual control lost", (
+        FailsafeStep(0, FailsafeAction.NEUTRAL), FailsafeStep("FS_TIMEOUT", FailsafeAction.HOLD), FailsafeStep("FS_DISARM_T", FailsafeAction.DISARM))),
+    Failsafe.GCS_LOSS: FailsafeRule("ground station lost", (
+        FailsafeStep(0, FailsafeAction.HOLD), FailsafeStep(60, FailsafeAction.DISARM))),
+    Failsafe.OPERATOR: FailsafeRule("no sign of the operator", (
+        FailsafeStep(0, FailsafeAction.NEUTRAL), FailsafeStep("FS_TIMEOUT", FailsafeAction.HOLD), FailsafeStep("FS_DISARM_T", FailsafeAction.DISARM))),
+    Failsafe.BATTERY_LOW: FailsafeRule("battery low", (
+        FailsafeStep(0, FailsafeAction.LIMIT), FailsafeStep(0, FailsafeAction.HOLD, only_if="FS_LOW_ACT"))),
+    Failsafe.BATTERY_CRITICAL: FailsafeRule("battery critical", (
+        FailsafeStep(0, FailsafeAction.HOLD), FailsafeStep(10, FailsafeAction.DISARM)), blocks_modes=True),
+    Failsafe.OVERHEAT: FailsafeRule("Pi too hot or its supply too weak", (
+        FailsafeStep(0, FailsafeAction.LIMIT), FailsafeStep("FS_PI_TIMER", FailsafeAction.HOLD, only_if="FS_PI_ACT", value=2))),
+    Failsafe.GUIDED_LOSS: FailsafeRule("setpoints lost", (
+        FailsafeStep(0, FailsafeAction.NEUTRAL), FailsafeStep(4, FailsafeAction.HOLD))),
+    Failsafe.POSITION: FailsafeRule("position lost", (
+        FailsafeStep(0, FailsafeAction.NEUTRAL), FailsafeStep(1, FailsafeAction.HOLD))),
+    Failsafe.FENCE: FailsafeRule("beyond the fence", (
+        FailsafeStep(0, FailsafeAction.WARN),
+        FailsafeStep(0, FailsafeAction.RTL, only_if="FENCE_ACTION", value=1),
+        FailsafeStep(0, FailsafeAction.HOLD, only_if="FENCE_ACTION", value=2))),
+    Failsafe.TILT: FailsafeRule("tilted", (
+        FailsafeStep(0.5, FailsafeAction.DISARM),)),
+    Failsafe.BLOCKED: FailsafeRule("blocked", (
+        FailsafeStep(2, FailsafeAction.HOLD, only_if="FS_CRASH_CHECK"), FailsafeStep(2, FailsafeAction.DISARM, only_if="FS_CRASH_CHECK", value=2))),
 }  # fmt: skip
 """Condition -> what happens. A failed motor driver and the emergency stop act at once and are in vehicle/safety/state_machine.py, a
 late control loop in vehicle/safety/monitor.py. A HOLD happens once, so that the driver can choose MANUAL again where the
@@ -99,19 +99,19 @@ condition allows it."""
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class TriggeredStep:
     """A step that has just been reached."""
 
     cause: Failsafe
-    action: Action
+    action: FailsafeAction
 
 
 @dataclass(frozen=True, slots=True)
-class Next:
+class PendingStep:
     """The step that comes next."""
 
     delay: float
-    action: Action
+    action: FailsafeAction
 
 
 class Failsafes:
@@ -125,9 +125,9 @@ class Failsafes:
         for a moment at full throttle, is none yet."""
         self._params = params
         self._since: dict[Failsafe, float] = {}
-        self._done: dict[Failsafe, tuple[Step, ...]] = {}
+        self._done: dict[Failsafe, tuple[FailsafeStep, ...]] = {}
 
-    def update(self, conditions: Mapping[Failsafe, float], now: float) -> list[Taken]:
+    def update(self, conditions: Mapping[Failsafe, float], now: float) -> list[TriggeredStep]:
         """Take the conditions that hold, each with the time it began (of a lasting one the earliest told counts).
 
         Returns the steps reached since the last call.
@@ -140,25 +140,25 @@ class Failsafes:
         self.active = Failsafe(sum(cause for cause, done in self._done.items() if done))
         return taken
 
-    def action(self, now: float) -> Action:
+    def lasting_action(self, now: float) -> FailsafeAction:
         """The worst up to NEUTRAL that holds now: a HOLD or DISARM is carried by the mode and the state."""
         if not self._since:  # nearly always
-            return Action.WARN
+            return FailsafeAction.WARN
         lasting = [self._lasting(cause, now) for cause in self._since]
-        return max(lasting, default=Action.WARN)
+        return max(lasting, default=FailsafeAction.WARN)
 
-    def blocks_modes(self) -> Failsafe:
+    def mode_blocking_conditions(self) -> Failsafe:
         """Conditions that forbid to choose a mode with motion."""
         return Failsafe(sum(cause for cause in self._since if RULES[cause].blocks_modes))
 
-    def next_step(self, now: float) -> Next | None:
+    def next_step(self, now: float) -> PendingStep | None:
         """The next HOLD or DISARM that will come if nothing changes."""
         coming = [
-            Next(since + step.delay(self._params) - now, step.action)
+            PendingStep(since + step.delay(self._params) - now, step.action)
             for cause, since in self._since.items()
             if cause in self.active
             for step in RULES[cause].steps
-            if step.action >= Action.HOLD and now < since + step.delay(self._params) < math.inf
+            if step.action >= FailsafeAction.HOLD and now < since + step.delay(self._params) < math.inf
         ]
         return min(coming, key=lambda each: each.delay, default=None)
 
@@ -166,17 +166,17 @@ class Failsafes:
         """The driver has chosen a mode or armed: what is past is past."""
         self.latched = Failsafe(0)
 
-    def _advance(self, cause: Failsafe, now: float) -> list[Taken]:
+    def _advance(self, cause: Failsafe, now: float) -> list[TriggeredStep]:
         reached = self._reached(cause, now)
         new = [step for step in reached if step not in self._done.get(cause, ())]
         self._done[cause] = reached
-        if any(step.action >= Action.RTL for step in new):
+        if any(step.action >= FailsafeAction.RTL for step in new):
             self.latched |= cause
-        return [Taken(cause, step.action) for step in new]
+        return [TriggeredStep(cause, step.action) for step in new]
 
-    def _lasting(self, cause: Failsafe, now: float) -> Action:
+    def _lasting(self, cause: Failsafe, now: float) -> FailsafeAction:
         actions = (step.action for step in self._reached(cause, now))
-        return max((action for action in actions if action <= Action.NEUTRAL), default=Action.WARN)
+        return max((action for action in actions if action <= FailsafeAction.NEUTRAL), default=FailsafeAction.WARN)
 
-    def _reached(self, cause: Failsafe, now: float) -> tuple[Step, ...]:
+    def _reached(self, cause: Failsafe, now: float) -> tuple[FailsafeStep, ...]:
         return tuple(step for step in RULES[cause].steps if now >= self._since[cause] + step.delay(self._params))

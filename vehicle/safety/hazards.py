@@ -14,13 +14,13 @@ from vehicle.navigation.estimate import Estimate
 from vehicle.params import Params
 from vehicle.readings import Readings
 
-PUSHING = 0.2
+BLOCKED_THROTTLE_MIN = 0.2
 """Throttle from which on a rover must move (vehicle.md, blocked) ..."""
-STANDING = 0.05
+BLOCKED_SPEED_MAX = 0.05
 """... faster than this, m/s."""
 
 
-class Look(NamedTuple):
+class HazardInputs(NamedTuple):
     """What is looked at in a cycle."""
 
     readings: Readings
@@ -35,14 +35,14 @@ class Look(NamedTuple):
     """Beyond the fence."""
 
 
-class Hazards:
+class HazardMonitor:
     """Remembers since when."""
 
     def __init__(self, params: Params) -> None:
         self._params = params
         self._since: dict[Failsafe, float] = {}
 
-    def found(self, look: Look, now: float) -> dict[Failsafe, float]:
+    def update(self, look: HazardInputs, now: float) -> dict[Failsafe, float]:
         """What holds now -> since when."""
         holds = {
             Failsafe.POSITION: look.needs_position and not look.estimate.good,
@@ -60,10 +60,10 @@ class Hazards:
         return largest > 0.0 and any(abs(angle or 0.0) > largest for angle in (readings.roll, readings.pitch))
 
     @staticmethod
-    def _blocked(look: Look) -> bool:
-        if max(map(abs, look.throttles)) < PUSHING:
+    def _blocked(look: HazardInputs) -> bool:
+        if max(map(abs, look.throttles)) < BLOCKED_THROTTLE_MIN:
             return False
         wheels = look.readings.wheel_speeds
         if wheels:
-            return max(map(abs, wheels)) < STANDING
-        return look.estimate.speed is not None and look.estimate.ground_speed < STANDING
+            return max(map(abs, wheels)) < BLOCKED_SPEED_MAX
+        return look.estimate.speed is not None and look.estimate.ground_speed < BLOCKED_SPEED_MAX

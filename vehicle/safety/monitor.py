@@ -12,24 +12,24 @@ from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
 from vehicle.drive.control import Control
 from vehicle.drive.demand import Demand
-from vehicle.drive.gate import Clearance, Trial
-from vehicle.modes import OFFERED
+from vehicle.drive.gate import Clearance, MotorTest
+from vehicle.modes import MODES
 from vehicle.params import Params
-from vehicle.safety.failsafe import RULES, Action, Taken
-from vehicle.safety.failsafe_inputs import Scene, found
+from vehicle.safety.failsafe import RULES, FailsafeAction, TriggeredStep
+from vehicle.safety.failsafe_inputs import FailsafeInputs, active_conditions
 from vehicle.safety.state_machine import Safety
-from vehicle.statustext import Texts
+from vehicle.statustext import StatusTextQueue
 
-LATE = 0.1
+LATE_CYCLE_TIME = 0.1
 """s between two cycles of 20 ms from which on the motors get zero for a cycle (vehicle.md, control loop late)."""
-BAD_VALUES = 3
+BAD_CYCLES_MAX = 3
 """Cycles in a row with values that are not numbers, and the mode becomes HOLD."""
 
 
-class Watch:
+class SafetyMonitor:
     """`update` once a cycle; the rest at any moment."""
 
-    def __init__(self, params: Params, safety: Safety, control: Control, texts: Texts, now: float) -> None:
+    def __init__(self, params: Params, safety: Safety, control: Control, texts: StatusTextQueue, now: float) -> None:
         self._params = params
         self._safety = safety
         self._control = control
@@ -40,8 +40,8 @@ class Watch:
         """The control loop has not run for too long. A much too late one disarms."""
         gap = now - self._cycle
         if self._safety.armed and gap > self._params["FS_LOOP_TIMEOUT"]:
-            self._safety.overran(gap, now)
-        return gap > LATE
+            self._safety.handle_loop_overrun(gap, now)
+        return gap > LATE_CYCLE_TIME
 
     def update(self, now: float, refused: int, hazards: Mapping[Failsafe, float], *, driving: bool) -> None:
         """One cycle: find what fails, do what follows.
@@ -50,11 +50,11 @@ class Watch:
         """
         safety = self._safety
         self._cycle = now
-        safety.wake()
-        self._control.lapse(now)
+        safety.boot_done()
+        self._control.expire_stale_demand(now)
         self._update_failsafes(hazards, now)
-        if refused >= BAD_VALUES and safety.armed and safety.mode is not Mode.HOLD:
-            self._texts.say(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
+        if refused >= BAD_CYCLES_MAX and safety.armed and safety.mode is not Mode.HOLD:
+            self._texts.send(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
             safety.hold()
         if driving:
             self._asked_at = now
@@ -62,64 +62,72 @@ class Watch:
         if not safety.armed:
             safety.free_lost_owner(now)
 
-    def clearance(self, now: float, own: Demand | None, *, late: bool, trial: Trial | None = None) -> Clearance:
+    def build_clearance(
+        self, now: float, own: Demand | None, *, late: bool, trial: MotorTest | None = None
+    ) -> Clearance:
         """The facts about motion at this moment. `own` is what self-driving wants, `trial` the motor test under way."""
         safety = self._safety
-        offer = OFFERED[safety.mode]
-        if offer.own:
-            cleared, age, timeout = safety.cleared, None if own is None else now - own.time, LATE
+        offer = MODES[safety.mode]
+        if offer.autonomous:
+            cleared, age, timeout = safety.autonomy_confirmed, None if own is None else now - own.time, LATE_CYCLE_TIME
         else:
-            cleared, age, timeout = self._control.neutral_seen, self._control.age(now), self._params["MAN_TIMEOUT"]
+            cleared, age, timeout = (
+                self._control.neutral_seen,
+                self._control.demand_age(now),
+                self._params["MAN_TIMEOUT"],
+            )
         return Clearance(
             armed=safety.armed,
             late=late,
-            held=safety.failsafes.action(now) >= Action.NEUTRAL or not offer.moves,
+            held=safety.failsafes.lasting_action(now) >= FailsafeAction.NEUTRAL or not offer.moves,
             neutral_seen=cleared,
             demand_age=age,
             timeout=timeout,
-            trial=trial,
+            motor_test=trial,
         )
 
     def _update_failsafes(self, hazards: Mapping[Failsafe, float], now: float) -> None:
         armed, failsafes = self._safety.armed, self._safety.failsafes
         before = failsafes.active
-        taken = failsafes.update(found(self._scene(hazards), now) if armed else {}, now)
+        taken = failsafes.update(active_conditions(self._scene(hazards), now) if armed else {}, now)
         if before and armed:
             for cause in before & ~failsafes.active:
-                self._texts.say(Severity.NOTICE, f"Failsafe over: {RULES[cause].words}", now)
+                self._texts.send(Severity.NOTICE, f"Failsafe over: {RULES[cause].label}", now)
         for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
-            self._follow(step, now)
+            self._apply(step, now)
 
-    def _scene(self, hazards: Mapping[Failsafe, float]) -> Scene:
+    def _scene(self, hazards: Mapping[Failsafe, float]) -> FailsafeInputs:
         safety = self._safety
-        return Scene(
+        return FailsafeInputs(
             params=self._params,
             control=self._control,
             battery=safety.battery,
             computer=safety.computer,
-            driven=OFFERED[safety.mode].manual,
+            driven=MODES[safety.mode].manual,
             latched=safety.failsafes.latched,
             armed_at=safety.armed_at,
             hazards=hazards,
             alone=safety.mode is Mode.AUTO,
         )
 
-    def _follow(self, step: Taken, now: float) -> None:
+    def _apply(self, step: TriggeredStep, now: float) -> None:
         safety = self._safety
-        severity = Severity.CRITICAL if step.action >= Action.HOLD else Severity.WARNING
-        words = RULES[step.cause].words
-        self._texts.say(severity, f"Failsafe: {words}: {step.action.words}", now)
-        if step.action is Action.NEUTRAL:
-            self._control.close()
-        elif step.action is Action.HOLD or (step.action is Action.RTL and safety.choose_mode(Mode.RTL, now)):
+        severity = Severity.CRITICAL if step.action >= FailsafeAction.HOLD else Severity.WARNING
+        words = RULES[step.cause].label
+        self._texts.send(severity, f"Failsafe: {words}: {step.action.label}", now)
+        if step.action is FailsafeAction.NEUTRAL:
+            self._control.require_neutral()
+        elif step.action is FailsafeAction.HOLD or (
+            step.action is FailsafeAction.RTL and safety.choose_mode(Mode.RTL, now)
+        ):
             safety.hold()
-        elif step.action is Action.DISARM:
+        elif step.action is FailsafeAction.DISARM:
             safety.disarm(words, now)
 
     def _disarm_idle(self, now: float) -> None:
         delay = self._params["DISARM_DELAY"]
         demand = self._control.demand
-        if demand and self._control.moving():
+        if demand and self._control.requests_motion():
             self._asked_at = demand.time
         if delay and now - max(self._safety.armed_at, self._asked_at) > delay:
             self._safety.disarm(f"no demand for {delay:g} s", now)

@@ -5,38 +5,38 @@ from __future__ import annotations
 import math
 
 from vehicle.params import Params
-from vehicle.readings import Computer
-from vehicle.safety.health_notices import Complaints
-from vehicle.statustext import Texts
+from vehicle.readings import ComputerReadings
+from vehicle.safety.health_notices import HealthNotices
+from vehicle.statustext import StatusTextQueue
 
-COOLER = 5.0
+TEMPERATURE_HYSTERESIS = 5.0
 """Degrees below FS_PI_TEMP at which heat is over: a Pi at the edge is one complaint."""
 SUPPLY, HEAT = "Pi supply", "Pi temperature"
-UNWATCHED = Computer()
+NO_READING = ComputerReadings()
 
 
-class ComputerWatch:
+class PiMonitor:
     """Judges readings over time: what was there a moment ago still counts, what nobody knows now stays as it was."""
 
-    def __init__(self, params: Params, texts: Texts) -> None:
+    def __init__(self, params: Params, texts: StatusTextQueue) -> None:
         self._params = params
-        self._complaints = Complaints(texts)
+        self._complaints = HealthNotices(texts)
         self._known: dict[str, str] = {}
 
-    def sense(self, computer: Computer | None, now: float) -> None:
+    def update(self, computer: ComputerReadings | None, now: float) -> None:
         """Take a reading; None is a computer that nobody watches."""
-        self._known = self._found(computer or UNWATCHED)
+        self._known = self._found(computer or NO_READING)
         self._complaints.update(self._known, now)
 
-    def since(self) -> float | None:
+    def failing_since(self) -> float | None:
         """When it began to be too weak or too hot, None while it is neither."""
         return min(self._complaints.since.values(), default=None)
 
-    def trouble(self) -> str | None:
+    def problem(self) -> str | None:
         """What is wrong at this moment."""
         return " and ".join(self._known.values()) or None
 
-    def _found(self, computer: Computer) -> dict[str, str]:
+    def _found(self, computer: ComputerReadings) -> dict[str, str]:
         temperature = computer.temperature
         if temperature is not None and not math.isfinite(temperature):
             temperature = None
@@ -50,4 +50,6 @@ class ComputerWatch:
 
     def _hot(self, temperature: float) -> bool:
         limit = self._params["FS_PI_TEMP"]
-        return limit > 0.0 and temperature > (limit - COOLER if HEAT in self._complaints.since else limit)
+        return limit > 0.0 and temperature > (
+            limit - TEMPERATURE_HYSTERESIS if HEAT in self._complaints.since else limit
+        )

@@ -10,14 +10,14 @@ from collections.abc import Callable
 from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
 from vehicle.drive.control import Control
-from vehicle.modes import OFFERED, first_mode
+from vehicle.modes import MODES, initial_mode
 from vehicle.params import Params
-from vehicle.safety.arming import Facts, problems
-from vehicle.safety.battery import BatteryWatch
+from vehicle.safety.arming import ArmingFacts, find_problems
+from vehicle.safety.battery import BatteryMonitor
 from vehicle.safety.failsafe import RULES, Failsafes
-from vehicle.safety.pi_monitor import ComputerWatch
-from vehicle.safety.states import TRANSITIONS, Event, State
-from vehicle.statustext import Texts
+from vehicle.safety.pi_monitor import PiMonitor
+from vehicle.safety.states import TRANSITIONS, SafetyEvent, SafetyState
+from vehicle.statustext import StatusTextQueue
 
 
 class Safety:
@@ -27,29 +27,29 @@ class Safety:
         self,
         params: Params,
         control: Control,
-        texts: Texts,
+        texts: StatusTextQueue,
         now: float,
         unready: Callable[[Mode], str | None] = lambda mode: None,
         unfenced: Callable[[], str | None] = lambda: None,
     ) -> None:
         """`unready` says why a mode cannot work now, or None; `unfenced`, why a fence that counts would stop nobody."""
-        self.state = State.BOOT
-        self.mode = self.intended = first_mode(params["INITIAL_MODE"])
+        self.state = SafetyState.BOOT
+        self.mode = self.intended = initial_mode(params["INITIAL_MODE"])
         self.terminated = False
         """Emergency stop that only a restart ends (DO_FLIGHTTERMINATION)."""
-        self.pressed: str | None = None
+        self.estop_reason: str | None = None
         """Why the emergency stop's own input stops the vehicle, while it does."""
-        self.fault: str | None = None
-        self.overrun = False
+        self.motor_fault: str | None = None
+        self.loop_overrun = False
         """A late cycle has disarmed; until the next arming."""
-        self.epoch = 0
+        self.mode_generation = 0
         """Counts choices of a mode, arming, and everything that ends a drive: self-driving begins anew with each."""
-        self.cleared = False
+        self.autonomy_confirmed = False
         """Self-driving was asked for since the vehicle was armed: as neutral first for a stick, nothing goes on by
         itself what went on before."""
         self.failsafes = Failsafes(params)
-        self.battery = BatteryWatch(params)
-        self.computer = ComputerWatch(params, texts)
+        self.battery = BatteryMonitor(params)
+        self.computer = PiMonitor(params, texts)
         self._params = params
         self._control = control
         self._texts = texts
@@ -61,37 +61,37 @@ class Safety:
     @property
     def armed(self) -> bool:
         """Motors may turn."""
-        return self.state is State.ARMED
+        return self.state is SafetyState.ARMED
 
     @property
     def latched(self) -> Failsafe:
         """What stays until somebody does something."""
         latched = self.failsafes.latched
-        if self.state is State.ESTOP:
+        if self.state is SafetyState.ESTOP:
             latched |= Failsafe.ESTOP
-        if self.fault is not None:
+        if self.motor_fault is not None:
             latched |= Failsafe.MOTOR_DRIVER
-        if self.overrun:
+        if self.loop_overrun:
             latched |= Failsafe.LOOP_OVERRUN
         return latched
 
-    def problems(self, now: float, *, force: bool = False) -> list[str]:
+    def prearm_problems(self, now: float, *, force: bool = False) -> list[str]:
         """What forbids to arm; empty where nothing does."""
-        facts = Facts(
+        facts = ArmingFacts(
             params=self._params,
             state=self.state,
             terminated=self.terminated,
-            pressed=self.pressed,
-            fault=self.fault,
+            estop_reason=self.estop_reason,
+            fault=self.motor_fault,
             battery_low=self.battery.low_since(now) is not None,
             battery_critical=self.battery.critical_since(now) is not None,
-            battery_silent=self.battery.silent(now),
-            computer=self.computer.trouble(),
+            battery_silent=self.battery.is_silent(now),
+            computer=self.computer.problem(),
             mode=self._unready(self.mode),
             fence=self._unfenced(),
-            sticks_moving=self._control.moving() and not self._control.stale(now),
+            sticks_moving=self._control.requests_motion() and not self._control.is_demand_stale(now),
         )
-        return problems(facts, force=force)
+        return find_problems(facts, force=force)
 
     def arm(self, system: int, now: float, *, force: bool = False) -> list[str]:
         """Arm for `system`, which takes control. Returns what forbids it, and has said so."""
@@ -99,138 +99,138 @@ class Safety:
             return []
         refusals = self._arm_refusals(system, now, force=force)
         for problem in refusals:
-            self._texts.say(Severity.WARNING, f"PreArm: {problem}", now)
+            self._texts.send(Severity.WARNING, f"PreArm: {problem}", now)
         if refusals:
             return refusals
-        self._control.take(system, now)
+        self._control.set_owner(system, now)
         self._control.reset()
-        self._happen(Event.ARM)
-        self._renew(cleared=False)
+        self._handle_event(SafetyEvent.ARM)
+        self._start_generation(cleared=False)
         self.armed_at = now
-        self.overrun = False
+        self.loop_overrun = False
         self.failsafes.acknowledge()
-        self._texts.say(Severity.NOTICE, f"Armed by GCS {system}, mode {self.mode.name}", now)
-        if OFFERED[self.mode].own and self.mode is not Mode.GUIDED:
-            self._texts.say(Severity.NOTICE, f"Stands until {self.mode.name} is chosen again", now)
+        self._texts.send(Severity.NOTICE, f"Armed by GCS {system}, mode {self.mode.name}", now)
+        if MODES[self.mode].autonomous and self.mode is not Mode.GUIDED:
+            self._texts.send(Severity.NOTICE, f"Stands until {self.mode.name} is chosen again", now)
         return []
 
     def disarm(self, why: str, now: float) -> None:
         """Motors to zero at once."""
         if not self.armed:
             return
-        self._happen(Event.DISARM)
-        self._texts.say(Severity.NOTICE, f"Disarmed: {why}", now)
+        self._handle_event(SafetyEvent.DISARM)
+        self._texts.send(Severity.NOTICE, f"Disarmed: {why}", now)
         self.free_lost_owner(now)
 
-    def interrupt(self) -> None:
+    def end_motor_test(self) -> None:
         """Nothing goes on that was asked for while disarmed: a motor test is over."""
         if not self.armed:
-            self._renew(cleared=False)
+            self._start_generation(cleared=False)
 
     def emergency_stop(self, who: str, now: float, *, terminate: bool = False) -> None:
         """Motors to zero at once, until somebody releases it. `terminate`: until a restart."""
         self.terminated |= terminate
-        if self.state is not State.ESTOP:
-            self._happen(Event.STOP)
-            self._texts.say(Severity.EMERGENCY, f"EMERGENCY STOP by {who}", now)
+        if self.state is not SafetyState.ESTOP:
+            self._handle_event(SafetyEvent.STOP)
+            self._texts.send(Severity.EMERGENCY, f"EMERGENCY STOP by {who}", now)
 
-    def stop_input(self, reason: str | None, now: float) -> None:
+    def update_estop_input(self, reason: str | None, now: float) -> None:
         """Why the emergency stop's own input stops the vehicle, or None while it is closed."""
-        self.pressed = reason
+        self.estop_reason = reason
         if reason is not None:
             self.emergency_stop(f"button: {reason}", now)
 
-    def release(self, now: float) -> str | None:
+    def release_estop(self, now: float) -> str | None:
         """End the emergency stop; stays disarmed. Returns why not."""
         if self.terminated:
             return "terminated, restart the vehicle"
-        if self.pressed is not None:
-            return self.pressed
-        if self.state is State.ESTOP:
-            self._happen(Event.RELEASE)
-            self._texts.say(Severity.NOTICE, "Emergency stop released, disarmed", now)
-            if self.fault:
-                self._happen(Event.FAIL)
+        if self.estop_reason is not None:
+            return self.estop_reason
+        if self.state is SafetyState.ESTOP:
+            self._handle_event(SafetyEvent.RELEASE)
+            self._texts.send(Severity.NOTICE, "Emergency stop released, disarmed", now)
+            if self.motor_fault:
+                self._handle_event(SafetyEvent.FAIL)
         return None
 
     def choose_mode(self, mode: Mode, now: float) -> str | None:
         """The driver's choice of a mode. Returns why not."""
-        blocking = self.failsafes.blocks_modes()
-        if blocking and OFFERED[mode].moves:
-            return " and ".join(RULES[cause].words for cause in Failsafe if cause & blocking)
+        blocking = self.failsafes.mode_blocking_conditions()
+        if blocking and MODES[mode].moves:
+            return " and ".join(RULES[cause].label for cause in Failsafe if cause & blocking)
         unready = self._unready(mode)
         if unready:
             return unready
         self.intended = mode
-        self._renew(cleared=self.armed)
-        if OFFERED[mode].moves:  # HOLD is everybody's to choose: it must not end a countdown to disarming
+        self._start_generation(cleared=self.armed)
+        if MODES[mode].moves:  # HOLD is everybody's to choose: it must not end a countdown to disarming
             self.failsafes.acknowledge()
         if mode is not self.mode:
             self.mode = mode
-            self._control.reset() if OFFERED[mode].moves else self._control.close()
-            self._texts.say(Severity.INFO, f"Mode {mode.name}", now)
+            self._control.reset() if MODES[mode].moves else self._control.require_neutral()
+            self._texts.send(Severity.INFO, f"Mode {mode.name}", now)
         return None
 
-    def begin(self) -> None:
+    def confirm_autonomy(self) -> None:
         """Self-driving was asked for, in the mode that is: by a setpoint or a mission's start."""
-        self.cleared = self.armed
+        self.autonomy_confirmed = self.armed
 
-    def end(self, why: str, now: float) -> None:
+    def finish_autonomy(self, why: str, now: float) -> None:
         """Self-driving has nothing more to do."""
-        self._texts.say(Severity.NOTICE, f"{self.mode.name}: {why}: HOLD", now)
+        self._texts.send(Severity.NOTICE, f"{self.mode.name}: {why}: HOLD", now)
         self.hold()
 
     def hold(self) -> None:
         """Neutral, and the mode becomes HOLD: the driver has to choose another."""
         self.mode = Mode.HOLD
-        self._renew(cleared=False)
-        self._control.close()
+        self._start_generation(cleared=False)
+        self._control.require_neutral()
 
     def motor_failed(self, reason: str, now: float) -> None:
         """The motor driver does not do what it should."""
-        if self.fault is None:
-            self._texts.say(Severity.CRITICAL, f"Motor driver failed: {reason}", now)
-        self.fault = reason
-        self._happen(Event.FAIL)
+        if self.motor_fault is None:
+            self._texts.send(Severity.CRITICAL, f"Motor driver failed: {reason}", now)
+        self.motor_fault = reason
+        self._handle_event(SafetyEvent.FAIL)
 
     def motor_repaired(self, now: float) -> None:
         """The motor driver works again."""
-        if self.fault is not None:
-            self._texts.say(Severity.NOTICE, "Motor driver works again", now)
-        self.fault = None
-        self._happen(Event.REPAIR)
+        if self.motor_fault is not None:
+            self._texts.send(Severity.NOTICE, "Motor driver works again", now)
+        self.motor_fault = None
+        self._handle_event(SafetyEvent.REPAIR)
 
-    def overran(self, gap: float, now: float) -> None:
+    def handle_loop_overrun(self, gap: float, now: float) -> None:
         """The control loop stood still for `gap` s while armed."""
-        self.overrun = True
+        self.loop_overrun = True
         self.disarm(f"control loop was {gap:.2f} s late", now)
 
     def free_lost_owner(self, now: float) -> None:
         """A ground station that is silent keeps no disarmed vehicle."""
-        if self._control.owner and self._control.lost(now):
+        if self._control.owner and self._control.is_owner_lost(now):
             self._control.release("is silent", now)
 
-    def wake(self) -> None:
+    def boot_done(self) -> None:
         """The first cycle ends BOOT."""
-        if self.state is State.BOOT:
-            self._happen(Event.READY)
+        if self.state is SafetyState.BOOT:
+            self._handle_event(SafetyEvent.READY)
 
     def shutdown(self) -> None:
         """The end."""
-        self._happen(Event.SHUTDOWN)
+        self._handle_event(SafetyEvent.SHUTDOWN)
 
     def _arm_refusals(self, system: int, now: float, *, force: bool) -> list[str]:
         if self.armed:  # who wants to drive an armed vehicle asks for control, and does not slip in by arming
             return [f"armed already by GCS {self._control.owner}"]
-        refusal = self._control.refusal(system, now)
-        return [refusal] if refusal else self.problems(now, force=force)
+        refusal = self._control.takeover_denial_reason(system, now)
+        return [refusal] if refusal else self.prearm_problems(now, force=force)
 
-    def _renew(self, *, cleared: bool) -> None:
-        self.epoch += 1
-        self.cleared = cleared
+    def _start_generation(self, *, cleared: bool) -> None:
+        self.mode_generation += 1
+        self.autonomy_confirmed = cleared
 
-    def _happen(self, event: Event) -> None:
+    def _handle_event(self, event: SafetyEvent) -> None:
         self.state = TRANSITIONS[self.state, event]
         if not self.armed:
-            self._control.close()
-            self._renew(cleared=False)
+            self._control.require_neutral()
+            self._start_generation(cleared=False)

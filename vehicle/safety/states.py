@@ -14,7 +14,7 @@ from __future__ import annotations
 from enum import Enum
 
 
-class State(Enum):
+class SafetyState(Enum):
     """Only in ARMED may a motor turn."""
 
     BOOT = "boot"
@@ -29,7 +29,7 @@ class State(Enum):
     """Shut down; nothing leads out."""
 
 
-class Event(Enum):
+class SafetyEvent(Enum):
     """What may happen to the state. What is not allowed leaves it as it is."""
 
     READY = "ready"
@@ -46,22 +46,22 @@ class Event(Enum):
     SHUTDOWN = "shutdown"
 
 
-_B, _S, _A, _E, _F, _O = State
+_B, _S, _A, _E, _F, _O = SafetyState
 
-TRANSITIONS: dict[tuple[State, Event], State] = {
+TRANSITIONS: dict[tuple[SafetyState, SafetyEvent], SafetyState] = {
     (state, event): after
     for event, row in {
         #               BOOT SAFE ARMED ESTOP FAULT OFF
-        Event.READY:    (_S, _S, _A, _E, _F, _O),
-        Event.ARM:      (_B, _A, _A, _E, _F, _O),
-        Event.DISARM:   (_B, _S, _S, _E, _F, _O),
-        Event.STOP:     (_E, _E, _E, _E, _E, _O),
-        Event.RELEASE:  (_B, _S, _A, _S, _F, _O),
-        Event.FAIL:     (_F, _F, _F, _E, _F, _O),
-        Event.REPAIR:   (_B, _S, _A, _E, _S, _O),
-        Event.SHUTDOWN: (_O, _O, _O, _O, _O, _O),
+        SafetyEvent.READY:    (_S, _S, _A, _E, _F, _O),
+        SafetyEvent.ARM:      (_B, _A, _A, _E, _F, _O),
+        SafetyEvent.DISARM:   (_B, _S, _S, _E, _F, _O),
+        SafetyEvent.STOP:     (_E, _E, _E, _E, _E, _O),
+        SafetyEvent.RELEASE:  (_B, _S, _A, _S, _F, _O),
+        SafetyEvent.FAIL:     (_F, _F, _F, _E, _F, _O),
+        SafetyEvent.REPAIR:   (_B, _S, _A, _E, _S, _O),
+        SafetyEvent.SHUTDOWN: (_O, _O, _O, _O, _O, _O),
     }.items()
-    for state, after in zip(State, row, strict=True)
+    for state, after in zip(SafetyState, row, strict=True)
 }  # fmt: skip
 """(state, event) -> state, every cell. A driver fault during an emergency stop is kept by vehicle/safety/state_machine.py and
 comes back when the stop is released."""

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import msgspec
 
-from vehicle.motors.settings import Pin, pin_name, refuse_doubles
+from vehicle.motors.settings import Pin, pin_name, reject_duplicates
 
 WINDOW = 0.2
 """s over which a speed is the mean: ten control cycles, so that a slow disc still gives some counts in it."""
@@ -35,7 +35,7 @@ class EncoderSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """m"""
 
     def __post_init__(self) -> None:
-        refuse_doubles(self.pins)
+        reject_duplicates(self.pins)
 
     @property
     def pins(self) -> list[int]:
@@ -53,7 +53,7 @@ class EncoderSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return math.pi * self.diameter / self.lines
 
 
-class Speedometer:
+class WheelSpeedFilter:
     """Counts and times in, m/s out. No hardware."""
 
     def __init__(self, metres: float) -> None:
@@ -61,7 +61,7 @@ class Speedometer:
         self._metres = metres
         self._seen: deque[tuple[float, int]] = deque()
 
-    def speed(self, count: int, now: float) -> float:
+    def update(self, count: int, now: float) -> float:
         """Mean of the last WINDOW; 0 until there are two counts to compare."""
         if self._seen and now < self._seen[-1][0]:
             self._seen.clear()
@@ -81,7 +81,7 @@ class Encoders:
 
         self.fault: str | None = None
         self._encoders: list[Any] = []
-        self._meters = [Speedometer(settings.metres) for _ in settings.wheels]
+        self._meters = [WheelSpeedFilter(settings.metres) for _ in settings.wheels]
         try:
             with translated("wheel encoders"):
                 for wheel in settings.wheels:
@@ -95,7 +95,7 @@ class Encoders:
         if not self._encoders:
             return None
         pairs = zip(self._encoders, self._meters, strict=True)
-        return tuple(meter.speed(encoder.steps, now) for encoder, meter in pairs)
+        return tuple(meter.update(encoder.steps, now) for encoder, meter in pairs)
 
     def close(self) -> None:
         """Let the pins go."""

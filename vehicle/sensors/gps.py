@@ -9,8 +9,8 @@ from typing import Annotated
 
 import msgspec
 
-from vehicle.sensors.gpsd import Fix, Sky, parse
-from vehicle.sensors.latest import Latest
+from vehicle.sensors.gpsd import GpsFix, GpsSky, parse
+from vehicle.sensors.latest import LatestValue
 
 MAX_AGE = 3.0
 """s that a fix counts: the failsafe's time for a lost GPS; receivers give one each second at least."""
@@ -36,19 +36,19 @@ class GpsSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class GpsReading:
     """The newest fix, and the sky as far as it is known."""
 
-    fix: Fix
-    sky: Sky
+    fix: GpsFix
+    sky: GpsSky
 
 
-class Gpsd:
+class GpsdClient:
     """A `Source`. Made inside a running event loop, where it has a task until it is closed."""
 
     def __init__(self, settings: GpsSettings, *, clock: Callable[[], float] | None = None) -> None:
         loop = asyncio.get_running_loop()
         self._settings = settings
         self._clock = clock or loop.time
-        self._fix = Latest[Fix](MAX_AGE)
-        self._sky = Latest[Sky](SKY_AGE)
+        self._fix = LatestValue[GpsFix](MAX_AGE)
+        self._sky = LatestValue[GpsSky](SKY_AGE)
         self._task = loop.create_task(self._run())
 
     @property
@@ -58,8 +58,8 @@ class Gpsd:
 
     def latest(self, now: float) -> GpsReading | None:
         """None without a fresh report; a report without a fix is one."""
-        fix = self._fix.at(now)
-        return None if fix is None else GpsReading(fix, self._sky.at(now) or Sky())
+        fix = self._fix.get(now)
+        return None if fix is None else GpsReading(fix, self._sky.get(now) or GpsSky())
 
     def close(self) -> None:
         """End the task."""
@@ -74,7 +74,7 @@ class Gpsd:
                     heard = self._take(line) or heard
                 raise ConnectionError("the connection was closed")
             except (OSError, ValueError) as error:  # ValueError: a line that does not end
-                self._fix.missed(OSError(f"gpsd at {self._settings.host}:{self._settings.port}: {error}"))
+                self._fix.set_fault(OSError(f"gpsd at {self._settings.host}:{self._settings.port}: {error}"))
             wait = RETRY[0] if heard else min(2 * wait, longest)
             await asyncio.sleep(wait)
 
@@ -90,11 +90,11 @@ class Gpsd:
     def _take(self, line: bytes) -> bool:
         """True where it was about the position."""
         match parse(line):
-            case Fix() as fix:
-                self._fix.take(fix, self._clock())
+            case GpsFix() as fix:
+                self._fix.update(fix, self._clock())
                 return True
-            case Sky() as sky:
-                self._sky.take(sky, self._clock())
+            case GpsSky() as sky:
+                self._sky.update(sky, self._clock())
                 return True
             case None:
                 return False

@@ -18,10 +18,10 @@ STATUS_FIX = {2: 4, 3: 6, 4: 5}
 
 
 @dataclass(frozen=True, slots=True)
-class Fix:
+class GpsFix:
     """One report; degrees, m, m/s. None for what it did not say."""
 
-    fix: int
+    fix_type: int
     """GPS_FIX_TYPE."""
     latitude: float | None = None
     longitude: float | None = None
@@ -32,7 +32,7 @@ class Fix:
 
 
 @dataclass(frozen=True, slots=True)
-class Sky:
+class GpsSky:
     """How good it can be."""
 
     satellites: int | None = None
@@ -40,7 +40,7 @@ class Sky:
     hdop: float | None = None
 
 
-def parse(line: bytes) -> Fix | Sky | None:
+def parse(line: bytes) -> GpsFix | GpsSky | None:
     """One line of gpsd's; None for what is not about the position. Never raises."""
     try:
         report = json.loads(line)
@@ -57,17 +57,17 @@ def parse(line: bytes) -> Fix | Sky | None:
             return None
 
 
-def _fix(report: dict[str, Any]) -> Fix:
+def _fix(report: dict[str, Any]) -> GpsFix:
     fix = MODE_FIX.get(_whole(report, "mode") or 0, 0)
     latitude, longitude = _number(report, "lat", 90.0), _number(report, "lon", 180.0)
     if fix < 2 or latitude is None or longitude is None:
-        return Fix(min(fix, 1))
+        return GpsFix(min(fix, 1))
     if fix == 3:
         fix = STATUS_FIX.get(_whole(report, "status") or 0, 3)
     altitude = _number(report, "altMSL", 1e5)
     if altitude is None:
         altitude = _number(report, "alt", 1e5)  # before gpsd 3.20
-    return Fix(fix, latitude, longitude, altitude if fix >= 3 else None, *_velocity(report))
+    return GpsFix(fix, latitude, longitude, altitude if fix >= 3 else None, *_velocity(report))
 
 
 def _velocity(report: dict[str, Any]) -> tuple[float | None, float | None]:
@@ -78,13 +78,13 @@ def _velocity(report: dict[str, Any]) -> tuple[float | None, float | None]:
     return speed * math.cos(heading), speed * math.sin(heading)
 
 
-def _sky(report: dict[str, Any]) -> Sky | None:
+def _sky(report: dict[str, Any]) -> GpsSky | None:
     satellites = _whole(report, "uSat")
     listed = report.get("satellites")
     if satellites is None and isinstance(listed, list):  # before gpsd 3.21
         satellites = sum(1 for one in listed if isinstance(one, dict) and one.get("used") is True)
     hdop = _number(report, "hdop", 1e3)
-    return None if satellites is None and hdop is None else Sky(satellites, hdop)
+    return None if satellites is None and hdop is None else GpsSky(satellites, hdop)
 
 
 def _number(report: dict[str, Any], name: str, largest: float) -> float | None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Generic, Protocol, TypeVar
 
-from vehicle.hardware.error_text import in_one_line
+from vehicle.hardware.error_text import format_error
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 
 
-class Source(Protocol[T_co]):
+class SensorSource(Protocol[T_co]):
     """One sensor."""
 
     @property
@@ -24,7 +24,7 @@ class Source(Protocol[T_co]):
         """Let go of the hardware. May come twice."""
 
 
-class Latest(Generic[T]):
+class LatestValue(Generic[T]):
     """A value with its time."""
 
     def __init__(self, max_age: float) -> None:
@@ -33,16 +33,16 @@ class Latest(Generic[T]):
         self._max_age = max_age
         self._newest: tuple[T, float] | None = None  # replaced as one, so that another thread never sees half of it
 
-    def take(self, value: T, now: float) -> None:
+    def update(self, value: T, now: float) -> None:
         """A new value."""
         self._newest = value, now
         self.fault = None
 
-    def missed(self, error: Exception) -> None:
+    def set_fault(self, error: Exception) -> None:
         """No new value this time."""
-        self.fault = in_one_line(error)
+        self.fault = format_error(error)
 
-    def at(self, now: float) -> T | None:
+    def get(self, now: float) -> T | None:
         """The value, while it counts."""
         newest = self._newest
         return newest[0] if newest is not None and now - newest[1] <= self._max_age else None

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-from vehicle.readings import Computer
+from vehicle.readings import ComputerReadings
 
 PERIOD, MAX_AGE = 1.0, 5.0
 """s between readings, and how long one counts."""
@@ -32,13 +32,13 @@ class PiHealth:
         """`root` is for tests."""
         self._root = root
 
-    def sample(self) -> Computer:
+    def sample(self) -> ComputerReadings:
         """Never raises for a file that is missing or says something else."""
         used, total = self._known(self._memory) or (None, None)
         under_voltage, throttled = self._known(self._throttled) or (None, None)
         if under_voltage is None:
             under_voltage = self._known(self._monitor)
-        return Computer(
+        return ComputerReadings(
             temperature=self._known(lambda: int(self._text(THERMAL)) / 1000),
             load=self._known(lambda: float(self._text("proc/loadavg").split()[0]) / (os.cpu_count() or 1)),
             memory_used=used,

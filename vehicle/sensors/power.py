@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from vehicle.hardware.i2c import Bus, in_words, open_bus
+from vehicle.hardware.i2c import Bus, explain_bus_error, open_bus
 from vehicle.motors.settings import chip_name
 
 PERIOD, MAX_AGE = 0.2, 2.0
@@ -20,7 +20,7 @@ PERIOD, MAX_AGE = 0.2, 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Power:
+class PowerReading:
     """V and A; positive is out of the battery."""
 
     voltage: float
@@ -43,23 +43,23 @@ class PowerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @dataclass(frozen=True, slots=True)
-class Chip:
+class PowerChip:
     """How one kind of chip is read."""
 
     configuration: int
     """For register 0: continuous, averaged over tens of ms, because motors draw in pulses."""
-    power: Callable[[int, int, float], Power]
+    power: Callable[[int, int, float], PowerReading]
     """From the registers 1 and 2, and the shunt's resistance."""
 
 
-def ina219(shunt_register: int, bus_register: int, shunt: float) -> Power:
+def ina219(shunt_register: int, bus_register: int, shunt: float) -> PowerReading:
     """10 uV a step over the shunt, signed; 4 mV a step on the bus, above three flag bits."""
-    return Power(voltage=(bus_register >> 3) * 0.004, current=signed(shunt_register) * 10e-6 / shunt)
+    return PowerReading(voltage=(bus_register >> 3) * 0.004, current=signed(shunt_register) * 10e-6 / shunt)
 
 
-def ina260(current_register: int, bus_register: int, shunt: float) -> Power:
+def ina260(current_register: int, bus_register: int, shunt: float) -> PowerReading:
     """1.25 mA and 1.25 mV a step; its shunt is calibrated in the factory."""
-    return Power(voltage=bus_register * 1.25e-3, current=signed(current_register) * 1.25e-3)
+    return PowerReading(voltage=bus_register * 1.25e-3, current=signed(current_register) * 1.25e-3)
 
 
 def signed(register: int) -> int:
@@ -67,9 +67,9 @@ def signed(register: int) -> int:
     return register - 0x10000 if register & 0x8000 else register
 
 
-CHIPS: dict[str, Chip] = {
-    "ina219": Chip(0x3FFF, ina219),  # 32 V, 320 mV, 128 samples of both: 68 ms each
-    "ina260": Chip(0x6527, ina260),  # 16 samples of both, 1.1 ms each
+CHIPS: dict[str, PowerChip] = {
+    "ina219": PowerChip(0x3FFF, ina219),  # 32 V, 320 mV, 128 samples of both: 68 ms each
+    "ina260": PowerChip(0x6527, ina260),  # 16 samples of both, 1.1 ms each
 }
 
 
@@ -82,7 +82,7 @@ class PowerMonitor:
         self._open = open_bus
         self._bus: Bus | None = None
 
-    def sample(self) -> Power:
+    def sample(self) -> PowerReading:
         """Raises OSError, ImportError."""
         try:
             bus = self._ready()
@@ -91,7 +91,7 @@ class PowerMonitor:
             self.close()
             settings = self._settings
             where = f"{settings.kind} at 0x{settings.address:02x} on I2C bus {settings.bus}"
-            raise OSError(f"{where}: {in_words(error, settings.bus)}") from error
+            raise OSError(f"{where}: {explain_bus_error(error, settings.bus)}") from error
 
     def close(self) -> None:
         """Let go of the bus; the next sample opens it again."""

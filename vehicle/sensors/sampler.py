@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-from vehicle.sensors.latest import Latest
+from vehicle.sensors.latest import LatestValue
 
 T = TypeVar("T")
 
@@ -22,7 +22,7 @@ class Sampler(Generic[T]):
         self._sample = sample
         self._period = period
         self._clock = clock
-        self._latest = Latest[T](max_age)
+        self._latest = LatestValue[T](max_age)
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name="sensor", daemon=True)
         self._thread.start()
@@ -34,7 +34,7 @@ class Sampler(Generic[T]):
 
     def latest(self, now: float) -> T | None:
         """The newest value."""
-        return self._latest.at(now)
+        return self._latest.get(now)
 
     def close(self) -> None:
         """End the thread; one that hangs in its bus is left behind, it ends with the process."""
@@ -44,8 +44,8 @@ class Sampler(Generic[T]):
     def _run(self) -> None:
         while True:
             try:
-                self._latest.take(self._sample(), self._clock())
+                self._latest.update(self._sample(), self._clock())
             except Exception as error:  # a sensor of somebody else's may raise anything: it is kept and told
-                self._latest.missed(error)
+                self._latest.set_fault(error)
             if self._ending.wait(self._period):
                 return

@@ -9,17 +9,17 @@ from typing import Any
 
 import msgspec
 
-from vehicle.readings import Computer, Readings, SensorFault
-from vehicle.safety.battery import SILENT
+from vehicle.readings import ComputerReadings, Readings, SensorFault
+from vehicle.safety.battery import SENSOR_TIMEOUT
 from vehicle.sensors.encoders import Encoders, EncoderSettings
-from vehicle.sensors.gps import Gpsd, GpsReading, GpsSettings
-from vehicle.sensors.latest import Source
+from vehicle.sensors.gps import GpsdClient, GpsReading, GpsSettings
+from vehicle.sensors.latest import SensorSource
 from vehicle.sensors.pi_health import MAX_AGE as HEALTH_AGE
 from vehicle.sensors.pi_health import PERIOD as HEALTH_PERIOD
 from vehicle.sensors.pi_health import PiHealth
 from vehicle.sensors.power import MAX_AGE as POWER_AGE
 from vehicle.sensors.power import PERIOD as POWER_PERIOD
-from vehicle.sensors.power import Power, PowerMonitor, PowerSettings
+from vehicle.sensors.power import PowerMonitor, PowerReading, PowerSettings
 from vehicle.sensors.sampler import Sampler
 
 
@@ -34,26 +34,26 @@ class SensorSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @dataclass
-class Sources:
+class SensorSources:
     """What there is; any of them may be somebody else's."""
 
-    battery: Source[Power] | None = None
-    gps: Source[GpsReading] | None = None
-    encoders: Source[tuple[float, ...]] | None = None
-    computer: Source[Computer] | None = None
+    battery: SensorSource[PowerReading] | None = None
+    gps: SensorSource[GpsReading] | None = None
+    encoders: SensorSource[tuple[float, ...]] | None = None
+    computer: SensorSource[ComputerReadings] | None = None
 
-    def present(self) -> dict[str, Source[Any]]:
+    def present(self) -> dict[str, SensorSource[Any]]:
         """Those that there are, by the name that the driver reads."""
-        everything: dict[str, Source[Any] | None] = {
+        everything: dict[str, SensorSource[Any] | None] = {
             "battery": self.battery, "gps": self.gps, "encoders": self.encoders, "computer": self.computer
         }  # fmt: skip
         return {name: source for name, source in everything.items() if source is not None}
 
 
-class Suite:
+class SensorSuite:
     """Fits `vehicle.sensors.Sensors`."""
 
-    def __init__(self, sources: Sources) -> None:
+    def __init__(self, sources: SensorSources) -> None:
         self._present = sources.present()
         self._configured = tuple(self._present)
         self._heard: dict[str, float] = {}
@@ -81,7 +81,7 @@ class Suite:
         return tuple(SensorFault(name, fault) for name, fault in found if fault is not None)
 
     def _silence(self, name: str, now: float) -> str | None:
-        return f"silent for {SILENT:g} s" if now - self._heard[name] > SILENT else None
+        return f"silent for {SENSOR_TIMEOUT:g} s" if now - self._heard[name] > SENSOR_TIMEOUT else None
 
     def close(self) -> None:
         """Let go of every sensor."""
@@ -90,21 +90,21 @@ class Suite:
                 steps.callback(source.close)
 
 
-def open_sensors(settings: SensorSettings) -> Suite:
+def open_sensors(settings: SensorSettings) -> SensorSuite:
     """The sensors of `settings`, reading already. To be called in a running event loop.
 
     A sensor that is not there yet is looked for again and again; only encoders raise, MotorError, for want of pins.
     """
-    sources = Sources()
+    sources = SensorSources()
     if settings.encoders is not None:
         sources.encoders = Encoders(settings.encoders)  # first: it is the only one that raises
     if settings.battery is not None:
         sources.battery = _sampled(PowerMonitor(settings.battery).sample, POWER_PERIOD, POWER_AGE)
     if settings.gps is not None:
-        sources.gps = Gpsd(settings.gps)
+        sources.gps = GpsdClient(settings.gps)
     if settings.computer:
         sources.computer = _sampled(PiHealth().sample, HEALTH_PERIOD, HEALTH_AGE)
-    return Suite(sources)
+    return SensorSuite(sources)
 
 
 def _sampled(sample: Callable[[], Any], period: float, max_age: float) -> Sampler[Any]:
@@ -114,7 +114,7 @@ def _sampled(sample: Callable[[], Any], period: float, max_age: float) -> Sample
 def _position(reading: GpsReading) -> dict[str, Any]:
     fix, sky = reading.fix, reading.sky
     return {
-        "gps_fix": fix.fix,
+        "gps_fix": fix.fix_type,
         "latitude": fix.latitude,
         "longitude": fix.longitude,
         "altitude": fix.altitude,

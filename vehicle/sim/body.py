@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from vehicle.navigation.geo import Origin, Point
-from vehicle.readings import Computer, Readings
+from vehicle.readings import ComputerReadings, Readings
 from vehicle.sim.battery import NOMINAL_VOLTAGE, Battery
-from vehicle.sim.chassis import Chassis, Motion, SkidChassis
-from vehicle.sim.noise import Fix, Instruments, Noise
+from vehicle.sim.chassis import Chassis, ChassisMotion, SkidChassis
+from vehicle.sim.noise import NoisySensors, SensorNoise, SimulatedFix
 
 LONGEST_STEP = 0.02
 """s; one control cycle. Longer gaps are cut into such steps, so that the lag of motors and servo stays true."""
@@ -34,7 +34,7 @@ LEAN = 0.02
 LEAN_LAG = 0.1
 """s; the same tyres swing no faster."""
 
-COMPUTER = Computer(
+COMPUTER = ComputerReadings(
     temperature=48.0,
     load=0.1,
     memory_used=400 * 2**20,
@@ -46,7 +46,7 @@ COMPUTER = Computer(
 """A Raspberry Pi without a worry."""
 
 
-class Home(NamedTuple):
+class SimulatedHome(NamedTuple):
     """Where the simulated rover starts."""
 
     latitude: float = -35.363262
@@ -65,24 +65,24 @@ class SimulatedBody:
         *,
         chassis: Chassis | None = None,
         battery: Battery | None = None,
-        home: Home | None = None,
+        home: SimulatedHome | None = None,
         seed: int | None = None,
-        noise: Noise | None = None,
+        noise: SensorNoise | None = None,
     ) -> None:
         """Without a `seed` the sensors are perfect; `noise` says how bad they are with one."""
         self._outputs = outputs
         self._chassis = chassis or SkidChassis()
         self._battery = battery or Battery()
-        self._home = home or Home()
-        self._instruments = None if seed is None else Instruments(seed, noise)
+        self._home = home or SimulatedHome()
+        self._instruments = None if seed is None else NoisySensors(seed, noise)
         self._time: float | None = None
         self._roll = self._pitch = 0.0
         self._origin = Origin(self._home.latitude, self._home.longitude)
-        self._fix: tuple[Fix, tuple[float, float]] | None = None
+        self._fix: tuple[SimulatedFix, tuple[float, float]] | None = None
         """The newest, and its place on the globe: it is the same for several cycles."""
 
     @property
-    def motion(self) -> Motion:
+    def motion(self) -> ChassisMotion:
         """The truth, which no sensor knows."""
         return self._chassis.motion
 
@@ -118,11 +118,11 @@ class SimulatedBody:
 
     def _measure(self) -> Readings:
         motion, battery, instruments = self._chassis.motion, self._battery, self._instruments
-        true = Fix(motion.north, motion.east, *motion.velocity)
+        true = SimulatedFix(motion.north, motion.east, *motion.velocity)
         fix = true if instruments is None else instruments.gps(true)
         wheels = motion.wheel_speeds if instruments is None else instruments.wheels(motion.wheel_speeds)
         if self._fix is None or self._fix[0] is not fix:
-            self._fix = fix, self._origin.globe(Point(fix.north, fix.east))
+            self._fix = fix, self._origin.to_global(Point(fix.north, fix.east))
         latitude, longitude = self._fix[1]
         return Readings(
             roll=self._roll if instruments is None else instruments.angle(self._roll),

@@ -14,7 +14,7 @@ AT_REST = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class ChassisDimensions:
     """The build of a rover. The numbers are those of a 40 cm kit with geared 12 V motors, the usual first rover."""
 
     top_speed: float = 1.5
@@ -35,7 +35,7 @@ class Frame:
 
 
 @dataclass(slots=True)
-class Motion:
+class ChassisMotion:
     """Where the rover is and how it moves. Angles clockwise from north, SI."""
 
     north: float = 0.0
@@ -76,7 +76,7 @@ class Motion:
 class Chassis(Protocol):
     """A kind of drive."""
 
-    motion: Motion
+    motion: ChassisMotion
     top_speed: float
     """m/s at full throttle and nominal voltage."""
 
@@ -87,10 +87,10 @@ class Chassis(Protocol):
 class SkidChassis:
     """Two driven sides, as a tank; `throttles` are left and right."""
 
-    def __init__(self, frame: Frame | None = None) -> None:
-        self._frame = frame or Frame()
+    def __init__(self, frame: ChassisDimensions | None = None) -> None:
+        self._frame = frame or ChassisDimensions()
         self.top_speed = self._frame.top_speed
-        self.motion = Motion()
+        self.motion = ChassisMotion()
 
     def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
         """Each side follows its throttle; the difference turns the rover."""
@@ -105,10 +105,10 @@ class SkidChassis:
 class AckermannChassis:
     """A driven axle and steered front wheels, as a car; `throttles` are throttle and steering."""
 
-    def __init__(self, frame: Frame | None = None) -> None:
-        self._frame = frame or Frame()
+    def __init__(self, frame: ChassisDimensions | None = None) -> None:
+        self._frame = frame or ChassisDimensions()
         self.top_speed = self._frame.top_speed
-        self.motion = Motion(wheel_speeds=(0.0,))
+        self.motion = ChassisMotion(wheel_speeds=(0.0,))
         self._angle = 0.0
 
     def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
@@ -129,10 +129,10 @@ it turns ahead. Seen from above the rollers of mecanum wheels form an X, and so 
 class FourWheelChassis:
     """Four driven corners that push ahead and aside alike: mecanum wheels, or omni wheels at 45 degrees."""
 
-    def __init__(self, frame: Frame | None = None) -> None:
-        self._frame = frame or Frame()
+    def __init__(self, frame: ChassisDimensions | None = None) -> None:
+        self._frame = frame or ChassisDimensions()
         self.top_speed = self._frame.top_speed
-        self.motion = Motion(wheel_speeds=(0.0,) * len(CORNERS))
+        self.motion = ChassisMotion(wheel_speeds=(0.0,) * len(CORNERS))
 
     def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
         """Each wheel follows its throttle; the rover makes the motion that fits all of them best, the rest is slip.
@@ -151,7 +151,7 @@ class FourWheelChassis:
         motion.advance(speed, round_ / ((frame.track_width + frame.wheelbase) / 2), dt, sideways)
 
 
-CHASSIS: dict[DriveType, Callable[[Frame], Chassis]] = {
+CHASSIS: dict[DriveType, Callable[[ChassisDimensions], Chassis]] = {
     DriveType.SKID: SkidChassis,
     DriveType.ACKERMANN: AckermannChassis,
     DriveType.OMNI: FourWheelChassis,

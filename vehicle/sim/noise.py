@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 
 @dataclass(frozen=True, slots=True)
-class Noise:
+class SensorNoise:
     """Standard deviations. Biases are drawn once a seed, as one sensor differs from the next."""
 
     angle: float = 0.003
@@ -39,7 +39,7 @@ class Noise:
     """s"""
 
 
-class Fix(NamedTuple):
+class SimulatedFix(NamedTuple):
     """m and m/s, north and east, as the receiver has them."""
 
     north: float
@@ -48,17 +48,17 @@ class Fix(NamedTuple):
     velocity_east: float
 
 
-class Instruments:
+class NoisySensors:
     """The sensors of one rover. `step` lets their errors wander, the rest measures."""
 
-    def __init__(self, seed: int, noise: Noise | None = None) -> None:
-        self._noise = noise = noise or Noise()
+    def __init__(self, seed: int, noise: SensorNoise | None = None) -> None:
+        self._noise = noise = noise or SensorNoise()
         self._random = random.Random(seed)
         self._gyro_bias = self._error(noise.gyro_bias)
         self._compass_bias = self._error(noise.compass_bias)
         self._scale = 1.0 + self._error(noise.wheel_scale)
         self._wander = (self._error(noise.gps_wander), self._error(noise.gps_wander))
-        self._fix: Fix | None = None
+        self._fix: SimulatedFix | None = None
         self._fix_in = 0.0
 
     def step(self, dt: float) -> None:
@@ -85,11 +85,11 @@ class Instruments:
         """Speed of each wheel; one that stands says so, for an encoder counts nothing then."""
         return tuple(speed and speed * self._scale + self._error(self._noise.wheel) for speed in true)
 
-    def gps(self, true: Fix) -> Fix:
+    def gps(self, true: SimulatedFix) -> SimulatedFix:
         """The newest fix."""
         if self._fix is None or self._fix_in <= 1e-9:
             self._fix_in = self._noise.gps_period
-            self._fix = Fix(
+            self._fix = SimulatedFix(
                 true.north + self._wander[0] + self._error(self._noise.gps),
                 true.east + self._wander[1] + self._error(self._noise.gps),
                 true.velocity_north + self._error(self._noise.gps_velocity),

@@ -16,7 +16,7 @@ PERIOD = 0.1
 """s between two lines; at 1.5 m/s the rover moves 15 cm."""
 
 
-class WatchedBody:
+class RecordedBody:
     """Fits `vehicle.sensors.Sensors`. `write` takes lines; `clock` gives ns that other processes share."""
 
     def __init__(self, body: SimulatedBody, write: Callable[[str], None], clock: Callable[[], int]) -> None:

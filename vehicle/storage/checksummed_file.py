@@ -7,20 +7,20 @@ import zlib
 SUM = b"# sum "
 
 
-class DamagedError(ValueError):
+class CorruptFileError(ValueError):
     """This is not what was written."""
 
 
-def sealed(body: bytes) -> bytes:
+def add_checksum(body: bytes) -> bytes:
     """`body`, whole lines, and its checksum."""
     return body + SUM + _sum(body) + b"\n"
 
 
-def unsealed(data: bytes) -> bytes:
+def strip_checksum(data: bytes) -> bytes:
     """What was sealed. Raises DamagedError."""
     body, mark, rest = data.rpartition(SUM)
     if not mark or rest != _sum(body) + b"\n":
-        raise DamagedError("its checksum is wrong")
+        raise CorruptFileError("its checksum is wrong")
     return body
 
 

@@ -8,11 +8,11 @@ import stat
 import tempfile
 from pathlib import Path
 
-TRIED = 65_536
+PROBE_SIZE = 65_536
 """Bytes: more than all kept parameters, and what a full disk or a used-up quota refuses."""
 
 
-def obstacle(folder: Path, setting: str) -> str | None:
+def write_problem(folder: Path, setting: str) -> str | None:
     """Why this user cannot write there and what to do, one line; None where nothing is in the way.
 
     A folder that is missing is not made here: it would belong to whoever checks, and not to who drives. `setting` is
@@ -25,7 +25,7 @@ def obstacle(folder: Path, setting: str) -> str | None:
         if there != folder:
             return None if os.access(there, os.W_OK | os.X_OK, effective_ids=True) else _forbidden(there, setting)
         with tempfile.TemporaryFile(dir=folder, buffering=0) as file:
-            if file.write(bytes(TRIED)) != TRIED:
+            if file.write(bytes(PROBE_SIZE)) != PROBE_SIZE:
                 return f"{folder} is full; make room, or name another folder as {setting}"
             os.fsync(file.fileno())
     except PermissionError:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from link.runtime.worker import Worker
-from link.services.ftp.files import Content, Entry, NotYetError, Query, ReadOnly
+from link.services.ftp.files import Content, Entry, NotReadyError, Query, ReadOnlyFolder
 from link.services.ftp.protocol import FtpError
 
 PIECE = 64 * 1024
@@ -30,11 +30,11 @@ MAX_SIZE = 2**32 - 1
 """Bytes: FTP and the log protocol say no more. A longer file, which is none of ours, is not served."""
 FRESH = 1.0
 """s in which an answer of the disk must be fetched; a client that no longer waits left it."""
-CLOSING = 1.0
+CLOSE_TIMEOUT = 1.0
 
 
-class DiskFolder(ReadOnly):
-    """Files of `path` whose names end in `suffix`. Fits `ftp_files.Folder`; see `NotYetError` for how it never waits.
+class DiskFolder(ReadOnlyFolder):
+    """Files of `path` whose names end in `suffix`. Fits `ftp_files.Folder`; see `NotReadyError` for how it never waits.
 
     `removable` says in the thread whether a file may be removed now; who may ask for it at all is not decided here.
     """
@@ -69,15 +69,15 @@ class DiskFolder(ReadOnly):
 
     def clear(self) -> None:
         """Remove all files that may be removed, soon."""
-        self._worker.put(self._clear)
+        self._worker.submit(self._clear)
 
     def close(self) -> None:
         """End the thread."""
-        self._worker.close(CLOSING)
+        self._worker.close(CLOSE_TIMEOUT)
 
     def fetch(self, name: str, offset: int, size: int, take: Callable[[bytes], None]) -> bool:
         """Have `take` called in the thread with a part of a file, empty where there is none; False: try again later."""
-        return self._worker.put(lambda: take(self._read(name, offset, size)))
+        return self._worker.submit(lambda: take(self._read(name, offset, size)))
 
     def _serves(self, name: str) -> bool:
         """Is this a name that a file here could have? No path, nothing hidden, nothing that a listing cannot say."""
@@ -91,9 +91,13 @@ class DiskFolder(ReadOnly):
             self._answers = {each: answer for each, answer in self._answers.items() if now - answer[0] < FRESH}
             if key in self._answers:
                 return self._answers.pop(key)[1]
-            if key not in self._asked and len(self._asked) < MAX_ASKED and self._worker.put(lambda: self._do(key, job)):
+            if (
+                key not in self._asked
+                and len(self._asked) < MAX_ASKED
+                and self._worker.submit(lambda: self._do(key, job))
+            ):
                 self._asked.add(key)
-        raise NotYetError
+        raise NotReadyError
 
     # ---- in the thread ----
 

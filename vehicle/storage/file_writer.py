@@ -17,15 +17,15 @@ from pathlib import Path
 from typing import TypeVar
 
 from link.runtime.worker import Worker
-from vehicle.storage.checksummed_file import DamagedError
+from vehicle.storage.checksummed_file import CorruptFileError
 
-CLOSING = 2.0
+CLOSE_TIMEOUT = 2.0
 """s that the end of the program waits for the last write; a disk that takes longer is broken."""
 
 T = TypeVar("T")
 
 
-def read(path: Path, parse: Callable[[bytes], T]) -> T | None:
+def read_file(path: Path, parse: Callable[[bytes], T]) -> T | None:
     """What a file holds; None where there is none. `parse` raises DamagedError.
 
     Raises DamagedError, in words to be put behind the name of what is missing, also where a damaged file was found and
@@ -36,14 +36,14 @@ def read(path: Path, parse: Callable[[bytes], T]) -> T | None:
         return parse(_bytes(path))
     except FileNotFoundError:
         if aside.exists():
-            raise DamagedError("damaged") from None
+            raise CorruptFileError("damaged") from None
         return None
-    except DamagedError:
+    except CorruptFileError:
         with contextlib.suppress(OSError):  # read-only: then it stays where it is
             path.replace(aside)
-        raise DamagedError("damaged") from None
+        raise CorruptFileError("damaged") from None
     except OSError as error:
-        raise DamagedError(f"cannot be read, {error.strerror}") from error
+        raise CorruptFileError(f"cannot be read, {error.strerror}") from error
 
 
 def _bytes(path: Path) -> bytes:
@@ -54,7 +54,7 @@ def _bytes(path: Path) -> bytes:
         return file.read()
 
 
-class Writing:
+class PendingWrite:
     """One wish to write a file, and how it went."""
 
     def __init__(self) -> None:
@@ -63,7 +63,7 @@ class Writing:
         self.problem: str | None = None
 
 
-class Scribe:
+class FileWriter:
     """Writes files into one folder, one after the other, in a thread of its own."""
 
     def __init__(self, folder: Path) -> None:
@@ -71,7 +71,7 @@ class Scribe:
         """Why the last file was not written; the one before is still there."""
         self._folder = folder
         self._lock = threading.Lock()
-        self._newest: dict[str, tuple[Callable[[], bytes], list[Writing]]] = {}
+        self._newest: dict[str, tuple[Callable[[], bytes], list[PendingWrite]]] = {}
         """What waits to be written: of each file what was wanted last, however slow the disk is, and whose wish it was
         or would have been."""
         self._unwritten = 0
@@ -83,21 +83,21 @@ class Scribe:
         """Everything that was wanted is written, or failed."""
         return not self._unwritten
 
-    def write(self, name: str, make: Callable[[], bytes]) -> Writing:
+    def write(self, name: str, make: Callable[[], bytes]) -> PendingWrite:
         """Have a file written. Returns at once; `make` gives its bytes, in the thread, unless a newer wish for the same
         file comes before its turn."""
-        wish = Writing()
+        wish = PendingWrite()
         with self._lock:
             _, wishes = self._newest.get(name, (make, []))
             if not wishes:
                 self._unwritten += 1
-                self._worker.put(partial(self._write_newest, name))
+                self._worker.submit(partial(self._write_newest, name))
             self._newest[name] = make, [*wishes, wish]
         return wish
 
     def close(self) -> None:
         """Wait for what is being written."""
-        self._worker.close(CLOSING)
+        self._worker.close(CLOSE_TIMEOUT)
 
     def _write_newest(self, name: str) -> None:
         with self._lock:

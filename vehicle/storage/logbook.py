@@ -14,20 +14,20 @@ from typing import Protocol
 from dialects import messages as m
 from dialects.enums import Severity
 from link.core import RECORDER, Outgoing, Received
-from link.services.ftp.files import Content, Entry, Folder, MemoryFolder, Query, ReadOnly
+from link.services.ftp.files import Content, Entry, Folder, MemoryFolder, Query, ReadOnlyFolder
 from link.services.ftp.protocol import FtpError
 from link.services.param.values import REAL32
 from vehicle.drive.control import Control
 from vehicle.params import Params
-from vehicle.statustext import Texts
+from vehicle.statustext import StatusTextQueue
 
-AFTERWARDS = 15.0
+DISARM_PERSIST = 15.0
 """s of recording after disarming: what the rover did then may be why (ArduPilot's HAL_LOGGER_ARM_PERSIST)."""
-AT_ONCE = 4
+PARAMS_PER_CYCLE = 4
 """Parameters that are recorded in one cycle: all of them take half a second, and no cycle takes long."""
 
 
-class Recording(Protocol):
+class LogRecorder(Protocol):
     """Writes logs; vehicle.storage.recorder.VehicleRecorder is one. Nothing here blocks or raises."""
 
     @property
@@ -38,23 +38,23 @@ class Recording(Protocol):
     def folder(self) -> Folder:
         """The logs, to be served."""
 
-    def begin(self, files: int, megabytes_free: int) -> None:
+    def start(self, files: int, megabytes_free: int) -> None:
         """A new log; older ones go where there are more than `files` with it, or less is free."""
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """No log from now on."""
 
     def tick(self, now: float) -> None:
         """Each cycle."""
 
-    def clear(self) -> None:
+    def remove_all(self) -> None:
         """Remove all logs but the one that is being written."""
 
-    def when(self, name: str) -> int:
+    def unix_time(self, name: str) -> int:
         """Unix time of a log in s, 0 where it is not known."""
 
 
-class NoRecording:
+class NullLogRecorder:
     """Of a vehicle that has nowhere to record to."""
 
     problem: str | None = None
@@ -62,19 +62,19 @@ class NoRecording:
     def __init__(self) -> None:
         self.folder = MemoryFolder()
 
-    def begin(self, files: int, megabytes_free: int) -> None:
+    def start(self, files: int, megabytes_free: int) -> None:
         """Nothing."""
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Nothing."""
 
     def tick(self, now: float) -> None:
         """Nothing."""
 
-    def clear(self) -> None:
+    def remove_all(self) -> None:
         """There are none."""
 
-    def when(self, name: str) -> int:
+    def unix_time(self, name: str) -> int:
         """There are none."""
         return 0
 
@@ -83,9 +83,14 @@ class Logbook:
     """Decides, each cycle."""
 
     def __init__(
-        self, params: Params, control: Control, texts: Texts, armed: Callable[[], bool], recording: Recording | None
+        self,
+        params: Params,
+        control: Control,
+        texts: StatusTextQueue,
+        armed: Callable[[], bool],
+        recording: LogRecorder | None,
     ) -> None:
-        self.recording = recording or NoRecording()
+        self.recording = recording or NullLogRecorder()
         self._params = params
         self._control = control
         self._texts = texts
@@ -96,9 +101,9 @@ class Logbook:
         self._opening: Iterator[m.Message] = iter(())
 
     @property
-    def well(self) -> bool | None:
+    def is_healthy(self) -> bool | None:
         """Could it record, or does it? None where it shall not."""
-        if isinstance(self.recording, NoRecording) or not self._params["LOG_BACKEND_TYPE"]:
+        if isinstance(self.recording, NullLogRecorder) or not self._params["LOG_BACKEND_TYPE"]:
             return None
         return self.recording.problem is None
 
@@ -106,39 +111,39 @@ class Logbook:
         """Begin, go on or end. Returns what only the log is told: all parameters, in its first moments."""
         armed = self._armed()
         if self._was_armed and not armed:
-            self._until = now + AFTERWARDS
-        wanted = self.well is not None and (armed or self._params["LOG_DISARMED"] or now < self._until)
+            self._until = now + DISARM_PERSIST
+        wanted = self.is_healthy is not None and (armed or self._params["LOG_DISARMED"] or now < self._until)
         if wanted and (not self._open or (armed and not self._was_armed)):
-            self._texts.forget(_KEY)  # each log tells anew what is wrong with it
-            self.recording.begin(int(self._params["LOG_MAX_FILES"]), int(self._params["LOG_FILE_MB_FREE"]))
+            self._texts.reset_once(_KEY)  # each log tells anew what is wrong with it
+            self.recording.start(int(self._params["LOG_MAX_FILES"]), int(self._params["LOG_FILE_MB_FREE"]))
             self._opening = self._values()
         elif self._open and not wanted:
-            self.recording.end()
+            self.recording.stop()
         self._open, self._was_armed = bool(wanted), armed
         self.recording.tick(now)
-        return [Outgoing(message, RECORDER) for message in islice(self._opening, AT_ONCE)]
+        return [Outgoing(message, RECORDER) for message in islice(self._opening, PARAMS_PER_CYCLE)]
 
-    def observe(self, now: float) -> None:
+    def check_health(self, now: float) -> None:
         """About once a second: does it work?"""
         problem = self.recording.problem
-        if problem and self.well is not None:
-            self._texts.say_once(f"{_KEY} {problem}", Severity.WARNING, f"Log: {problem}", now)
+        if problem and self.is_healthy is not None:
+            self._texts.send_once(f"{_KEY} {problem}", Severity.WARNING, f"Log: {problem}", now)
 
     def folder(self) -> Folder:
         """The logs for MAVLink FTP, where who is in control may remove them one by one."""
         return _Logs(self.recording.folder, self._armed)
 
-    def erase(self, received: Received, now: float) -> None:
+    def handle_log_erase(self, received: Received, now: float) -> None:
         """LOG_ERASE: all of them, by who is in control and while nothing drives."""
-        refusal = self._control.stranger(received.system) or ("disarm first" if self._armed() else None)
+        refusal = self._control.denial_reason(received.system) or ("disarm first" if self._armed() else None)
         if not received.introduced:
             refusal = "its HEARTBEAT is missing"
         if refusal is None:
-            self.recording.clear()
+            self.recording.remove_all()
         text = (
             f"GCS {received.system}: logs not erased: {refusal}" if refusal else f"Logs erased by GCS {received.system}"
         )
-        self._texts.say(Severity.WARNING if refusal else Severity.NOTICE, text, now)
+        self._texts.send(Severity.WARNING if refusal else Severity.NOTICE, text, now)
 
     def _values(self) -> Iterator[m.Message]:
         count = len(self._params)
@@ -149,7 +154,7 @@ class Logbook:
 _KEY = "recording"
 
 
-class _Logs(ReadOnly):
+class _Logs(ReadOnlyFolder):
     """Fits `ftp_files.Folder`: only read, and removed from while disarmed."""
 
     def __init__(self, logs: Folder, armed: Callable[[], bool]) -> None:

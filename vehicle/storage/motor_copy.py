@@ -16,12 +16,12 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from vehicle.storage.file_writer import Scribe
+from vehicle.storage.file_writer import FileWriter
 
 log = logging.getLogger(__name__)
 
 
-def usual_state() -> Path:
+def default_state_folder() -> Path:
     """Where the vehicle keeps things unless it is told otherwise: the service's folder, or one in your home."""
     if "STATE_DIRECTORY" in os.environ:  # from systemd's StateDirectory=, also for ExecStopPost=
         return Path(os.environ["STATE_DIRECTORY"].partition(":")[0])
@@ -31,7 +31,7 @@ def usual_state() -> Path:
 
 
 @contextlib.contextmanager
-def copied(parts: Mapping[str, Any], config: Path | None) -> Iterator[None]:
+def settings_copy(parts: Mapping[str, Any], config: Path | None) -> Iterator[None]:
     """Keep a copy of `parts`, the tables of the file `config` by name, [motors] for one, until the end; beyond it where
     it ends by an exception.
 
@@ -41,7 +41,7 @@ def copied(parts: Mapping[str, Any], config: Path | None) -> Iterator[None]:
         yield
         return
     path = _path(config)
-    scribe = Scribe(path.parent)
+    scribe = FileWriter(path.parent)
     scribe.write(path.name, lambda: json.dumps(dict(parts), default=str).encode())
     scribe.close()  # no wheel turns yet: there is time to wait for the disk
     if scribe.problem:
@@ -51,7 +51,7 @@ def copied(parts: Mapping[str, Any], config: Path | None) -> Iterator[None]:
         path.unlink()
 
 
-def left_behind(config: Path) -> dict[str, Any] | None:
+def load_settings_copy(config: Path) -> dict[str, Any] | None:
     """The tables of what a killed vehicle drove by this file; None where none was killed, or nobody can tell."""
     try:
         parts = json.loads(_path(config).read_bytes())
@@ -63,4 +63,4 @@ def left_behind(config: Path) -> dict[str, Any] | None:
 
 def _path(config: Path) -> Path:
     name = sha256(os.fsencode(os.path.abspath(config))).hexdigest()[:12]
-    return usual_state() / f"motors-{name}.json"
+    return default_state_folder() / f"motors-{name}.json"

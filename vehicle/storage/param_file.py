@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from vehicle.storage.checksummed_file import DamagedError, sealed, unsealed
+from vehicle.storage.checksummed_file import CorruptFileError, add_checksum, strip_checksum
 
 HEAD = "# What ground stations have set. Written by the vehicle; changed by hand it counts as damaged.\n"
 
 
-def dump(values: Mapping[str, float]) -> bytes:
+def encode(values: Mapping[str, float]) -> bytes:
     """The file."""
-    return sealed((HEAD + "".join(f"{name} {value!r}\n" for name, value in sorted(values.items()))).encode())
+    return add_checksum((HEAD + "".join(f"{name} {value!r}\n" for name, value in sorted(values.items()))).encode())
 
 
-def parsed(data: bytes) -> dict[str, float]:
+def decode(data: bytes) -> dict[str, float]:
     """The values of a file. Raises DamagedError."""
     try:
-        lines = [line.split() for line in unsealed(data).decode().splitlines() if not line.startswith("#")]
+        lines = [line.split() for line in strip_checksum(data).decode().splitlines() if not line.startswith("#")]
         return {name: float(value) for name, value in lines}
     except ValueError as error:
-        raise DamagedError(str(error)) from error
+        raise CorruptFileError(str(error)) from error

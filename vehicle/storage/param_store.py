@@ -5,15 +5,15 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from vehicle.storage.checksummed_file import DamagedError
-from vehicle.storage.file_writer import Scribe, read
-from vehicle.storage.param_file import dump, parsed
+from vehicle.storage.checksummed_file import CorruptFileError
+from vehicle.storage.file_writer import FileWriter, read_file
+from vehicle.storage.param_file import decode, encode
 
 NAME = "parameters"
 
 
 class ParamStore:
-    """Fits `vehicle.commands.params.Keeper`."""
+    """Fits `vehicle.commands.params.ParamStoreLike`."""
 
     def __init__(self, folder: Path) -> None:
         """Reads what there is; never raises."""
@@ -21,31 +21,31 @@ class ParamStore:
         """What is kept."""
         self.damage: str | None = None
         """Why the kept values could not be read: the vehicle has its defaults."""
-        self._scribe = Scribe(folder)
+        self._writer = FileWriter(folder)
         try:
-            self.values = read(folder / NAME, parsed) or {}
-        except DamagedError as error:
+            self.values = read_file(folder / NAME, decode) or {}
+        except CorruptFileError as error:
             self.damage = f"parameter file {error}"
 
     @property
     def problem(self) -> str | None:
         """Why values are not kept, one line."""
-        return self._scribe.problem
+        return self._writer.problem
 
     @property
     def idle(self) -> bool:
         """Nothing is being written."""
-        return self._scribe.idle
+        return self._writer.idle
 
-    def keep(self, name: str, value: float) -> None:
+    def set(self, name: str, value: float) -> None:
         """Have it written."""
         self.values[name] = value
         self.save()
 
     def save(self) -> None:
         """Have all of them written."""
-        self._scribe.write(NAME, partial(dump, dict(self.values)))
+        self._writer.write(NAME, partial(encode, dict(self.values)))
 
     def close(self) -> None:
         """Wait for what is being written."""
-        self._scribe.close()
+        self._writer.close()

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Protocol
 
 from dialects.enums import MissionType
-from link.services.mission.commit import Forgotten, Keeping
+from link.services.mission.commit import NullPlanWrite, PendingPlanWrite
 from link.services.mission.items import Items
 
 
-class PlanKeeper(Protocol):
+class PlanStoreLike(Protocol):
     """Remembers plans for the next start."""
 
     plans: dict[MissionType, Items]
@@ -25,11 +25,11 @@ class PlanKeeper(Protocol):
     def idle(self) -> bool:
         """Nothing is being written."""
 
-    def keep(self, kind: MissionType, items: Items) -> Keeping:
+    def save(self, kind: MissionType, items: Items) -> PendingPlanWrite:
         """Remember it, soon, and say when it is. Never blocks and never raises."""
 
 
-class NoPlanKeeper:
+class NullPlanStore:
     """Plans end with the program, as in the simulator."""
 
     problem: str | None = None
@@ -39,6 +39,6 @@ class NoPlanKeeper:
         self.plans: dict[MissionType, Items] = {}
         self.damage: dict[MissionType, str] = {}
 
-    def keep(self, kind: MissionType, items: Items) -> Keeping:
+    def save(self, kind: MissionType, items: Items) -> PendingPlanWrite:
         """Forget it."""
-        return Forgotten()
+        return NullPlanWrite()

@@ -10,16 +10,16 @@ from functools import partial
 from pathlib import Path
 
 from dialects.enums import MissionType
-from link.services.mission.files import NAMES, PlanFileError, read, write
+from link.services.mission.files import FILE_TYPES, PlanFileError, decode_plan, encode_plan
 from link.services.mission.items import Items
 from vehicle.storage import file_writer
-from vehicle.storage.checksummed_file import DamagedError, sealed, unsealed
+from vehicle.storage.checksummed_file import CorruptFileError, add_checksum, strip_checksum
 
-FILES = {kind: name for name, kind in NAMES.items()}
+FILES = {kind: name for name, kind in FILE_TYPES.items()}
 
 
 class PlanStore:
-    """Fits `vehicle.storage.plan_keeping.PlanKeeper`."""
+    """Fits `vehicle.storage.plan_keeping.PlanStoreLike`."""
 
     def __init__(self, folder: Path) -> None:
         """Reads what there is; never raises."""
@@ -27,40 +27,40 @@ class PlanStore:
         """What is kept."""
         self.damage: dict[MissionType, str] = {}
         """Why a kept plan could not be read."""
-        self._scribe = file_writer.Scribe(folder)
+        self._writer = file_writer.FileWriter(folder)
         for kind, name in FILES.items():
             try:
-                self.plans[kind] = file_writer.read(folder / name, parsed) or ()
-            except DamagedError as error:
+                self.plans[kind] = file_writer.read_file(folder / name, decode) or ()
+            except CorruptFileError as error:
                 self.damage[kind] = f"saved {kind.name.lower()} {error}"
 
     @property
     def problem(self) -> str | None:
         """Why plans are not kept, one line."""
-        return self._scribe.problem
+        return self._writer.problem
 
     @property
     def idle(self) -> bool:
         """Nothing is being written."""
-        return self._scribe.idle
+        return self._writer.idle
 
-    def keep(self, kind: MissionType, items: Items) -> file_writer.Writing:
+    def save(self, kind: MissionType, items: Items) -> file_writer.PendingWrite:
         """Have it written."""
-        return self._scribe.write(FILES[kind], partial(dump, items))
+        return self._writer.write(FILES[kind], partial(encode, items))
 
     def close(self) -> None:
         """Wait for what is being written."""
-        self._scribe.close()
+        self._writer.close()
 
 
-def dump(items: Items) -> bytes:
+def encode(items: Items) -> bytes:
     """The file of a plan."""
-    return sealed(write(items))
+    return add_checksum(encode_plan(items))
 
 
-def parsed(data: bytes) -> Items:
+def decode(data: bytes) -> Items:
     """The plan of a file. Raises DamagedError."""
     try:
-        return read(unsealed(data))
+        return decode_plan(strip_checksum(data))
     except PlanFileError as error:
-        raise DamagedError(str(error)) from error
+        raise CorruptFileError(str(error)) from error

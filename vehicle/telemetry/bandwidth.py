@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from link.core import LinkReport, Peer
-from link.services.pacing import DEFAULT_RATE, Pacer
+from link.services.pacing import DEFAULT_RATE, BulkPacer
 
 
-class Shares(NamedTuple):
+class LinkShares(NamedTuple):
     """Of a link whose capacity is known; the rest is for acknowledgements and texts."""
 
     telemetry: float
@@ -18,9 +18,9 @@ class Shares(NamedTuple):
     """Lists, files and logs."""
 
 
-USUAL = Shares(0.6, 0.3)
+DEFAULT_SHARES = LinkShares(0.6, 0.3)
 """30 to 50 % for parameters by the specification."""
-STANDING = Shares(0.3, 0.6)
+DISARMED_SHARES = LinkShares(0.3, 0.6)
 """While bulk flows and nothing can be driven: a log takes half the time, and who waits for it reads no speedometer."""
 
 
@@ -28,9 +28,9 @@ class Bandwidth:
     """Bytes/s. `armed`: can the vehicle be driven now?"""
 
     def __init__(self, armed: Callable[[], bool]) -> None:
-        self.telemetry: dict[int, float] = {}
+        self.telemetry_rates: dict[int, float] = {}
         """Link -> for all streams on it together; nobody knows that of a network."""
-        self.pacer = Pacer(self._bulk)
+        self.pacer = BulkPacer(self._bulk)
         """One for every service that sends more than one answer."""
         self._armed = armed
         self._room: dict[int, float] = {}
@@ -39,16 +39,16 @@ class Bandwidth:
         self._busy: set[int] = set()
         """... and before it: what bulk gains telemetry has given up by then."""
 
-    def observe(self, reports: Sequence[LinkReport]) -> None:
+    def update(self, reports: Sequence[LinkReport]) -> None:
         """Take what the links say."""
         self._busy, self._asked = self._asked, set()
         self._room = {each.index: each.capacity * each.headroom for each in reports if each.capacity is not None}
-        self.telemetry = {link: self._shares(link).telemetry * room for link, room in self._room.items()}
+        self.telemetry_rates = {link: self._shares(link).telemetry * room for link, room in self._room.items()}
 
     def _bulk(self, peer: Peer) -> float:
         self._asked.add(peer.link)
         room = self._room.get(peer.link)
         return DEFAULT_RATE if room is None else self._shares(peer.link).bulk * room
 
-    def _shares(self, link: int) -> Shares:
-        return STANDING if link in self._busy and not self._armed() else USUAL
+    def _shares(self, link: int) -> LinkShares:
+        return DISARMED_SHARES if link in self._busy and not self._armed() else DEFAULT_SHARES

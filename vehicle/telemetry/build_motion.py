@@ -8,46 +8,46 @@ from __future__ import annotations
 import math
 
 from dialects import messages as m
-from dialects.enums import Estimated
-from vehicle.drive.demand import STEERING_CHANNEL, THROTTLE_CHANNEL, Override, pulse
+from dialects.enums import EstimatorFlag
+from vehicle.drive.demand import STEERING_CHANNEL, THROTTLE_CHANNEL, RcOverride, pulse
 from vehicle.navigation.estimate import Estimate
-from vehicle.telemetry.scaling import INT16, INT32, UINT8, UINT16, real, whole
-from vehicle.telemetry.view import View
+from vehicle.telemetry.scaling import INT16, INT32, UINT8, UINT16, scale_to_int, to_float32
+from vehicle.telemetry.view import TelemetryView
 
 RSSI_UNKNOWN = 255
 
 
-def attitude(view: View) -> m.Message | None:
+def attitude(view: TelemetryView) -> m.Message | None:
     """ATTITUDE."""
     readings, estimate = view.readings, view.estimate
     if estimate.yaw is None:
         return None
     return m.Attitude(
         time_boot_ms=view.boot_ms,
-        roll=real(readings.roll),
-        pitch=real(readings.pitch),
+        roll=to_float32(readings.roll),
+        pitch=to_float32(readings.pitch),
         yaw=estimate.yaw,
         rollspeed=0.0,
         pitchspeed=0.0,
-        yawspeed=real(estimate.yaw_rate),
+        yawspeed=to_float32(estimate.yaw_rate),
     )
 
 
-def vfr_hud(view: View) -> m.Message:
+def vfr_hud(view: TelemetryView) -> m.Message:
     """VFR_HUD: speed over ground, heading and throttle, also where only the throttle is known."""
-    readings, driving = view.readings, view.drive.driving
+    readings, driving = view.readings, view.drive.driven_wheels
     speed = view.estimate.ground_speed
     return m.VfrHud(
         airspeed=speed,
         groundspeed=speed,
         heading=_heading(view.estimate, 1.0, unknown=0) % 360,
-        throttle=whole(max(abs(value) for value in driving), UINT16, 100),
-        alt=real(readings.altitude),
+        throttle=scale_to_int(max(abs(value) for value in driving), UINT16, 100),
+        alt=to_float32(readings.altitude),
         climb=0.0,
     )
 
 
-def local_position_ned(view: View) -> m.Message | None:
+def local_position_ned(view: TelemetryView) -> m.Message | None:
     """LOCAL_POSITION_NED."""
     estimate = view.estimate
     if not estimate.moving_place:
@@ -64,25 +64,25 @@ def local_position_ned(view: View) -> m.Message | None:
     )
 
 
-def global_position_int(view: View) -> m.Message | None:
+def global_position_int(view: TelemetryView) -> m.Message | None:
     """GLOBAL_POSITION_INT."""
-    globe, velocity = view.estimate.globe, view.estimate.velocity
+    globe, velocity = view.estimate.lat_lon, view.estimate.velocity
     if globe is None:
         return None
     return m.GlobalPositionInt(
         time_boot_ms=view.boot_ms,
-        lat=whole(globe[0], INT32, 1e7),
-        lon=whole(globe[1], INT32, 1e7),
-        alt=whole(view.readings.altitude, INT32, 1000),
-        relative_alt=whole(above_home(view), INT32, 1000),
-        vx=whole(velocity.north, INT16, 100),
-        vy=whole(velocity.east, INT16, 100),
+        lat=scale_to_int(globe[0], INT32, 1e7),
+        lon=scale_to_int(globe[1], INT32, 1e7),
+        alt=scale_to_int(view.readings.altitude, INT32, 1000),
+        relative_alt=scale_to_int(above_home(view), INT32, 1000),
+        vx=scale_to_int(velocity.north, INT16, 100),
+        vy=scale_to_int(velocity.east, INT16, 100),
         vz=0,
         hdg=_heading(view.estimate, 100.0, unknown=m.UINT16_MAX),
     )
 
 
-def gps_global_origin(view: View) -> m.Message | None:
+def gps_global_origin(view: TelemetryView) -> m.Message | None:
     """GPS_GLOBAL_ORIGIN: where 0/0 of LOCAL_POSITION_NED is. The first fix decides it, until somebody sets it."""
     origin = view.estimate.origin
     if origin is None:
@@ -91,52 +91,52 @@ def gps_global_origin(view: View) -> m.Message | None:
     if altitude is None and view.home:
         altitude = view.home.altitude
     return m.GpsGlobalOrigin(
-        latitude=whole(origin.latitude, INT32, 1e7),
-        longitude=whole(origin.longitude, INT32, 1e7),
-        altitude=whole(altitude, INT32, 1000),
+        latitude=scale_to_int(origin.latitude, INT32, 1e7),
+        longitude=scale_to_int(origin.longitude, INT32, 1e7),
+        altitude=scale_to_int(altitude, INT32, 1000),
         time_usec=view.boot_us,
     )
 
 
-def estimator_status(view: View) -> m.Message:
+def estimator_status(view: TelemetryView) -> m.Message:
     """ESTIMATOR_STATUS: which parts of the estimate may be believed. Test ratios are not kept: 0."""
     estimate = view.estimate
     holds = {
-        Estimated.ATTITUDE: estimate.yaw is not None,
-        Estimated.VELOCITY: estimate.yaw is not None and estimate.speed is not None,
-        Estimated.POSITION_RELATIVE: estimate.moving_place,
-        Estimated.POSITION_ABSOLUTE: estimate.good,
+        EstimatorFlag.ATTITUDE: estimate.yaw is not None,
+        EstimatorFlag.VELOCITY: estimate.yaw is not None and estimate.speed is not None,
+        EstimatorFlag.POSITION_RELATIVE: estimate.moving_place,
+        EstimatorFlag.POSITION_ABSOLUTE: estimate.good,
     }
     return m.EstimatorStatus(
         time_usec=view.boot_us,
         flags=sum(flag for flag, there in holds.items() if there),
         vel_ratio=0.0, pos_horiz_ratio=0.0, pos_vert_ratio=0.0, mag_ratio=0.0, hagl_ratio=0.0, tas_ratio=0.0,
-        pos_horiz_accuracy=real(estimate.accuracy, math.nan), pos_vert_accuracy=math.nan,
+        pos_horiz_accuracy=to_float32(estimate.accuracy, math.nan), pos_vert_accuracy=math.nan,
     )  # fmt: skip
 
 
-def gps_raw_int(view: View) -> m.Message | None:
+def gps_raw_int(view: TelemetryView) -> m.Message | None:
     """GPS_RAW_INT."""
     readings = view.readings
     if readings.gps_fix is None:
         return None
-    north, east = real(readings.velocity_north), real(readings.velocity_east)
+    north, east = to_float32(readings.velocity_north), to_float32(readings.velocity_east)
     course = math.degrees(math.atan2(east, north)) % 360
     return m.GpsRawInt(
         time_usec=view.boot_us,
-        fix_type=whole(readings.gps_fix, UINT8),
-        lat=whole(readings.latitude, INT32, 1e7),
-        lon=whole(readings.longitude, INT32, 1e7),
-        alt=whole(readings.altitude, INT32, 1000),
-        eph=whole(readings.gps_hdop, UINT16, 100, unknown=m.UINT16_MAX),
+        fix_type=scale_to_int(readings.gps_fix, UINT8),
+        lat=scale_to_int(readings.latitude, INT32, 1e7),
+        lon=scale_to_int(readings.longitude, INT32, 1e7),
+        alt=scale_to_int(readings.altitude, INT32, 1000),
+        eph=scale_to_int(readings.gps_hdop, UINT16, 100, unknown=m.UINT16_MAX),
         epv=m.UINT16_MAX,
-        vel=whole(math.hypot(north, east), UINT16, 100),
-        cog=whole(course, UINT16, 100),
-        satellites_visible=whole(readings.gps_satellites, UINT8, unknown=255),
+        vel=scale_to_int(math.hypot(north, east), UINT16, 100),
+        cog=scale_to_int(course, UINT16, 100),
+        satellites_visible=scale_to_int(readings.gps_satellites, UINT8, unknown=255),
     )
 
 
-def servo_output_raw(view: View) -> m.Message:
+def servo_output_raw(view: TelemetryView) -> m.Message:
     """SERVO_OUTPUT_RAW: what each motor gets, as a pulse, at the servo numbers of ArduRover's default wiring; beside
     them the servos that are accessories. 0: no pulses, or nothing there."""
     pulses = [0] * 16
@@ -147,7 +147,7 @@ def servo_output_raw(view: View) -> m.Message:
     return m.ServoOutputRaw(view.boot_us & m.UINT32_MASK, 0, *pulses)
 
 
-def relay_status(view: View) -> m.Message | None:
+def relay_status(view: TelemetryView) -> m.Message | None:
     """RELAY_STATUS: a bit for each relay, as the hardware has it; nothing where there is none."""
     relays = view.rack.values("relay")
     if not relays:
@@ -156,13 +156,13 @@ def relay_status(view: View) -> m.Message | None:
     return m.RelayStatus(time_boot_ms=view.boot_ms, on=on, present=sum(1 << number for number in relays))
 
 
-def rc_channels(view: View) -> m.Message:
+def rc_channels(view: TelemetryView) -> m.Message:
     """RC_CHANNELS: what overrides hold, and the demand in use at the throttle and steering channels."""
     control = view.control
-    pulses = [m.UINT16_MAX] * Override.COUNT
+    pulses = [m.UINT16_MAX] * RcOverride.COUNT
     for number, channel in control.override.channels.items():
         pulses[number - 1] = channel.pulse
-    if control.demand and not control.stale(view.now):
+    if control.demand and not control.is_demand_stale(view.now):
         pulses[THROTTLE_CHANNEL - 1] = pulse(control.demand.throttle or 0.0)
         pulses[STEERING_CHANNEL - 1] = pulse(control.demand.steering or 0.0)
     channels = {f"chan{number}_raw": value for number, value in enumerate(pulses, start=1)}
@@ -170,18 +170,18 @@ def rc_channels(view: View) -> m.Message:
     return m.RcChannels(time_boot_ms=view.boot_ms, chancount=count, rssi=RSSI_UNKNOWN, **channels)
 
 
-def above_home(view: View) -> float:
+def above_home(view: TelemetryView) -> float:
     """m; 0 where one of both is not known."""
     altitude = view.navigator.altitude
-    return 0.0 if altitude is None or view.home is None else real(altitude) - view.home.altitude
+    return 0.0 if altitude is None or view.home is None else to_float32(altitude) - view.home.altitude
 
 
-def above_origin(view: View) -> float:
+def above_origin(view: TelemetryView) -> float:
     """m; as home where it is not known."""
     return above_home(view) + home_above_origin(view)
 
 
-def home_above_origin(view: View) -> float:
+def home_above_origin(view: TelemetryView) -> float:
     """m; 0 until somebody gives the origin a height of its own."""
     altitude = view.navigator.origin_altitude
     return 0.0 if altitude is None or view.home is None else view.home.altitude - altitude
@@ -191,4 +191,4 @@ def _heading(estimate: Estimate, scale: float, unknown: int) -> int:
     """Yaw as 0..360 degrees x `scale`."""
     if estimate.yaw is None:
         return unknown
-    return whole(math.degrees(estimate.yaw) % 360, UINT16, scale, unknown)
+    return scale_to_int(math.degrees(estimate.yaw) % 360, UINT16, scale, unknown)

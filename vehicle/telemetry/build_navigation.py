@@ -9,14 +9,14 @@ import math
 
 from dialects import messages as m
 from dialects.modes import Mode
-from vehicle.autonomy.mission.executor import Progress
+from vehicle.autonomy.mission.executor import MissionState
 from vehicle.autonomy.navigator import Navigator
 from vehicle.autonomy.setpoints import BODY_NED, LOCAL_NED
-from vehicle.modes import OFFERED
-from vehicle.navigation.geo import Point, wrap
+from vehicle.modes import MODES
+from vehicle.navigation.geo import Point, wrap_angle
 from vehicle.telemetry.build_motion import above_origin
-from vehicle.telemetry.scaling import INT16, INT32, UINT16, real, whole
-from vehicle.telemetry.view import View
+from vehicle.telemetry.scaling import INT16, INT32, UINT16, scale_to_int, to_float32
+from vehicle.telemetry.view import TelemetryView
 
 NO_MISSION = m.UINT16_MAX
 """`total` of MISSION_CURRENT; 0 would say that nobody counts."""
@@ -30,55 +30,55 @@ NO_BREACH, BOUNDARY = 0, 3
 """FENCE_BREACH; a rover has no altitude limits."""
 
 
-def position_target_global(view: View) -> m.Message | None:
+def position_target_global(view: TelemetryView) -> m.Message | None:
     """POSITION_TARGET_GLOBAL_INT: the place that a mode goes to."""
     goal, origin = _goal(view), view.estimate.origin
     if goal is None or origin is None:
         return None
-    latitude, longitude = origin.globe(goal)
+    latitude, longitude = origin.to_global(goal)
     return m.PositionTargetGlobalInt(
         time_boot_ms=view.boot_ms, coordinate_frame=ABSOLUTE, type_mask=ONLY_POSITION,
-        lat_int=whole(latitude, INT32, 1e7), lon_int=whole(longitude, INT32, 1e7), alt=real(view.readings.altitude),
+        lat_int=scale_to_int(latitude, INT32, 1e7), lon_int=scale_to_int(longitude, INT32, 1e7), alt=to_float32(view.readings.altitude),
         vx=0.0, vy=0.0, vz=0.0, afx=0.0, afy=0.0, afz=0.0, yaw=0.0, yaw_rate=0.0,
     )  # fmt: skip
 
 
-def position_target_local(view: View) -> m.Message | None:
+def position_target_local(view: TelemetryView) -> m.Message | None:
     """POSITION_TARGET_LOCAL_NED: that place on our ground, or in GUIDED the velocity that is asked for."""
     goal = _goal(view)
     if goal is not None:
         return _local(view, LOCAL_NED, ONLY_POSITION, x=goal.north, y=goal.east, z=-above_origin(view))
-    course = view.navigator.course(view.safety.mode)
+    course = view.navigator.velocity_target(view.safety.mode)
     if course is None:
         return None
     if course.heading is None:
         return _local(view, BODY_NED, TURNING, vx=course.speed, yaw_rate=course.turn_rate or 0.0)
     north, east = course.speed * math.cos(course.heading), course.speed * math.sin(course.heading)
-    return _local(view, LOCAL_NED, HEADED, vx=north, vy=east, yaw=wrap(course.heading))
+    return _local(view, LOCAL_NED, HEADED, vx=north, vy=east, yaw=wrap_angle(course.heading))
 
 
-def nav_controller_output(view: View) -> m.Message | None:
+def nav_controller_output(view: TelemetryView) -> m.Message | None:
     """NAV_CONTROLLER_OUTPUT: course, way to go, and m to the right of the line."""
     navigator, estimate = view.navigator, view.estimate
-    if not OFFERED[view.safety.mode].own or estimate.yaw is None:
+    if not MODES[view.safety.mode].autonomous or estimate.yaw is None:
         return None
     goal, leg = _goal(view), navigator.guide.leg
     course = estimate.yaw if navigator.guide.course is None else navigator.guide.course
     target = course if goal is None else estimate.place.bearing(goal)
-    wanted = navigator.wanted.speed if navigator.wanted else 0.0
+    wanted = navigator.desired_motion.speed if navigator.desired_motion else 0.0
     return m.NavControllerOutput(
         nav_roll=0.0,
         nav_pitch=0.0,
         nav_bearing=_degrees(course),
         target_bearing=_degrees(target),
-        wp_dist=whole(None if goal is None else estimate.place.distance(goal), UINT16),
+        wp_dist=scale_to_int(None if goal is None else estimate.place.distance(goal), UINT16),
         alt_error=0.0,
-        aspd_error=wanted - real(estimate.speed),
-        xtrack_error=0.0 if leg is None or goal is None else leg.beside(estimate.place)[1],
+        aspd_error=wanted - to_float32(estimate.speed),
+        xtrack_error=0.0 if leg is None or goal is None else leg.along_and_cross_track(estimate.place)[1],
     )
 
 
-def mission_current(view: View) -> m.MissionCurrent:
+def mission_current(view: TelemetryView) -> m.MissionCurrent:
     """MISSION_CURRENT: which item, of how many, and whether it is under way."""
     return mission_state(view.navigator, view.safety.mode)
 
@@ -86,34 +86,34 @@ def mission_current(view: View) -> m.MissionCurrent:
 def mission_state(navigator: Navigator, mode: Mode) -> m.MissionCurrent:
     """The same, for who has no view."""
     mission = navigator.mission
-    paused = mission.progress is Progress.ACTIVE and (navigator.paused or mode is not Mode.AUTO)
-    state = m.MISSION_PAUSED if paused else mission.progress
+    paused = mission.state is MissionState.ACTIVE and (navigator.paused or mode is not Mode.AUTO)
+    state = m.MISSION_PAUSED if paused else mission.state
     total = len(mission.items) or NO_MISSION
     return m.MissionCurrent(mission.current, total, state, 1 if mode is Mode.AUTO else 2, *navigator.plan_ids)
 
 
-def fence_status(view: View) -> m.Message | None:
+def fence_status(view: TelemetryView) -> m.Message | None:
     """FENCE_STATUS, where there is a fence that counts: as in ArduPilot."""
-    boundary = view.navigator.boundary
+    boundary = view.navigator.fence_avoidance
     if not boundary.fence.enabled:
         return None
-    outside, at = boundary.beyond > 0.0, boundary.breached_at
+    outside, at = boundary.breach_distance > 0.0, boundary.breached_at
     return m.FenceStatus(
         breach_status=int(outside),
-        breach_count=whole(boundary.breaches, UINT16),
+        breach_count=scale_to_int(boundary.breach_count, UINT16),
         breach_type=BOUNDARY if outside else NO_BREACH,
         breach_time=0 if at is None else m.boot_ms(view.since_boot - (view.now - at)),
     )
 
 
-def _goal(view: View) -> Point | None:
+def _goal(view: TelemetryView) -> Point | None:
     return view.navigator.goal(view.safety.mode)
 
 
-def _local(view: View, frame: int, mask: int, **values: float) -> m.Message:
+def _local(view: TelemetryView, frame: int, mask: int, **values: float) -> m.Message:
     zeros = dict.fromkeys(("x", "y", "z", "vx", "vy", "vz", "afx", "afy", "afz", "yaw", "yaw_rate"), 0.0)
     return m.PositionTargetLocalNed(view.boot_ms, frame, mask, **{**zeros, **values})
 
 
 def _degrees(angle: float) -> int:
-    return whole(math.degrees(wrap(angle)), INT16)
+    return scale_to_int(math.degrees(wrap_angle(angle)), INT16)

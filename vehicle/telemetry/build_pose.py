@@ -10,8 +10,8 @@ import math
 
 from dialects import messages as m
 from vehicle.telemetry.build_motion import above_home, above_origin
-from vehicle.telemetry.scaling import real
-from vehicle.telemetry.view import View
+from vehicle.telemetry.scaling import to_float32
+from vehicle.telemetry.view import TelemetryView
 
 LOCAL_NED, BODY_FRD = 1, 12
 """MAV_FRAME"""
@@ -34,16 +34,16 @@ def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, flo
     )
 
 
-def attitude_quaternion(view: View) -> m.Message | None:
+def attitude_quaternion(view: TelemetryView) -> m.Message | None:
     """ATTITUDE_QUATERNION."""
     if view.estimate.yaw is None:
         return None
     return m.AttitudeQuaternion(
-        view.boot_ms, *_quaternion(view), rollspeed=0.0, pitchspeed=0.0, yawspeed=real(view.estimate.yaw_rate)
+        view.boot_ms, *_quaternion(view), rollspeed=0.0, pitchspeed=0.0, yawspeed=to_float32(view.estimate.yaw_rate)
     )
 
 
-def highres_imu(view: View) -> m.Message | None:
+def highres_imu(view: TelemetryView) -> m.Message | None:
     """HIGHRES_IMU: the gyro; all else is not a number."""
     rate = view.readings.yaw_rate
     if rate is None:
@@ -56,7 +56,7 @@ def highres_imu(view: View) -> m.Message | None:
     )  # fmt: skip
 
 
-def odometry(view: View) -> m.Message | None:
+def odometry(view: TelemetryView) -> m.Message | None:
     """ODOMETRY: where it is from the start, and its motion along its own axes."""
     estimate = view.estimate
     if not estimate.moving_place:
@@ -64,14 +64,14 @@ def odometry(view: View) -> m.Message | None:
     return m.Odometry(
         view.boot_us, LOCAL_NED, BODY_FRD,
         x=estimate.place.north, y=estimate.place.east, z=-above_origin(view), q=list(_quaternion(view)),
-        vx=real(estimate.speed), vy=estimate.sideways, vz=0.0,
-        rollspeed=0.0, pitchspeed=0.0, yawspeed=real(estimate.yaw_rate),
+        vx=to_float32(estimate.speed), vy=estimate.sideways, vz=0.0,
+        rollspeed=0.0, pitchspeed=0.0, yawspeed=to_float32(estimate.yaw_rate),
         pose_covariance=UNKNOWN_COVARIANCE, velocity_covariance=UNKNOWN_COVARIANCE,
         reset_counter=estimate.resets % 256, estimator_type=ESTIMATOR_AUTOPILOT,
     )  # fmt: skip
 
 
-def altitude(view: View) -> m.Message | None:
+def altitude(view: TelemetryView) -> m.Message | None:
     """ALTITUDE, by GPS."""
     amsl = view.readings.altitude
     if amsl is None:
@@ -80,6 +80,6 @@ def altitude(view: View) -> m.Message | None:
     return m.Altitude(view.boot_us, amsl, amsl, local, above, TERRAIN_UNKNOWN, CLEARANCE_UNKNOWN)
 
 
-def _quaternion(view: View) -> tuple[float, float, float, float]:
+def _quaternion(view: TelemetryView) -> tuple[float, float, float, float]:
     readings = view.readings
-    return quaternion(real(readings.roll), real(readings.pitch), real(view.estimate.yaw))
+    return quaternion(to_float32(readings.roll), to_float32(readings.pitch), to_float32(view.estimate.yaw))

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dialects import messages as m
-from dialects.enums import Autopilot, Capability, Failsafe, Limit, Sensor, State, Type
+from dialects.enums import Autopilot, Capability, DriveLimit, Failsafe, Sensor, SystemState, VehicleType
 from dialects.modes import Mode, base_mode
-from vehicle.modes import OFFERED, Need, Offer
+from vehicle.modes import MODES, ModeRequirement, ModeSpec
 from vehicle.safety import states
-from vehicle.safety.failsafe import Action
+from vehicle.safety.failsafe import FailsafeAction
 from vehicle.telemetry.build_motion import home_above_origin
-from vehicle.telemetry.scaling import INT8, INT16, INT32, UINT16, real, whole
-from vehicle.telemetry.view import View
+from vehicle.telemetry.scaling import INT8, INT16, INT32, UINT16, scale_to_int, to_float32
+from vehicle.telemetry.view import TelemetryView
 
 VERSION = (0, 1, 0)
 """Of this program, in AUTOPILOT_VERSION."""
@@ -25,10 +25,10 @@ CHARGE_OK, CHARGE_LOW, CHARGE_CRITICAL = 1, 2, 3
 """MAV_BATTERY_CHARGE_STATE."""
 
 
-def heartbeat(view: View) -> m.Message:
+def heartbeat(view: TelemetryView) -> m.Message:
     """HEARTBEAT: armed, mode and state in the words every ground station knows."""
     return m.Heartbeat(
-        type=Type.GROUND_ROVER,
+        type=VehicleType.GROUND_ROVER,
         autopilot=Autopilot.GENERIC,
         base_mode=base_mode(_mode(view), armed=view.safety.armed),
         custom_mode=_mode(view),
@@ -37,29 +37,29 @@ def heartbeat(view: View) -> m.Message:
     )
 
 
-def _system_status(view: View) -> State:
+def _system_status(view: TelemetryView) -> SystemState:
     safety = view.safety
     if safety.terminated:
-        return State.FLIGHT_TERMINATION
+        return SystemState.FLIGHT_TERMINATION
     if safety.armed and (safety.failsafes.active or safety.latched):
-        return State.CRITICAL
+        return SystemState.CRITICAL
     return {
-        states.State.BOOT: State.BOOT,
-        states.State.SAFE: State.STANDBY,
-        states.State.ARMED: State.ACTIVE,
-        states.State.ESTOP: State.EMERGENCY,
-        states.State.FAULT: State.CRITICAL,
-        states.State.OFF: State.POWEROFF,
+        states.SafetyState.BOOT: SystemState.BOOT,
+        states.SafetyState.SAFE: SystemState.STANDBY,
+        states.SafetyState.ARMED: SystemState.ACTIVE,
+        states.SafetyState.ESTOP: SystemState.EMERGENCY,
+        states.SafetyState.FAULT: SystemState.CRITICAL,
+        states.SafetyState.OFF: SystemState.POWEROFF,
     }[safety.state]
 
 
-def sys_status(view: View) -> m.Message:
+def sys_status(view: TelemetryView) -> m.Message:
     """SYS_STATUS: which sensors there are and whether they are well, and the battery."""
-    readings, battery, fence = view.readings, view.safety.battery, view.navigator.boundary.fence
+    readings, battery, fence = view.readings, view.safety.battery, view.navigator.fence_avoidance.fence
     has = {
         Sensor.MOTOR_OUTPUTS: True,
         Sensor.PREARM: True,
-        Sensor.GEOFENCE: fence.there,
+        Sensor.GEOFENCE: fence.is_present,
         Sensor.BATTERY: battery.present,
         Sensor.GPS: readings.gps_fix is not None or "gps" in readings.configured,
         Sensor.GYRO: readings.yaw_rate is not None,
@@ -69,10 +69,11 @@ def sys_status(view: View) -> m.Message:
         Sensor.LOGGING: view.logs is not None,
     }
     ill = {
-        Sensor.MOTOR_OUTPUTS: view.safety.fault is not None,
-        Sensor.GEOFENCE: view.navigator.boundary.beyond > 0.0,
-        Sensor.PREARM: not view.safety.armed and bool(view.safety.problems(view.now)),  # a moving stick forbids to arm
-        Sensor.BATTERY: battery.silent(view.now) or battery.low_since(view.now) is not None,
+        Sensor.MOTOR_OUTPUTS: view.safety.motor_fault is not None,
+        Sensor.GEOFENCE: view.navigator.fence_avoidance.breach_distance > 0.0,
+        Sensor.PREARM: not view.safety.armed
+        and bool(view.safety.prearm_problems(view.now)),  # a moving stick forbids to arm
+        Sensor.BATTERY: battery.is_silent(view.now) or battery.low_since(view.now) is not None,
         Sensor.GPS: (readings.gps_fix or 0) < 3,
         Sensor.AHRS: readings.gps_fix is not None and not view.estimate.good,
         Sensor.LOGGING: view.logs is False,
@@ -85,15 +86,15 @@ def sys_status(view: View) -> m.Message:
         onboard_control_sensors_present=present,
         onboard_control_sensors_enabled=present & ~off,
         onboard_control_sensors_health=health,
-        load=whole(view.host.load, (0, 1000), 1000),
-        voltage_battery=whole(readings.battery_voltage, UINT16, 1000, unknown=m.UINT16_MAX),
-        current_battery=whole(readings.battery_current, INT16, 100, unknown=-1),
-        battery_remaining=whole(readings.battery_remaining, (0, 100), 100, unknown=-1),
+        load=scale_to_int(view.host.load, (0, 1000), 1000),
+        voltage_battery=scale_to_int(readings.battery_voltage, UINT16, 1000, unknown=m.UINT16_MAX),
+        current_battery=scale_to_int(readings.battery_current, INT16, 100, unknown=-1),
+        battery_remaining=scale_to_int(readings.battery_remaining, (0, 100), 100, unknown=-1),
         drop_rate_comm=0, errors_comm=0, errors_count1=0, errors_count2=0, errors_count3=0, errors_count4=0,
     )  # fmt: skip
 
 
-def battery_status(view: View) -> m.Message | None:
+def battery_status(view: TelemetryView) -> m.Message | None:
     """BATTERY_STATUS of the one battery; nothing without a sensor."""
     readings, battery = view.readings, view.safety.battery
     if readings.battery_voltage is None:
@@ -104,63 +105,64 @@ def battery_status(view: View) -> m.Message | None:
         battery_function=0,
         type=0,
         temperature=INT16[1],
-        voltages=[whole(readings.battery_voltage, (0, 65534), 1000), *UNKNOWN_VOLTAGES],
-        current_battery=whole(readings.battery_current, INT16, 100, unknown=-1),
+        voltages=[scale_to_int(readings.battery_voltage, (0, 65534), 1000), *UNKNOWN_VOLTAGES],
+        current_battery=scale_to_int(readings.battery_current, INT16, 100, unknown=-1),
         current_consumed=-1,
         energy_consumed=-1,
-        battery_remaining=whole(readings.battery_remaining, (0, INT8[1]), 100, unknown=-1),
+        battery_remaining=scale_to_int(readings.battery_remaining, (0, INT8[1]), 100, unknown=-1),
         charge_state=CHARGE_CRITICAL if critical else CHARGE_LOW if low else CHARGE_OK,
     )
 
 
-def current_mode(view: View) -> m.Message:
+def current_mode(view: TelemetryView) -> m.Message:
     """CURRENT_MODE: what it is, and what the driver last chose."""
     mode = _mode(view)
-    return m.CurrentMode(OFFERED[mode].standard, custom_mode=mode, intended_custom_mode=view.safety.intended)
+    return m.CurrentMode(MODES[mode].standard, custom_mode=mode, intended_custom_mode=view.safety.intended)
 
 
-def _mode(view: View) -> Mode:
-    return Mode.INITIALISING if view.safety.state is states.State.BOOT else view.safety.mode
+def _mode(view: TelemetryView) -> Mode:
+    return Mode.INITIALISING if view.safety.state is states.SafetyState.BOOT else view.safety.mode
 
 
-def control_status(view: View) -> m.Message:
+def control_status(view: TelemetryView) -> m.Message:
     """CONTROL_STATUS: which ground station is in control."""
     flags = SYSTEM_MANAGER | (TAKEOVER_ALLOWED if view.control.takeover_allowed else 0)
     return m.ControlStatus(flags=flags, gcs_main=view.control.owner, gcs_secondary=[0] * 10)
 
 
-def system_time(view: View) -> m.Message:
+def system_time(view: TelemetryView) -> m.Message:
     """SYSTEM_TIME; 0 for a wall clock nobody knows."""
     seconds = view.host.unix_time(view.now)
-    unix = 0 if seconds is None else whole(seconds, (0, 2**63), 1e6)
+    unix = 0 if seconds is None else scale_to_int(seconds, (0, 2**63), 1e6)
     return m.SystemTime(time_unix_usec=unix, time_boot_ms=view.boot_ms)
 
 
-def limits(view: View) -> Limit:
+def limits(view: TelemetryView) -> DriveLimit:
     """Why the outputs differ from the demand."""
     safety, control = view.safety, view.control
     reasons = {
-        Limit.DISARMED: not safety.armed,
-        Limit.ESTOP: safety.state is states.State.ESTOP,
-        Limit.FAILSAFE: safety.failsafes.action(view.now) >= Action.NEUTRAL or bool(safety.failsafes.latched),
-        Limit.FENCE: bool(safety.failsafes.active & Failsafe.FENCE) or view.navigator.boundary.held_back,
-        Limit.BATTERY: bool(safety.failsafes.active & (Failsafe.BATTERY_LOW | Failsafe.BATTERY_CRITICAL)),
-        Limit.STALE: control.stale(view.now),
-        Limit.NEUTRAL_FIRST: safety.armed and not control.neutral_seen,
+        DriveLimit.DISARMED: not safety.armed,
+        DriveLimit.ESTOP: safety.state is states.SafetyState.ESTOP,
+        DriveLimit.FAILSAFE: safety.failsafes.lasting_action(view.now) >= FailsafeAction.NEUTRAL
+        or bool(safety.failsafes.latched),
+        DriveLimit.FENCE: bool(safety.failsafes.active & Failsafe.FENCE) or view.navigator.fence_avoidance.is_limiting,
+        DriveLimit.BATTERY: bool(safety.failsafes.active & (Failsafe.BATTERY_LOW | Failsafe.BATTERY_CRITICAL)),
+        DriveLimit.STALE: control.is_demand_stale(view.now),
+        DriveLimit.NEUTRAL_FIRST: safety.armed and not control.neutral_seen,
     }
-    return view.drive.limits | Limit(sum(limit for limit, holds in reasons.items() if holds))
+    return view.drive.limits | DriveLimit(sum(limit for limit, holds in reasons.items() if holds))
 
 
-def drive_status(view: View) -> m.Message:
+def drive_status(view: TelemetryView) -> m.Message:
     """ROVER_DRIVE_STATUS: the driver's demand while it counts as fresh, what the wheels do, and why that differs."""
     control = view.control
-    demand = None if control.stale(view.now) else control.demand
-    output = [whole(value, INT16, 10000) for value in view.drive.wheels]
+    demand = None if control.is_demand_stale(view.now) else control.demand
+    output = [scale_to_int(value, INT16, 10000) for value in view.drive.wheels]
     return m.RoverDriveStatus(
         time_boot_ms=view.boot_ms,
-        demand_age_ms=whole(control.age(view.now), UINT16, 1000, unknown=m.UINT16_MAX),
-        demand_throttle=whole(demand.throttle, INT16, 10000) if demand else 0,
-        demand_steering=whole(demand.steering, INT16, 10000) if demand else 0,
+        demand_age_ms=scale_to_int(control.demand_age(view.now), UINT16, 1000, unknown=m.UINT16_MAX),
+        demand_throttle=scale_to_int(demand.throttle, INT16, 10000) if demand else 0,
+        demand_steering=scale_to_int(demand.steering, INT16, 10000) if demand else 0,
         output=(output + [0] * 4)[:4],
         limits=limits(view),
         source_system=control.demand.system if control.demand else 0,
@@ -168,7 +170,7 @@ def drive_status(view: View) -> m.Message:
     )
 
 
-def failsafe_status(view: View) -> m.Message:
+def failsafe_status(view: TelemetryView) -> m.Message:
     """ROVER_FAILSAFE_STATUS: what is wrong, what follows and when."""
     safety = view.safety
     step = safety.failsafes.next_step(view.now)
@@ -176,13 +178,13 @@ def failsafe_status(view: View) -> m.Message:
         time_boot_ms=view.boot_ms,
         active=safety.failsafes.active | (safety.latched & (Failsafe.ESTOP | Failsafe.MOTOR_DRIVER)),
         latched=safety.latched,
-        action_in_ms=whole(step.delay if step else None, UINT16, 1000, unknown=m.UINT16_MAX),
-        custom_mode_after=Mode.HOLD if step and step.action is Action.HOLD else safety.mode,
-        will_disarm=step is not None and step.action is Action.DISARM,
+        action_in_ms=scale_to_int(step.delay if step else None, UINT16, 1000, unknown=m.UINT16_MAX),
+        custom_mode_after=Mode.HOLD if step and step.action is FailsafeAction.HOLD else safety.mode,
+        will_disarm=step is not None and step.action is FailsafeAction.DISARM,
     )
 
 
-def drive_info(view: View) -> m.Message:
+def drive_info(view: TelemetryView) -> m.Message:
     """ROVER_DRIVE_INFO: what the axes of MANUAL_CONTROL mean here."""
     params = view.params
     return m.RoverDriveInfo(
@@ -190,7 +192,7 @@ def drive_info(view: View) -> m.Message:
         turn_rate_max=2 * params["SPEED_MAX"] / params["TRACK_WIDTH"],
         track_width=params["TRACK_WIDTH"],
         wheelbase=params["WHEELBASE"],
-        manual_timeout_ms=whole(params["MAN_TIMEOUT"], UINT16, 1000),
+        manual_timeout_ms=scale_to_int(params["MAN_TIMEOUT"], UINT16, 1000),
         drive_type=view.drive.kind,
         throttle_axis=X_AXIS,
         steering_axis=R_AXIS,
@@ -199,26 +201,26 @@ def drive_info(view: View) -> m.Message:
     )
 
 
-def extended_sys_state(view: View) -> m.Message:
+def extended_sys_state(view: TelemetryView) -> m.Message:
     """EXTENDED_SYS_STATE: a rover is on the ground."""
     return m.ExtendedSysState(vtol_state=0, landed_state=1)
 
 
-def home_position(view: View) -> m.Message | None:
+def home_position(view: TelemetryView) -> m.Message | None:
     """HOME_POSITION, once there is a home."""
     home = view.home
     if home is None:
         return None
     return m.HomePosition(
-        latitude=whole(home.latitude, INT32, 1e7),
-        longitude=whole(home.longitude, INT32, 1e7),
-        altitude=whole(home.altitude, INT32, 1000),
-        x=real(home.north), y=real(home.east), z=-home_above_origin(view), q=[1.0, 0.0, 0.0, 0.0],
+        latitude=scale_to_int(home.latitude, INT32, 1e7),
+        longitude=scale_to_int(home.longitude, INT32, 1e7),
+        altitude=scale_to_int(home.altitude, INT32, 1000),
+        x=to_float32(home.north), y=to_float32(home.east), z=-home_above_origin(view), q=[1.0, 0.0, 0.0, 0.0],
         approach_x=0.0, approach_y=0.0, approach_z=0.0, time_usec=view.boot_us,
     )  # fmt: skip
 
 
-def autopilot_version(view: View) -> m.Message:
+def autopilot_version(view: TelemetryView) -> m.Message:
     """AUTOPILOT_VERSION: what we can do."""
     major, minor, patch = VERSION
     nothing = [0] * 8
@@ -235,28 +237,30 @@ def autopilot_version(view: View) -> m.Message:
     )  # fmt: skip
 
 
-def protocol_version(view: View) -> m.Message:
+def protocol_version(view: TelemetryView) -> m.Message:
     """PROTOCOL_VERSION: MAVLink 2; version 1 is understood."""
     return m.ProtocolVersion(200, 100, 200, spec_version_hash=[0] * 8, library_version_hash=[0] * 8)
 
 
-def available_modes(view: View) -> list[m.Message]:
+def available_modes(view: TelemetryView) -> list[m.Message]:
     """AVAILABLE_MODES, one message a mode. What a sensor is missing for cannot be selected now."""
     return [
         m.AvailableModes(
-            number_modes=len(OFFERED), mode_index=index, standard_mode=offer.standard, custom_mode=mode,
+            number_modes=len(MODES), mode_index=index, standard_mode=offer.standard, custom_mode=mode,
             properties=_properties(offer, view), mode_name=mode.name.encode(),
         )
-        for index, (mode, offer) in enumerate(OFFERED.items(), start=1)
+        for index, (mode, offer) in enumerate(MODES.items(), start=1)
     ]  # fmt: skip
 
 
-def _properties(offer: Offer, view: View) -> int:
-    selectable = offer.selectable and view.navigator.offers(offer.need)
-    automatic = AUTO_MODE if offer.own and offer.need is Need.POSITION else 0
+def _properties(offer: ModeSpec, view: TelemetryView) -> int:
+    selectable = offer.selectable and view.navigator.has_sensor_for(offer.requirement)
+    automatic = AUTO_MODE if offer.autonomous and offer.requirement is ModeRequirement.POSITION else 0
     return automatic | (0 if selectable else NOT_USER_SELECTABLE)
 
 
-def available_modes_monitor(view: View) -> m.Message:
+def available_modes_monitor(view: TelemetryView) -> m.Message:
     """AVAILABLE_MODES_MONITOR: its number changes when the modes that can be selected do."""
-    return m.AvailableModesMonitor(sum(1 << index for index, need in enumerate(Need) if view.navigator.offers(need)))
+    return m.AvailableModesMonitor(
+        sum(1 << index for index, need in enumerate(ModeRequirement) if view.navigator.has_sensor_for(need))
+    )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(slots=True)
-class Host:
+class HostInfo:
     """Unknown unless somebody says it."""
 
     uid: bytes = b""

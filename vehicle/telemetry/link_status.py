@@ -8,30 +8,30 @@ from dialects import messages as m
 from dialects.enums import Severity
 from link.core import LinkReport
 from vehicle.drive.control import Control
-from vehicle.statustext import Texts
-from vehicle.telemetry.scaling import UINT8, UINT32, whole
+from vehicle.statustext import StatusTextQueue
+from vehicle.telemetry.scaling import UINT8, UINT32, scale_to_int
 
 ROUND_TRIP_UNKNOWN = m.UINT16_MAX
 
 
-class Links:
+class LinkStatusReporter:
     """Remembers the newest report of each."""
 
-    def __init__(self, control: Control, texts: Texts, ids: tuple[int, int]) -> None:
+    def __init__(self, control: Control, texts: StatusTextQueue, ids: tuple[int, int]) -> None:
         """`ids` are our own system and component."""
         self._control = control
         self._texts = texts
         self._ids = ids
         self._reports: dict[int, LinkReport] = {}
 
-    def observe(self, reports: Sequence[LinkReport], now: float) -> list[m.Message]:
+    def update(self, reports: Sequence[LinkReport], now: float) -> list[m.Message]:
         """Take the reports; returns what is told of each."""
         self._reports = {report.index: report for report in reports}
         for report in reports:
             self._warn(report, now)
         return [self._status(report) for report in reports]
 
-    def status(self, link: int) -> m.Message | None:
+    def build_status(self, link: int) -> m.Message | None:
         """ROVER_LINK_STATUS of one; None where it has not reported yet."""
         report = self._reports.get(link)
         return None if report is None else self._status(report)
@@ -39,24 +39,24 @@ class Links:
     def _warn(self, report: LinkReport, now: float) -> None:
         for name in report.dialect_mismatch:
             text = f"Dialect mismatch on {report.name}: {name} has another definition"
-            self._texts.say_once(f"mismatch {report.name} {name}", Severity.WARNING, text, now)
+            self._texts.send_once(f"mismatch {report.name} {name}", Severity.WARNING, text, now)
         if report.own_id:
             system, component = self._ids
             text = f"Somebody on {report.name} uses our own ids {system}/{component}"
-            self._texts.say_once(f"own id {report.name}", Severity.WARNING, text, now)
+            self._texts.send_once(f"own id {report.name}", Severity.WARNING, text, now)
 
     def _status(self, report: LinkReport) -> m.Message:
         return m.RoverLinkStatus(
-            frames_ok=whole(report.frames, UINT32),
-            crc_errors=whole(report.crc_errors, UINT32),
-            resync_bytes=whole(report.resync_bytes, UINT32),
+            frames_ok=scale_to_int(report.frames, UINT32),
+            crc_errors=scale_to_int(report.crc_errors, UINT32),
+            resync_bytes=scale_to_int(report.resync_bytes, UINT32),
             bad_signature=0,
-            replayed=whole(report.duplicates + report.late, UINT32),
+            replayed=scale_to_int(report.duplicates + report.late, UINT32),
             unsigned_rejected=0,
-            not_in_control=whole(self._control.not_in_control, UINT32),
-            rate_limited=whole(report.rate_limited, UINT32),
+            not_in_control=scale_to_int(self._control.not_in_control_count, UINT32),
+            rate_limited=scale_to_int(report.rate_limited, UINT32),
             rtt_ms=ROUND_TRIP_UNKNOWN,
             jitter_ms=ROUND_TRIP_UNKNOWN,
-            link_id=whole(report.index, UINT8),
-            peers=whole(report.peers, UINT8),
+            link_id=scale_to_int(report.index, UINT8),
+            peers=scale_to_int(report.peers, UINT8),
         )

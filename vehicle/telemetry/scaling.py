@@ -12,7 +12,7 @@ UINT32 = (0, 2**32 - 1)
 INT8 = (-128, 127)
 
 
-def whole(value: float | None, bounds: tuple[int, int], scale: float = 1.0, unknown: int = 0) -> int:
+def scale_to_int(value: float | None, bounds: tuple[int, int], scale: float = 1.0, unknown: int = 0) -> int:
     """`value` x `scale` as an integer within `bounds`; `unknown` where there is no number."""
     if value is None or not math.isfinite(value):
         return unknown
@@ -20,14 +20,14 @@ def whole(value: float | None, bounds: tuple[int, int], scale: float = 1.0, unkn
     return int(max(low, min(high, round(value * scale)))) if math.isfinite(value * scale) else unknown
 
 
-def real(value: float | None, unknown: float = 0.0) -> float:
+def to_float32(value: float | None, unknown: float = 0.0) -> float:
     """`value` as a 32-bit float can hold it."""
     if value is None or not math.isfinite(value):
         return unknown
     return max(-3.4e38, min(3.4e38, value))
 
 
-def message_id(value: float) -> int | None:
+def parse_message_id(value: float) -> int | None:
     """A message id from a command's parameter; None for what cannot be one (ids have 24 bits)."""
     if not math.isfinite(value) or value != int(value) or not 0 <= value < 2**24:
         return None

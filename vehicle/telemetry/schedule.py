@@ -10,11 +10,11 @@ from typing import NamedTuple
 from dialects.codec import MAX_FRAME
 from dialects.enums import DataStream
 from link.protocol.rate import TokenBucket
-from vehicle.telemetry.streams import BY_ID, STREAMS, Family, Stream
+from vehicle.telemetry.streams import STREAM_BY_ID, STREAMS, DialectLevel, Stream
 
-BUDGET = 200.0
+PEER_MESSAGE_RATE_MAX = 200.0
 """Streamed messages/s to one peer: about 60 kbit/s of 40-byte frames, whatever it asks for."""
-FASTEST = 0.02
+MIN_INTERVAL = 0.02
 """s: a stream cannot be faster than the control cycle."""
 CHANGE_GAP = 0.05
 """s between two messages of a stream that tells changes at once: 20 Hz."""
@@ -28,7 +28,7 @@ STEADY = 0.5
 """Share of a limit that one steady stream may fill, its changes included: the others must not starve."""
 LEAST_ROOM = 0.1
 """Share of a limit that is left to the others where several steady ones want all of it."""
-SLOWEST = 8.0
+RADIO_STRETCH_MAX = 8.0
 """Largest factor by which a full radio stretches the intervals."""
 RADIO_SILENCE = 5.0
 """s: a radio reports once a second; one that is gone slows nothing down."""
@@ -36,10 +36,10 @@ EARLY = 1e-6
 """s: so much before its time a message goes out, or rounding would make it wait for another cycle."""
 
 
-class Share(NamedTuple):
+class BandwidthShare(NamedTuple):
     """What one peer may get of its link."""
 
-    messages: float = BUDGET
+    messages: float = PEER_MESSAGE_RATE_MAX
     """A second."""
     bytes: float | None = None
     """A second; None where nobody knows what the link takes."""
@@ -63,31 +63,31 @@ class _Clock:
         return self.origin + number * step - EARLY
 
 
-class Schedule:
+class StreamSchedule:
     """The streams of one peer. It begins with those that everybody understands, one after the other.
 
     `boot` is the time that all peers' streams are counted from.
     """
 
     def __init__(self, boot: float, now: float) -> None:
-        self.family = Family.COMMON
+        self.level = DialectLevel.COMMON
         """The last one that the peer has shown to speak."""
         self._clocks = {each.message.id: _Clock(each, boot + n * PHASE) for n, each in enumerate(STREAMS)}
         self._next = math.inf
-        self._share = Share()
-        self._messages = TokenBucket(BUDGET, BUDGET * BURST)
+        self._share = BandwidthShare()
+        self._messages = TokenBucket(PEER_MESSAGE_RATE_MAX, PEER_MESSAGE_RATE_MAX * BURST)
         self._bytes: TokenBucket | None = None
         self._stretch, self._radio_heard = 1.0, -math.inf
         """Factor on the intervals that a full radio asks for."""
         self._narrow = 1.0
         """Factor on the intervals for what was asked beyond the share."""
-        self._begin((Family.COMMON,), now)
+        self._begin((DialectLevel.COMMON,), now)
 
-    def speak(self, family: Family, now: float) -> None:
+    def raise_level(self, family: DialectLevel, now: float) -> None:
         """The peer understands `family` and those before it: their streams begin."""
-        if family > self.family:
-            self._begin([each for each in Family if self.family < each <= family], now)
-            self.family = family
+        if family > self.level:
+            self._begin([each for each in DialectLevel if self.level < each <= family], now)
+            self.level = family
 
     def interval(self, message_id: int) -> float | None:
         """s between two of a stream, None where it has no rate. Raises KeyError for a message that is no stream."""
@@ -99,15 +99,15 @@ class Schedule:
         Who asks again for what it has, as MAVProxy does all the time, gets no message for that.
         """
         clock = self._clocks[message_id]
-        on, interval = interval is not None, interval and max(FASTEST, interval)
-        if not clock.stream.fixed and (on, interval) != (clock.on, clock.interval):
+        on, interval = interval is not None, interval and max(MIN_INTERVAL, interval)
+        if not clock.stream.fixed_rate and (on, interval) != (clock.on, clock.interval):
             self._set(message_id, on, interval, now)
             self._narrow = self._narrowed()
 
     def set_default(self, message_id: int, now: float) -> None:
         """Back to the table's rate."""
-        if not BY_ID[message_id].fixed:
-            self._set_default(BY_ID[message_id], now)
+        if not STREAM_BY_ID[message_id].fixed_rate:
+            self._set_default(STREAM_BY_ID[message_id], now)
             self._narrow = self._narrowed()
 
     def set_group(self, group: int, rate: float, now: float) -> None:
@@ -116,36 +116,36 @@ class Schedule:
             if stream.group is not None and group in (DataStream.ALL, stream.group):
                 self.set_interval(stream.message.id, _interval(rate), now)
 
-    def limit(self, share: Share) -> None:
+    def set_share(self, share: BandwidthShare) -> None:
         """Messages and bytes of all streams together. They slow down alike, steady ones last."""
         if share == self._share:
             return
         self._share = share
-        self._messages.limit(share.messages, max(1.0, share.messages * BURST))
+        self._messages.set_rate(share.messages, max(1.0, share.messages * BURST))
         if share.bytes is None:
             self._bytes = None
         else:
             rate, burst = max(0.0, share.bytes - _FIXED), max(share.bytes * BYTES_BURST, MAX_FRAME)
             self._bytes = self._bytes or TokenBucket(rate, burst)
-            self._bytes.limit(rate, burst)
+            self._bytes.set_rate(rate, burst)
         self._narrow = self._narrowed()
 
-    def radio(self, free: int, now: float) -> None:
+    def handle_radio_status(self, free: int, now: float) -> None:
         """RADIO_STATUS: `free` percent of the radio's buffer. Slower when it fills, faster again when it is empty."""
         self._radio_heard = now
         if free < 50:
-            self._stretch = min(SLOWEST, self._stretch * 2)
+            self._stretch = min(RADIO_STRETCH_MAX, self._stretch * 2)
         elif free > 90:
             self._stretch = max(1.0, self._stretch / 2)
 
-    def hurry(self, message_id: int, now: float) -> None:
+    def expedite(self, message_id: int, now: float) -> None:
         """What a stream tells has changed: say so now, or as soon as CHANGE_GAP allows."""
         clock = self._clocks[message_id]
         if clock.on:
             clock.due = min(clock.due, max(now, clock.sent + max(CHANGE_GAP, self._least(clock.stream))))
             self._next = min(self._next, clock.due)
 
-    def take(self, now: float) -> list[Stream]:
+    def pop_due(self, now: float) -> list[Stream]:
         """The streams that are due and have room; they count as told."""
         if now < self._next:
             return []
@@ -155,14 +155,14 @@ class Schedule:
         self._next = min(each.due for each in self._clocks.values())
         return taken
 
-    def take_one(self, message_id: int, now: float) -> bool:
+    def pop_if_due(self, message_id: int, now: float) -> bool:
         """The same of one stream alone."""
         clock = self._clocks[message_id]
         return now >= clock.due and self._take(clock, now)
 
     def _take(self, clock: _Clock, now: float) -> bool:
         stream = clock.stream
-        if not (stream.fixed or self._room(stream, now)):
+        if not (stream.fixed_rate or self._room(stream, now)):
             return False
         clock.sent, clock.due = now, self._next_due(clock, now)
         return True
@@ -187,16 +187,16 @@ class Schedule:
         return self._stretch
 
     def _room(self, stream: Stream, now: float) -> bool:
-        return self._messages.take(now) and (self._bytes is None or self._bytes.take(now, stream.size))
+        return self._messages.consume(now) and (self._bytes is None or self._bytes.consume(now, stream.size))
 
-    def _begin(self, families: Collection[Family], now: float) -> None:
-        new = [stream for stream in STREAMS if stream.family in families and _unasked(stream)]
+    def _begin(self, families: Collection[DialectLevel], now: float) -> None:
+        new = [stream for stream in STREAMS if stream.level in families and _is_default_on(stream)]
         for number, stream in enumerate(new):
             self._set_default(stream, now + number * PHASE)
         self._narrow = self._narrowed()
 
     def _set_default(self, stream: Stream, due: float) -> None:
-        self._set(stream.message.id, _unasked(stream), _interval(stream.rate), due)
+        self._set(stream.message.id, _is_default_on(stream), _interval(stream.rate), due)
 
     def _set(self, message_id: int, on: bool, interval: float | None, due: float) -> None:
         clock = self._clocks[message_id]
@@ -220,14 +220,14 @@ class Schedule:
         return others / max(limit - steady, limit * LEAST_ROOM)
 
 
-def _unasked(stream: Stream) -> bool:
+def _is_default_on(stream: Stream) -> bool:
     """It is told without being asked for: at its rate, or when it changes."""
-    return stream.rate > 0 or stream.change is not None
+    return stream.rate > 0 or stream.change_key is not None
 
 
 def _interval(rate: float) -> float | None:
     return 1.0 / rate if rate > 0 else None
 
 
-_FIXED = sum(stream.size * stream.rate for stream in STREAMS if stream.fixed)
+_FIXED = sum(stream.size * stream.rate for stream in STREAMS if stream.fixed_rate)
 """Bytes/s of the streams that do not ask for room."""

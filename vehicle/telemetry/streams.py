@@ -12,13 +12,13 @@ from enum import IntEnum
 
 from dialects import messages as m
 from dialects.enums import Command, DataStream
-from link.services.pacing import OVERHEAD
+from link.services.pacing import MAVLINK2_OVERHEAD
 from vehicle.telemetry import build_computer, build_motion, build_navigation, build_pose, build_status
-from vehicle.telemetry.scaling import message_id
-from vehicle.telemetry.view import View
+from vehicle.telemetry.scaling import parse_message_id
+from vehicle.telemetry.view import TelemetryView
 
 
-class Family(IntEnum):
+class DialectLevel(IntEnum):
     """Who understands a message. Who speaks one speaks those before it."""
 
     COMMON = 0
@@ -29,7 +29,7 @@ class Family(IntEnum):
     """Who has our dialect: told to whoever has asked for one of them, or has sent one."""
 
 
-COMMON, NEWER, ROVER = Family
+COMMON, NEWER, ROVER = DialectLevel
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,18 +37,18 @@ class Stream:
     """One message and when it is told."""
 
     message: type[m.Message]
-    family: Family
+    level: DialectLevel
     rate: float
     """Hz for who speaks its family; 0: only on request, and when it changes."""
-    build: Callable[[View], m.Message | None]
+    build: Callable[[TelemetryView], m.Message | None]
     """None where there is nothing to tell."""
     group: DataStream | None = None
     """The group of REQUEST_DATA_STREAM that it belongs to."""
-    change: Callable[[View], Hashable] | None = None
+    change_key: Callable[[TelemetryView], Hashable] | None = None
     """What it tells at once, where it is on, when this changes."""
-    demand: bool = False
+    follows_demand: bool = False
     """It changes with the driver's demand, and is told without waiting for a tick."""
-    fixed: bool = False
+    fixed_rate: bool = False
     """Its rate is not for others to choose."""
     steady: bool = False
     """A full link does not slow it down."""
@@ -56,24 +56,24 @@ class Stream:
     @property
     def size(self) -> int:
         """Bytes on the wire, at most."""
-        return int(self.message.unpacker.size) + OVERHEAD
+        return int(self.message.unpacker.size) + MAVLINK2_OVERHEAD
 
 
 STREAMS: tuple[Stream, ...] = (
-    Stream(m.Heartbeat, COMMON, 1, build_status.heartbeat, fixed=True, steady=True,
-           change=lambda view: (view.safety.state, view.safety.mode)),
+    Stream(m.Heartbeat, COMMON, 1, build_status.heartbeat, fixed_rate=True, steady=True,
+           change_key=lambda view: (view.safety.state, view.safety.mode)),
     # The driver echoes the time of this one (OPR_ECHO_MAX).
-    Stream(m.RoverDriveStatus, ROVER, 5, build_status.drive_status, steady=True, demand=True,
-           change=lambda view: (view.control.demand and (view.control.demand.throttle, view.control.demand.steering),
+    Stream(m.RoverDriveStatus, ROVER, 5, build_status.drive_status, steady=True, follows_demand=True,
+           change_key=lambda view: (view.control.demand and (view.control.demand.throttle, view.control.demand.steering),
                                 view.control.neutral_seen, view.safety.armed)),
     Stream(m.RoverFailsafeStatus, ROVER, 1, build_status.failsafe_status,
-           change=lambda view: (view.safety.failsafes.active, view.safety.latched)),
+           change_key=lambda view: (view.safety.failsafes.active, view.safety.latched)),
     Stream(m.ControlStatus, NEWER, 1, build_status.control_status,
-           change=lambda view: (view.control.owner, view.control.takeover_allowed)),
+           change_key=lambda view: (view.control.owner, view.control.takeover_allowed)),
     Stream(m.CurrentMode, NEWER, 0.5, build_status.current_mode,
-           change=lambda view: (view.safety.mode, view.safety.intended)),
+           change_key=lambda view: (view.safety.mode, view.safety.intended)),
     Stream(m.MissionCurrent, COMMON, 1, build_navigation.mission_current, DataStream.EXTENDED_STATUS,
-           change=lambda view: (view.navigator.mission.current, view.navigator.mission.progress, view.safety.mode,
+           change_key=lambda view: (view.navigator.mission.current, view.navigator.mission.state, view.safety.mode,
                                 view.navigator.plan_ids)),
     Stream(m.AvailableModesMonitor, NEWER, 0.3, build_status.available_modes_monitor),
     Stream(m.SystemTime, COMMON, 1, build_status.system_time),
@@ -87,19 +87,19 @@ STREAMS: tuple[Stream, ...] = (
     Stream(m.GlobalPositionInt, COMMON, 2, build_motion.global_position_int, DataStream.POSITION),
     Stream(m.EstimatorStatus, COMMON, 1, build_motion.estimator_status, DataStream.EXTENDED_STATUS),
     Stream(m.PositionTargetGlobalInt, COMMON, 1, build_navigation.position_target_global, DataStream.POSITION,
-           change=lambda view: view.navigator.goal(view.safety.mode)),
+           change_key=lambda view: view.navigator.goal(view.safety.mode)),
     Stream(m.PositionTargetLocalNed, COMMON, 1, build_navigation.position_target_local, DataStream.POSITION,
-           change=lambda view: view.navigator.goal(view.safety.mode)),
+           change_key=lambda view: view.navigator.goal(view.safety.mode)),
     Stream(m.NavControllerOutput, COMMON, 2, build_navigation.nav_controller_output, DataStream.EXTENDED_STATUS),
     Stream(m.FenceStatus, COMMON, 1, build_navigation.fence_status, DataStream.EXTENDED_STATUS,
-           change=lambda view: (view.navigator.boundary.fence.enabled, view.navigator.boundary.beyond > 0.0)),
+           change_key=lambda view: (view.navigator.fence_avoidance.fence.enabled, view.navigator.fence_avoidance.breach_distance > 0.0)),
     Stream(m.ServoOutputRaw, COMMON, 2, build_motion.servo_output_raw, DataStream.RC_CHANNELS),
     Stream(m.RcChannels, COMMON, 2, build_motion.rc_channels, DataStream.RC_CHANNELS),
     Stream(m.RelayStatus, COMMON, 0.5, build_motion.relay_status, DataStream.RC_CHANNELS,
-           change=lambda view: tuple(view.rack.values("relay").items())),
+           change_key=lambda view: tuple(view.rack.values("relay").items())),
     Stream(m.GpsGlobalOrigin, COMMON, 0, build_motion.gps_global_origin,
-           change=lambda view: (view.navigator.estimate.origin, view.navigator.origin_altitude)),
-    Stream(m.HomePosition, COMMON, 0.5, build_status.home_position, change=lambda view: view.home),
+           change_key=lambda view: (view.navigator.estimate.origin, view.navigator.origin_altitude)),
+    Stream(m.HomePosition, COMMON, 0.5, build_status.home_position, change_key=lambda view: view.home),
     Stream(m.OnboardComputerStatus, COMMON, 0.5, build_computer.onboard_computer_status, DataStream.EXTENDED_STATUS),
     Stream(m.AttitudeQuaternion, COMMON, 0, build_pose.attitude_quaternion),
     Stream(m.HighresImu, COMMON, 0, build_pose.highres_imu),
@@ -111,23 +111,23 @@ STREAMS: tuple[Stream, ...] = (
 )  # fmt: skip
 """Stream by stream, the most important first. What only one asks for is in vehicle/commands/requests.py."""
 
-BY_ID: dict[int, Stream] = {stream.message.id: stream for stream in STREAMS}
+STREAM_BY_ID: dict[int, Stream] = {stream.message.id: stream for stream in STREAMS}
 
-_FAMILIES: dict[int, Family] = {
-    **{stream.message.id: stream.family for stream in STREAMS},
+_LEVELS: dict[int, DialectLevel] = {
+    **{stream.message.id: stream.level for stream in STREAMS},
     m.AvailableModes.id: NEWER,
     m.ComponentMetadata.id: NEWER,
     m.RoverLinkStatus.id: ROVER,
 }
 """Message -> family, also of those that are no stream."""
-_COMMANDS: dict[int, Family] = {Command.REQUEST_OPERATOR_CONTROL: NEWER, Command.DO_SET_STANDARD_MODE: NEWER}
+_COMMANDS: dict[int, DialectLevel] = {Command.REQUEST_OPERATOR_CONTROL: NEWER, Command.DO_SET_STANDARD_MODE: NEWER}
 _QUESTIONS = frozenset({Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL})
 """Their parameter 1 is a message id."""
 
 
-def shown(message: m.CommandLong | m.CommandInt) -> Family:
+def level_of_command(message: m.CommandLong | m.CommandInt) -> DialectLevel:
     """The family that a command shows its sender to speak."""
     if message.command in _QUESTIONS:
-        number = message_id(message.param1)
-        return COMMON if number is None else _FAMILIES.get(number, COMMON)
+        number = parse_message_id(message.param1)
+        return COMMON if number is None else _LEVELS.get(number, COMMON)
     return _COMMANDS.get(message.command, COMMON)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from dialects.messages import boot_ms
-from vehicle.accessories.accessory_set import Rack
+from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.autonomy.navigator import Navigator
 from vehicle.drive.control import Control
 from vehicle.drive.drive import Drive
@@ -14,10 +14,10 @@ from vehicle.navigation.geo import Home
 from vehicle.params import Params
 from vehicle.readings import Readings
 from vehicle.safety.state_machine import Safety
-from vehicle.telemetry.host import Host
+from vehicle.telemetry.host import HostInfo
 
 
-class View(NamedTuple):
+class TelemetryView(NamedTuple):
     """The rover at the time `now`; made in each cycle and for each demand."""
 
     now: float
@@ -28,8 +28,8 @@ class View(NamedTuple):
     control: Control
     drive: Drive
     navigator: Navigator
-    host: Host
-    rack: Rack
+    host: HostInfo
+    rack: AccessorySet
     """Relays and servos."""
     logs: bool | None = None
     """Are they recorded as they should? None where none are wanted."""

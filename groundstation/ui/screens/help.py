@@ -13,7 +13,7 @@ from textual.widgets import Static
 
 from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, Keymap
 from groundstation.ui.colours import BLUE, DIM, RED, YELLOW
-from groundstation.ui.keynames import key_name
+from groundstation.ui.keynames import format_key
 
 TITLES = {
     "drive": "Drive", "stop": "Stop", "speed": "Speed limits", "vehicle": "Vehicle", "app": "Ground station",
@@ -53,7 +53,7 @@ class HelpScreen(Screen[None]):
         for group, title in TITLES.items():
             yield f"{title}\n", f"bold {BLUE}"
             for action in ACTIONS.values():
-                keys = self._keymap.keys(action.id)
+                keys = self._keymap.get_keys(action.id)
                 if action.group == group and keys:
                     yield f"  {_written(keys, confirm=action.confirm):<14}", RED if group == "stop" else YELLOW
                     yield f"{action.help}\n", ""
@@ -63,5 +63,5 @@ class HelpScreen(Screen[None]):
 
 
 def _written(keys: tuple[str, ...], *, confirm: bool) -> str:
-    names = "  ".join(key_name(key) for key in keys)
+    names = "  ".join(format_key(key) for key in keys)
     return f"{names}, then {CONFIRM_KEY}" if confirm else names

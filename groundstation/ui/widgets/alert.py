@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from textual.strip import Strip
 
-from groundstation.ui.alerts import Alert, Level
+from groundstation.ui.alerts import Alert, AlertLevel
 from groundstation.ui.colours import AMBER, DEEP_RED, PANEL, TEXT, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 _LOOKS = {
-    Level.HINT: style(TEXT, PANEL),
-    Level.WARNING: style(AMBER, "#33270f", bold=True),
-    Level.DANGER: badge(DEEP_RED),
-    Level.QUESTION: badge(YELLOW),
+    AlertLevel.HINT: style(TEXT, PANEL),
+    AlertLevel.WARNING: style(AMBER, "#33270f", bold=True),
+    AlertLevel.DANGER: badge(DEEP_RED),
+    AlertLevel.QUESTION: badge(YELLOW),
 }
-_MARKS = {Level.HINT: "›", Level.WARNING: "!", Level.DANGER: "■", Level.QUESTION: "?"}
+_MARKS = {AlertLevel.HINT: "›", AlertLevel.WARNING: "!", AlertLevel.DANGER: "■", AlertLevel.QUESTION: "?"}
 
 
 class AlertLine(Instrument[tuple[Alert, ...]]):
@@ -25,7 +25,7 @@ class AlertLine(Instrument[tuple[Alert, ...]]):
         if not self.value:
             return []
         first = self.value[0]
-        others = sum(alert.level is not Level.HINT for alert in self.value[1:])
+        others = sum(alert.level is not AlertLevel.HINT for alert in self.value[1:])
         look = _LOOKS[first.level]
         left: list[Part] = [(f" {_MARKS[first.level]} {first.text}", look)]
         right: list[Part] = [(f" +{others} " if others else "", look)]

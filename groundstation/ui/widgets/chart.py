@@ -11,7 +11,7 @@ from textual.strip import Strip
 
 from groundstation.ui.colours import DIM, LINE, style
 from groundstation.ui.widgets.canvas import Canvas
-from groundstation.ui.widgets.instrument import Instrument, known
+from groundstation.ui.widgets.instrument import Instrument, finite_or_none
 
 SPAN = 60.0
 """s that a chart shows."""
@@ -41,7 +41,7 @@ class Chart(Instrument[Samples]):
 
     def add(self, now: float, *values: float | None) -> None:
         """Keep a sample; the oldest leave after SPAN."""
-        self._kept.append((now, tuple(known(value) for value in values)))
+        self._kept.append((now, tuple(finite_or_none(value) for value in values)))
         while self._kept[0][0] < now - SPAN:
             self._kept.popleft()
         self.show(tuple(self._kept))

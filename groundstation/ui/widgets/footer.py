@@ -6,10 +6,10 @@ from textual.strip import Strip
 
 from groundstation.input.keymap import ACTIONS, Keymap
 from groundstation.ui.colours import DIM, PANEL, RED, TEXT, YELLOW, style
-from groundstation.ui.keynames import key_name, main_key
+from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
-SHOWN: tuple[tuple[str | None, tuple[str, ...]], ...] = (
+FOOTER_ITEMS: tuple[tuple[str | None, tuple[str, ...]], ...] = (
     (None, ("drive.stop",)),
     ("E-STOP", ("stop.emergency",)),
     (None, ("vehicle.arm",)),
@@ -35,7 +35,7 @@ class KeyFooter(Instrument[bool]):
         """Keys in yellow, those that stop in red."""
         parts: list[Part] = []
         tail = [("│ ", style(DIM, PANEL)), ("^p", style(YELLOW, PANEL, bold=True)), (" All ", style(TEXT, PANEL))]
-        for label, ids in SHOWN:
+        for label, ids in FOOTER_ITEMS:
             item = self._item(label, ids)
             if item and length(parts) + length(item) + length(tail) <= width:
                 parts += item
@@ -55,6 +55,6 @@ class KeyFooter(Instrument[bool]):
         ]
 
     def _key(self, action_id: str) -> str | None:
-        keys = self._keymap.keys(action_id)
+        keys = self._keymap.get_keys(action_id)
         key = "space" if "space" in keys else main_key(self._keymap, action_id)
-        return None if key is None else key_name(key)
+        return None if key is None else format_key(key)

@@ -8,21 +8,21 @@ from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
 from groundstation.ui.colours import BLUE, DIM, TEXT, WHITE, YELLOW, style
-from groundstation.ui.widgets.instrument import Instrument, known, strip
+from groundstation.ui.widgets.instrument import Instrument, finite_or_none, strip
 
 DEGREES_PER_CELL = 3
 
 _NAMES = {0: "N", 45: "NE", 90: "E", 135: "SE", 180: "S", 225: "SW", 270: "W", 315: "NW"}
 
 
-def degrees(vehicle: VehicleView | None) -> int | None:
+def heading_degrees(vehicle: VehicleView | None) -> int | None:
     """The heading as the tape shows it, 0..359."""
-    if vehicle is None or (heading := known(vehicle.heading)) is None:
+    if vehicle is None or (heading := finite_or_none(vehicle.heading)) is None:
         return None
     return round(math.degrees(heading)) % 360
 
 
-def tape(heading: int, width: int) -> str:
+def heading_marks(heading: int, width: int) -> str:
     """The marks around a heading: names of the eight winds, numbers each 30 degrees, dots each 15."""
     middle = width // 2
     cells = [" "] * width
@@ -36,14 +36,14 @@ def tape(heading: int, width: int) -> str:
     return "".join(cells)
 
 
-class Tape(Instrument[int | None]):
+class HeadingTape(Instrument[int | None]):
     """The tape, and the heading in figures under its middle."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Two lines."""
         if self.value is None:
             return [strip((" " * width, style())), strip(("no heading".center(width), style(DIM)))]
-        marks = tape(self.value, width)
+        marks = heading_marks(self.value, width)
         middle = width // 2
         figures = f" {self.value:03d}° {_NAMES.get(round(self.value / 45) * 45 % 360, '')}"
         return [

@@ -10,7 +10,7 @@ from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
 from groundstation.ui.colours import DIM, GROUND, SKY, YELLOW, style
-from groundstation.ui.widgets.instrument import Instrument, Part, known, strip
+from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 
 HALF_VIEW = math.radians(25)
 """Pitch that moves the horizon from the middle to the edge."""
@@ -19,21 +19,25 @@ _BLOCKS = " ▁▂▃▄▅▆▇█"
 
 
 @dataclass(frozen=True, slots=True)
-class Attitude:
+class HorizonValue:
     """Roll (right side down is positive) and pitch (nose up is positive), rad."""
 
     roll: float
     pitch: float
 
     @classmethod
-    def of(cls, vehicle: VehicleView | None) -> Attitude | None:
+    def from_vehicle(cls, vehicle: VehicleView | None) -> HorizonValue | None:
         """Of a snapshot's vehicle, rounded to a third of a degree."""
-        if vehicle is None or (roll := known(vehicle.roll)) is None or (pitch := known(vehicle.pitch)) is None:
+        if (
+            vehicle is None
+            or (roll := finite_or_none(vehicle.roll)) is None
+            or (pitch := finite_or_none(vehicle.pitch)) is None
+        ):
             return None
         return cls(round(roll * 180) / 180, round(pitch * 180) / 180)
 
 
-def ground(attitude: Attitude, column: float, row: int, height: int) -> float:
+def ground_fraction(attitude: HorizonValue, column: float, row: int, height: int) -> float:
     """How much of a cell is ground, 0..1, counted from its bottom. `column` is from the middle."""
     # A cell is about twice as high as wide, hence half a row a column.
     slope = math.tan(max(-1.4, min(1.4, attitude.roll)))
@@ -41,7 +45,7 @@ def ground(attitude: Attitude, column: float, row: int, height: int) -> float:
     return max(0.0, min(1.0, row + 1 - horizon))
 
 
-class Horizon(Instrument[Attitude | None]):
+class Horizon(Instrument[HorizonValue | None]):
     """Sky over ground, and the vehicle's nose."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
@@ -52,13 +56,13 @@ class Horizon(Instrument[Attitude | None]):
                     for row in range(height)]  # fmt: skip
         return [self._row(attitude, row, width, height) for row in range(height)]
 
-    def _row(self, attitude: Attitude, row: int, width: int, height: int) -> Strip:
+    def _row(self, attitude: HorizonValue, row: int, width: int, height: int) -> Strip:
         cells: list[Part] = []
         for column in range(width):
-            eighths = round(8 * ground(attitude, column - (width - 1) / 2, row, height))
+            eighths = round(8 * ground_fraction(attitude, column - (width - 1) / 2, row, height))
             cells.append((" ", style(on=GROUND)) if eighths == 8 else (_BLOCKS[eighths], style(GROUND, SKY)))
         if row == height // 2:
-            on = GROUND if ground(attitude, 0.0, row, height) > 0.5 else SKY
+            on = GROUND if ground_fraction(attitude, 0.0, row, height) > 0.5 else SKY
             cells[(width - 1) // 2] = ("●", style(YELLOW, on, bold=True))
         runs = groupby(cells, key=lambda cell: cell[1])
         return strip(*(("".join(text for text, _ in run), look) for look, run in runs))

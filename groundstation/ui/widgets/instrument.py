@@ -31,7 +31,7 @@ def length(parts: Iterable[Part]) -> int:
     return sum(len(text) for text, _ in parts)
 
 
-def known(value: float | None) -> float | None:
+def finite_or_none(value: float | None) -> float | None:
     """A number that can be shown: what a vehicle tells may be NaN."""
     return value if value is not None and math.isfinite(value) else None
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
-from groundstation.intents import Push, Stop
-from groundstation.snapshot import HelmView
+from groundstation.intents import DriveKeyDown, Stop
+from groundstation.snapshot import OperatorView
 from groundstation.ui.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
-from groundstation.ui.keynames import key_name, main_key
+from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 GRID = (
@@ -35,19 +35,19 @@ class KeycapsValue:
 
     lit: frozenset[str] = frozenset()
     style: str = "hold"
-    exact: bool = False
+    reports_releases: bool = False
     stop_bound: float = 0.0
     throttle_limit: int = 100
     steering_limit: int = 100
     open: bool = False
 
     @classmethod
-    def of(cls, helm: HelmView, pressed: frozenset[str], keymap: Keymap) -> KeycapsValue:
+    def from_operator(cls, helm: OperatorView, pressed: frozenset[str], keymap: Keymap) -> KeycapsValue:
         """`pressed` are the keys that the screen saw go down, sooner than a snapshot can tell."""
         return cls(
-            lit=lit(frozenset(helm.held) | pressed, keymap),
+            lit=lit_actions(frozenset(helm.held) | pressed, keymap),
             style=helm.style,
-            exact=helm.exact,
+            reports_releases=helm.reports_releases,
             stop_bound=round(helm.stop_bound, 2),
             throttle_limit=round(100 * helm.throttle_limit),
             steering_limit=round(100 * helm.steering_limit),
@@ -55,10 +55,10 @@ class KeycapsValue:
         )
 
 
-def lit(keys: frozenset[str], keymap: Keymap) -> frozenset[str]:
+def lit_actions(keys: frozenset[str], keymap: Keymap) -> frozenset[str]:
     """The caps to light: an arrow lights the cap of its direction too, whatever letter is printed on it."""
-    actions = (keymap.action(key) for key in keys)
-    return frozenset(action.id for action in actions if action and isinstance(action.intent, (Push, Stop)))
+    actions = (keymap.get_action(key) for key in keys)
+    return frozenset(action.id for action in actions if action and isinstance(action.intent, (DriveKeyDown, Stop)))
 
 
 class Keycaps(Instrument[KeycapsValue]):
@@ -79,7 +79,7 @@ class Keycaps(Instrument[KeycapsValue]):
 
     def _cap(self, action: str) -> list[Part]:
         key = main_key(self._keymap, action)
-        name = "·" if key is None else "␣" if key == "space" else key_name(key)
+        name = "·" if key is None else "␣" if key == "space" else format_key(key)
         if action in self.value.lit:
             look = badge(DEEP_RED) if action == "drive.stop" else badge(YELLOW)
         elif not self.value.open:
@@ -104,6 +104,6 @@ class Keycaps(Instrument[KeycapsValue]):
         value = self.value
         if not math.isfinite(value.stop_bound):
             return [("only a key stops it", style(AMBER))]
-        if value.exact:
+        if value.reports_releases:
             return [("stops when you let go", style(DIM))]
         return [("timer: stops within ", style(DIM)), (f"{value.stop_bound:.2f} s", style(TEXT))]

@@ -6,10 +6,10 @@ from textual.strip import Strip
 
 from groundstation.snapshot import LinkView
 from groundstation.ui.colours import AMBER, DIM, GREEN, RED, TEXT, style
-from groundstation.ui.widgets.instrument import Instrument, known, strip
+from groundstation.ui.widgets.instrument import Instrument, finite_or_none, strip
 
 
-class Links(Instrument[tuple[LinkView, ...]]):
+class LinksPanel(Instrument[tuple[LinkView, ...]]):
     """Two lines a link: its name with its trouble, then its figures."""
 
     BORDER_TITLE = "links"
@@ -21,7 +21,7 @@ class Links(Instrument[tuple[LinkView, ...]]):
 
 
 def _lines(link: LinkView, width: int) -> list[Strip]:
-    loss = known(link.loss)
+    loss = finite_or_none(link.loss)
     lost = "--" if loss is None else f"{100 * loss:.1f}%"
     return [
         strip((link.name[:width], style(RED if link.problem else TEXT))),

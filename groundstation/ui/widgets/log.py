@@ -6,7 +6,7 @@ import time
 
 from textual.strip import Strip
 
-from groundstation.snapshot import TextLine
+from groundstation.snapshot import LogLine
 from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, badge, style
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 
@@ -16,7 +16,7 @@ _LABELS = {"ack": ("ACK", GREEN), "station": ("HERE", BLUE)}
 """Label of a line -> its name and colour while it is no warning; the vehicle's own lines show their severity."""
 
 
-class Log(Instrument[tuple[TextLine, ...]]):
+class LogPanel(Instrument[tuple[LogLine, ...]]):
     """A line a text, the newest at the bottom."""
 
     BORDER_TITLE = "vehicle says"
@@ -26,7 +26,7 @@ class Log(Instrument[tuple[TextLine, ...]]):
         return [strip(*_line(line)).crop(0, width) for line in self.value[-height:]]
 
 
-def _line(line: TextLine) -> list[Part]:
+def _line(line: LogLine) -> list[Part]:
     severity = max(0, min(7, line.severity))
     name, colour = _LABELS.get(line.label, (_SEVERITIES[severity], _COLOURS[severity]))
     if severity <= 4:

@@ -9,7 +9,7 @@ from groundstation.ui.colours import AMBER, DIM, GREEN, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, strip
 
 
-class Rates(Instrument[tuple[MessageRate, ...]]):
+class RatesPanel(Instrument[tuple[MessageRate, ...]]):
     """A line a message: received first, then sent."""
 
     BORDER_TITLE = "messages"

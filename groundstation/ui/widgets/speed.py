@@ -6,7 +6,7 @@ from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
 from groundstation.ui.colours import DIM, GREEN, style
-from groundstation.ui.widgets.instrument import Instrument, known, strip
+from groundstation.ui.widgets.instrument import Instrument, finite_or_none, strip
 
 GLYPHS = {
     "0": ("╭─╮", "│ │", "╰─╯"), "1": ("╶╮ ", " │ ", "╶┴╴"), "2": ("╶─╮", "╭─╯", "╰─╴"), "3": ("╶─╮", " ─┤", "╶─╯"),
@@ -17,14 +17,14 @@ GLYPHS = {
 """Character -> its three rows."""
 
 
-def figures(vehicle: VehicleView | None) -> str:
+def speed_text(vehicle: VehicleView | None) -> str:
     """The speed in m/s as five characters, so that the point stands still; dashes where it is not known."""
-    if vehicle is None or (speed := known(vehicle.speed)) is None:
+    if vehicle is None or (speed := finite_or_none(vehicle.speed)) is None:
         return " -.--"
     return f"{max(-9.99, min(99.99, speed)):5.2f}".replace("-0.00", " 0.00")
 
 
-class Speed(Instrument[str]):
+class SpeedReadout(Instrument[str]):
     """Speed along the nose in m/s."""
 
     def draw(self, width: int, height: int) -> list[Strip]:

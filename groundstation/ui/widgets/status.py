@@ -8,7 +8,7 @@ from textual.strip import Strip
 
 from groundstation.snapshot import LinkView, Snapshot, VehicleView
 from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, GREEN, RED, TEXT, YELLOW, badge, style
-from groundstation.ui.widgets.instrument import Instrument, Part, known, length, strip
+from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
 
 STALE_COMMAND, OLD_COMMAND = 0.45, 0.2
 """s: from 0.45 on the vehicle no longer obeys (its MAN_TIMEOUT); 0.2 is four missed frames at 20 Hz."""
@@ -18,7 +18,7 @@ _MODES = {"MANUAL": GREEN, "HOLD": AMBER}
 
 
 @dataclass(frozen=True, slots=True)
-class StatusValue:
+class StatusBarValue:
     """What the line shows, and what the snapshot does not know: the terminal's own round trip, s."""
 
     snapshot: Snapshot
@@ -26,14 +26,14 @@ class StatusValue:
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class StatusField:
     """One reading; a small weight is kept longest where the line is short."""
 
     weight: int
     parts: tuple[Part, ...]
 
 
-class Status(Instrument[StatusValue]):
+class StatusBar(Instrument[StatusBarValue]):
     """One line where it fits, else two."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
@@ -49,9 +49,9 @@ class Status(Instrument[StatusValue]):
         return [_spread(badges, _fitting([*fields, *health], width - length(badges) - 1), width)]
 
 
-def _fitting(fields: list[Field], room: int) -> list[Part]:
+def _fitting(fields: list[StatusField], room: int) -> list[Part]:
     """The parts of the fields that find room: the least important are left out first, the order stays."""
-    kept: list[Field] = []
+    kept: list[StatusField] = []
     for candidate in sorted(fields, key=lambda each: each.weight):
         if sum(length(each.parts) for each in (*kept, candidate)) <= room:
             kept.append(candidate)
@@ -87,18 +87,20 @@ def _driver(vehicle: VehicleView) -> Part:
     return ("nobody drives", style(DIM))
 
 
-def _field(weight: int, name: str, text: str, colour: str = TEXT) -> Field:
-    return Field(weight, ((f" {name} ", style(DIM)), (f"{text} ", style(colour))))
+def _field(weight: int, name: str, text: str, colour: str = TEXT) -> StatusField:
+    return StatusField(weight, ((f" {name} ", style(DIM)), (f"{text} ", style(colour))))
 
 
-def _links(snapshot: Snapshot) -> list[Field]:
+def _links(snapshot: Snapshot) -> list[StatusField]:
     if not snapshot.links:
         return [_field(1, "link", "none", DIM)]
-    link = min(snapshot.links, key=lambda each: (known(each.loss) is None, known(each.loss) or 0.0))
+    link = min(snapshot.links, key=lambda each: (finite_or_none(each.loss) is None, finite_or_none(each.loss) or 0.0))
     alive = snapshot.vehicle is not None and snapshot.vehicle.alive
-    loss, trip = known(link.loss), known(link.round_trip)
+    loss, trip = finite_or_none(link.loss), finite_or_none(link.round_trip)
     bars, colour = _quality(link, alive)
-    strength = Field(1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_BARS[bars:]} ", style("#2b3440"))))
+    strength = StatusField(
+        1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_BARS[bars:]} ", style("#2b3440")))
+    )
     return [
         strength,
         _field(2, "loss", "--" if loss is None else f"{100 * loss:.1f}%", TEXT if (loss or 0) < 0.05 else AMBER),
@@ -109,17 +111,17 @@ def _links(snapshot: Snapshot) -> list[Field]:
 def _quality(link: LinkView, alive: bool) -> tuple[int, str]:
     if not alive:
         return 0, RED
-    lost = known(link.loss) or 0.0
+    lost = finite_or_none(link.loss) or 0.0
     full = 4 - sum(lost > limit for limit in (0.02, 0.10, 0.25))
     return full, (RED, RED, AMBER, GREEN, GREEN)[full]
 
 
-def _command(snapshot: Snapshot) -> list[Field]:
+def _command(snapshot: Snapshot) -> list[StatusField]:
     vehicle = snapshot.vehicle
-    fields = [_field(5, "sent", f"{snapshot.helm.rate:.0f} Hz", TEXT if snapshot.helm.sending else DIM)]
+    fields = [_field(5, "sent", f"{snapshot.operator.rate:.0f} Hz", TEXT if snapshot.operator.sending else DIM)]
     if vehicle is None:
         return []
-    age, latency = known(vehicle.command_age), known(vehicle.latency)
+    age, latency = finite_or_none(vehicle.command_age), finite_or_none(vehicle.latency)
     if age is not None and age < 10:
         colour = DIM if not vehicle.armed else GREEN if age < OLD_COMMAND else AMBER if age < STALE_COMMAND else RED
         fields.append(_field(1, "cmd", f"{1000 * age:.0f} ms", colour))
@@ -128,19 +130,19 @@ def _command(snapshot: Snapshot) -> list[Field]:
     return fields
 
 
-def _terminal(trip: float | None) -> list[Field]:
+def _terminal(trip: float | None) -> list[StatusField]:
     return [] if trip is None else [_field(4, "tty", f"{1000 * trip:.0f} ms", TEXT if trip < 0.2 else AMBER)]
 
 
-def _health(vehicle: VehicleView | None) -> list[Field]:
+def _health(vehicle: VehicleView | None) -> list[StatusField]:
     if vehicle is None:
         return []
-    fields: list[Field] = []
+    fields: list[StatusField] = []
     if vehicle.gps_fix is not None:
         fix = {0: "none", 1: "none", 2: "2D", 3: "3D"}.get(vehicle.gps_fix, "RTK" if vehicle.gps_fix > 4 else "DGPS")
         count = "" if vehicle.gps_satellites is None else f" {vehicle.gps_satellites}"
         fields.append(_field(2, "gps", fix + count, GREEN if vehicle.gps_fix >= 3 else AMBER))
-    volts, left = known(vehicle.battery_voltage), known(vehicle.battery_remaining)
+    volts, left = finite_or_none(vehicle.battery_voltage), finite_or_none(vehicle.battery_remaining)
     if volts is not None:
         colour = GREEN if left is None or left > 0.3 else AMBER if left > 0.15 else RED
         rest = "" if left is None else f" {100 * left:.0f}%"

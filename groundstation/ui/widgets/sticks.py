@@ -10,7 +10,7 @@ from textual.strip import Strip
 
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, PANEL, TEXT, WHITE, style
-from groundstation.ui.widgets.instrument import Instrument, Part, known, strip
+from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 
 LABEL, FIGURES = 9, 6
 """Cells left and right of a bar."""
@@ -30,9 +30,9 @@ class Bar:
     obeyed: int | None = None
 
 
-def bars(snapshot: Snapshot) -> tuple[Bar, ...]:
+def build_bars(snapshot: Snapshot) -> tuple[Bar, ...]:
     """Throttle and steering as sent, then the motors."""
-    helm, vehicle = snapshot.helm, snapshot.vehicle
+    helm, vehicle = snapshot.operator, snapshot.vehicle
     obeyed = vehicle.demand if vehicle is not None and vehicle.demand is not None else (None, None)
     outputs = vehicle.outputs if vehicle is not None else ()
     names = _OUTPUT_NAMES.get(len(outputs)) or tuple(f"motor {number + 1}" for number in range(len(outputs)))
@@ -44,11 +44,11 @@ def bars(snapshot: Snapshot) -> tuple[Bar, ...]:
 
 
 def _percent(value: float | None) -> int | None:
-    value = known(value)
+    value = finite_or_none(value)
     return None if value is None else round(100 * max(-1.0, min(1.0, value)))
 
 
-def cells(bar: Bar, width: int) -> Iterator[Part]:
+def bar_cells(bar: Bar, width: int) -> Iterator[Part]:
     """The cells of a bar that grows from its middle, in eighths of a cell."""
     half = (width - 1) // 2
     filled = abs(bar.percent or 0) / 100 * half
@@ -82,7 +82,7 @@ def _marked(parts: list[Part], at: int) -> Iterator[Part]:
         start += len(text)
 
 
-class Sticks(Instrument[tuple[Bar, ...]]):
+class StickBars(Instrument[tuple[Bar, ...]]):
     """The bars, one a line."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
@@ -94,6 +94,6 @@ class Sticks(Instrument[tuple[Bar, ...]]):
         look: Style = style(TEXT if bar.percent else DIM)
         return strip(
             (f"{bar.label:<{LABEL}}", style(DIM)),
-            *cells(bar, width - LABEL - FIGURES),
+            *bar_cells(bar, width - LABEL - FIGURES),
             (f"{figures:>{FIGURES}}", look),
         )

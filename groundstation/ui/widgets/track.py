@@ -11,12 +11,12 @@ from textual.strip import Strip
 from groundstation.snapshot import VehicleView
 from groundstation.ui.colours import AMBER, BLUE, DIM, LINE, RED, YELLOW, style
 from groundstation.ui.widgets.canvas import Canvas, Point
-from groundstation.ui.widgets.instrument import Instrument, known
+from groundstation.ui.widgets.instrument import Instrument, finite_or_none
 
 REACH = 150.0
 """m: the map fits the track and home within this distance of the vehicle; farther ones leave the picture."""
 
-SMALLEST = 0.08
+MIN_SCALE = 0.08
 """m a dot: closer than this, GPS noise would dance over the map."""
 
 _STEPS = (1.0, 1.4, 2.0, 3.0, 5.0, 7.0)
@@ -33,18 +33,18 @@ class TrackValue:
     track: tuple[Point, ...] = ()
 
     @classmethod
-    def of(cls, vehicle: VehicleView | None) -> TrackValue:
+    def from_vehicle(cls, vehicle: VehicleView | None) -> TrackValue:
         """Of a snapshot's vehicle, rounded to what a dot can show."""
         if vehicle is None or vehicle.position is None or not all(map(math.isfinite, vehicle.position)):
             return cls()
         north, east = vehicle.position
-        heading = known(vehicle.heading)
+        heading = finite_or_none(vehicle.heading)
         rounded = None if heading is None else round(heading, 1)
         return cls((round(north, 2), round(east, 2)), rounded, vehicle.home, vehicle.track)
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class MapView:
     """A window on the ground: its middle (north, east), m a dot, and the distance of its rings."""
 
     north: float
@@ -52,14 +52,14 @@ class View:
     scale: float
     ring: float
 
-    def dot(self, point: Point, canvas: Canvas) -> Point:
+    def to_canvas(self, point: Point, canvas: Canvas) -> Point:
         """Where a (north, east) is on the canvas."""
         north, east = point
         x = canvas.across / 2 + (east - self.east) / self.scale
         return x, canvas.down / 2 - (north - self.north) / self.scale
 
 
-def fit(value: TrackValue, across: int, down: int) -> View:
+def fit_view(value: TrackValue, across: int, down: int) -> MapView:
     """The closest view in which the vehicle, its near track and home lie, in steps so that it seldom changes.
 
     A view that follows each metre would redraw the whole map ten times a second, over a thin line too.
@@ -77,14 +77,14 @@ def fit(value: TrackValue, across: int, down: int) -> View:
     return view
 
 
-def _views(north: float, east: float, dots: int) -> Iterator[View]:
+def _views(north: float, east: float, dots: int) -> Iterator[MapView]:
     for decade in range(-2, 4):
         for step in _STEPS:
             scale = step * 10.0**decade
-            if scale < SMALLEST:
+            if scale < MIN_SCALE:
                 continue
             ring = _ring(scale * max(8, dots) / 5)
-            yield View(round(north / ring * 2) * ring / 2, round(east / ring * 2) * ring / 2, scale, ring)
+            yield MapView(round(north / ring * 2) * ring / 2, round(east / ring * 2) * ring / 2, scale, ring)
 
 
 def _ring(at_least: float) -> float:
@@ -92,7 +92,7 @@ def _ring(at_least: float) -> float:
     return next((step * decade for step in _RINGS if step * decade >= at_least), 10 * decade)
 
 
-class Track(Instrument[TrackValue]):
+class TrackMap(Instrument[TrackValue]):
     """The map."""
 
     BORDER_TITLE = "track"
@@ -104,19 +104,19 @@ class Track(Instrument[TrackValue]):
         if value.position is None:
             canvas.word(max(0, width // 2 - 7), height // 2, "no position yet", style(DIM))
             return canvas.strips()
-        view = fit(value, canvas.across, canvas.down)
+        view = fit_view(value, canvas.across, canvas.down)
         _draw_rings(canvas, view, value.home or (0.0, 0.0))
-        canvas.path([view.dot(point, canvas) for point in (*value.track, value.position)], style(BLUE))
+        canvas.path([view.to_canvas(point, canvas) for point in (*value.track, value.position)], style(BLUE))
         if value.home is not None:
-            x, y = view.dot(value.home, canvas)
+            x, y = view.to_canvas(value.home, canvas)
             canvas.word(int(x) >> 1, int(y) >> 2, "⌂", style(AMBER, bold=True))
-        _draw_vehicle(canvas, view.dot(value.position, canvas), value.heading)
+        _draw_vehicle(canvas, view.to_canvas(value.position, canvas), value.heading)
         _draw_words(canvas, view, value)
         return canvas.strips()
 
 
-def _draw_rings(canvas: Canvas, view: View, home: Point) -> None:
-    x, y = view.dot(home, canvas)
+def _draw_rings(canvas: Canvas, view: MapView, home: Point) -> None:
+    x, y = view.to_canvas(home, canvas)
     farthest = math.hypot(max(x, canvas.across - x), max(y, canvas.down - y))
     spacing = view.ring / view.scale
     for number in range(1, min(12, int(farthest / spacing)) + 1):
@@ -137,7 +137,7 @@ def _draw_vehicle(canvas: Canvas, at: Point, heading: float | None) -> None:
     canvas.fill([(x + a * along + b * aside, y - a * aside + b * along) for a, b in corners], style(YELLOW))
 
 
-def _draw_words(canvas: Canvas, view: View, value: TrackValue) -> None:
+def _draw_words(canvas: Canvas, view: MapView, value: TrackValue) -> None:
     canvas.word(canvas.width // 2, 0, "N", style(RED, bold=True))
     bar = max(2, round(view.ring / view.scale / 2))
     if bar < canvas.width // 2:

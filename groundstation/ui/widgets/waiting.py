@@ -11,7 +11,7 @@ from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 _SPINNER = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
 
 
-class Waiting(Instrument[Snapshot]):
+class WaitingPage(Instrument[Snapshot]):
     """A page in the middle of the console."""
 
     BORDER_TITLE = "mavhelm"

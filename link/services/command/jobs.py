@@ -26,16 +26,16 @@ from link.core import Outgoing, Received
 if TYPE_CHECKING:
     from link.services.command.server import CommandRequest
 
-NEWS = 0.5
+PROGRESS_PERIOD = 0.5
 """s between two words of the progress: the client waits longer than its usual patience after each."""
-REMEMBER = 3.0
+REPEAT_WINDOW = 3.0
 """s after the beginning, and after the end, in which the command or its cancel said again is answered as the first was:
 answers get lost. Later it is a new wish, unless it says itself that it is a repeat."""
-UNKNOWN = 255
+PROGRESS_UNKNOWN = 255
 """`progress` of COMMAND_ACK where nobody knows."""
 
 
-class Job(Protocol):
+class CommandJob(Protocol):
     """A command at work."""
 
     @property
@@ -52,38 +52,38 @@ class Job(Protocol):
 @dataclass(slots=True)
 class _Running:
     request: CommandRequest
-    job: Job
+    job: CommandJob
     began: float
     told: float
 
 
 @dataclass(frozen=True, slots=True)
-class _Ended:
+class _EndedCommand:
     request: CommandRequest
     result: Result
     at: float
 
 
-class Jobs:
+class CommandJobs:
     """The long running commands of a server, at most one of a kind."""
 
     def __init__(self) -> None:
         self._running: dict[int, _Running] = {}
-        self._ended: dict[int, _Ended] = {}
+        self._ended: dict[int, _EndedCommand] = {}
 
-    def begin(self, request: CommandRequest, job: Job, now: float) -> Outgoing:
+    def begin(self, request: CommandRequest, job: CommandJob, now: float) -> Outgoing:
         """It is under way."""
         self._running[request.command] = _Running(request, job, now, now)
-        return _news(request, job)
+        return _progress_ack(request, job)
 
-    def answer(self, request: CommandRequest, now: float) -> Outgoing | None:
+    def reply_to_repeat(self, request: CommandRequest, now: float) -> Outgoing | None:
         """To a command that is under way, or a repeat of one that has just ended; None where it is to be run."""
         running = self._running.get(request.command)
         if running is not None:
-            again = running.request == request and (request.repeated or now - running.began < REMEMBER)
-            return _news(request, running.job) if again else ack(request, Result.TEMPORARILY_REJECTED)
+            again = running.request == request and (request.repeated or now - running.began < REPEAT_WINDOW)
+            return _progress_ack(request, running.job) if again else ack(request, Result.TEMPORARILY_REJECTED)
         ended = self._ended.get(request.command)
-        if ended is None or now - ended.at >= REMEMBER or ended.request != request or not request.repeated:
+        if ended is None or now - ended.at >= REPEAT_WINDOW or ended.request != request or not request.repeated:
             return None
         return ack(request, ended.result)
 
@@ -92,11 +92,11 @@ class Jobs:
         running = self._running.pop(command, None)
         if running is None:
             ended = self._ended.get(command)
-            return [_told(command, ended.result, received)] if ended and now - ended.at < REMEMBER else []
+            return [_ack_to(command, ended.result, received)] if ended and now - ended.at < REPEAT_WINDOW else []
         running.job.cancel(now)
         words = [self._end(running.request, Result.CANCELLED, now)]
         if (received.system, received.component) != (running.request.system, running.request.component):
-            words.append(_told(command, Result.CANCELLED, received))
+            words.append(_ack_to(command, Result.CANCELLED, received))
         return words
 
     def tick(self, now: float) -> list[Outgoing]:
@@ -107,13 +107,13 @@ class Jobs:
             if result is not None:
                 del self._running[command]
                 words.append(self._end(running.request, result, now))
-            elif now - running.told >= NEWS:
+            elif now - running.told >= PROGRESS_PERIOD:
                 running.told = now
-                words.append(_news(running.request, running.job))
+                words.append(_progress_ack(running.request, running.job))
         return words
 
     def _end(self, request: CommandRequest, result: Result, now: float) -> Outgoing:
-        self._ended[request.command] = _Ended(request, result, now)
+        self._ended[request.command] = _EndedCommand(request, result, now)
         return ack(request, result)
 
 
@@ -123,9 +123,9 @@ def ack(request: CommandRequest, result: Result, progress: int = 0) -> Outgoing:
     return Outgoing(answer, request.peer)
 
 
-def _told(command: int, result: Result, received: Received) -> Outgoing:
+def _ack_to(command: int, result: Result, received: Received) -> Outgoing:
     return Outgoing(CommandAck(command, result, 0, 0, received.system, received.component), received.peer)
 
 
-def _news(request: CommandRequest, job: Job) -> Outgoing:
-    return ack(request, Result.IN_PROGRESS, UNKNOWN if job.percent is None else job.percent)
+def _progress_ack(request: CommandRequest, job: CommandJob) -> Outgoing:
+    return ack(request, Result.IN_PROGRESS, PROGRESS_UNKNOWN if job.percent is None else job.percent)

@@ -15,19 +15,19 @@ from dataclasses import dataclass, field
 from dialects.enums import Result
 from dialects.messages import CommandAck, CommandCancel, CommandInt, CommandLong
 from link.core import Outgoing, Peer, Received
-from link.services.command.jobs import Job, Jobs, ack
+from link.services.command.jobs import CommandJob, CommandJobs, ack
 
 REPEAT_AFTER = 0.35
 """s without an answer before a command is sent again: longer than a loaded 57600 baud radio takes (0.18 s)."""
 TRIES = 6
 """At 30 % loss each way all six fail once in 55 tries of the worst kind; a driver sees the failure after 2.1 s."""
-SAME_WITHIN = 3.0
+PROGRESS_TIMEOUT = 3.0
 """s in which the same command from the same source is a repeat and not a new wish."""
 
 Params = tuple[float, float, float, float, float, float, float]
 
 
-def given(value: float, otherwise: float = 0.0) -> float:
+def value_or_default(value: float, otherwise: float = 0.0) -> float:
     """A parameter that may be left out: COMMAND_LONG always has seven, and MAVSDK puts NaN where it says nothing."""
     return otherwise if math.isnan(value) else value
 
@@ -53,15 +53,15 @@ class CommandRequest:
     """It may be said again: `confirmation` says so, or it is a COMMAND_INT, which has none."""
 
 
-Run = Callable[[CommandRequest, float], Result | Job]
+RunCommand = Callable[[CommandRequest, float], Result | CommandJob]
 """Runs a command at a time: its result, or where it takes a while a job of jobs.py."""
 
 
 @dataclass(frozen=True, slots=True)
-class Handler:
+class CommandHandler:
     """What a server does with one command."""
 
-    run: Run
+    run: RunCommand
     broadcast: bool = False
     """Obeyed and acknowledged when sent to system 0. Only for what can do no harm: stops and questions."""
 
@@ -69,11 +69,11 @@ class Handler:
 class CommandServer:
     """Answers commands for one system and component from a table."""
 
-    def __init__(self, handlers: Mapping[int, Handler], *, system: int, component: int) -> None:
+    def __init__(self, handlers: Mapping[int, CommandHandler], *, system: int, component: int) -> None:
         self._handlers = handlers
         self._system = system
         self._component = component
-        self._jobs = Jobs()
+        self._jobs = CommandJobs()
 
     @property
     def commands(self) -> frozenset[int]:
@@ -105,7 +105,7 @@ class CommandServer:
         handler = self._handlers.get(request.command)
         if handler is None:
             return ack(request, Result.UNSUPPORTED)
-        under_way = self._jobs.answer(request, now)
+        under_way = self._jobs.reply_to_repeat(request, now)
         if under_way is not None:
             return under_way
         result = handler.run(request, now)
@@ -145,7 +145,7 @@ def _request(message: CommandLong | CommandInt, received: Received) -> CommandRe
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class CommandOutcome:
     """How a command ended."""
 
     command: int
@@ -177,7 +177,7 @@ class CommandClient:
         self._ids = (system, component)
         self._waiting: dict[tuple[int, int], _Waiting] = {}
         self._outbox: list[Outgoing] = []
-        self._outcomes: list[Outcome] = []
+        self._outcomes: list[CommandOutcome] = []
 
     def send(self, command: int, *params: float, target_system: int, target_component: int = 1, now: float) -> None:
         """Send a command with up to 7 parameters (missing ones are 0) and wait for its answer."""
@@ -190,7 +190,7 @@ class CommandClient:
         """Stop repeating a command, whoever it was for."""
         self._waiting = {key: each for key, each in self._waiting.items() if each.command != command}
 
-    def waits(self, command: int, target_system: int) -> bool:
+    def is_waiting(self, command: int, target_system: int) -> bool:
         """Has this system not answered a command of this kind yet?"""
         return (target_system, int(command)) in self._waiting
 
@@ -203,11 +203,11 @@ class CommandClient:
         if waiting is None:
             return
         if message.result == Result.IN_PROGRESS:
-            waiting.sent, waiting.due = 1, now + SAME_WITHIN
+            waiting.sent, waiting.due = 1, now + PROGRESS_TIMEOUT
             return
         del self._waiting[received.system, message.command]
         known = Result(message.result) if message.result in Result._value2member_map_ else Result.FAILED
-        self._outcomes.append(Outcome(waiting.command, waiting.params, received.system, known, message.result))
+        self._outcomes.append(CommandOutcome(waiting.command, waiting.params, received.system, known, message.result))
 
     def tick(self, now: float) -> None:
         """Repeat what is overdue, give up what was repeated enough."""
@@ -216,7 +216,7 @@ class CommandClient:
                 continue
             if waiting.sent >= TRIES:
                 del self._waiting[key]
-                self._outcomes.append(Outcome(waiting.command, waiting.params, key[0], None))
+                self._outcomes.append(CommandOutcome(waiting.command, waiting.params, key[0], None))
             else:
                 self._transmit(waiting, now)
 
@@ -225,7 +225,7 @@ class CommandClient:
         outbox, self._outbox = self._outbox, []
         return outbox
 
-    def outcomes(self) -> list[Outcome]:
+    def outcomes(self) -> list[CommandOutcome]:
         """Commands that ended since the last call."""
         outcomes, self._outcomes = self._outcomes, []
         return outcomes

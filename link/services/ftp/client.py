@@ -12,12 +12,12 @@ from enum import Enum
 from dialects import messages as m
 from link.core import Outgoing, Received
 from link.services.ftp.files import Entry
-from link.services.ftp.protocol import MAX_DATA, SEQUENCE, FtpError, FtpPacket, Op, parse
-from link.services.ftp.reassembly import Assembly
+from link.services.ftp.protocol import MAX_DATA, SEQUENCE_MASK, FtpError, FtpOpcode, FtpPacket, parse_packet
+from link.services.ftp.reassembly import FileReassembly
 
 REPEAT_AFTER = 0.7
 """s without an answer before a question is repeated: more than a round trip on a loaded 57600 baud radio (0.4 s)."""
-QUIET = 1.0
+BURST_TIMEOUT = 1.0
 """s without data before a burst is asked for again: at 40 % of a 57600 baud radio a message takes 0.12 s."""
 TRIES = 16
 """Questions without an answer before nobody is there: 11 s."""
@@ -29,7 +29,7 @@ MAX_ENTRIES = 10_000
 END = bytes([FtpError.END_OF_FILE])
 
 
-class FtpJob(Enum):
+class FtpOperation(Enum):
     """What the client is at."""
 
     DOWNLOAD = "download"
@@ -40,7 +40,7 @@ class FtpJob(Enum):
 class FtpOutcome:
     """How a job ended."""
 
-    job: FtpJob
+    job: FtpOperation
     path: str
     done: bool
     data: bytes = b""
@@ -57,17 +57,17 @@ class _Phase(Enum):
 
 
 @dataclass(slots=True)
-class _Work:
+class _FtpTransfer:
     """The job under way."""
 
-    job: FtpJob
+    job: FtpOperation
     path: str
     session: int
     phase: _Phase = _Phase.ASKED
     asked: FtpPacket | None = None
     due: float = 0.0
     tries: int = 0
-    file: Assembly = field(default_factory=lambda: Assembly(MAX_SIZE))
+    file: FileReassembly = field(default_factory=lambda: FileReassembly(MAX_SIZE))
     entries: list[Entry] = field(default_factory=list)
 
 
@@ -79,22 +79,22 @@ class FtpClient:
         self._target = (target_system, target_component)
         self._sequence = 0
         self._session = 0
-        self._work: _Work | None = None
+        self._work: _FtpTransfer | None = None
         self._outbox: list[Outgoing] = []
         self._outcomes: list[FtpOutcome] = []
 
     def download(self, path: str, now: float) -> None:
         """Fetch a file. `path` is ASCII, e.g. "/logs/1.bin" or "@PARAM/param.pck"."""
-        self._begin(FtpJob.DOWNLOAD, Op.OPEN, path, now)
+        self._begin(FtpOperation.DOWNLOAD, FtpOpcode.OPEN, path, now)
 
     def list_folder(self, path: str, now: float) -> None:
         """List a folder."""
-        self._begin(FtpJob.LIST, Op.LIST, path, now)
+        self._begin(FtpOperation.LIST, FtpOpcode.LIST, path, now)
 
     def cancel(self) -> None:
         """Give up the job under way without an outcome."""
-        if self._work and self._work.job is FtpJob.DOWNLOAD:
-            self._send(self._packet(Op.TERMINATE, self._work.session))
+        if self._work and self._work.job is FtpOperation.DOWNLOAD:
+            self._send(self._packet(FtpOpcode.TERMINATE, self._work.session))
         self._work = None
 
     @property
@@ -108,7 +108,7 @@ class FtpClient:
         work = self._work
         if work is None or work.phase is _Phase.ASKED:
             return 0, None
-        return work.file.here.bytes, work.file.end
+        return work.file.received.bytes, work.file.end
 
     def receive(self, received: Received, now: float) -> None:
         """Take an answer of the vehicle; others are ignored."""
@@ -117,15 +117,15 @@ class FtpClient:
             return
         if message.target_system != self._ids[0] or message.target_component not in (0, self._ids[1]):
             return
-        packet = parse(message)
+        packet = parse_packet(message)
         match packet.asked:
-            case Op.OPEN if self._answers(work, packet):
+            case FtpOpcode.OPEN if self._answers(work, packet):
                 self._opened(work, packet, now)
-            case Op.LIST if self._answers(work, packet):
+            case FtpOpcode.LIST if self._answers(work, packet):
                 self._listed(work, packet, now)
-            case Op.BURST if work.phase is not _Phase.ASKED and packet.session == work.session:
+            case FtpOpcode.BURST if work.phase is not _Phase.ASKED and packet.session == work.session:
                 self._burst(work, packet, now)
-            case Op.READ if work.phase is _Phase.FILL:
+            case FtpOpcode.READ if work.phase is _Phase.FILL:
                 self._piece(work, packet, now)
 
     def tick(self, now: float) -> None:
@@ -154,18 +154,18 @@ class FtpClient:
 
     # ---- beginning and ending ----
 
-    def _begin(self, job: FtpJob, op: Op, path: str, now: float) -> None:
+    def _begin(self, job: FtpOperation, op: FtpOpcode, path: str, now: float) -> None:
         self.cancel()
         self._session = (
             self._session + 1
         ) & 0xFF  # a fresh one, so that late data of the last job is not taken for ours
-        work = self._work = _Work(job, path, self._session)
+        work = self._work = _FtpTransfer(job, path, self._session)
         self._repeat(
             work, self._packet(op, work.session, path.encode("ascii", "replace")[:MAX_DATA]), now, REPEAT_AFTER
         )
 
-    def _opened(self, work: _Work, packet: FtpPacket, now: float) -> None:
-        if packet.op != Op.ACK:
+    def _opened(self, work: _FtpTransfer, packet: FtpPacket, now: float) -> None:
+        if packet.op != FtpOpcode.ACK:
             self._fail(work, packet)
             return
         work.session = packet.session
@@ -173,28 +173,28 @@ class FtpClient:
         if announced > MAX_SIZE:
             self._fail(work, None)
             return
-        work.file, work.tries = Assembly(announced), 0
+        work.file, work.tries = FileReassembly(announced), 0
         self._ask_burst(work, now)
 
-    def _finish(self, work: _Work) -> None:
+    def _finish(self, work: _FtpTransfer) -> None:
         self._work = None
-        if work.job is FtpJob.DOWNLOAD:
-            self._send(self._packet(Op.TERMINATE, work.session))
-        data = work.file.data if work.job is FtpJob.DOWNLOAD else b""
+        if work.job is FtpOperation.DOWNLOAD:
+            self._send(self._packet(FtpOpcode.TERMINATE, work.session))
+        data = work.file.data if work.job is FtpOperation.DOWNLOAD else b""
         self._outcomes.append(FtpOutcome(work.job, work.path, True, data, tuple(work.entries)))
 
-    def _fail(self, work: _Work, packet: FtpPacket | None) -> None:
+    def _fail(self, work: _FtpTransfer, packet: FtpPacket | None) -> None:
         self._work = None
         if work.phase is not _Phase.ASKED:
-            self._send(self._packet(Op.TERMINATE, work.session))
+            self._send(self._packet(FtpOpcode.TERMINATE, work.session))
         error = (packet.data[0] if packet.data else FtpError.FAIL) if packet else None
         self._outcomes.append(FtpOutcome(work.job, work.path, False, error=error))
 
     # ---- listing ----
 
-    def _listed(self, work: _Work, packet: FtpPacket, now: float) -> None:
-        ended = packet.op == Op.NAK and packet.data[:1] == END
-        if packet.op != Op.ACK and not ended:
+    def _listed(self, work: _FtpTransfer, packet: FtpPacket, now: float) -> None:
+        ended = packet.op == FtpOpcode.NAK and packet.data[:1] == END
+        if packet.op != FtpOpcode.ACK and not ended:
             self._fail(work, packet)
             return
         lines = [] if ended else [line for line in packet.data.split(b"\0") if line]
@@ -205,72 +205,78 @@ class FtpClient:
         work.tries = 0
         offset = (work.asked.offset if work.asked else 0) + len(lines)
         path = work.path.encode("ascii", "replace")[:MAX_DATA]
-        self._repeat(work, self._packet(Op.LIST, work.session, path, offset), now, REPEAT_AFTER)
+        self._repeat(work, self._packet(FtpOpcode.LIST, work.session, path, offset), now, REPEAT_AFTER)
 
     # ---- downloading ----
 
-    def _burst(self, work: _Work, packet: FtpPacket, now: float) -> None:
-        if packet.op == Op.NAK:
+    def _burst(self, work: _FtpTransfer, packet: FtpPacket, now: float) -> None:
+        if packet.op == FtpOpcode.NAK:
             if packet.data[:1] == END:
                 self._start_filling(work, now)
             elif work.phase is _Phase.BURST:
                 self._fail(work, packet)
             return
-        work.file.take(packet.offset, packet.data)
+        work.file.add_piece(packet.offset, packet.data)
         if work.phase is not _Phase.BURST:
             return
-        work.tries, work.due = 0, now + QUIET
-        if work.file.here.end >= work.file.end:
+        work.tries, work.due = 0, now + BURST_TIMEOUT
+        if work.file.received.end >= work.file.end:
             self._start_filling(work, now)
         elif packet.burst_complete:
             self._ask_burst(work, now)
 
-    def _start_filling(self, work: _Work, now: float) -> None:
+    def _start_filling(self, work: _FtpTransfer, now: float) -> None:
         if work.phase is not _Phase.FILL:
             work.phase, work.tries = _Phase.FILL, 0
             self._fill(work, now)
 
-    def _piece(self, work: _Work, packet: FtpPacket, now: float) -> None:
-        offset = work.file.answered(packet.sequence)
+    def _piece(self, work: _FtpTransfer, packet: FtpPacket, now: float) -> None:
+        offset = work.file.pop_request(packet.sequence)
         if offset is None:
             return
-        if packet.op == Op.ACK and packet.data:
-            work.file.take(packet.offset, packet.data)
-        elif packet.op == Op.ACK or packet.data[:1] == END:
-            work.file.ended(offset)
+        if packet.op == FtpOpcode.ACK and packet.data:
+            work.file.add_piece(packet.offset, packet.data)
+        elif packet.op == FtpOpcode.ACK or packet.data[:1] == END:
+            work.file.truncate(offset)
         else:
             self._fail(work, packet)
             return
         work.tries = 0
         self._fill(work, now)
 
-    def _fill(self, work: _Work, now: float) -> None:
+    def _fill(self, work: _FtpTransfer, now: float) -> None:
         """Ask for what is missing, a few pieces at a time; done when nothing is."""
         if work.file.complete:
             self._finish(work)
             return
-        work.tries += work.file.forget_overdue(now)
-        for offset, size in work.file.wanted(WINDOW, MAX_DATA):
-            packet = self._packet(Op.READ, work.session, b"", offset, size)
-            work.file.asked((packet.sequence + 1) & SEQUENCE, offset, now + REPEAT_AFTER)
+        work.tries += work.file.expire_requests(now)
+        for offset, size in work.file.next_missing(WINDOW, MAX_DATA):
+            packet = self._packet(FtpOpcode.READ, work.session, b"", offset, size)
+            work.file.mark_requested((packet.sequence + 1) & SEQUENCE_MASK, offset, now + REPEAT_AFTER)
             self._send(packet)
         work.due = work.file.next_due(now + REPEAT_AFTER)
 
-    def _ask_burst(self, work: _Work, now: float) -> None:
+    def _ask_burst(self, work: _FtpTransfer, now: float) -> None:
         work.phase = _Phase.BURST
-        self._repeat(work, self._packet(Op.BURST, work.session, b"", work.file.here.end, MAX_DATA), now, QUIET)
+        self._repeat(
+            work, self._packet(FtpOpcode.BURST, work.session, b"", work.file.received.end, MAX_DATA), now, BURST_TIMEOUT
+        )
 
     # ---- words ----
 
-    def _answers(self, work: _Work, packet: FtpPacket) -> bool:
+    def _answers(self, work: _FtpTransfer, packet: FtpPacket) -> bool:
         asked = work.asked
-        return asked is not None and packet.asked == asked.op and packet.sequence == (asked.sequence + 1) & SEQUENCE
+        return (
+            asked is not None and packet.asked == asked.op and packet.sequence == (asked.sequence + 1) & SEQUENCE_MASK
+        )
 
-    def _packet(self, op: Op, session: int, data: bytes = b"", offset: int = 0, size: int | None = None) -> FtpPacket:
-        self._sequence = (self._sequence + 1) & SEQUENCE
+    def _packet(
+        self, op: FtpOpcode, session: int, data: bytes = b"", offset: int = 0, size: int | None = None
+    ) -> FtpPacket:
+        self._sequence = (self._sequence + 1) & SEQUENCE_MASK
         return FtpPacket(self._sequence, op, session, data, offset, size=size)
 
-    def _repeat(self, work: _Work, packet: FtpPacket, now: float, patience: float) -> None:
+    def _repeat(self, work: _FtpTransfer, packet: FtpPacket, now: float, patience: float) -> None:
         work.asked, work.due = packet, now + patience
         work.tries += 1
         self._send(packet)

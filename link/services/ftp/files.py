@@ -35,7 +35,7 @@ class Content(Protocol):
         """Up to `size` bytes, fewer only at the end; None: not here yet, ask again at the next tick."""
 
 
-class NotYetError(Exception):
+class NotReadyError(Exception):
     """The disk has not answered; the same question at a later tick gets its answer."""
 
 
@@ -60,7 +60,7 @@ class Folder(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Bytes:
+class BytesContent:
     """Content that is in memory."""
 
     data: bytes
@@ -75,7 +75,7 @@ class Bytes:
         return self.data[offset : offset + size]
 
 
-class ReadOnly:
+class ReadOnlyFolder:
     """The half of a Folder that writes, for one that does not."""
 
     def writable(self, name: str) -> bool:
@@ -91,7 +91,7 @@ class ReadOnly:
         return FtpError.PROTECTED
 
 
-class MadeFiles(ReadOnly):
+class GeneratedFolder(ReadOnlyFolder):
     """Files that are made when somebody opens them, e.g. `param.pck`."""
 
     def __init__(self, makers: Mapping[str, Callable[[Query], bytes | None]]) -> None:
@@ -106,7 +106,7 @@ class MadeFiles(ReadOnly):
         """None also for a query that its maker refuses."""
         make = self._makers.get(name)
         data = make(query) if make else None
-        return None if data is None else Bytes(data)
+        return None if data is None else BytesContent(data)
 
 
 @dataclass(slots=True)
@@ -126,7 +126,7 @@ class MemoryFolder:
 
     def open(self, name: str, query: Query) -> Content | None:
         """As it is now: a later store does not change what is open."""
-        return Bytes(self.files[name]) if name in self.files and not query else None
+        return BytesContent(self.files[name]) if name in self.files and not query else None
 
     def writable(self, name: str) -> bool:
         """Is there anybody who accepts?"""
@@ -162,7 +162,7 @@ class Location(NamedTuple):
     query: Query
 
 
-class Tree:
+class FileTree:
     """All that is served. `root` has the files at the top, `folders` the others by name, e.g. "logs" or "@PARAM"."""
 
     def __init__(self, root: Folder, folders: Mapping[str, Folder]) -> None:

@@ -5,22 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from link.services.ftp.files import Bytes, Content, Entry, Location, NotYetError, Tree
-from link.services.ftp.protocol import MAX_DATA, FtpError, FtpPacket, Op, crc32
-from link.services.ftp.sessions import Client, Session, Sessions
+from link.services.ftp.files import BytesContent, Content, Entry, FileTree, Location, NotReadyError
+from link.services.ftp.protocol import MAX_DATA, FtpError, FtpOpcode, FtpPacket, crc32
+from link.services.ftp.sessions import FtpClientId, FtpSession, FtpSessions
 
 CRC_PIECE = 64 * 1024
 """Bytes that go into a checksum in one tick: 0.1 ms on a Raspberry Pi."""
 
-Answer = bytes | FtpError | None
+FtpReply = bytes | FtpError | None
 """Data of an ACK, the error of a NAK, or None: ask again at the next tick."""
 
 
 @dataclass(slots=True)
-class Question:
+class FtpRequest:
     """A request, and how far its answer has come where that takes more than one tick."""
 
-    client: Client
+    client: FtpClientId
     request: FtpPacket
     allowed: bool
     """May this client write?"""
@@ -29,39 +29,39 @@ class Question:
     offset: int = 0
 
 
-class Answers:
+class FtpHandlers:
     """Answers all questions but bursts."""
 
-    def __init__(self, tree: Tree, sessions: Sessions) -> None:
+    def __init__(self, tree: FileTree, sessions: FtpSessions) -> None:
         self._tree = tree
         self._sessions = sessions
 
-    def answer(self, question: Question, now: float) -> Answer:
+    def handle(self, question: FtpRequest, now: float) -> FtpReply:
         """Do what is asked."""
         if (question.request.size or 0) > MAX_DATA:
             return FtpError.INVALID_SIZE
         handler = _HANDLERS.get(question.request.op)
         try:
             return handler(self, question, now) if handler else FtpError.UNKNOWN_COMMAND
-        except NotYetError:
+        except NotReadyError:
             return None
 
     # ---- sessions ----
 
-    def _nothing(self, question: Question, now: float) -> Answer:
+    def _none(self, question: FtpRequest, now: float) -> FtpReply:
         return b""
 
-    def _terminate(self, question: Question, now: float) -> Answer:
+    def _terminate(self, question: FtpRequest, now: float) -> FtpReply:
         """Closing what is not open is no error: MAVSDK closes after a listing, and an answer may have been lost."""
         session = self._sessions.get(question.client, question.request.session, now)
         return b"" if session is None else self._close(session)
 
-    def _reset(self, question: Question, now: float) -> Answer:
+    def _reset(self, question: FtpRequest, now: float) -> FtpReply:
         """Close all that this client has open; what others have open is not its business."""
-        faults = [self._close(session) for session in self._sessions.of(question.client)]
+        faults = [self._close(session) for session in self._sessions.for_client(question.client)]
         return next((fault for fault in faults if fault), b"")
 
-    def _close(self, session: Session) -> bytes | FtpError:
+    def _close(self, session: FtpSession) -> bytes | FtpError:
         """A written file counts when it is closed; QGroundControl closes it by a reset."""
         fault = None
         if session.writes is not None and session.data is not None:
@@ -71,7 +71,7 @@ class Answers:
 
     # ---- reading ----
 
-    def _list(self, question: Question, now: float) -> Answer:
+    def _list(self, question: FtpRequest, now: float) -> FtpReply:
         place = self._tree.find(question.request.data)
         if place is None or place.name:
             return FtpError.NOT_FOUND
@@ -83,14 +83,14 @@ class Answers:
             packed += line
         return packed or FtpError.END_OF_FILE
 
-    def _open(self, question: Question, now: float) -> Answer:
+    def _open(self, question: FtpRequest, now: float) -> FtpReply:
         content = self._find(question)
         if content is None:
             return FtpError.NOT_FOUND
-        session = Session(question.client, question.request.session, now, content)
+        session = FtpSession(question.client, question.request.session, now, content)
         return self._sessions.add(session, now) or content.size.to_bytes(4, "little")
 
-    def _read(self, question: Question, now: float) -> Answer:
+    def _read(self, question: FtpRequest, now: float) -> FtpReply:
         request = question.request
         session = self._sessions.get(question.client, request.session, now)
         if session is None or session.data is not None:
@@ -100,7 +100,7 @@ class Answers:
         data = session.content.read(request.offset, request.size or MAX_DATA)
         return FtpError.FAIL if data == b"" else data  # empty: it is gone
 
-    def _crc(self, question: Question, now: float) -> Answer:
+    def _crc(self, question: FtpRequest, now: float) -> FtpReply:
         content = question.content = question.content or self._find(question)
         if content is None:
             return FtpError.NOT_FOUND
@@ -111,19 +111,19 @@ class Answers:
             question.crc, question.offset = crc32(piece, question.crc), question.offset + len(piece)
         return question.crc.to_bytes(4, "little") if question.offset >= content.size else None
 
-    def _find(self, question: Question) -> Content | None:
+    def _find(self, question: FtpRequest) -> Content | None:
         place = self._tree.find(question.request.data)
         return place.folder.open(place.name, place.query) if place and place.name else None
 
     # ---- writing ----
 
-    def _create(self, question: Question, now: float) -> Answer:
+    def _create(self, question: FtpRequest, now: float) -> FtpReply:
         place = self._writable(question)
         if isinstance(place, FtpError):
             return place
         return self._begin_writing(question, place, bytearray(), now)
 
-    def _open_to_write(self, question: Question, now: float) -> Answer:
+    def _open_to_write(self, question: FtpRequest, now: float) -> FtpReply:
         place = self._writable(question)
         if isinstance(place, FtpError):
             return place
@@ -133,18 +133,18 @@ class Answers:
         data = content.read(0, content.size)
         return None if data is None else self._begin_writing(question, place, bytearray(data), now)
 
-    def _begin_writing(self, question: Question, place: Location, data: bytearray, now: float) -> Answer:
-        session = Session(question.client, question.request.session, now, Bytes(b""), place, data)
+    def _begin_writing(self, question: FtpRequest, place: Location, data: bytearray, now: float) -> FtpReply:
+        session = FtpSession(question.client, question.request.session, now, BytesContent(b""), place, data)
         return self._sessions.add(session, now) or b""
 
-    def _write(self, question: Question, now: float) -> Answer:
+    def _write(self, question: FtpRequest, now: float) -> FtpReply:
         request = question.request
         session = self._sessions.get(question.client, request.session, now)
         if session is None:
             return FtpError.INVALID_SESSION
         return session.write(request.offset, request.data) or b""
 
-    def _truncate(self, question: Question, now: float) -> Answer:
+    def _truncate(self, question: FtpRequest, now: float) -> FtpReply:
         place = self._writable(question)
         if isinstance(place, FtpError):
             return place
@@ -154,18 +154,18 @@ class Answers:
         data = content.read(0, min(question.request.offset, content.size))
         return None if data is None else place.folder.store(place.name, data) or b""
 
-    def _remove(self, question: Question, now: float) -> Answer:
+    def _remove(self, question: FtpRequest, now: float) -> FtpReply:
         """A folder that is not written may still let files go, as logs."""
         place = self._tree.find(question.request.data)
         if place is None or not place.name or place.query:
             return FtpError.NOT_FOUND
         return (place.folder.remove(place.name) if question.allowed else FtpError.PROTECTED) or b""
 
-    def _protected(self, question: Question, now: float) -> Answer:
+    def _protected(self, question: FtpRequest, now: float) -> FtpReply:
         """The tree has the shape it has."""
         return FtpError.PROTECTED
 
-    def _writable(self, question: Question) -> Location | FtpError:
+    def _writable(self, question: FtpRequest) -> Location | FtpError:
         place = self._tree.find(question.request.data)
         if place is None or not place.name or place.query:
             return FtpError.NOT_FOUND
@@ -178,21 +178,21 @@ def _line(entry: Entry) -> bytes:
     return text.encode("ascii", "replace") + b"\0"
 
 
-_HANDLERS: dict[int, Callable[[Answers, Question, float], Answer]] = {
-    Op.NONE: Answers._nothing,
-    Op.TERMINATE: Answers._terminate,
-    Op.RESET: Answers._reset,
-    Op.LIST: Answers._list,
-    Op.OPEN: Answers._open,
-    Op.READ: Answers._read,
-    Op.CREATE: Answers._create,
-    Op.WRITE: Answers._write,
-    Op.REMOVE: Answers._remove,
-    Op.MAKE_DIRECTORY: Answers._protected,
-    Op.REMOVE_DIRECTORY: Answers._protected,
-    Op.OPEN_TO_WRITE: Answers._open_to_write,
-    Op.TRUNCATE: Answers._truncate,
-    Op.RENAME: Answers._protected,
-    Op.CRC: Answers._crc,
+_HANDLERS: dict[int, Callable[[FtpHandlers, FtpRequest, float], FtpReply]] = {
+    FtpOpcode.NONE: FtpHandlers._none,
+    FtpOpcode.TERMINATE: FtpHandlers._terminate,
+    FtpOpcode.RESET: FtpHandlers._reset,
+    FtpOpcode.LIST: FtpHandlers._list,
+    FtpOpcode.OPEN: FtpHandlers._open,
+    FtpOpcode.READ: FtpHandlers._read,
+    FtpOpcode.CREATE: FtpHandlers._create,
+    FtpOpcode.WRITE: FtpHandlers._write,
+    FtpOpcode.REMOVE: FtpHandlers._remove,
+    FtpOpcode.MAKE_DIRECTORY: FtpHandlers._protected,
+    FtpOpcode.REMOVE_DIRECTORY: FtpHandlers._protected,
+    FtpOpcode.OPEN_TO_WRITE: FtpHandlers._open_to_write,
+    FtpOpcode.TRUNCATE: FtpHandlers._truncate,
+    FtpOpcode.RENAME: FtpHandlers._protected,
+    FtpOpcode.CRC: FtpHandlers._crc,
 }
 """All others are UNKNOWN_COMMAND, also 16, the listing with times: MAVSDK then falls back to LIST."""

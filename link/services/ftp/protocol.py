@@ -17,10 +17,10 @@ MAX_DATA = 239
 MAX_OFFSET = 0xFFFF_FFFF
 _HEADER = struct.Struct("<HBBBBBxI")
 _PAYLOAD = 251
-SEQUENCE = 0xFFFF
+SEQUENCE_MASK = 0xFFFF
 
 
-class Op(IntEnum):
+class FtpOpcode(IntEnum):
     """MAV_FTP_OPCODE: what is asked, and the two answers."""
 
     NONE = 0
@@ -86,7 +86,7 @@ class FtpPacket:
         return FileTransferProtocol(0, system, component, self.payload())
 
 
-def parse(message: FileTransferProtocol) -> FtpPacket:
+def parse_packet(message: FileTransferProtocol) -> FtpPacket:
     """What the message says. `data` is never longer than its `size`, but may be shorter where the size is a lie."""
     raw = bytes(message.payload)
     sequence, session, op, size, asked, burst_complete, offset = _HEADER.unpack_from(raw)

@@ -7,7 +7,7 @@ import itertools
 from collections.abc import Iterator
 
 
-class Coverage:
+class RangeSet:
     """A set of offsets, kept as ranges that neither touch nor overlap."""
 
     def __init__(self) -> None:
@@ -48,13 +48,13 @@ class Coverage:
             yield at, end
 
 
-class Assembly:
+class FileReassembly:
     """A file in pieces: what has come, what is missing, and which of that was asked for lately."""
 
     def __init__(self, end: int) -> None:
         self.end = end
         """The file is not longer than this."""
-        self.here = Coverage()
+        self.received = RangeSet()
         self._data = bytearray()
         self._asked: dict[int, tuple[int, float]] = {}
 
@@ -66,29 +66,29 @@ class Assembly:
     @property
     def complete(self) -> bool:
         """Is all of it here?"""
-        return next(self.here.gaps(self.end), None) is None
+        return next(self.received.gaps(self.end), None) is None
 
-    def take(self, offset: int, data: bytes) -> None:
+    def add_piece(self, offset: int, data: bytes) -> None:
         """Keep a piece; one that reaches beyond the end is none of this file."""
         end = offset + len(data)
         if end <= self.end:
             self._data.extend(bytes(max(0, end - len(self._data))))
             self._data[offset:end] = data
-            self.here.add(offset, end)
+            self.received.add(offset, end)
 
-    def ended(self, offset: int) -> None:
+    def truncate(self, offset: int) -> None:
         """There is nothing at `offset`: the file was shorter than it was said to be."""
         self.end = min(self.end, offset)
 
-    def asked(self, key: int, offset: int, due: float) -> None:
+    def mark_requested(self, key: int, offset: int, due: float) -> None:
         """The piece at `offset` was asked for; its answer will bear `key` and is overdue at `due`."""
         self._asked[key] = (offset, due)
 
-    def answered(self, key: int) -> int | None:
+    def pop_request(self, key: int) -> int | None:
         """The offset that was asked for under `key`, once."""
         return self._asked.pop(key, (None, 0.0))[0]
 
-    def forget_overdue(self, now: float) -> bool:
+    def expire_requests(self, now: float) -> bool:
         """Pieces that did not come may be asked for again; True when there was one."""
         before = len(self._asked)
         self._asked = {key: asked for key, asked in self._asked.items() if now < asked[1]}
@@ -98,12 +98,12 @@ class Assembly:
         """When the first answer is overdue."""
         return min((due for _, due in self._asked.values()), default=default)
 
-    def wanted(self, window: int, size: int) -> list[tuple[int, int]]:
+    def next_missing(self, window: int, size: int) -> list[tuple[int, int]]:
         """Offset and length of the first missing pieces that are not asked for, so that `window` are under way."""
         under_way = {offset for offset, _ in self._asked.values()}
         pieces = (
             (offset, min(size, end - offset))
-            for start, end in self.here.gaps(self.end)
+            for start, end in self.received.gaps(self.end)
             for offset in range(start, end, size)
         )
         first = itertools.islice(pieces, window)

@@ -10,17 +10,17 @@ from link.services.ftp.files import Content, Location
 from link.services.ftp.protocol import FtpError
 
 MAX_SESSIONS = 16
-MAX_EACH = 4
+MAX_SESSIONS_PER_CLIENT = 4
 """Open files a client: what the known clients open is one."""
 EXPIRY = 30.0
 """s without a question until an open file is forgotten: longer than a client's retries (MAVProxy's last 10 s)."""
-IDLE = 5.0
+IDLE_AFTER = 5.0
 """s after which an open file gives up its place to a client that has none."""
 MAX_FILE = 256 * 1024
 """Bytes of a file that is written: a mission of 500 items as a .plan file is 150 kB."""
 
 
-class Client(NamedTuple):
+class FtpClientId(NamedTuple):
     """Who asks."""
 
     peer: Peer
@@ -28,9 +28,9 @@ class Client(NamedTuple):
     component: int
 
 
-def client_of(received: Received) -> Client:
+def client_id(received: Received) -> FtpClientId:
     """Whom to answer."""
-    return Client(received.peer, received.system, received.component)
+    return FtpClientId(received.peer, received.system, received.component)
 
 
 @dataclass(slots=True)
@@ -47,12 +47,12 @@ class Burst:
 
 
 @dataclass(slots=True)
-class Session:
+class FtpSession:
     """A file that is open."""
 
-    client: Client
+    client: FtpClientId
     number: int
-    used: float
+    last_used: float
     content: Content
     writes: Location | None = None
     """Where it goes when it is closed, for a file that is written."""
@@ -71,7 +71,7 @@ class Session:
         return None
 
 
-class Sessions:
+class FtpSessions:
     """The table of open files.
 
     A client gets the number it asked for, also one that it had in use: MAVSDK and MAVProxy go on with the number they
@@ -79,46 +79,48 @@ class Sessions:
     """
 
     def __init__(self) -> None:
-        self._open: dict[tuple[Client, int], Session] = {}
+        self._open: dict[tuple[FtpClientId, int], FtpSession] = {}
 
-    def add(self, session: Session, now: float) -> FtpError | None:
+    def add(self, session: FtpSession, now: float) -> FtpError | None:
         """Keep an open file; returns why not."""
         key = (session.client, session.number)
-        if key not in self._open and (len(self.of(session.client)) >= MAX_EACH or not self._room(now)):
+        if key not in self._open and (
+            len(self.for_client(session.client)) >= MAX_SESSIONS_PER_CLIENT or not self._room(now)
+        ):
             return FtpError.NO_SESSIONS
         self._open[key] = session
         return None
 
-    def get(self, client: Client, number: int, now: float) -> Session | None:
+    def get(self, client: FtpClientId, number: int, now: float) -> FtpSession | None:
         """The open file, which counts as used now."""
         session = self._open.get((client, number))
         if session is not None:
-            session.used = now
+            session.last_used = now
         return session
 
-    def of(self, client: Client) -> list[Session]:
+    def for_client(self, client: FtpClientId) -> list[FtpSession]:
         """All that a client has open."""
         return [session for session in self._open.values() if session.client == client]
 
-    def close(self, session: Session) -> None:
+    def close(self, session: FtpSession) -> None:
         """Forget it."""
         self._open.pop((session.client, session.number), None)
 
-    def bursts(self) -> list[Session]:
+    def bursts(self) -> list[FtpSession]:
         """Those with data on its way."""
         return [session for session in self._open.values() if session.burst]
 
     def expire(self, now: float) -> None:
         """Forget what nobody has used for long. What was written is not kept: half a file is none."""
         for session in list(self._open.values()):
-            if now - session.used >= EXPIRY:
+            if now - session.last_used >= EXPIRY:
                 self.close(session)
 
     def _room(self, now: float) -> bool:
         """Is there a place, or one that can be made free?"""
         if len(self._open) < MAX_SESSIONS:
             return True
-        oldest = min(self._open.values(), key=lambda session: session.used)
-        if now - oldest.used >= IDLE:
+        oldest = min(self._open.values(), key=lambda session: session.last_used)
+        if now - oldest.last_used >= IDLE_AFTER:
             self.close(oldest)
         return len(self._open) < MAX_SESSIONS

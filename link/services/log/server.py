@@ -15,20 +15,20 @@ from typing import NamedTuple
 
 from dialects import messages as m
 from link.core import Outgoing, Peer, Received
-from link.services.ftp.files import Content, Entry, Folder, NotYetError
-from link.services.pacing import OVERHEAD, Pacer
+from link.services.ftp.files import Content, Entry, Folder, NotReadyError
+from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 
 DATA_SIZE = 90
 """Bytes of log in one LOG_DATA."""
 MAX_CLIENTS = 8
-MAX_WISHES = 8
+MAX_REQUESTS = 8
 """Pieces a client may ask for at once: MAVProxy fills holes five at a time."""
 MAX_LOGS = 1000
-LIST_FRAME = m.LogEntry.unpacker.size + OVERHEAD
-DATA_FRAME = m.LogData.unpacker.size + OVERHEAD
+LIST_FRAME = m.LogEntry.unpacker.size + MAVLINK2_OVERHEAD
+DATA_FRAME = m.LogData.unpacker.size + MAVLINK2_OVERHEAD
 
 
-class _Wish(NamedTuple):
+class _DataRequest(NamedTuple):
     """A part of a log that a client asked for."""
 
     log: int
@@ -37,7 +37,7 @@ class _Wish(NamedTuple):
 
 
 @dataclass(slots=True)
-class _Client:
+class _LogClient:
     """What is on its way to one peer."""
 
     logs: list[Entry] | None = None
@@ -46,7 +46,7 @@ class _Client:
     """Where the list begins that it waits for, and where it ends."""
     list_to: int = 0
     listing: deque[m.LogEntry] = field(default_factory=deque)
-    wishes: deque[_Wish] = field(default_factory=deque)
+    requests: deque[_DataRequest] = field(default_factory=deque)
     content: Content | None = None
     at: int = 0
     """The next byte of the first wish."""
@@ -54,7 +54,7 @@ class _Client:
     @property
     def idle(self) -> bool:
         """Is nothing on its way?"""
-        return self.list_from is None and not self.listing and not self.wishes
+        return self.list_from is None and not self.listing and not self.requests
 
 
 class LogServer:
@@ -67,7 +67,7 @@ class LogServer:
         *,
         system: int,
         component: int,
-        pacer: Pacer,
+        pacer: BulkPacer,
         when: Callable[[str], int] = lambda name: 0,
         erase: Callable[[Received, float], None] = lambda received, now: None,
     ) -> None:
@@ -76,7 +76,7 @@ class LogServer:
         self._pacer = pacer
         self._when = when
         self._erase = erase
-        self._clients: dict[Peer, _Client] = {}
+        self._clients: dict[Peer, _LogClient] = {}
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
         """Take one message; nothing where it is not for us or its sender may not ask. All answers come by tick()."""
@@ -89,11 +89,11 @@ class LogServer:
             case m.LogRequestList() if client := self._client(received.peer):
                 client.list_from, client.list_to = message.start, message.end
             case m.LogRequestData() if client := self._client(received.peer):
-                wish = _Wish(message.id, message.ofs, message.ofs + message.count)
-                if wish not in client.wishes and len(client.wishes) < MAX_WISHES:
-                    client.wishes.append(wish)
+                wish = _DataRequest(message.id, message.ofs, message.ofs + message.count)
+                if wish not in client.requests and len(client.requests) < MAX_REQUESTS:
+                    client.requests.append(wish)
             case m.LogRequestEnd() if client := self._clients.get(received.peer):
-                self._clients[received.peer] = _Client(client.logs)
+                self._clients[received.peer] = _LogClient(client.logs)
             case m.LogErase():
                 self._erase(received, now)
         return []
@@ -106,27 +106,27 @@ class LogServer:
                 outgoing += [Outgoing(message, peer) for message in self._next_messages(peer, client, now)]
         return outgoing
 
-    def _next_messages(self, peer: Peer, client: _Client, now: float) -> Iterator[m.Message]:
-        with suppress(NotYetError):
+    def _next_messages(self, peer: Peer, client: _LogClient, now: float) -> Iterator[m.Message]:
+        with suppress(NotReadyError):
             self._make_list(client)
-            while client.listing and self._pacer.take(peer, LIST_FRAME, now):
+            while client.listing and self._pacer.consume(peer, LIST_FRAME, now):
                 yield client.listing.popleft()
-            while client.wishes and (data := self._next_data(client)) and self._pacer.take(peer, DATA_FRAME, now):
+            while client.requests and (data := self._next_data(client)) and self._pacer.consume(peer, DATA_FRAME, now):
                 yield self._sent(client, data)
 
     def _entries(self) -> list[Entry]:
         return [entry for entry in self._logs.entries() if entry.size is not None][:MAX_LOGS]
 
-    def _client(self, peer: Peer) -> _Client | None:
+    def _client(self, peer: Peer) -> _LogClient | None:
         """The known one, or a new one in the place of one that wants nothing; None where all want something."""
         if peer not in self._clients and len(self._clients) >= MAX_CLIENTS:
             leaving = next((each for each, client in self._clients.items() if client.idle), None)
             if leaving is None:
                 return None
             del self._clients[leaving]
-        return self._clients.setdefault(peer, _Client())
+        return self._clients.setdefault(peer, _LogClient())
 
-    def _make_list(self, client: _Client) -> None:
+    def _make_list(self, client: _LogClient) -> None:
         """What it asked for. Only a list from its beginning is a new numbering: a part fills what got lost of one."""
         start = client.list_from
         if start is None:
@@ -142,9 +142,9 @@ class LogServer:
         if not logs:
             client.listing.append(m.LogEntry(0, 0, 0, 0, 0))
 
-    def _next_data(self, client: _Client) -> m.LogData | None:
+    def _next_data(self, client: _LogClient) -> m.LogData | None:
         """The next data of the first wish; None while the disk has not brought it. Raises NotYetError."""
-        wish = client.wishes[0]
+        wish = client.requests[0]
         if client.content is None:
             client.content, client.at = self._open(client, wish.log), wish.start
         if client.content is None:
@@ -152,16 +152,16 @@ class LogServer:
         data = client.content.read(client.at, max(0, min(DATA_SIZE, wish.end - client.at)))
         return None if data is None else _data(wish.log, client.at, data)
 
-    def _open(self, client: _Client, number: int) -> Content | None:
+    def _open(self, client: _LogClient, number: int) -> Content | None:
         logs = client.logs = self._entries() if client.logs is None else client.logs
         return self._logs.open(logs[number].name, {}) if number < len(logs) else None
 
     @staticmethod
-    def _sent(client: _Client, data: m.LogData) -> m.LogData:
+    def _sent(client: _LogClient, data: m.LogData) -> m.LogData:
         """Go on behind `data`; data that is not full ends a log, and where the last was full an empty one does."""
         client.at = data.ofs + data.count
-        if data.count < DATA_SIZE or client.at >= client.wishes[0].end:
-            client.wishes.popleft()
+        if data.count < DATA_SIZE or client.at >= client.requests[0].end:
+            client.requests.popleft()
             client.content = None
         return data
 

@@ -24,7 +24,7 @@ RESTARTS = 2
 """An upload that the vehicle has cancelled for lack of items is begun again so often."""
 
 
-class Job(Enum):
+class MissionOperation(Enum):
     """What the client is at."""
 
     UPLOAD = "upload"
@@ -36,7 +36,7 @@ class Job(Enum):
 class MissionOutcome:
     """How a job ended."""
 
-    job: Job
+    job: MissionOperation
     kind: MissionType
     result: int | None
     """MAV_MISSION_RESULT; None: nobody answered."""
@@ -53,10 +53,10 @@ class MissionOutcome:
 
 
 @dataclass(slots=True)
-class _Work:
+class _MissionTransfer:
     """The job under way."""
 
-    job: Job
+    job: MissionOperation
     kind: MissionType
     items: list[MissionItem]
     """To upload, or downloaded so far."""
@@ -76,22 +76,22 @@ class MissionClient:
     def __init__(self, system: int, component: int, *, target_system: int, target_component: int = 1) -> None:
         self._ids = (system, component)
         self._target = (target_system, target_component)
-        self._work: _Work | None = None
+        self._work: _MissionTransfer | None = None
         self._outbox: list[Outgoing] = []
         self._outcomes: list[MissionOutcome] = []
 
     def upload(self, items: Sequence[MissionItem], kind: MissionType, now: float) -> None:
         """Replace the vehicle's plan."""
         count = m.MissionCount(*self._target, len(items), kind)
-        self._begin(Job.UPLOAD, kind, count, now, items)
+        self._begin(MissionOperation.UPLOAD, kind, count, now, items)
 
     def download(self, kind: MissionType, now: float) -> None:
         """Fetch the vehicle's plan."""
-        self._begin(Job.DOWNLOAD, kind, m.MissionRequestList(*self._target, kind), now)
+        self._begin(MissionOperation.DOWNLOAD, kind, m.MissionRequestList(*self._target, kind), now)
 
     def clear(self, kind: MissionType, now: float) -> None:
         """Empty the vehicle's plan; MissionType.ALL empties all three."""
-        self._begin(Job.CLEAR, kind, m.MissionClearAll(*self._target, kind), now)
+        self._begin(MissionOperation.CLEAR, kind, m.MissionClearAll(*self._target, kind), now)
 
     @property
     def busy(self) -> bool:
@@ -104,7 +104,7 @@ class MissionClient:
         work = self._work
         if work is None:
             return 0, None
-        if work.job is Job.DOWNLOAD:
+        if work.job is MissionOperation.DOWNLOAD:
             return len(work.items), work.count
         return getattr(work.last, "seq", 0), len(work.items)
 
@@ -114,16 +114,18 @@ class MissionClient:
         if work is None or received.system != self._target[0] or not self._ours(message, work):
             return
         match message:
-            case m.MissionRequestInt() | m.MissionRequest() if work.job is Job.UPLOAD:
-                self._give(work, message.seq, now)
-            case m.MissionCount() if work.job is Job.DOWNLOAD and work.count is None:
+            case m.MissionRequestInt() | m.MissionRequest() if work.job is MissionOperation.UPLOAD:
+                self._send_item(work, message.seq, now)
+            case m.MissionCount() if work.job is MissionOperation.DOWNLOAD and work.count is None:
                 work.count, work.plan_id = message.count, message.opaque_id
                 self._next(work, now)
-            case m.MissionItemInt() | m.MissionItem() if work.job is Job.DOWNLOAD and work.count is not None:
+            case m.MissionItemInt() | m.MissionItem() if (
+                work.job is MissionOperation.DOWNLOAD and work.count is not None
+            ):
                 if message.seq == len(work.items) < work.count:
                     work.items.append(from_message(message))
                     self._next(work, now)
-            case m.MissionAck() if message.type != MissionResult.ACCEPTED or self._said_all(work):
+            case m.MissionAck() if message.type != MissionResult.ACCEPTED or self._sent_all(work):
                 work.plan_id = message.opaque_id
                 self._acknowledged(work, message.type, now)
 
@@ -150,48 +152,48 @@ class MissionClient:
         return outcomes
 
     def _begin(
-        self, job: Job, kind: MissionType, first: m.Message, now: float, items: Sequence[MissionItem] = ()
+        self, job: MissionOperation, kind: MissionType, first: m.Message, now: float, items: Sequence[MissionItem] = ()
     ) -> None:
-        self._work = _Work(job, kind, list(items), first, now + REPEAT_AFTER)
+        self._work = _MissionTransfer(job, kind, list(items), first, now + REPEAT_AFTER)
         self._outbox.append(Outgoing(first))
 
-    def _ours(self, message: m.Message, work: _Work) -> bool:
+    def _ours(self, message: m.Message, work: _MissionTransfer) -> bool:
         target = (getattr(message, "target_system", 0), getattr(message, "target_component", 0))
         addressed = target[0] in (0, self._ids[0]) and target[1] in (0, self._ids[1])
         return addressed and getattr(message, "mission_type", None) == work.kind
 
     @staticmethod
-    def _said_all(work: _Work) -> bool:
+    def _sent_all(work: _MissionTransfer) -> bool:
         """Can it be this job that is accepted? An answer to the job before, said twice, comes sooner."""
-        if work.job is Job.UPLOAD:
+        if work.job is MissionOperation.UPLOAD:
             return getattr(work.last, "seq", -1) == len(work.items) - 1
-        return work.job is Job.CLEAR
+        return work.job is MissionOperation.CLEAR
 
-    def _say(self, work: _Work, message: m.Message, now: float) -> None:
+    def _send(self, work: _MissionTransfer, message: m.Message, now: float) -> None:
         work.last, work.sent, work.due = message, 1, now + REPEAT_AFTER
         self._outbox.append(Outgoing(message))
 
-    def _give(self, work: _Work, sequence: int, now: float) -> None:
+    def _send_item(self, work: _MissionTransfer, sequence: int, now: float) -> None:
         if sequence < len(work.items):
-            self._say(work, to_message(work.items[sequence], sequence, work.kind, self._target), now)
+            self._send(work, to_message(work.items[sequence], sequence, work.kind, self._target), now)
 
-    def _next(self, work: _Work, now: float) -> None:
+    def _next(self, work: _MissionTransfer, now: float) -> None:
         """Ask for the next item of a download, or thank for the last."""
         if len(work.items) == work.count:
             self._outbox.append(Outgoing(m.MissionAck(*self._target, MissionResult.ACCEPTED, work.kind)))
             self._finish(work, MissionResult.ACCEPTED)
         else:
-            self._say(work, m.MissionRequestInt(*self._target, len(work.items), work.kind), now)
+            self._send(work, m.MissionRequestInt(*self._target, len(work.items), work.kind), now)
 
-    def _acknowledged(self, work: _Work, result: int, now: float) -> None:
-        cancelled = result == MissionResult.CANCELLED and work.job is Job.UPLOAD
+    def _acknowledged(self, work: _MissionTransfer, result: int, now: float) -> None:
+        cancelled = result == MissionResult.CANCELLED and work.job is MissionOperation.UPLOAD
         if cancelled and work.restarts < RESTARTS:
             work.restarts += 1
-            self._say(work, m.MissionCount(*self._target, len(work.items), work.kind), now)
+            self._send(work, m.MissionCount(*self._target, len(work.items), work.kind), now)
         else:
             self._finish(work, result)
 
-    def _finish(self, work: _Work, result: int | None) -> None:
+    def _finish(self, work: _MissionTransfer, result: int | None) -> None:
         self._work = None
-        items = tuple(work.items) if work.job is Job.DOWNLOAD and result == MissionResult.ACCEPTED else ()
+        items = tuple(work.items) if work.job is MissionOperation.DOWNLOAD and result == MissionResult.ACCEPTED else ()
         self._outcomes.append(MissionOutcome(work.job, work.kind, result, items, work.plan_id))

@@ -13,20 +13,20 @@ from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Outgoing, Peer, Received
 from link.services.mission.items import to_message
-from link.services.mission.plans import Shelf
+from link.services.mission.plans import PlanTable
 from link.services.mission.upload import Sender, ack, sender_of
-from link.services.pacing import OVERHEAD, Pacer
+from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 
 MAX_CLIENTS = 8
-ITEM_FRAME = m.MissionItemInt.unpacker.size + OVERHEAD
+ITEM_FRAME = m.MissionItemInt.unpacker.size + MAVLINK2_OVERHEAD
 TO_THE_END = -1
 """`end_index` that means the last item."""
 
 
-class Downloads:
+class PlanDownloads:
     """Answers who reads. `current` gives the index of the mission's item under way."""
 
-    def __init__(self, shelf: Shelf, pacer: Pacer, current: Callable[[], int]) -> None:
+    def __init__(self, shelf: PlanTable, pacer: BulkPacer, current: Callable[[], int]) -> None:
         self._shelf = shelf
         self._pacer = pacer
         self._current = current
@@ -48,7 +48,7 @@ class Downloads:
         """The next items of parts, as far as the links have room."""
         outgoing: list[Outgoing] = []
         for peer, items in list(self._under_way.items()):
-            while items and self._pacer.take(peer, ITEM_FRAME, now):
+            while items and self._pacer.consume(peer, ITEM_FRAME, now):
                 outgoing.append(items.popleft())
             if not items:
                 del self._under_way[peer]
@@ -58,7 +58,7 @@ class Downloads:
         kind = self._shelf.kind(message.mission_type)
         if kind is None:
             return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
-        count, plan_id = len(self._shelf[kind]), self._shelf.id_of(kind)
+        count, plan_id = len(self._shelf[kind]), self._shelf.get_id(kind)
         return Outgoing(m.MissionCount(sender.system, sender.component, count, kind, plan_id), sender.peer)
 
     def _item(self, message: m.MissionRequestInt | m.MissionRequest, sender: Sender) -> Outgoing:
@@ -67,7 +67,7 @@ class Downloads:
             return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
         if message.seq >= len(self._shelf[kind]):
             return ack(sender, kind, MissionResult.INVALID_SEQUENCE)
-        return self._told(message.seq, kind, sender)
+        return self._build_item(message.seq, kind, sender)
 
     def _part(self, message: m.MissionRequestPartialList, sender: Sender) -> list[Outgoing]:
         kind = self._shelf.kind(message.mission_type)
@@ -79,10 +79,10 @@ class Downloads:
             return [ack(sender, kind, MissionResult.INVALID_SEQUENCE)]
         if sender.peer not in self._under_way and len(self._under_way) >= MAX_CLIENTS:
             return [ack(sender, kind, MissionResult.DENIED)]
-        self._under_way[sender.peer] = deque(self._told(index, kind, sender) for index in range(first, last + 1))
+        self._under_way[sender.peer] = deque(self._build_item(index, kind, sender) for index in range(first, last + 1))
         return []
 
-    def _told(self, index: int, kind: MissionType, sender: Sender) -> Outgoing:
+    def _build_item(self, index: int, kind: MissionType, sender: Sender) -> Outgoing:
         current = kind is MissionType.MISSION and self._current() == index
         target = (sender.system, sender.component)
         return Outgoing(to_message(self._shelf[kind][index], index, kind, target, current=current), sender.peer)

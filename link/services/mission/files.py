@@ -12,15 +12,15 @@ import struct
 from collections.abc import Callable, Sequence
 
 from dialects.enums import MissionResult, MissionType
-from link.services.ftp.files import Bytes, Content, Entry, NotYetError, Query
+from link.services.ftp.files import BytesContent, Content, Entry, NotReadyError, Query
 from link.services.ftp.protocol import FtpError
-from link.services.mission.commit import Change
-from link.services.mission.items import DEGREES, GLOBAL_FRAMES, LOCAL, Items, MissionItem, scaled
+from link.services.mission.commit import PlanChange
+from link.services.mission.items import DEGREES_SCALE, GLOBAL_FRAMES, LOCAL_SCALE, Items, MissionItem, to_int32
 from link.services.mission.server import MissionServer
 
 HEADER = "QGC WPL 110"
 FIELDS = 12
-NAMES: dict[str, MissionType] = {
+FILE_TYPES: dict[str, MissionType] = {
     "mission.waypoints": MissionType.MISSION,
     "fence.waypoints": MissionType.FENCE,
     "rally.waypoints": MissionType.RALLY,
@@ -31,13 +31,13 @@ class PlanFileError(ValueError):
     """A file that is no plan; the message is one clear line."""
 
 
-def write(items: Sequence[MissionItem]) -> bytes:
+def encode_plan(items: Sequence[MissionItem]) -> bytes:
     """The file of a plan. Nothing of an item is lost, NaN included."""
     lines = [HEADER, *(_line(number, item) for number, item in enumerate(items))]
     return ("\n".join(lines) + "\n").encode("ascii")
 
 
-def read(data: bytes) -> Items:
+def decode_plan(data: bytes) -> Items:
     """The plan of a file. Raises PlanFileError."""
     text = data.decode("ascii", "replace")
     header, *lines = text.splitlines() or [""]
@@ -48,7 +48,7 @@ def read(data: bytes) -> Items:
 
 
 def _line(number: int, item: MissionItem) -> str:
-    scale = DEGREES if item.frame in GLOBAL_FRAMES else LOCAL
+    scale = DEGREES_SCALE if item.frame in GLOBAL_FRAMES else LOCAL_SCALE
     place = (f"{item.x / scale:.7f}", f"{item.y / scale:.7f}", repr(item.z))
     head = (number, 0, item.frame, item.command)
     return "\t".join(map(str, (*head, *map(repr, item.params), *place, int(item.autocontinue))))
@@ -65,8 +65,8 @@ def _item(number: int, line: str) -> MissionItem:
         autocontinue = bool(int(fields[11]))
     except ValueError as error:
         raise PlanFileError(f"line {number}: {error}") from error
-    scale = DEGREES if frame in GLOBAL_FRAMES else LOCAL
-    return MissionItem(command, frame, (one, two, three, four), scaled(x, scale), scaled(y, scale), z, autocontinue)
+    scale = DEGREES_SCALE if frame in GLOBAL_FRAMES else LOCAL_SCALE
+    return MissionItem(command, frame, (one, two, three, four), to_int32(x, scale), to_int32(y, scale), z, autocontinue)
 
 
 def _float32(text: str) -> float:
@@ -92,27 +92,29 @@ class PlanFolder:
         self._server = server
         self._in_use = in_use
         self._refused = refused
-        self._changes: dict[MissionType, tuple[bytes, Change]] = {}
+        self._changes: dict[MissionType, tuple[bytes, PlanChange]] = {}
         """What was written last, until its writer has heard how that went."""
 
     def writable(self, name: str) -> bool:
         """Under the names of the plans."""
-        return name in NAMES
+        return name in FILE_TYPES
 
     def entries(self) -> list[Entry]:
         """One file a plan, also where it is empty."""
-        return [Entry(name, len(write(self._server.plan(kind)))) for name, kind in NAMES.items()]
+        return [Entry(name, len(encode_plan(self._server.plan(kind)))) for name, kind in FILE_TYPES.items()]
 
     def open(self, name: str, query: Query) -> Content | None:
         """The plan as it is now."""
-        return Bytes(write(self._server.plan(NAMES[name]))) if name in NAMES and not query else None
+        return (
+            BytesContent(encode_plan(self._server.plan(FILE_TYPES[name]))) if name in FILE_TYPES and not query else None
+        )
 
     def store(self, name: str, data: bytes) -> FtpError | None:
         """Put the plan in force, or say FAIL where it is none, breaks the rules or cannot be kept.
 
         Raises NotYetError until it is kept: the same again gets the answer.
         """
-        kind = NAMES.get(name)
+        kind = FILE_TYPES.get(name)
         if kind is None:
             return FtpError.PROTECTED
         change = self._said_before(kind, data) or self._begun(kind, data)
@@ -120,15 +122,15 @@ class PlanFolder:
             return change
         if change.verdict is None:
             self._changes[kind] = data, change
-            raise NotYetError
+            raise NotReadyError
         self._changes.pop(kind, None)
         return None if change.verdict is MissionResult.ACCEPTED else FtpError.FAIL
 
     def remove(self, name: str) -> FtpError | None:
         """The plan is empty after this. Raises NotYetError as `store` does."""
-        return self.store(name, HEADER.encode()) if name in NAMES else FtpError.NOT_FOUND
+        return self.store(name, HEADER.encode()) if name in FILE_TYPES else FtpError.NOT_FOUND
 
-    def _said_before(self, kind: MissionType, data: bytes) -> Change | None:
+    def _said_before(self, kind: MissionType, data: bytes) -> PlanChange | None:
         """The change that this file has begun already. Not where it came to its end unheard and the plan is another one
         by now: that is to be made again."""
         before, change = self._changes.get(kind, (b"", None))
@@ -137,13 +139,13 @@ class PlanFolder:
         replaced = change.verdict is MissionResult.ACCEPTED and self._server.plan(kind) is not change.plans[kind]
         return None if replaced else change
 
-    def _begun(self, kind: MissionType, data: bytes) -> Change | FtpError:
+    def _begun(self, kind: MissionType, data: bytes) -> PlanChange | FtpError:
         why = self._in_use(kind)
         if why:
             self._refused(kind, why)
             return FtpError.PROTECTED
         try:
-            items = read(data)
+            items = decode_plan(data)
         except PlanFileError as fault:
             self._refused(kind, str(fault))
             return FtpError.FAIL

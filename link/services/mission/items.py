@@ -10,11 +10,11 @@ from enum import Enum
 from dialects import messages as m
 from dialects.enums import MissionResult
 
-DEGREES = 1e7
+DEGREES_SCALE = 1e7
 """`x` and `y` of MISSION_ITEM_INT are degrees times this, in global frames."""
-LOCAL = 1e4
+LOCAL_SCALE = 1e4
 """...and metres times this in local ones."""
-NOWHERE = 0x7FFF_FFFF
+UNSET_COORDINATE = 0x7FFF_FFFF
 """INT32_MAX: the integer that stands for NaN."""
 GLOBAL_FRAMES = frozenset({0, 3, 5, 6, 10, 11})
 """MAV_FRAME with latitude and longitude: GLOBAL, _RELATIVE_ALT, _TERRAIN_ALT and their _INT."""
@@ -50,19 +50,19 @@ class MissionItem:
     @property
     def latitude(self) -> float:
         """Degrees; only in a global frame."""
-        return self.x / DEGREES
+        return self.x / DEGREES_SCALE
 
     @property
     def longitude(self) -> float:
         """Degrees; only in a global frame."""
-        return self.y / DEGREES
+        return self.y / DEGREES_SCALE
 
 
 Items = tuple[MissionItem, ...]
 """A plan."""
 
 
-class Place(Enum):
+class PositionRule(Enum):
     """What a command does with latitude and longitude."""
 
     NONE = 0
@@ -77,7 +77,7 @@ class Place(Enum):
 class ItemRule:
     """What an item of one command must be."""
 
-    place: Place = Place.NONE
+    place: PositionRule = PositionRule.NONE
     ranges: Mapping[int, tuple[float, float]] = field(default_factory=dict)
     """Parameter 1..4 or 7 -> smallest and largest value. One that is named here must be a number, others may be NaN."""
 
@@ -93,32 +93,32 @@ class PlanRules:
     check: Callable[[Items], MissionResult] = lambda items: MissionResult.ACCEPTED
     """Looks at the whole: jumps that lead nowhere, polygons without a third corner."""
 
-    def judge(self, items: Sequence[MissionItem]) -> MissionResult:
+    def validate(self, items: Sequence[MissionItem]) -> MissionResult:
         """ACCEPTED, or what is wrong with a whole plan."""
         if len(items) > self.capacity:
             return MissionResult.NO_SPACE
-        wrong = self.wrong(items)
-        fault = None if wrong is None else problem(wrong[1], self.commands, self.frames)
+        wrong = self.first_invalid(items)
+        fault = None if wrong is None else item_fault(wrong[1], self.commands, self.frames)
         return self.check(tuple(items)) if fault is None else fault
 
-    def wrong(self, items: Sequence[MissionItem]) -> tuple[int, MissionItem] | None:
+    def first_invalid(self, items: Sequence[MissionItem]) -> tuple[int, MissionItem] | None:
         """The first item that is invalid by itself, and its number."""
-        return next((each for each in enumerate(items) if problem(each[1], self.commands, self.frames)), None)
+        return next((each for each in enumerate(items) if item_fault(each[1], self.commands, self.frames)), None)
 
 
-def problem(
+def item_fault(
     item: MissionItem, rules: Mapping[int, ItemRule], frames: frozenset[int] = GLOBAL_FRAMES
 ) -> MissionResult | None:
     """Why an item is invalid, or None. `rules` are the commands known, `frames` those understood."""
     rule = rules.get(item.command)
     if rule is None:
         return MissionResult.UNSUPPORTED
-    if item.frame not in frames and not (rule.place is Place.NONE and item.frame == FRAME_MISSION):
+    if item.frame not in frames and not (rule.place is PositionRule.NONE and item.frame == FRAME_MISSION):
         return MissionResult.UNSUPPORTED_FRAME
     return _bad_parameter(item, rule) or (_bad_place(item, rule.place) if item.frame in GLOBAL_FRAMES else None)
 
 
-def in_words(wrong: tuple[int, MissionItem] | None, verdict: MissionResult) -> str:
+def describe_rejection(wrong: tuple[int, MissionItem] | None, verdict: MissionResult) -> str:
     """What is wrong with a plan: an item, with its number, or how they fit together."""
     if verdict is MissionResult.NO_SPACE:
         return "it has too many items"
@@ -142,12 +142,12 @@ def _bad_parameter(item: MissionItem, rule: ItemRule) -> MissionResult | None:
     return None
 
 
-def _bad_place(item: MissionItem, place: Place) -> MissionResult | None:
-    if place is Place.NONE:
+def _bad_place(item: MissionItem, place: PositionRule) -> MissionResult | None:
+    if place is PositionRule.NONE:
         return None
-    nowhere = NOWHERE in (item.x, item.y) or (item.x, item.y) == (0, 0)
+    nowhere = UNSET_COORDINATE in (item.x, item.y) or (item.x, item.y) == (0, 0)
     if nowhere:
-        return MissionResult.INVALID_X if place is Place.NEEDED else None
+        return MissionResult.INVALID_X if place is PositionRule.NEEDED else None
     if abs(item.latitude) > MAX_LATITUDE:
         return MissionResult.INVALID_X
     return MissionResult.INVALID_Y if abs(item.longitude) > MAX_LONGITUDE else None
@@ -156,8 +156,8 @@ def _bad_place(item: MissionItem, place: Place) -> MissionResult | None:
 def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
     """The item of either message. Floats that are no int32 become NOWHERE."""
     if isinstance(message, m.MissionItem):
-        scale = DEGREES if message.frame in GLOBAL_FRAMES else LOCAL
-        x, y = scaled(message.x, scale), scaled(message.y, scale)
+        scale = DEGREES_SCALE if message.frame in GLOBAL_FRAMES else LOCAL_SCALE
+        x, y = to_int32(message.x, scale), to_int32(message.y, scale)
     else:
         x, y = message.x, message.y
     return MissionItem(
@@ -171,10 +171,12 @@ def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
     )
 
 
-def scaled(value: float, scale: float) -> int:
+def to_int32(value: float, scale: float) -> int:
     """`value` times `scale` as an int32; NOWHERE for what is none."""
     number = value * scale
-    return round(number) if -NOWHERE - 1 <= number <= NOWHERE else NOWHERE  # NaN is not less than anything
+    return (
+        round(number) if -UNSET_COORDINATE - 1 <= number <= UNSET_COORDINATE else UNSET_COORDINATE
+    )  # NaN is not less than anything
 
 
 def to_message(

@@ -18,7 +18,7 @@ from link.services.mission.items import Items, MissionItem
 _ITEM = struct.Struct("<HB?4fiif")
 
 
-class Shelf:
+class PlanTable:
     """One plan of each kind that is offered, empty at first."""
 
     def __init__(self, kinds: Iterable[MissionType]) -> None:
@@ -28,7 +28,7 @@ class Shelf:
     def __getitem__(self, kind: MissionType) -> Items:
         return self._plans[kind]
 
-    def id_of(self, kind: MissionType) -> int:
+    def get_id(self, kind: MissionType) -> int:
         """uint32; 0: the plan is empty."""
         return self._ids[kind]
 
@@ -36,7 +36,7 @@ class Shelf:
         """The kind of plan with this MAV_MISSION_TYPE, where it is offered."""
         return next((kind for kind in self._plans if kind == number), None)
 
-    def put(self, kind: MissionType, items: Sequence[MissionItem]) -> None:
+    def set(self, kind: MissionType, items: Sequence[MissionItem]) -> None:
         """Another plan in the place of the one before."""
         self._plans[kind] = tuple(items)
         self._ids[kind] = plan_id(items)

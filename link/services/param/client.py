@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dialects import messages as m
-from dialects.enums import ParamFault
+from dialects.enums import ParamErrorCode
 from link.core import Outgoing, Received
-from link.services.param.values import NAME_SIZE, REAL32, from_wire, is_float32, same, to_wire
+from link.services.param.values import NAME_SIZE, REAL32, from_wire, is_float32, same_float32, to_wire
 
-QUIET = 1.0
+LIST_TIMEOUT = 1.0
 """s without a new parameter before holes are filled: a 57600 baud radio with telemetry takes 0.3 s for a value."""
 REPEAT_AFTER = 0.7
 """s without an answer before a set or read is repeated: ArduPilot answers a read in 0.1 s, a radio adds 0.4 s."""
@@ -23,7 +23,7 @@ WINDOW = 10
 """Holes asked for at once: 320 bytes, a twentieth of a second of a 57600 baud radio."""
 REFUSED_AFTER = 2
 """Answers with another value before a set counts as refused: the first may have been under way already."""
-ECHO = m.UINT16_MAX
+NO_INDEX = m.UINT16_MAX
 """`param_index` of an answer that does not say where in the list it stands (ArduPilot)."""
 
 
@@ -55,7 +55,7 @@ class ParamOutcome:
         """Is it as wanted?"""
         if self.fault is not None or self.value is None:
             return False
-        return self.wanted is None or same(self.value, self.wanted)
+        return self.wanted is None or same_float32(self.value, self.wanted)
 
 
 @dataclass(slots=True)
@@ -109,13 +109,13 @@ class ParamClient:
     def set(self, name: str, value: float, now: float) -> None:
         """Set a parameter; a newer wish for the same one replaces the older."""
         if is_float32(value):
-            self._wish(name, value, now)
+            self._request(name, value, now)
         else:
-            self._outcomes.append(ParamOutcome(name, value, None, ParamFault.VALUE_OUT_OF_RANGE))
+            self._outcomes.append(ParamOutcome(name, value, None, ParamErrorCode.VALUE_OUT_OF_RANGE))
 
     def read(self, name: str, now: float) -> None:
         """Ask for one parameter."""
-        self._wish(name, None, now)
+        self._request(name, None, now)
 
     def receive(self, received: Received, now: float) -> None:
         """Take PARAM_VALUE and PARAM_ERROR of the vehicle; others are ignored."""
@@ -148,17 +148,17 @@ class ParamClient:
         outcomes, self._outcomes = self._outcomes, []
         return outcomes
 
-    def _wish(self, name: str, wanted: float | None, now: float) -> None:
+    def _request(self, name: str, wanted: float | None, now: float) -> None:
         """Ask, unless the name cannot be said: cut to 16 characters it would be another parameter's."""
         if len(name) > NAME_SIZE or not name.isascii() or not name:
-            self._outcomes.append(ParamOutcome(name, wanted, None, ParamFault.DOES_NOT_EXIST))
+            self._outcomes.append(ParamOutcome(name, wanted, None, ParamErrorCode.DOES_NOT_EXIST))
             return
         self._asked[name] = asked = _Asked(wanted)
         self._ask(name, asked, now)
 
     def _value(self, message: m.ParamValue, now: float) -> None:
         value = from_wire(message.param_value, message.param_type, bytewise=self._bytewise)
-        index = None if message.param_index == ECHO else message.param_index
+        index = None if message.param_index == NO_INDEX else message.param_index
         self.params[message.param_id] = Param(message.param_id, value, message.param_type, index)
         if self.fetching and index is not None and index < message.param_count:
             self._listed(index, message.param_count, now)
@@ -166,12 +166,12 @@ class ParamClient:
         if asked is None:
             return
         asked.answers += 1
-        if asked.wanted is None or same(value, asked.wanted) or asked.answers >= REFUSED_AFTER:
+        if asked.wanted is None or same_float32(value, asked.wanted) or asked.answers >= REFUSED_AFTER:
             self._finish(message.param_id, value=value)
 
     def _listed(self, index: int, total: int, now: float) -> None:
         if index not in self._have:
-            self._due, self._tries = now + QUIET, 0
+            self._due, self._tries = now + LIST_TIMEOUT, 0
         if total != self.total:
             self.total = total
             self._have = {each for each in self._have if each < total}
@@ -201,7 +201,7 @@ class ParamClient:
     def _ask_list(self, now: float) -> None:
         self._outbox.append(Outgoing(m.ParamRequestList(*self._target)))
         self._tries += 1
-        self._due = now + QUIET
+        self._due = now + LIST_TIMEOUT
 
     def _ask(self, name: str, asked: _Asked, now: float) -> None:
         encoded = name.encode("ascii")

@@ -11,8 +11,8 @@ from __future__ import annotations
 import struct
 from collections.abc import Mapping, Sequence
 
-from link.services.param.server import Setting, Values
-from link.services.param.values import same
+from link.services.param.server import ParamDefinition, ParamValues
+from link.services.param.values import same_float32
 
 PATH = "@PARAM/param.pck"
 MAGIC, MAGIC_DEFAULTS = 0x671B, 0x671C
@@ -22,7 +22,7 @@ HAS_DEFAULT = 1
 MAX_SHARED = 15
 
 
-def pack(table: Sequence[Setting], values: Values, query: Mapping[str, str] | None = None) -> bytes | None:
+def pack(table: Sequence[ParamDefinition], values: ParamValues, query: Mapping[str, str] | None = None) -> bytes | None:
     """The file; None for a bad `query`, which is what stood behind the `?` of its path: withdefaults, start, count."""
     try:
         options = {key: int(text) for key, text in (query or {}).items()}
@@ -40,10 +40,10 @@ def pack(table: Sequence[Setting], values: Values, query: Mapping[str, str] | No
     return bytes(packed)
 
 
-def _one(setting: Setting, value: float, before: str, *, with_default: bool) -> bytes:
+def _one(setting: ParamDefinition, value: float, before: str, *, with_default: bool) -> bytes:
     shared = _shared(before, setting.name)
     rest = setting.name[shared:].encode("ascii")
-    flagged = with_default and not same(value, setting.default)
+    flagged = with_default and not same_float32(value, setting.default)
     head = bytes([FLOAT | (HAS_DEFAULT << 4 if flagged else 0), shared | (len(rest) - 1) << 4])
     default = struct.pack("<f", setting.default) if flagged else b""
     return head + rest + struct.pack("<f", value) + default

@@ -13,18 +13,18 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from dialects import messages as m
-from dialects.enums import ParamFault
+from dialects.enums import ParamErrorCode
 from link.core import Outgoing, Peer, Received
-from link.services.pacing import OVERHEAD, Pacer
-from link.services.param.values import NAME_SIZE, REAL32, same, shortest
+from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
+from link.services.param.values import NAME_SIZE, REAL32, same_float32, shortest_float32
 
 RUN_PERIOD = 1.0
 """s between the starts of two lists to one peer: less than the 2 s after which MAVProxy asks again."""
 MAX_RUNS = 16
-VALUE_FRAME = m.ParamValue.unpacker.size + OVERHEAD
+VALUE_FRAME = m.ParamValue.unpacker.size + MAVLINK2_OVERHEAD
 
 
-class Setting(Protocol):
+class ParamDefinition(Protocol):
     """One line of the parameter table."""
 
     @property
@@ -68,7 +68,7 @@ class Setting(Protocol):
         """Never set by a ground station."""
 
 
-class Values(Protocol):
+class ParamValues(Protocol):
     """The settings in force."""
 
     def __getitem__(self, name: str, /) -> float:
@@ -79,10 +79,10 @@ class Values(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Refusal:
+class ParamRejection:
     """Why a value is not taken."""
 
-    fault: ParamFault
+    fault: ParamErrorCode
     reason: str
     """One line for the driver."""
 
@@ -104,12 +104,12 @@ class ParamServer:
 
     def __init__(
         self,
-        table: Sequence[Setting],
-        values: Values,
+        table: Sequence[ParamDefinition],
+        values: ParamValues,
         *,
         system: int,
         component: int,
-        pacer: Pacer,
+        pacer: BulkPacer,
         allowed: Callable[[Received], bool] = lambda received: True,
         armed: Callable[[], bool] = lambda: False,
         changed: Callable[[str, float], None] = lambda name, value: None,
@@ -143,14 +143,14 @@ class ParamServer:
         """The next values of every list under way, as far as the links have room."""
         outgoing: list[Outgoing] = []
         for peer, run in list(self._runs.items()):
-            while run.start <= now and run.next < len(self._table) and self._pacer.take(peer, VALUE_FRAME, now):
+            while run.start <= now and run.next < len(self._table) and self._pacer.consume(peer, VALUE_FRAME, now):
                 outgoing.append(Outgoing(self._value(run.next), peer))
                 run.next += 1
             if run.next >= len(self._table) and now - run.start >= RUN_PERIOD:
                 del self._runs[peer]
         return outgoing
 
-    def announce(self, names: Iterable[str]) -> list[Outgoing]:
+    def broadcast(self, names: Iterable[str]) -> list[Outgoing]:
         """Tell everybody the values of parameters that the vehicle itself has changed."""
         return [Outgoing(self._value(self._index[name])) for name in names]
 
@@ -165,61 +165,63 @@ class ParamServer:
     def _read(self, message: m.ParamRequestRead, received: Received) -> list[Outgoing]:
         index = self._index.get(message.param_id, -1) if message.param_index == -1 else message.param_index
         if not 0 <= index < len(self._table):
-            return [self._fault(message._param_id_raw, message.param_index, ParamFault.DOES_NOT_EXIST, received)]
+            return [self._fault(message._param_id_raw, message.param_index, ParamErrorCode.DOES_NOT_EXIST, received)]
         return [Outgoing(self._value(index), received.peer)]
 
     def _set(self, message: m.ParamSet, received: Received, now: float) -> list[Outgoing]:
         name, index = message.param_id, self._index.get(message.param_id)
         if index is None:
             self._say(f"No parameter {m.printable(name)}", now)
-            return [self._fault(message._param_id_raw, -1, ParamFault.DOES_NOT_EXIST, received)]
-        refusal = self._refusal(self._table[index], message, received) or self._put(name, message.param_value)
+            return [self._fault(message._param_id_raw, -1, ParamErrorCode.DOES_NOT_EXIST, received)]
+        refusal = self._rejection(self._table[index], message, received) or self._apply(name, message.param_value)
         if refusal:
             self._say(f"{name} not changed: {refusal.reason}", now)
             fault = self._fault(message._param_id_raw, index, refusal.fault, received)
             return [fault, Outgoing(self._value(index), received.peer)]
         return [Outgoing(self._value(index))]
 
-    def _put(self, name: str, received: float) -> Refusal | None:
-        value = shortest(received)
-        if same(value, self._values[name]):
+    def _apply(self, name: str, received: float) -> ParamRejection | None:
+        value = shortest_float32(received)
+        if same_float32(value, self._values[name]):
             return None
         try:
             self._values.set(name, value)
         except ValueError as error:
-            return Refusal(ParamFault.VALUE_OUT_OF_RANGE, str(error))
+            return ParamRejection(ParamErrorCode.VALUE_OUT_OF_RANGE, str(error))
         self._changed(name, value)
         return None
 
-    def _refusal(self, setting: Setting, message: m.ParamSet, received: Received) -> Refusal | None:
+    def _rejection(self, setting: ParamDefinition, message: m.ParamSet, received: Received) -> ParamRejection | None:
         if not self._allowed(received):
-            return Refusal(ParamFault.PERMISSION_DENIED, "you are not in control")
+            return ParamRejection(ParamErrorCode.PERMISSION_DENIED, "you are not in control")
         if setting.read_only:
-            return Refusal(ParamFault.READ_ONLY, "it is read only")
+            return ParamRejection(ParamErrorCode.READ_ONLY, "it is read only")
         if message.param_type != REAL32:
-            return Refusal(ParamFault.TYPE_MISMATCH, "its type is REAL32")
-        unchanged = same(message.param_value, self._values[setting.name])
+            return ParamRejection(ParamErrorCode.TYPE_MISMATCH, "its type is REAL32")
+        unchanged = same_float32(message.param_value, self._values[setting.name])
         if setting.safety and self._armed() and not unchanged:
-            return Refusal(ParamFault.PERMISSION_DENIED, "disarm first")
-        return check(setting, message.param_value)
+            return ParamRejection(ParamErrorCode.PERMISSION_DENIED, "disarm first")
+        return check_value(setting, message.param_value)
 
     def _value(self, index: int) -> m.ParamValue:
         name = self._table[index].name
         return m.ParamValue(name.encode(), self._values[name], REAL32, len(self._table), index)
 
-    def _fault(self, name: bytes, index: int, fault: ParamFault, received: Received) -> Outgoing:
+    def _fault(self, name: bytes, index: int, fault: ParamErrorCode, received: Received) -> Outgoing:
         return Outgoing(
             m.ParamError(received.system, received.component, name[:NAME_SIZE], index, fault), received.peer
         )
 
 
-def check(setting: Setting, value: float) -> Refusal | None:
+def check_value(setting: ParamDefinition, value: float) -> ParamRejection | None:
     """Why `value` is not one for `setting`, or None. Bounds count as float32, for that is how values arrive."""
     if not math.isfinite(value):
-        return Refusal(ParamFault.VALUE_OUT_OF_RANGE, f"{value} is no number")
-    value = shortest(value)
+        return ParamRejection(ParamErrorCode.VALUE_OUT_OF_RANGE, f"{value} is no number")
+    value = shortest_float32(value)
     if not setting.low <= value <= setting.high:
-        return Refusal(ParamFault.VALUE_OUT_OF_RANGE, f"{value:g} is not in {setting.low:g} to {setting.high:g}")
+        return ParamRejection(
+            ParamErrorCode.VALUE_OUT_OF_RANGE, f"{value:g} is not in {setting.low:g} to {setting.high:g}"
+        )
     if setting.whole and value != int(value):
-        return Refusal(ParamFault.VALUE_OUT_OF_RANGE, f"{value:g} is no whole number")
+        return ParamRejection(ParamErrorCode.VALUE_OUT_OF_RANGE, f"{value:g} is no whole number")
     return None

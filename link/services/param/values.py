@@ -28,7 +28,7 @@ def from_wire(value: float, kind: int, *, bytewise: bool) -> float:
     Types that do not fit into four bytes (UINT64, INT64, REAL64) come as their value.
     """
     if not bytewise or kind not in _FORMATS:
-        return shortest(value)
+        return shortest_float32(value)
     return float(struct.unpack(_FORMATS[kind][0], _FLOAT.pack(value))[0])
 
 
@@ -43,7 +43,7 @@ def to_wire(value: float, kind: int, *, bytewise: bool) -> float:
     return float(_FLOAT.unpack(struct.pack(form, whole))[0])
 
 
-def shortest(value: float) -> float:
+def shortest_float32(value: float) -> float:
     """The number with the fewest digits that is the same float32: 0.45 and not 0.44999998807907104."""
     try:
         packed = _FLOAT.pack(value)
@@ -64,6 +64,6 @@ def is_float32(value: float) -> bool:
         return False
 
 
-def same(one: float, other: float) -> bool:
+def same_float32(one: float, other: float) -> bool:
     """Are both the same float32?"""
-    return shortest(one) == shortest(other)
+    return shortest_float32(one) == shortest_float32(other)

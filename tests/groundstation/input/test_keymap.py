@@ -6,15 +6,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, KEYMAPS, Keymap, KeyPress
+from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, KEYMAPS, KeyEvent, Keymap
 from groundstation.intents import (
     AnyIntent,
-    ChangeSpeed,
     Disarm,
+    DriveKeyDown,
+    DriveKeyUp,
     EmergencyStop,
-    Push,
-    Release,
     RequestControl,
+    ScaleLimits,
     SetMode,
     SetStyle,
     Stop,
@@ -25,13 +25,13 @@ TELEOP = Keymap("teleop", KEYMAPS["teleop"])
 
 
 def read(*keys: str, keymap: Keymap = STANDARD, armed: bool = True, driving: bool = False) -> list[AnyIntent]:
-    return keymap.intents([KeyPress(key) for key in keys], armed=armed, driving=driving)
+    return keymap.build_intents([KeyEvent(key) for key in keys], armed=armed, driving=driving)
 
 
 def directions(*keys: str, keymap: Keymap = STANDARD) -> list[tuple[int, int]]:
     pushes = read(*keys, keymap=keymap)
-    assert all(isinstance(push, Push) for push in pushes)
-    return [(push.throttle, push.steering) for push in pushes if isinstance(push, Push)]
+    assert all(isinstance(push, DriveKeyDown) for push in pushes)
+    return [(push.throttle, push.steering) for push in pushes if isinstance(push, DriveKeyDown)]
 
 
 @pytest.mark.parametrize("keymap", [STANDARD, TELEOP], ids=lambda keymap: keymap.name)
@@ -48,16 +48,16 @@ def test_arrows_and_wasd_drive() -> None:
 
 
 def test_teleop_speed_keys() -> None:
-    assert read("q", "w", "e", keymap=TELEOP) == [ChangeSpeed(1.1, 1.1), ChangeSpeed(1.1, 1.0), ChangeSpeed(1.0, 1.1)]
-    assert read("z", "x", "c", keymap=TELEOP) == [ChangeSpeed(0.9, 0.9), ChangeSpeed(0.9, 1.0), ChangeSpeed(1.0, 0.9)]
+    assert read("q", "w", "e", keymap=TELEOP) == [ScaleLimits(1.1, 1.1), ScaleLimits(1.1, 1.0), ScaleLimits(1.0, 1.1)]
+    assert read("z", "x", "c", keymap=TELEOP) == [ScaleLimits(0.9, 0.9), ScaleLimits(0.9, 1.0), ScaleLimits(1.0, 0.9)]
 
 
 def test_a_push_carries_the_key_and_whether_it_repeats() -> None:
-    presses = [KeyPress("up"), KeyPress("up", repeat=True), KeyPress("up", release=True)]
-    assert STANDARD.intents(presses, armed=True, driving=True) == [
-        Push(key="up", throttle=1, steering=0),
-        Push(key="up", throttle=1, steering=0, repeat=True),
-        Release(key="up"),
+    presses = [KeyEvent("up"), KeyEvent("up", repeat=True), KeyEvent("up", release=True)]
+    assert STANDARD.build_intents(presses, armed=True, driving=True) == [
+        DriveKeyDown(key="up", throttle=1, steering=0),
+        DriveKeyDown(key="up", throttle=1, steering=0, repeat=True),
+        DriveKeyUp(key="up"),
     ]
 
 
@@ -74,8 +74,8 @@ def test_emergency_stop_comes_first_and_no_drive_key_is_left() -> None:
 
 
 def test_releases_survive_a_stop_so_that_no_key_stays_down() -> None:
-    presses = [KeyPress("i", release=True), KeyPress("space")]
-    assert STANDARD.intents(presses, armed=True, driving=True) == [Stop(), Release(key="i")]
+    presses = [KeyEvent("i", release=True), KeyEvent("space")]
+    assert STANDARD.build_intents(presses, armed=True, driving=True) == [Stop(), DriveKeyUp(key="i")]
 
 
 def test_disarming_survives_a_stop() -> None:
@@ -93,12 +93,12 @@ def test_an_unknown_key_in_the_read_of_a_drive_key_stops() -> None:
 
 
 def test_a_release_is_no_stop() -> None:
-    assert STANDARD.intents([KeyPress("x", release=True)], armed=True, driving=True) == []
+    assert STANDARD.build_intents([KeyEvent("x", release=True)], armed=True, driving=True) == []
 
 
 def test_speed_keys_neither_stop_nor_drive() -> None:
-    assert read("plus", driving=True) == [ChangeSpeed(1.1, 1.1)]
-    assert read("i", "minus") == [Push(key="i", throttle=1, steering=0), ChangeSpeed(0.9, 0.9)]
+    assert read("plus", driving=True) == [ScaleLimits(1.1, 1.1)]
+    assert read("i", "minus") == [DriveKeyDown(key="i", throttle=1, steering=0), ScaleLimits(0.9, 0.9)]
 
 
 def test_arming_is_left_to_the_screen_and_disarming_is_one_key() -> None:
@@ -109,7 +109,7 @@ def test_arming_is_left_to_the_screen_and_disarming_is_one_key() -> None:
 
 
 def test_a_held_r_does_not_disarm_again_and_again() -> None:
-    assert STANDARD.intents([KeyPress("r", repeat=True)], armed=True, driving=False) == []
+    assert STANDARD.build_intents([KeyEvent("r", repeat=True)], armed=True, driving=False) == []
 
 
 def test_orders() -> None:
@@ -124,16 +124,16 @@ def test_every_binding_names_an_action_and_none_takes_the_confirming_key() -> No
 
 def test_actions_name_themselves() -> None:
     assert all(key == action.id and action.label and action.help for key, action in ACTIONS.items())
-    assert STANDARD.keys("drive.stop") == ("k", "space")
-    action = STANDARD.action("i")
+    assert STANDARD.get_keys("drive.stop") == ("k", "space")
+    action = STANDARD.get_action("i")
     assert action is not None
     assert action.id == "drive.forward"
-    assert STANDARD.action("nonsense") is None
+    assert STANDARD.get_action("nonsense") is None
 
 
 _PRESSES = st.lists(
     st.builds(
-        KeyPress,
+        KeyEvent,
         key=st.sampled_from([*KEYMAPS["standard"], "x", "escape", "F3"]),
         repeat=st.booleans(),
         release=st.booleans(),
@@ -143,17 +143,21 @@ _PRESSES = st.lists(
 
 
 @given(_PRESSES, st.booleans(), st.booleans())
-def test_a_read_with_a_stop_in_it_never_drives(presses: list[KeyPress], armed: bool, driving: bool) -> None:
-    intents = STANDARD.intents(presses, armed=armed, driving=driving)
+def test_a_read_with_a_stop_in_it_never_drives(presses: list[KeyEvent], armed: bool, driving: bool) -> None:
+    intents = STANDARD.build_intents(presses, armed=armed, driving=driving)
     stops = [press for press in presses if press.key in {"k", "space", "f9", "exclamation_mark"} and not press.release]
     assert not stops or Stop() in intents
     if Stop() in intents:
-        assert not any(isinstance(intent, (Push, ChangeSpeed)) for intent in intents)
+        assert not any(isinstance(intent, (DriveKeyDown, ScaleLimits)) for intent in intents)
         assert isinstance(intents[0], (Stop, EmergencyStop))
 
 
 @given(_PRESSES)
-def test_no_drive_key_is_lost_in_a_read_without_stops(presses: list[KeyPress]) -> None:
-    drive = [press for press in presses if isinstance(getattr(STANDARD.action(press.key), "intent", None), Push)]
-    intents = STANDARD.intents(drive, armed=True, driving=True)
-    assert [intent.key for intent in intents if isinstance(intent, (Push, Release))] == [press.key for press in drive]
+def test_no_drive_key_is_lost_in_a_read_without_stops(presses: list[KeyEvent]) -> None:
+    drive = [
+        press for press in presses if isinstance(getattr(STANDARD.get_action(press.key), "intent", None), DriveKeyDown)
+    ]
+    intents = STANDARD.build_intents(drive, armed=True, driving=True)
+    assert [intent.key for intent in intents if isinstance(intent, (DriveKeyDown, DriveKeyUp))] == [
+        press.key for press in drive
+    ]

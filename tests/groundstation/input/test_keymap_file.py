@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.input.keymap import KEYMAPS, KeymapError
-from groundstation.input.keymap_file import PUNCTUATION, keymap_of, load_keymap
+from groundstation.input.keymap_file import PUNCTUATION, load_keymap, parse_keymap
 
 
 def write(folder: Path, text: str) -> str:
@@ -24,21 +24,21 @@ def test_names() -> None:
 def test_a_file_replaces_the_keys_of_the_actions_it_names(tmp_path: Path) -> None:
     keymap = load_keymap(write(tmp_path, '[keys]\n"drive.forward" = ["e", ";", "f2"]\n"speed.faster" = "ctrl+up"\n'))
     assert keymap.name == "mine"
-    assert keymap.keys("drive.forward") == ("e", "semicolon", "f2")
-    assert keymap.keys("speed.faster") == ("ctrl+up",)
-    assert keymap.action("i") is None
-    assert keymap.keys("drive.backward") == ("down", "comma", "s")
+    assert keymap.get_keys("drive.forward") == ("e", "semicolon", "f2")
+    assert keymap.get_keys("speed.faster") == ("ctrl+up",)
+    assert keymap.get_action("i") is None
+    assert keymap.get_keys("drive.backward") == ("down", "comma", "s")
 
 
 def test_a_key_moves_from_the_action_that_had_it(tmp_path: Path) -> None:
     keymap = load_keymap(write(tmp_path, '[keys]\n"drive.forward" = ["s"]\n'))
-    assert keymap.keys("drive.backward") == ("down", "comma")
+    assert keymap.get_keys("drive.backward") == ("down", "comma")
 
 
 def test_an_empty_list_takes_all_keys_away(tmp_path: Path) -> None:
     keymap = load_keymap(write(tmp_path, 'base = "teleop"\n[keys]\n"speed.faster" = []\n'))
-    assert keymap.keys("speed.faster") == ()
-    assert keymap.action("q") is None
+    assert keymap.get_keys("speed.faster") == ()
+    assert keymap.get_action("q") is None
 
 
 def test_every_punctuation_name_is_textuals() -> None:
@@ -98,5 +98,5 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
 
 
 def test_the_example_of_the_help_works() -> None:
-    keymap = keymap_of({"base": "standard", "keys": {"drive.forward": ["e", "up"]}}, "example", "here")
-    assert keymap.keys("drive.forward") == ("e", "up")
+    keymap = parse_keymap({"base": "standard", "keys": {"drive.forward": ["e", "up"]}}, "example", "here")
+    assert keymap.get_keys("drive.forward") == ("e", "up")

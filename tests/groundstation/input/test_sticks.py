@@ -11,33 +11,35 @@ from hypothesis import strategies as st
 from dialects.axes import NEUTRAL, Axes
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents import ChangeSpeed, Push
+from groundstation.intents import DriveKeyDown, ScaleLimits
 
-I = Push(key="i", throttle=1, steering=0)  # noqa: E741
-COMMA = Push(key="comma", throttle=-1, steering=0)
-J = Push(key="j", throttle=0, steering=-1)
-L = Push(key="l", throttle=0, steering=1)
-U = Push(key="u", throttle=1, steering=-1)
-
-
-def repeat(push: Push) -> Push:
-    return Push(key=push.key, throttle=push.throttle, steering=push.steering, repeat=True)
+I = DriveKeyDown(key="i", throttle=1, steering=0)  # noqa: E741
+COMMA = DriveKeyDown(key="comma", throttle=-1, steering=0)
+J = DriveKeyDown(key="j", throttle=0, steering=-1)
+L = DriveKeyDown(key="l", throttle=0, steering=1)
+U = DriveKeyDown(key="u", throttle=1, steering=-1)
 
 
-def hold(sticks: Sticks, push: Push, start: float, until: float, *, delay: float = 0.5, gap: float = 0.04) -> float:
+def repeat(push: DriveKeyDown) -> DriveKeyDown:
+    return DriveKeyDown(key=push.key, throttle=push.throttle, steering=push.steering, repeat=True)
+
+
+def hold(
+    sticks: Sticks, push: DriveKeyDown, start: float, until: float, *, delay: float = 0.5, gap: float = 0.04
+) -> float:
     """What a terminal without releases sends for a held key; returns the time of the last event."""
-    sticks.push(push, start)
+    sticks.press(push, start)
     now = start + delay
     last = start
     while now < until:
-        sticks.push(push, now)
+        sticks.press(push, now)
         last, now = now, now + gap
     return last
 
 
 def exact(style: Style = Style.HOLD, limit: float = 1.0) -> Sticks:
     sticks = Sticks(style, limit)
-    sticks.prove_exact()
+    sticks.set_reports_releases()
     return sticks
 
 
@@ -50,16 +52,16 @@ def test_neutral_without_keys() -> None:
 
 def test_a_tap_drives_for_the_first_window_only() -> None:
     sticks = Sticks(limit=1.0)
-    sticks.push(I, 1.0)
+    sticks.press(I, 1.0)
     assert sticks.axes(1.74) == Axes(1.0, 0.0)
     assert sticks.axes(1.75) == NEUTRAL
 
 
 def test_a_repeating_key_stops_soon_after_its_last_event() -> None:
     sticks = Sticks(limit=1.0)
-    sticks.push(I, 1.0)
-    sticks.push(I, 1.66)
-    sticks.push(I, 1.70)
+    sticks.press(I, 1.0)
+    sticks.press(I, 1.66)
+    sticks.press(I, 1.70)
     assert sticks.axes(1.89) == Axes(1.0, 0.0)
     assert sticks.axes(1.90) == NEUTRAL
 
@@ -69,12 +71,12 @@ def test_no_false_stop_on_the_keyboards_that_exist(delay: float, gap: float) -> 
     sticks = Sticks(limit=1.0)
     start = 0.0
     for _ in range(5):
-        sticks.push(I, start)
+        sticks.press(I, start)
         due = start + delay
         moments = [start + 0.01 * step for step in range(1, 200)]
         for now in moments:
             if now >= due:
-                sticks.push(I, now)
+                sticks.press(I, now)
                 due += gap
             assert sticks.axes(now) == Axes(1.0, 0.0), f"stuttered at {now - start:.2f} s"
         assert sticks.axes(moments[-1] + 0.26) == NEUTRAL
@@ -83,12 +85,12 @@ def test_no_false_stop_on_the_keyboards_that_exist(delay: float, gap: float) -> 
 
 def false_stops(sticks: Sticks, start: float, delay: float, gap: float) -> int:
     """How often the drive breaks off while a key is held for 3 s."""
-    sticks.push(I, start)
+    sticks.press(I, start)
     due, drove, stops = start + delay, True, 0
     for step in range(1, 300):
         now = start + 0.01 * step
         if now >= due:
-            sticks.push(I, now)
+            sticks.press(I, now)
             due += gap
         drives = not sticks.axes(now).neutral
         stops += drove and not drives
@@ -100,7 +102,7 @@ def test_the_longest_repeat_delay_stops_the_first_hold_once_and_no_later_one() -
     sticks = Sticks(limit=1.0)
     assert [false_stops(sticks, 5.0 * number, 1.0, 0.033) for number in range(4)] == [1, 0, 0, 0]
     assert sticks.stop_bound == pytest.approx(1.1)
-    sticks.push(I, 100.0)
+    sticks.press(I, 100.0)
     assert sticks.axes(101.09) == Axes(1.0, 0.0)
     assert sticks.axes(101.1) == NEUTRAL, "a tap drives as long as the screen says, and no longer"
     assert false_stops(sticks, 110.0, 0.25, 0.033) == 0
@@ -116,26 +118,26 @@ def test_a_second_stick_is_a_chord_and_keeps_the_first_alive() -> None:
 
 def test_a_new_key_on_the_same_stick_replaces_the_old_one() -> None:
     sticks = Sticks(limit=1.0)
-    sticks.push(I, 0.0)
-    sticks.push(COMMA, 0.1)
+    sticks.press(I, 0.0)
+    sticks.press(COMMA, 0.1)
     assert sticks.axes(0.2) == Axes(-1.0, 0.0)
-    assert sticks.held(0.2) == ("comma",)
+    assert sticks.held_keys(0.2) == ("comma",)
 
 
 def test_sliding_from_the_diagonal_to_straight_drops_the_turn() -> None:
     sticks = Sticks(limit=1.0)
-    sticks.push(U, 0.0)
+    sticks.press(U, 0.0)
     assert sticks.axes(0.1) == Axes(1.0, -1.0)
-    sticks.push(I, 0.2)
+    sticks.press(I, 0.2)
     assert sticks.axes(0.3) == Axes(1.0, 0.0)
 
 
 def test_stop_is_neutral_and_the_next_press_drives() -> None:
     sticks = Sticks(limit=1.0)
-    sticks.push(I, 0.0)
+    sticks.press(I, 0.0)
     sticks.stop()
     assert sticks.axes(0.01) == NEUTRAL
-    sticks.push(I, 0.02)
+    sticks.press(I, 0.02)
     assert sticks.axes(0.03) == Axes(1.0, 0.0)
 
 
@@ -144,19 +146,19 @@ def test_a_blocked_key_that_goes_on_repeating_does_not_drive() -> None:
     last = hold(sticks, I, 0.0, 1.0)
     sticks.block(1.0)
     for step in range(1, 50):
-        sticks.push(I, last + 0.04 * step)
+        sticks.press(I, last + 0.04 * step)
         assert sticks.axes(last + 0.04 * step) == NEUTRAL
-    sticks.push(I, last + 2.0 + 0.5)  # let go and pressed anew
+    sticks.press(I, last + 2.0 + 0.5)  # let go and pressed anew
     assert sticks.axes(last + 2.51) == Axes(1.0, 0.0)
 
 
 def test_a_key_pressed_while_driving_was_not_allowed_must_be_let_go_first() -> None:
     sticks = Sticks(limit=1.0)
-    sticks.swallow(I, 0.0)
-    sticks.push(I, 0.66)
-    sticks.push(I, 0.70)
+    sticks.reject(I, 0.0)
+    sticks.press(I, 0.66)
+    sticks.press(I, 0.70)
     assert sticks.axes(0.71) == NEUTRAL
-    sticks.push(I, 1.5)
+    sticks.press(I, 1.5)
     assert sticks.axes(1.51) == Axes(1.0, 0.0)
 
 
@@ -165,7 +167,7 @@ def test_a_key_pressed_while_driving_was_not_allowed_must_be_let_go_first() -> N
 
 def test_exact_key_drives_until_its_release_without_any_timer() -> None:
     sticks = exact()
-    sticks.push(I, 0.0)
+    sticks.press(I, 0.0)
     assert sticks.axes(60.0) == Axes(1.0, 0.0)
     sticks.release("i")
     assert sticks.axes(60.0) == NEUTRAL
@@ -173,12 +175,12 @@ def test_exact_key_drives_until_its_release_without_any_timer() -> None:
 
 def test_exact_chords_and_releases_in_any_order() -> None:
     sticks = exact()
-    sticks.push(I, 0.0)
-    sticks.push(J, 1.0)
+    sticks.press(I, 0.0)
+    sticks.press(J, 1.0)
     assert sticks.axes(2.0) == Axes(1.0, -1.0)
     sticks.release("i")
     assert sticks.axes(3.0) == Axes(0.0, -1.0)
-    sticks.push(L, 4.0)
+    sticks.press(L, 4.0)
     assert sticks.axes(4.0) == Axes(0.0, 1.0), "of keys that disagree the newest wins"
     sticks.release("l")
     assert sticks.axes(5.0) == Axes(0.0, -1.0)
@@ -187,37 +189,37 @@ def test_exact_chords_and_releases_in_any_order() -> None:
 def test_a_release_proves_exactness_and_so_does_a_repeat() -> None:
     released, repeated = Sticks(limit=1.0), Sticks(limit=1.0)
     for sticks in (released, repeated):
-        sticks.push(I, 0.0)
-        assert not sticks.exact
+        sticks.press(I, 0.0)
+        assert not sticks.reports_releases
     released.release("i")
-    repeated.push(repeat(I), 0.1)
-    assert released.exact
-    assert repeated.exact
+    repeated.press(repeat(I), 0.1)
+    assert released.reports_releases
+    assert repeated.reports_releases
 
 
 def test_a_key_pressed_before_exactness_was_proved_still_ends_by_its_timer() -> None:
     sticks = Sticks(limit=1.0)
-    sticks.push(I, 0.0)
-    sticks.prove_exact()
-    sticks.push(J, 0.1)
+    sticks.press(I, 0.0)
+    sticks.set_reports_releases()
+    sticks.press(J, 0.1)
     assert sticks.axes(0.5) == Axes(1.0, -1.0)
     assert sticks.axes(0.8) == Axes(0.0, -1.0), "its release may have been before the proof"
 
 
 def test_a_repeat_of_a_key_that_is_not_down_is_ignored() -> None:
     sticks = exact()
-    sticks.push(repeat(I), 0.0)
+    sticks.press(repeat(I), 0.0)
     assert sticks.axes(0.01) == NEUTRAL
 
 
 def test_a_blocked_exact_key_needs_a_release() -> None:
     sticks = exact()
-    sticks.push(I, 0.0)
+    sticks.press(I, 0.0)
     sticks.block(1.0)
-    sticks.push(repeat(I), 1.1)
+    sticks.press(repeat(I), 1.1)
     assert sticks.axes(1.2) == NEUTRAL
     sticks.release("i")
-    sticks.push(I, 1.3)
+    sticks.press(I, 1.3)
     assert sticks.axes(1.4) == Axes(1.0, 0.0)
 
 
@@ -226,9 +228,9 @@ def test_a_blocked_exact_key_needs_a_release() -> None:
 
 def test_latch_drives_until_the_next_key() -> None:
     sticks = Sticks(Style.LATCH, 0.5)
-    sticks.push(U, 0.0)
+    sticks.press(U, 0.0)
     assert sticks.axes(100.0) == Axes(0.5, -0.5)
-    sticks.push(I, 100.0)
+    sticks.press(I, 100.0)
     assert sticks.axes(200.0) == Axes(0.5, 0.0)
     sticks.release("i")
     assert sticks.axes(200.0) == Axes(0.5, 0.0)
@@ -241,18 +243,18 @@ def test_step_adds_ten_percent_a_press_and_a_held_key_is_one_press() -> None:
     hold(sticks, I, 0.0, 2.0, delay=0.1, gap=0.04)
     assert sticks.axes(3.0) == Axes(0.1, 0.0)
     for step in range(3):
-        sticks.push(I, 3.0 + step)
+        sticks.press(I, 3.0 + step)
     assert sticks.axes(7.0).throttle == pytest.approx(0.4)
-    sticks.push(COMMA, 8.0)
+    sticks.press(COMMA, 8.0)
     assert sticks.axes(9.0).throttle == pytest.approx(0.3)
 
 
 def test_step_stays_within_the_limit() -> None:
     sticks = Sticks(Style.STEP, 0.5)
     for step in range(20):
-        sticks.push(I, float(step))
+        sticks.press(I, float(step))
     assert sticks.axes(30.0) == Axes(0.5, 0.0)
-    sticks.push(COMMA, 31.0)
+    sticks.press(COMMA, 31.0)
     assert sticks.axes(32.0) == Axes(0.4, 0.0), "the limit is no rubber band"
 
 
@@ -262,7 +264,7 @@ def test_step_stays_within_the_limit() -> None:
 def test_speed_never_moves_and_stays_in_its_range() -> None:
     sticks = Sticks(limit=0.6)
     for _ in range(50):
-        sticks.scale(ChangeSpeed(throttle=1.1, steering=0.9))
+        sticks.scale_limits(ScaleLimits(throttle=1.1, steering=0.9))
         assert sticks.axes(0.0) == NEUTRAL
     assert (sticks.throttle_limit, sticks.steering_limit) == (1.0, 0.1)
 
@@ -270,13 +272,13 @@ def test_speed_never_moves_and_stays_in_its_range() -> None:
 @pytest.mark.parametrize("factor", [0.0, -1.0, math.nan, math.inf, -math.inf])
 def test_senseless_factors_change_nothing(factor: float) -> None:
     sticks = Sticks(limit=0.6)
-    sticks.scale(ChangeSpeed(throttle=factor, steering=factor))
+    sticks.scale_limits(ScaleLimits(throttle=factor, steering=factor))
     assert (sticks.throttle_limit, sticks.steering_limit) == (0.6, 0.6)
 
 
 def test_changing_the_style_stops() -> None:
     sticks = Sticks(Style.LATCH, 1.0)
-    sticks.push(I, 0.0)
+    sticks.press(I, 0.0)
     assert sticks.axes(1.0) != NEUTRAL
     assert sticks.set_style("hold")
     assert sticks.axes(1.0) == NEUTRAL
@@ -310,7 +312,9 @@ _EVENTS = st.lists(st.tuples(_KEYS, st.floats(0.0, 1.5)), max_size=60)
     [(I, 0.0), (I, 0.5), (J, 0.0), (I, 0.0)]
 )  # the last one teaches a shorter window while `j` is held by the longer
 @settings(max_examples=300)
-def test_timer_drive_never_outlives_its_last_event_by_more_than_the_bound(events: list[tuple[Push, float]]) -> None:
+def test_timer_drive_never_outlives_its_last_event_by_more_than_the_bound(
+    events: list[tuple[DriveKeyDown, float]],
+) -> None:
     sticks, now = Sticks(limit=1.0), 0.0
     for push, pause in events:
         bound = sticks.stop_bound
@@ -318,14 +322,14 @@ def test_timer_drive_never_outlives_its_last_event_by_more_than_the_bound(events
         now += pause
         if pause >= bound:
             assert sticks.axes(now) == NEUTRAL
-        sticks.push(push, now)
+        sticks.press(push, now)
     assert sticks.axes(now + sticks.stop_bound + 1e-9) == NEUTRAL
 
 
 @given(st.lists(st.tuples(_KEYS, st.booleans(), st.floats(0.0, 1.0)), max_size=60), st.sampled_from(list(Style)))
 @settings(max_examples=300)
 def test_whatever_came_before_stop_is_neutral_and_limits_hold(
-    events: list[tuple[Push, bool, float]], style: Style
+    events: list[tuple[DriveKeyDown, bool, float]], style: Style
 ) -> None:
     sticks, now = Sticks(style, 0.5), 0.0
     for push, release, pause in events:
@@ -333,7 +337,7 @@ def test_whatever_came_before_stop_is_neutral_and_limits_hold(
         if release:
             sticks.release(push.key)
         else:
-            sticks.push(push, now)
+            sticks.press(push, now)
         axes = sticks.axes(now)
         assert abs(axes.throttle) <= 0.5
         assert abs(axes.steering) <= 0.5
@@ -343,14 +347,14 @@ def test_whatever_came_before_stop_is_neutral_and_limits_hold(
 
 
 @given(st.lists(st.tuples(_KEYS, st.booleans(), st.floats(0.0, 1.0)), max_size=40))
-def test_exact_keys_are_neutral_when_all_are_released(events: list[tuple[Push, bool, float]]) -> None:
+def test_exact_keys_are_neutral_when_all_are_released(events: list[tuple[DriveKeyDown, bool, float]]) -> None:
     sticks, now = exact(), 0.0
     for push, release, pause in events:
         now += pause
         if release:
             sticks.release(push.key)
         else:
-            sticks.push(push, now)
+            sticks.press(push, now)
     for push in (I, COMMA, J, L, U):
         sticks.release(push.key)
     assert sticks.axes(now) == NEUTRAL

@@ -11,17 +11,17 @@ from groundstation.intents import (
     Arm,
     ClearEmergencyStop,
     Disarm,
+    DriveKeyDown,
+    DriveKeyUp,
     EmergencyStop,
-    ExactKeys,
-    Push,
-    Release,
+    ReportKeyReleases,
     RequestControl,
     SetMode,
 )
-from groundstation.station.emergency import FORCE
+from groundstation.station.emergency import FORCE_DISARM
 from tests.groundstation.fake_vehicle import OURS, Cockpit, FakeVehicle
 
-FORWARD = Push(key="i", throttle=1, steering=0)
+FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
 
 
@@ -193,10 +193,10 @@ def test_request_control_of_a_vehicle_that_does_not_know_the_command_claims_it()
     vehicle.armed = True
     vehicle.answers[Command.REQUEST_OPERATOR_CONTROL] = Result.UNSUPPORTED
     cockpit = cockpit_with(vehicle)
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.5)
     assert vehicle.all(m.ManualControl) == [], "an idle station must not fight another driver"
-    cockpit.do(Release(key="i"), RequestControl())
+    cockpit.do(DriveKeyUp(key="i"), RequestControl())
     cockpit.run(0.5)
     cockpit.do(FORWARD)
     cockpit.run(0.5)
@@ -205,7 +205,7 @@ def test_request_control_of_a_vehicle_that_does_not_know_the_command_claims_it()
 
 def test_emergency_stop_is_two_commands_and_neutral_at_once() -> None:
     cockpit = armed()
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.5)
     assert cockpit.demands()[-1][1] == 600
     at = cockpit.now
@@ -213,7 +213,7 @@ def test_emergency_stop_is_two_commands_and_neutral_at_once() -> None:
     cockpit.run(0.02)
     switch, disarm = cockpit.vehicle.commands(SWITCH)[-1], cockpit.vehicle.commands(ARM)[-1]
     assert switch.param1 == 0
-    assert (disarm.param1, disarm.param2) == (0, FORCE)
+    assert (disarm.param1, disarm.param2) == (0, FORCE_DISARM)
     assert cockpit.demands(at + 0.001)[0][1] == 0
     cockpit.run(1.0)
     assert cockpit.view.emergency_stop
@@ -242,7 +242,7 @@ def test_emergency_stop_goes_on_while_the_vehicle_refuses_and_stays_armed() -> N
     vehicle.answers = {SWITCH: Result.UNSUPPORTED, ARM: Result.FAILED}
     cockpit.do(EmergencyStop())
     cockpit.run(3.0)
-    assert len([command for command in vehicle.commands(ARM) if command.param2 == FORCE]) >= 5
+    assert len([command for command in vehicle.commands(ARM) if command.param2 == FORCE_DISARM]) >= 5
     vehicle.answers = {SWITCH: Result.UNSUPPORTED}
     cockpit.run(1.0)
     assert not vehicle.armed

@@ -11,9 +11,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Autopilot
 from groundstation import client
-from groundstation.intents import Arm, ExactKeys, Gate, Lease, Push, SetStyle
+from groundstation.intents import Arm, DriveKeyDown, RenewLease, ReportKeyReleases, SetKeyGate, SetStyle
 from groundstation.processes import start_module
-from groundstation.station.crash_neutral import Farewell
+from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.core import Peer, Received
 from tests.groundstation.broken_helm import ORDER
@@ -27,7 +27,7 @@ def beat(autopilot: int, system: int = 1) -> Received:
     return Received(m.Heartbeat(10, autopilot, 128 | 64 | 1, 0, 4, 3), system, 1, 0, PEER, True)
 
 
-def said(farewell: Farewell, start: float, seconds: float = 1.0) -> list[tuple[float, m.ManualControl]]:
+def said(farewell: CrashNeutral, start: float, seconds: float = 1.0) -> list[tuple[float, m.ManualControl]]:
     """Every demand of the next second, and when."""
     demands: list[tuple[float, m.ManualControl]] = []
     for step in range(round(seconds / 0.025)):
@@ -39,12 +39,12 @@ def said(farewell: Farewell, start: float, seconds: float = 1.0) -> list[tuple[f
     return demands
 
 
-def driven(autopilot: int = Autopilot.ARDUPILOT, *, systems: tuple[int, ...] = (1,)) -> Farewell:
+def driven(autopilot: int = Autopilot.ARDUPILOT, *, systems: tuple[int, ...] = (1,)) -> CrashNeutral:
     """A station that has just sent each of these a demand."""
-    farewell = Farewell(Station(["memory"]))
+    farewell = CrashNeutral(Station(["memory"]))
     for system in systems:
         farewell.receive(beat(autopilot, system), 100.0)
-        farewell.sent(m.ManualControl(system, 0, 0, 600, 0, 0), 5, 100.0)
+        farewell.handle_sent(m.ManualControl(system, 0, 0, 600, 0, 0), 5, 100.0)
     return farewell
 
 
@@ -54,7 +54,7 @@ def driven(autopilot: int = Autopilot.ARDUPILOT, *, systems: tuple[int, ...] = (
 )
 def test_neutral_five_times_in_the_vehicles_own_axes(autopilot: int, axis: str, neutral: int) -> None:
     farewell = driven(autopilot)
-    farewell.begin(100.1)
+    farewell.activate(100.1)
     demands = said(farewell, 100.1)
     assert [getattr(message, axis) for _, message in demands] == [neutral] * 5
     assert demands[0][0] == 100.1
@@ -64,14 +64,14 @@ def test_neutral_five_times_in_the_vehicles_own_axes(autopilot: int, axis: str, 
 
 def test_every_vehicle_that_may_still_hold_a_demand_is_told() -> None:
     farewell = driven(systems=(1, 2))
-    farewell.sent(m.ManualControl(2, 0, 0, 600, 0, 0), 6, 102.0)
-    farewell.begin(103.5)
+    farewell.handle_sent(m.ManualControl(2, 0, 0, 600, 0, 0), 6, 102.0)
+    farewell.activate(103.5)
     assert {message.target for _, message in said(farewell, 103.5)} == {2}, "1 got its last one 3.5 s ago"
 
 
 def test_the_station_is_not_asked_any_more() -> None:
     farewell = driven()
-    farewell.begin(100.1)
+    farewell.activate(100.1)
     said(farewell, 100.1)
     farewell.receive(beat(Autopilot.ARDUPILOT), 101.5)
     farewell.observe((), 101.5)
@@ -79,9 +79,9 @@ def test_the_station_is_not_asked_any_more() -> None:
 
 
 def test_who_was_not_driven_hears_nothing() -> None:
-    farewell = Farewell(Station(["memory"]))
+    farewell = CrashNeutral(Station(["memory"]))
     farewell.receive(beat(Autopilot.ARDUPILOT), 100.0)
-    farewell.begin(100.1)
+    farewell.activate(100.1)
     assert farewell.finished
     assert said(farewell, 100.1) == []
 
@@ -99,7 +99,9 @@ def _a_bug_in_the_station(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.e2e
 @pytest.mark.usefixtures("_a_bug_in_the_station")
-@pytest.mark.parametrize("place", ["intend", "receive", "tick", "observe", "messages_to_send", "sent", "snapshot"])
+@pytest.mark.parametrize(
+    "place", ["intend", "receive", "tick", "observe", "messages_to_send", "handle_sent", "snapshot"]
+)
 def test_an_exception_anywhere_ends_with_neutral(place: str, tmp_path: Path) -> None:
     log_file = tmp_path / "station.log"
     with Screen(log_file=log_file) as screen, UdpVehicle(screen.endpoint) as vehicle:
@@ -113,7 +115,11 @@ def test_an_exception_anywhere_ends_with_neutral(place: str, tmp_path: Path) -> 
         seen = screen.snapshot
         assert seen.texts[-1].text.startswith("the station broke (ZeroDivisionError: a bug")
         assert "\n" not in seen.texts[-1].text
-        assert (seen.helm.throttle, seen.helm.gate_open, seen.helm.gate_reason) == (0.0, False, "the station broke")
+        assert (seen.operator.throttle, seen.operator.gate_open, seen.operator.gate_reason) == (
+            0.0,
+            False,
+            "the station broke",
+        )
         assert screen.client.close() == 1
         until(lambda: sum(not x for _, x in vehicle.demands(broke)) >= 5)
         moving = [at for at, x in vehicle.demands(broke) if x]
@@ -128,7 +134,13 @@ def test_an_exception_anywhere_ends_with_neutral(place: str, tmp_path: Path) -> 
 @pytest.mark.usefixtures("_a_bug_in_the_station")
 def test_without_a_vehicle_it_just_ends() -> None:
     with Screen() as screen:
-        screen.client.send(Lease(), Gate(open=True), Arm(), ExactKeys(), Push(key="i", throttle=1, steering=0))
+        screen.client.send(
+            RenewLease(),
+            SetKeyGate(open=True),
+            Arm(),
+            ReportKeyReleases(),
+            DriveKeyDown(key="i", throttle=1, steering=0),
+        )
 
         def ended() -> bool:
             screen.client.send(SetStyle(style=ORDER + "tick"))  # again: one that comes late is dropped

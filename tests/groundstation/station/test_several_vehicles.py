@@ -6,30 +6,30 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Command
-from groundstation.input.keymap import KEYMAPS, Keymap, KeyPress
+from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
 from groundstation.intents import (
     AnyIntent,
     Arm,
     Disarm,
+    DriveKeyDown,
+    DriveKeyUp,
     EmergencyStop,
-    ExactKeys,
-    Gate,
-    Lease,
-    Push,
-    Release,
-    SelectNext,
+    RenewLease,
+    ReportKeyReleases,
+    SelectNextVehicle,
     SelectVehicle,
+    SetKeyGate,
     SetMode,
     Stop,
 )
 from groundstation.snapshot import Snapshot, VehicleView
-from groundstation.station.crash_neutral import Farewell
+from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.protocol.channel import Channel
 from tests.groundstation.fake_vehicle import QUESTIONS, FakeVehicle
 from tests.world import Host
 
-FORWARD = Push(key="i", throttle=1, steering=0)
+FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 STEP = 0.005
 
 
@@ -39,7 +39,7 @@ class Convoy:
     def __init__(self, *, radio: bool) -> None:
         self.now = 100.0
         self.station = Station(["udpin:127.0.0.1:14550"], now=self.now)
-        self._near = Host(Farewell(self.station), Channel("near", 0, system=255, component=190), 0.02)
+        self._near = Host(CrashNeutral(self.station), Channel("near", 0, system=255, component=190), 0.02)
         self.vehicles = {system: FakeVehicle(system=system) for system in (1, 2)}
         self._far: dict[str, list[Host]] = {}
         """Address -> who is behind it."""
@@ -48,25 +48,25 @@ class Convoy:
             address = "radio" if radio else f"vehicle {system}"
             self._far.setdefault(address, []).append(Host(vehicle, channel, 0.02))
         self._lease_due = 0.0
-        self.do(Lease(), Gate(open=True))
+        self.do(RenewLease(), SetKeyGate(open=True))
 
     def do(self, *intents: AnyIntent) -> None:
         for intent in intents:
-            self.station.intend(intent, self.now)
+            self.station.handle_intent(intent, self.now)
 
     def run(self, seconds: float) -> None:
         for _ in range(round(seconds / STEP)):
             self.now += STEP
             if self.now >= self._lease_due:
                 self._lease_due = self.now + 0.1
-                self.do(Lease())
+                self.do(RenewLease())
             self._step()
 
     def _step(self) -> None:
         self._near.advance(self.now)
         for outgoing in self._near.core.messages_to_send():
             for data, address, sequence in self._near.channel.send(outgoing):
-                self.station.sent(outgoing.message, sequence, self.now)
+                self.station.handle_sent(outgoing.message, sequence, self.now)
                 for host in self._far[str(address)]:
                     host.hear(data, "station", self.now)
         for address, hosts in self._far.items():
@@ -102,14 +102,14 @@ def convoy(request: pytest.FixtureRequest) -> Convoy:
     assert convoy.view.system == 1
     convoy.do(Arm())
     convoy.run(1.5)
-    convoy.do(ExactKeys(), FORWARD)
+    convoy.do(ReportKeyReleases(), FORWARD)
     convoy.run(0.5)
     assert convoy.demands(1, 0.0)[-1][1] == 600
     assert convoy.demands(2, 0.0) == []
     return convoy
 
 
-@pytest.mark.parametrize("select", [SelectVehicle(system=2), SelectNext()])
+@pytest.mark.parametrize("select", [SelectVehicle(system=2), SelectNextVehicle()])
 def test_the_one_that_is_left_gets_neutral_at_once_and_then_nothing(convoy: Convoy, select: AnyIntent) -> None:
     left = convoy.now
     convoy.do(select)
@@ -119,12 +119,12 @@ def test_the_one_that_is_left_gets_neutral_at_once_and_then_nothing(convoy: Conv
     assert [x for _, x in demands] == [0] * 5
     assert demands[0][0] - left <= 2 * STEP
     assert convoy.demands(2, left) == [], "the key that was held is not for the other one, which is not even armed"
-    assert convoy.snapshot.helm.throttle == 0.0
+    assert convoy.snapshot.operator.throttle == 0.0
     assert "Rover 2 selected" in [line.text for line in convoy.snapshot.texts]
 
 
 def test_orders_and_demands_go_to_the_selected_one_only(convoy: Convoy) -> None:
-    convoy.do(Release(key="i"), SelectVehicle(system=2))
+    convoy.do(DriveKeyUp(key="i"), SelectVehicle(system=2))
     convoy.run(1.0)
     before = convoy.orders(1)
     start = convoy.now
@@ -134,7 +134,7 @@ def test_orders_and_demands_go_to_the_selected_one_only(convoy: Convoy) -> None:
     convoy.do(FORWARD)
     convoy.run(1.0)
     assert convoy.demands(2, start)[-1][1] == 600
-    assert convoy.snapshot.helm.throttle == pytest.approx(0.6)
+    assert convoy.snapshot.operator.throttle == pytest.approx(0.6)
     convoy.do(SetMode(mode="HOLD"), EmergencyStop(), Disarm())
     convoy.run(2.0)
     assert not convoy.vehicles[2].armed
@@ -147,31 +147,31 @@ def test_the_first_one_stops_although_the_second_is_driven_meanwhile(convoy: Con
     convoy.vehicles[2].armed, convoy.vehicles[2].driver = True, 255
     convoy.run(1.2)
     left = convoy.now
-    convoy.do(SelectNext(), Release(key="i"))
+    convoy.do(SelectNextVehicle(), DriveKeyUp(key="i"))
     convoy.run(0.05)
     convoy.do(FORWARD)
     convoy.run(0.2)
-    convoy.do(Release(key="i"), FORWARD)
+    convoy.do(DriveKeyUp(key="i"), FORWARD)
     convoy.run(0.5)
     assert [x for _, x in convoy.demands(1, left)] == [0] * 5
     assert convoy.demands(2, left)[-1][1] == 600
-    assert convoy.snapshot.helm.throttle == pytest.approx(0.6), "neutral for one is not what the other gets"
+    assert convoy.snapshot.operator.throttle == pytest.approx(0.6), "neutral for one is not what the other gets"
 
 
 def test_next_goes_round_and_back_to_the_first(convoy: Convoy) -> None:
     seen = []
     for _ in range(4):
-        convoy.do(SelectNext())
+        convoy.do(SelectNextVehicle())
         seen.append(convoy.view.system)
     assert seen == [2, 1, 2, 1]
 
 
 def test_the_first_one_can_be_driven_again_with_a_new_press(convoy: Convoy) -> None:
-    convoy.do(SelectNext(), SelectNext())
+    convoy.do(SelectNextVehicle(), SelectNextVehicle())
     back = convoy.now
     convoy.run(0.5)
     assert all(x == 0 for _, x in convoy.demands(1, back))
-    convoy.do(Release(key="i"), FORWARD)
+    convoy.do(DriveKeyUp(key="i"), FORWARD)
     convoy.run(0.5)
     assert convoy.demands(1, back)[-1][1] == 600
 
@@ -185,23 +185,23 @@ def test_a_vehicle_that_is_silent_does_not_take_the_selection_along(convoy: Conv
 
 def test_alone_there_is_no_next_one() -> None:
     station = Station(["memory"])
-    station.intend(SelectNext(), 1.0)
+    station.handle_intent(SelectNextVehicle(), 1.0)
     assert [line.text for line in station.snapshot(1.0, 1.0).texts] == ["there is no other vehicle"]
 
 
 def test_answers_of_one_vehicle_are_not_those_of_the_other(convoy: Convoy) -> None:
     convoy.vehicles[2].silent_on.add(Command.COMPONENT_ARM_DISARM)
-    convoy.do(Disarm(), SelectNext(), Arm())
+    convoy.do(Disarm(), SelectNextVehicle(), Arm())
     convoy.run(4.0)
     assert not convoy.vehicles[1].armed
     assert convoy.view.refusal == "arm: no answer"
-    convoy.do(SelectNext())
+    convoy.do(SelectNextVehicle())
     assert convoy.view.refusal is None
 
 
 @pytest.mark.parametrize("name", ["standard", "teleop"])
 def test_a_key_selects_the_next_one_and_stops_what_is_driven(name: str) -> None:
     keymap = Keymap(name, KEYMAPS[name])
-    assert keymap.keys("vehicle.next") == ("n",)
-    assert keymap.intents([KeyPress("n")], armed=True, driving=True) == [Stop(), SelectNext()]
-    assert keymap.intents([KeyPress("n", repeat=True)], armed=False, driving=False) == []
+    assert keymap.get_keys("vehicle.next") == ("n",)
+    assert keymap.build_intents([KeyEvent("n")], armed=True, driving=True) == [Stop(), SelectNextVehicle()]
+    assert keymap.build_intents([KeyEvent("n", repeat=True)], armed=False, driving=False) == []

@@ -5,20 +5,20 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Autopilot, State
+from dialects.enums import Autopilot, SystemState
 from dialects.modes import Mode
 from groundstation.intents import (
     Arm,
-    ChangeSpeed,
     Disarm,
-    ExactKeys,
-    Gate,
-    Lease,
-    Push,
+    DriveKeyDown,
+    DriveKeyUp,
     Quit,
-    Release,
+    RenewLease,
+    ReportKeyReleases,
     RequestControl,
+    ScaleLimits,
     SelectVehicle,
+    SetKeyGate,
     SetStyle,
     Stop,
 )
@@ -26,8 +26,8 @@ from groundstation.station.station import Station
 from link.core import Peer, Received
 from tests.groundstation.fake_vehicle import OURS, Cockpit, FakeVehicle
 
-FORWARD = Push(key="i", throttle=1, steering=0)
-LEFT = Push(key="j", throttle=0, steering=-1)
+FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
+LEFT = DriveKeyDown(key="j", throttle=0, steering=-1)
 
 
 def armed_cockpit(vehicle: FakeVehicle | None = None) -> Cockpit:
@@ -42,7 +42,7 @@ def armed_cockpit(vehicle: FakeVehicle | None = None) -> Cockpit:
 def driving_cockpit(vehicle: FakeVehicle | None = None) -> Cockpit:
     """Armed, exact keys, `i` held: the vehicle hears 60 %."""
     cockpit = armed_cockpit(vehicle)
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.5)
     assert cockpit.helm.throttle == pytest.approx(0.6)
     return cockpit
@@ -81,13 +81,13 @@ def test_heartbeats_once_a_second_as_ground_station() -> None:
     beats = [each for each in cockpit.vehicle.all(m.Heartbeat) if each[0] > greeted]
     assert len(beats) == 5
     beat = beats[0][1]
-    assert (beat.type, beat.autopilot, beat.base_mode, beat.system_status) == (6, 8, 0, State.ACTIVE)
+    assert (beat.type, beat.autopilot, beat.base_mode, beat.system_status) == (6, 8, 0, SystemState.ACTIVE)
 
 
 def test_a_vehicle_at_a_new_address_is_greeted_at_once() -> None:
     # It obeys only who has shown a heartbeat, and heard none of those that went out before it was there.
     station = Station(["udpin:127.0.0.1:14550"], now=100.0)
-    station.intend(Lease(), 100.0)
+    station.handle_intent(RenewLease(), 100.0)
     station.tick(100.0)
     assert any(isinstance(each.message, m.Heartbeat) for each in station.messages_to_send())
     for address in ("one port", "another, after a restart"):
@@ -100,7 +100,7 @@ def test_a_vehicle_at_a_new_address_is_greeted_at_once() -> None:
 def test_a_key_is_sent_at_once_and_then_at_20_hz() -> None:
     cockpit = armed_cockpit()
     before = cockpit.now
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(2.0)
     demands = [demand for demand in cockpit.demands(before) if demand[1]]
     assert demands[0][0] - before <= 0.006
@@ -112,7 +112,7 @@ def test_a_key_is_sent_at_once_and_then_at_20_hz() -> None:
 def test_a_change_is_sent_twice_and_its_repeats_once() -> None:
     cockpit = armed_cockpit()
     before = cockpit.now
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.3)
     times = [at for at, x, _ in cockpit.demands(before) if x]
     assert times[0] == times[1] < times[2] < times[3]
@@ -121,7 +121,7 @@ def test_a_change_is_sent_twice_and_its_repeats_once() -> None:
 def test_release_is_neutral_at_once_then_20_hz_for_a_second_then_5_hz() -> None:
     cockpit = driving_cockpit()
     released = cockpit.now
-    cockpit.do(Release(key="i"))
+    cockpit.do(DriveKeyUp(key="i"))
     cockpit.run(3.0)
     demands = cockpit.demands(released + 0.001)
     assert demands[0][0] - released <= 0.006
@@ -145,7 +145,7 @@ def test_timer_keys_fall_back_by_themselves() -> None:
 def test_nothing_is_sent_to_a_disarmed_vehicle() -> None:
     cockpit = Cockpit()
     cockpit.run(1.5)
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(1.0)
     assert cockpit.demands() == []
     assert cockpit.helm.gate_reason == "disarmed"
@@ -155,11 +155,11 @@ def test_nothing_is_sent_to_a_disarmed_vehicle() -> None:
 def test_a_key_held_while_arming_does_not_drive() -> None:
     cockpit = Cockpit()
     cockpit.run(1.5)
-    cockpit.do(ExactKeys(), FORWARD, Arm())
+    cockpit.do(ReportKeyReleases(), FORWARD, Arm())
     cockpit.run(2.0)
     assert cockpit.view.armed
     assert all(x == 0 for _, x, _ in cockpit.demands())
-    cockpit.do(Release(key="i"), FORWARD)
+    cockpit.do(DriveKeyUp(key="i"), FORWARD)
     cockpit.run(0.1)
     assert cockpit.demands()[-1][1] == 600
 
@@ -169,14 +169,14 @@ def test_nothing_is_sent_while_another_station_drives() -> None:
     vehicle.armed = True
     cockpit = Cockpit(vehicle)
     cockpit.run(1.5)
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(1.0)
     assert cockpit.demands() == []
     assert cockpit.helm.gate_reason == "station 254 is in control"
     cockpit.do(RequestControl())
     cockpit.run(1.0)
     assert cockpit.view.in_control
-    cockpit.do(Release(key="i"), FORWARD)
+    cockpit.do(DriveKeyUp(key="i"), FORWARD)
     cockpit.run(0.1)
     assert cockpit.demands()[-1][1] == 600
 
@@ -187,17 +187,17 @@ def test_stop_wins_over_a_held_key_until_it_is_pressed_again() -> None:
     cockpit.do(Stop())
     cockpit.run(0.5)
     assert all(x == 0 for _, x, _ in cockpit.demands(stopped + 0.001))
-    cockpit.do(Push(key="i", throttle=1, steering=0, repeat=True))  # the key is still down and repeats
+    cockpit.do(DriveKeyDown(key="i", throttle=1, steering=0, repeat=True))  # the key is still down and repeats
     cockpit.run(0.2)
     assert cockpit.demands()[-1][1] == 0
 
 
 def test_speed_keys_change_the_demand_but_never_make_one() -> None:
     cockpit = armed_cockpit()
-    cockpit.do(ChangeSpeed(throttle=1.1, steering=1.1))
+    cockpit.do(ScaleLimits(throttle=1.1, steering=1.1))
     cockpit.run(0.5)
     assert all(x == 0 for _, x, _ in cockpit.demands())
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.1)
     assert cockpit.demands()[-1][1] == 660
 
@@ -205,7 +205,7 @@ def test_speed_keys_change_the_demand_but_never_make_one() -> None:
 def test_closing_the_gate_is_neutral_at_once() -> None:
     cockpit = driving_cockpit()
     closed = cockpit.now
-    cockpit.do(Gate(open=False, reason="help is open"))
+    cockpit.do(SetKeyGate(open=False, reason="help is open"))
     cockpit.run(0.3)
     demands = cockpit.demands(closed + 0.001)
     assert demands
@@ -213,16 +213,16 @@ def test_closing_the_gate_is_neutral_at_once() -> None:
     assert all(x == 0 for _, x, _ in demands)
     assert cockpit.helm.gate_reason == "help is open"
     assert cockpit.helm.held == ()
-    cockpit.do(FORWARD, Gate(open=True), Push(key="i", throttle=1, steering=0, repeat=True))
+    cockpit.do(FORWARD, SetKeyGate(open=True), DriveKeyDown(key="i", throttle=1, steering=0, repeat=True))
     cockpit.run(0.3)
     assert cockpit.demands()[-1][1] == 0, "a key pressed behind a closed gate must not drive after it opened"
 
 
 def test_a_key_that_repeats_from_before_the_gate_opened_does_not_drive() -> None:
     cockpit = armed_cockpit()
-    cockpit.do(Gate(open=False, reason="help is open"), FORWARD)
+    cockpit.do(SetKeyGate(open=False, reason="help is open"), FORWARD)
     cockpit.run(0.3)
-    cockpit.do(Gate(open=True))
+    cockpit.do(SetKeyGate(open=True))
     cockpit.run(0.3)
     start = cockpit.now
     for _ in range(40):  # no releases here: the repeats of the old press, from 0.6 s after it on
@@ -254,11 +254,11 @@ def test_keys_typed_at_a_frozen_screen_do_not_drive_when_it_thaws() -> None:
     cockpit.leasing = False
     cockpit.run(2.0)
     thawed = cockpit.now
-    cockpit.do(Lease(), FORWARD, Push(key="i", throttle=1, steering=0, repeat=True))
+    cockpit.do(RenewLease(), FORWARD, DriveKeyDown(key="i", throttle=1, steering=0, repeat=True))
     cockpit.leasing = True
     cockpit.run(1.0)
     assert all(x == 0 for _, x, _ in cockpit.demands(thawed))
-    cockpit.do(Release(key="i"), FORWARD)
+    cockpit.do(DriveKeyUp(key="i"), FORWARD)
     cockpit.run(0.1)
     assert cockpit.demands()[-1][1] == 600
 
@@ -300,7 +300,7 @@ def test_a_key_held_over_a_lost_link_has_to_be_pressed_anew() -> None:
     assert all(x == 0 for _, x, _ in cockpit.demands(back))
     assert "Rover 1 lost: silent for 2.5 s" in cockpit.texts
     assert len([text for text in cockpit.texts if text.startswith("Rover 1 is back after")]) == 1
-    cockpit.do(Release(key="i"), FORWARD)
+    cockpit.do(DriveKeyUp(key="i"), FORWARD)
     cockpit.run(0.1)
     assert cockpit.demands()[-1][1] == 600
 
@@ -327,7 +327,7 @@ def test_disarm_stops_at_once_and_then_says_nothing() -> None:
 def test_proof_of_life_goes_before_each_demand_to_a_vehicle_that_knows_it() -> None:
     cockpit = armed_cockpit()
     cockpit.run(0.5)
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.3)
     tail = [
         message
@@ -351,7 +351,7 @@ def test_no_proof_of_life_to_a_vehicle_that_does_not_know_it() -> None:
 
 def test_ardupilot_gets_its_own_axes() -> None:
     cockpit = armed_cockpit(FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None))
-    cockpit.do(ExactKeys(), FORWARD, LEFT)
+    cockpit.do(ReportKeyReleases(), FORWARD, LEFT)
     cockpit.run(0.1)
     _, message = cockpit.vehicle.all(m.ManualControl)[-1]
     assert (message.z, message.y, message.x, message.r) == (600, -600, 32767, 32767)
@@ -362,7 +362,7 @@ def test_ardupilot_gets_its_own_axes() -> None:
 
 def test_px4_neutral_is_500() -> None:
     cockpit = armed_cockpit(FakeVehicle(autopilot=Autopilot.PX4, driver=None))
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.1)
     assert cockpit.vehicle.all(m.ManualControl)[-1][1].z == 800
     cockpit.do(Stop())
@@ -374,7 +374,7 @@ def test_latency_is_that_of_a_changed_demand() -> None:
     cockpit = armed_cockpit()
     cockpit.world.up.delay = cockpit.world.down.delay = 0.02
     cockpit.run(1.0)
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.5)
     assert cockpit.view.latency == pytest.approx(0.04, abs=0.011)
     assert cockpit.view.demand == (0.6, 0.0)
@@ -442,7 +442,7 @@ def test_thirty_percent_loss_does_not_stop_the_stream() -> None:
     cockpit.do(Arm())
     cockpit.run(3.0)
     assert cockpit.view.armed
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     start = cockpit.now
     cockpit.run(10.0)
     heard = len([1 for _, x, _ in cockpit.demands(start) if x == 600])

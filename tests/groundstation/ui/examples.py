@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from groundstation.intents import AnyIntent, Gate, Lease
-from groundstation.snapshot import HelmView, LinkView, MessageRate, Snapshot, TextLine, VehicleView
+from groundstation.intents import AnyIntent, RenewLease, SetKeyGate
+from groundstation.snapshot import LinkView, LogLine, MessageRate, OperatorView, Snapshot, VehicleView
 
 NOON = 1_700_000_000.0
 """A wall clock for log lines; the tests run in UTC."""
@@ -58,7 +58,7 @@ class Recorder:
     @property
     def wishes(self) -> list[AnyIntent]:
         """The intents without the beat and the gate."""
-        return [intent for intent in self.intents if not isinstance(intent, (Lease, Gate))]
+        return [intent for intent in self.intents if not isinstance(intent, (RenewLease, SetKeyGate))]
 
     def of(self, kind: type[Wanted]) -> list[Wanted]:
         """Those of one kind."""
@@ -88,21 +88,21 @@ def vehicle(**changes: Any) -> VehicleView:
     return msgspec.structs.replace(view, **changes)
 
 
-def helm(**changes: Any) -> HelmView:
+def helm(**changes: Any) -> OperatorView:
     """A driver who holds `o`."""
-    view = HelmView(
-        style="hold", exact=True, stop_bound=0.0, held=("o",), throttle=0.6, steering=0.25, throttle_limit=0.6,
+    view = OperatorView(
+        style="hold", reports_releases=True, stop_bound=0.0, held=("o",), throttle=0.6, steering=0.25, throttle_limit=0.6,
         steering_limit=0.6, gate_open=True, sending=True, rate=20.0,
     )  # fmt: skip
     return msgspec.structs.replace(view, **changes)
 
 
 TEXTS = (
-    TextLine(time=NOON, severity=6, label="vehicle", text="rover 1, mavhelm vehicle 0.1, MANUAL"),
-    TextLine(time=NOON + 1, severity=6, label="ack", text="COMPONENT_ARM_DISARM accepted"),
-    TextLine(time=NOON + 20, severity=4, label="vehicle", text="battery 11.9 V below 12.0 V", count=3),
-    TextLine(time=NOON + 27, severity=2, label="vehicle", text="no MANUAL_CONTROL for 520 ms, motors stopped"),
-    TextLine(time=NOON + 28, severity=6, label="vehicle", text="control regained"),
+    LogLine(time=NOON, severity=6, label="vehicle", text="rover 1, mavhelm vehicle 0.1, MANUAL"),
+    LogLine(time=NOON + 1, severity=6, label="ack", text="COMPONENT_ARM_DISARM accepted"),
+    LogLine(time=NOON + 20, severity=4, label="vehicle", text="battery 11.9 V below 12.0 V", count=3),
+    LogLine(time=NOON + 27, severity=2, label="vehicle", text="no MANUAL_CONTROL for 520 ms, motors stopped"),
+    LogLine(time=NOON + 28, severity=6, label="vehicle", text="control regained"),
 )
 
 RATES: Sequence[tuple[str, float, int, bool]] = (
@@ -117,7 +117,7 @@ RATES: Sequence[tuple[str, float, int, bool]] = (
 def snapshot(**changes: Any) -> Snapshot:
     """All of it."""
     picture = Snapshot(
-        number=1, uptime=60.0, endpoints=("udpin:127.0.0.1:14550",), vehicle=vehicle(), vehicles=(1,), helm=helm(),
+        number=1, uptime=60.0, endpoints=("udpin:127.0.0.1:14550",), vehicle=vehicle(), vehicles=(1,), operator=helm(),
         links=(LinkView(name="udpin:127.0.0.1:14550", loss=0.003, round_trip=0.012, rate=55.0),), texts=TEXTS,
         messages=tuple(MessageRate(name=name, rate=rate, count=count, sent=sent) for name, rate, count, sent in RATES),
     )  # fmt: skip
@@ -128,5 +128,5 @@ def waiting(**changes: Any) -> Snapshot:
     """No vehicle yet."""
     text = "waiting for a vehicle on udpin:127.0.0.1:14550"
     return snapshot(
-        vehicle=None, vehicles=(), helm=HelmView(gate_reason="no vehicle"), texts=(), waiting=text, **changes
+        vehicle=None, vehicles=(), operator=OperatorView(gate_reason="no vehicle"), texts=(), waiting=text, **changes
     )

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import Snapshot
-from groundstation.ui.app import HelmApp
+from groundstation.ui.app import ConsoleApp
 from groundstation.ui.key_gate import STARTING
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
@@ -22,7 +22,7 @@ from tests.groundstation.ui.ptys import until
 class Console:
     """A running app, its station, and a hand."""
 
-    app: HelmApp
+    app: ConsoleApp
     station: Recorder
     pilot: Pilot[int]
     offered: int = 0
@@ -51,10 +51,10 @@ async def console(
 ) -> AsyncIterator[Console]:
     """The app at work: a picture is shown and, where the size allows, keys drive."""
     station = Recorder()
-    app = HelmApp(station, Keymap(keymap, KEYMAPS[keymap]))
+    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]))
     try:
         async with app.run_test(size=size) as pilot:
-            await until(lambda: app.gate.state != STARTING)
+            await until(lambda: app.gate.closure != STARTING)
             made = Console(app, station, pilot)
             await made.show(snapshot() if picture is None else picture)
             yield made

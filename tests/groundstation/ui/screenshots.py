@@ -18,7 +18,7 @@ from textual.pilot import Pilot
 
 from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.ui.app import HelmApp
+from groundstation.ui.app import ConsoleApp
 from tests.groundstation.ui import frames
 
 SIZES = ((80, 24), (140, 45))
@@ -34,11 +34,11 @@ GAP = 0.05
 
 
 @asynccontextmanager
-async def armed_app(size: tuple[int, int]) -> AsyncIterator[tuple[HelmApp, Pilot[int]]]:
+async def armed_app(size: tuple[int, int]) -> AsyncIterator[tuple[ConsoleApp, Pilot[int]]]:
     """The app with a simulated rover that is armed."""
     client = StationClient.start([], sitl=True, speed=0.8)
     try:
-        app = HelmApp(client, Keymap("standard", KEYMAPS["standard"]))
+        app = ConsoleApp(client, Keymap("standard", KEYMAPS["standard"]))
         async with app.run_test(size=size) as pilot:
             await _until(pilot, lambda: app.drive.snapshot.vehicle is not None)
             await pilot.press("r", "y")

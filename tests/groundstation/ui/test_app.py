@@ -12,15 +12,15 @@ from groundstation.intents import (
     Arm,
     ClearEmergencyStop,
     Disarm,
+    DriveKeyDown,
     EmergencyStop,
-    Gate,
-    Lease,
-    Push,
+    RenewLease,
+    SetKeyGate,
     StartSimulator,
     Stop,
 )
 from groundstation.snapshot import LinkView
-from groundstation.ui.key_gate import Door
+from groundstation.ui.key_gate import GateLevel
 from groundstation.ui.screens.help import HelpScreen
 from groundstation.ui.terminal import KeyEventParser
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting
@@ -34,17 +34,17 @@ STOPPED = snapshot(vehicle=vehicle(armed=False, emergency_stop=True))
 async def test_a_drive_key_is_a_push() -> None:
     async with console() as screen:
         await screen.press("i", "up", "w")
-        assert [push.key for push in screen.station.of(Push)] == ["i", "up", "w"]
+        assert [push.key for push in screen.station.of(DriveKeyDown)] == ["i", "up", "w"]
 
 
 async def test_the_lease_is_renewed_by_the_loop_and_not_without_it() -> None:
     """The loop stands still in this test's own code: no thread of ours may renew meanwhile."""
     async with console() as screen:
-        await until(lambda: len(screen.station.of(Lease)) > 3)
-        before = len(screen.station.of(Lease))
+        await until(lambda: len(screen.station.of(RenewLease)) > 3)
+        before = len(screen.station.of(RenewLease))
         _busy_for(0.5)
-        assert len(screen.station.of(Lease)) == before
-        await until(lambda: len(screen.station.of(Lease)) > before)
+        assert len(screen.station.of(RenewLease)) == before
+        await until(lambda: len(screen.station.of(RenewLease)) > before)
 
 
 def _busy_for(seconds: float) -> None:
@@ -74,11 +74,11 @@ async def test_any_other_key_is_a_no(key: str) -> None:
 async def test_the_gate_is_shut_while_a_question_is_open() -> None:
     async with console(picture=DISARMED) as screen:
         await screen.press("r")
-        await until(lambda: screen.app.gate.state is not None)
-        assert screen.app.gate.state is not None
-        assert screen.app.gate.state.door is Door.STOPS
+        await until(lambda: screen.app.gate.closure is not None)
+        assert screen.app.gate.closure is not None
+        assert screen.app.gate.closure.level is GateLevel.STOPS
         await screen.press("n")
-        await until(lambda: screen.app.gate.state is None)
+        await until(lambda: screen.app.gate.closure is None)
 
 
 async def test_disarming_is_one_key_and_no_question() -> None:
@@ -99,7 +99,7 @@ async def test_another_screen_is_neutral_and_still_stops(opener: str) -> None:
     async with console() as screen:
         await screen.press(opener)
         await until(lambda: screen.app.screen is not screen.app.drive)
-        assert screen.station.of(Gate)[-1].open is False
+        assert screen.station.of(SetKeyGate)[-1].open is False
         assert screen.station.of(Stop)
         await screen.press("exclamation_mark")
         assert screen.station.of(EmergencyStop)
@@ -112,7 +112,7 @@ async def test_help_shows_every_key_and_goes_back() -> None:
         assert type(screen.app.screen).__name__ == "HelpScreen"
         assert "Motors off and locked" in screen.text
         await screen.press("escape")
-        await until(lambda: screen.app.gate.state is None)
+        await until(lambda: screen.app.gate.closure is None)
         assert screen.app.screen is screen.app.drive
 
 
@@ -153,7 +153,7 @@ async def test_several_keys_of_one_read_open_one_help_screen(monkeypatch: pytest
 async def test_the_palette_opens_no_second_help_screen() -> None:
     async with console() as screen:
         await screen.press("question_mark")
-        screen.app.choose(ACTIONS["app.help"])
+        screen.app.choose_action(ACTIONS["app.help"])
         await screen.pilot.pause()
         assert helps(screen) == 1
 
@@ -197,7 +197,7 @@ async def test_quit_needs_no_question_and_works_everywhere(key: str, first: tupl
     async with console() as screen:
         await screen.press(*first, key)
         assert screen.app.return_value == 0
-        assert screen.station.of(Gate)[-1].reason == "quitting"
+        assert screen.station.of(SetKeyGate)[-1].reason == "quitting"
 
 
 async def test_without_a_vehicle_enter_starts_the_simulator() -> None:
@@ -218,7 +218,7 @@ async def test_with_a_vehicle_enter_starts_nothing() -> None:
 async def test_a_small_terminal_says_what_it_needs_and_still_stops() -> None:
     async with console(size=(70, 20)) as screen:
         assert "needs 80 x 24" in screen.text
-        assert screen.station.of(Gate)[-1].open is False
+        assert screen.station.of(SetKeyGate)[-1].open is False
         await screen.press("space", "exclamation_mark")
         assert screen.station.of(EmergencyStop)
 
@@ -226,7 +226,7 @@ async def test_a_small_terminal_says_what_it_needs_and_still_stops() -> None:
 async def test_growing_opens_the_gate() -> None:
     async with console(size=(70, 20)) as screen:
         await screen.pilot.resize_terminal(80, 24)
-        await until(lambda: screen.app.gate.state is None)
+        await until(lambda: screen.app.gate.closure is None)
         await screen.show(snapshot())
         assert "you drive" in screen.text
 
@@ -235,7 +235,7 @@ async def test_a_dead_station_is_said() -> None:
     async with console() as screen:
         screen.station.alive = False
         await until(lambda: "the station process has ended" in screen.text)
-        assert screen.station.of(Gate)[-1].reason == "the station has ended"
+        assert screen.station.of(SetKeyGate)[-1].reason == "the station has ended"
 
 
 async def test_a_pressed_key_lights_up_before_the_station_knows() -> None:

@@ -19,8 +19,8 @@ STANDING = snapshot(
     vehicle=vehicle(
         armed=False, driver=0, in_control=False, speed=0.0, demand=(0.0, 0.0), outputs=(0.0, 0.0), limits=("disarmed",)
     ),
-    helm=helm(
-        held=(), throttle=0.0, steering=0.0, gate_open=False, gate_reason="disarmed", exact=False, stop_bound=0.75,
+    operator=helm(
+        held=(), throttle=0.0, steering=0.0, gate_open=False, gate_reason="disarmed", reports_releases=False, stop_bound=0.75,
         sending=False, rate=0.0,
     ),
 )  # fmt: skip
@@ -36,7 +36,7 @@ UNKNOWN = snapshot(
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_80x24": (SMALL, snapshot(), ()),
     "drive_140x45": (WIDE, snapshot(), ()),
-    "latched_80x24": (SMALL, snapshot(helm=helm(style="latch", stop_bound=math.inf, exact=False)), ()),
+    "latched_80x24": (SMALL, snapshot(operator=helm(style="latch", stop_bound=math.inf, reports_releases=False)), ()),
     "disarmed_80x24": (SMALL, STANDING, ()),
     "question_80x24": (SMALL, STANDING, ("r",)),
     "emergency_80x24": (SMALL, STOPPED, ()),

@@ -6,23 +6,23 @@ from collections.abc import Iterator
 
 import pytest
 
-from groundstation.input.keymap import KeyPress
+from groundstation.input.keymap import KeyEvent
 from groundstation.intents import (
-    ChangeSpeed,
     Disarm,
+    DriveKeyDown,
+    DriveKeyUp,
     EmergencyStop,
-    ExactKeys,
-    Gate,
-    Push,
-    Release,
+    ReportKeyReleases,
+    ScaleLimits,
+    SetKeyGate,
     SetMode,
     Stop,
 )
-from groundstation.ui.key_gate import Door, KeyGate, Shut
+from groundstation.ui.key_gate import GateClosure, GateLevel, KeyGate
 from tests.groundstation.ui.examples import Recorder
 from tests.groundstation.ui.ptys import STANDARD
 
-SMALL, TEXT = Shut("the terminal is too small"), Shut("another screen is open", Door.STOPS)
+SMALL, TEXT = GateClosure("the terminal is too small"), GateClosure("another screen is open", GateLevel.STOPS)
 
 
 @pytest.fixture
@@ -36,88 +36,88 @@ def station() -> Iterator[Recorder]:
 def gate(station: Recorder) -> KeyGate:
     """An open one, of an armed vehicle that is not driven."""
     made = KeyGate(station, STANDARD, lambda: 0.0)
-    made.set(None)
-    made.observe(armed=True, driving=False)
+    made.set_closure(None)
+    made.update(armed=True, driving=False)
     station.intents.clear()
     return made
 
 
-def press(key: str) -> KeyPress:
-    return KeyPress(key)
+def press(key: str) -> KeyEvent:
+    return KeyEvent(key)
 
 
 def test_it_is_shut_before_the_screen_has_said_otherwise(station: Recorder) -> None:
-    assert KeyGate(station, STANDARD, lambda: 0.0).state is not None
+    assert KeyGate(station, STANDARD, lambda: 0.0).closure is not None
 
 
 def test_a_drive_key_passes_at_once(gate: KeyGate, station: Recorder) -> None:
-    gate.take([press("i")])
-    assert station.intents == [Push(key="i", throttle=1, steering=0)]
+    gate.handle_keys([press("i")])
+    assert station.intents == [DriveKeyDown(key="i", throttle=1, steering=0)]
 
 
 def test_closing_is_told_with_its_reason_and_is_a_stop(gate: KeyGate, station: Recorder) -> None:
-    gate.set(SMALL)
-    assert station.intents == [Gate(open=False, reason=SMALL.reason), Stop(SMALL.reason)]
+    gate.set_closure(SMALL)
+    assert station.intents == [SetKeyGate(open=False, reason=SMALL.reason), Stop(SMALL.reason)]
 
 
 def test_closing_twice_for_one_reason_is_told_once(gate: KeyGate, station: Recorder) -> None:
-    gate.set(SMALL)
-    gate.set(SMALL)
-    assert len(station.of(Gate)) == 1
-    gate.set(TEXT)
-    assert station.of(Gate)[-1].reason == TEXT.reason
+    gate.set_closure(SMALL)
+    gate.set_closure(SMALL)
+    assert len(station.of(SetKeyGate)) == 1
+    gate.set_closure(TEXT)
+    assert station.of(SetKeyGate)[-1].reason == TEXT.reason
 
 
 @pytest.mark.parametrize("shut", [SMALL, TEXT])
 @pytest.mark.parametrize(("key", "kind"), [("space", Stop), ("k", Stop), ("exclamation_mark", EmergencyStop)])
-def test_stops_pass_a_shut_gate(gate: KeyGate, station: Recorder, shut: Shut, key: str, kind: type) -> None:
-    gate.set(shut)
+def test_stops_pass_a_shut_gate(gate: KeyGate, station: Recorder, shut: GateClosure, key: str, kind: type) -> None:
+    gate.set_closure(shut)
     station.intents.clear()
-    gate.take([press(key)])
+    gate.handle_keys([press(key)])
     assert station.of(kind)
 
 
 def test_drive_keys_pass_a_shut_gate_for_the_station_to_remember(gate: KeyGate, station: Recorder) -> None:
     """It has been told that the gate is shut: a key pressed now must not drive when it opens."""
-    gate.set(TEXT)
-    gate.take([press("i"), KeyPress("i", release=True)])
-    assert station.of(Push)
-    assert station.of(Release)
-    assert station.of(Gate)[-1].open is False
+    gate.set_closure(TEXT)
+    gate.handle_keys([press("i"), KeyEvent("i", release=True)])
+    assert station.of(DriveKeyDown)
+    assert station.of(DriveKeyUp)
+    assert station.of(SetKeyGate)[-1].open is False
 
 
-@pytest.mark.parametrize(("key", "intent"), [("r", Disarm()), ("2", SetMode("HOLD")), ("minus", ChangeSpeed(0.9, 0.9))])
+@pytest.mark.parametrize(("key", "intent"), [("r", Disarm()), ("2", SetMode("HOLD")), ("minus", ScaleLimits(0.9, 0.9))])
 def test_commands_pass_unless_keys_are_text(gate: KeyGate, station: Recorder, key: str, intent: object) -> None:
-    gate.set(SMALL)
-    gate.take([press(key)])
+    gate.set_closure(SMALL)
+    gate.handle_keys([press(key)])
     assert intent in station.intents
     station.intents.clear()
-    gate.set(TEXT)
-    gate.take([press(key)])
+    gate.set_closure(TEXT)
+    gate.handle_keys([press(key)])
     assert intent not in station.intents
 
 
 def test_repeats_of_a_key_held_over_a_closing_are_dropped(gate: KeyGate, station: Recorder) -> None:
     """Kitty goes on repeating after the focus is lost (seen in 0.26.5)."""
-    gate.take([press("i"), KeyPress("i", repeat=True)])
-    assert len(station.of(Push)) == 2
-    gate.set(SMALL)
-    gate.set(None)
-    gate.take([KeyPress("i", repeat=True)])
-    assert len(station.of(Push)) == 2
-    gate.take([press("i")])
-    assert len(station.of(Push)) == 3
+    gate.handle_keys([press("i"), KeyEvent("i", repeat=True)])
+    assert len(station.of(DriveKeyDown)) == 2
+    gate.set_closure(SMALL)
+    gate.set_closure(None)
+    gate.handle_keys([KeyEvent("i", repeat=True)])
+    assert len(station.of(DriveKeyDown)) == 2
+    gate.handle_keys([press("i")])
+    assert len(station.of(DriveKeyDown)) == 3
 
 
 def test_proof_of_releases_is_told_once(gate: KeyGate, station: Recorder) -> None:
-    gate.exact()
-    gate.exact()
-    assert station.intents == [ExactKeys()]
+    gate.handle_release_support()
+    gate.handle_release_support()
+    assert station.intents == [ReportKeyReleases()]
 
 
 def test_what_is_driven_decides_whether_a_strange_key_stops(gate: KeyGate, station: Recorder) -> None:
-    gate.take([press("b")])
+    gate.handle_keys([press("b")])
     assert station.intents == []
-    gate.observe(armed=True, driving=True)
-    gate.take([press("b")])
+    gate.update(armed=True, driving=True)
+    gate.handle_keys([press("b")])
     assert station.intents == [Stop()]

@@ -9,9 +9,9 @@ import pytest
 from textual import events
 from textual.message import Message
 
-from groundstation.input.keymap import KeyPress
-from groundstation.intents import EmergencyStop, ExactKeys, Gate, Push, Release, Stop
-from groundstation.ui.key_gate import Shut
+from groundstation.input.keymap import KeyEvent
+from groundstation.intents import DriveKeyDown, DriveKeyUp, EmergencyStop, ReportKeyReleases, SetKeyGate, Stop
+from groundstation.ui.key_gate import GateClosure
 from groundstation.ui.terminal import KeyEventParser, KeyRepeat, KeyUp
 from tests.groundstation.ui.ptys import app_on_a_pty, until
 
@@ -20,19 +20,19 @@ class Sink:
     """Notes what it is told."""
 
     def __init__(self) -> None:
-        self.batches: list[list[KeyPress]] = []
+        self.batches: list[list[KeyEvent]] = []
         self.told: list[str] = []
 
-    def take(self, batch: Sequence[KeyPress]) -> None:
+    def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         self.batches.append(list(batch))
 
-    def exact(self) -> None:
+    def handle_release_support(self) -> None:
         self.told.append("exact")
 
-    def shut(self, reason: str) -> None:
+    def close(self, reason: str) -> None:
         self.told.append(f"shut: {reason}")
 
-    def pong(self) -> None:
+    def handle_pong(self) -> None:
         self.told.append("pong")
 
 
@@ -49,30 +49,30 @@ PRESS_W, REPEAT_W, RELEASE_W = "\x1b[119;1:1;119u", "\x1b[119;1:2;119u", "\x1b[1
 @pytest.mark.parametrize(
     ("data", "keys"),
     [
-        ("i", [KeyPress("i")]),
-        ("ik", [KeyPress("i"), KeyPress("k")]),
-        (" ", [KeyPress("space")]),
-        (",", [KeyPress("comma")]),
-        ("\x1b[A", [KeyPress("up")]),
-        ("\x1b[20~", [KeyPress("f9")]),
-        ("\x1b[119;;119u", [KeyPress("w")]),
-        (PRESS_W, [KeyPress("w")]),
-        (REPEAT_W, [KeyPress("w", repeat=True)]),
-        (PRESS_W + RELEASE_W, [KeyPress("w"), KeyPress("w", release=True)]),
-        ("\x1b[1;1:3A", [KeyPress("up", release=True)]),
-        ("\x1b[99;5u", [KeyPress("ctrl+c")]),
-        ("\x1b[33;2:1;33u", [KeyPress("exclamation_mark")]),
-        ("\x1b[49:33;2;33u", [KeyPress("exclamation_mark")]),
-        ("\x1b[200~ik\x1b[201~", [KeyPress("paste")]),
-        ("\x1b[?2048$p!", [KeyPress("exclamation_mark")]),
-        ("\x1b[?1;2!", [KeyPress("exclamation_mark")]),
-        ("\x1b[?2048$ ", [KeyPress("space")]),
-        ("\x1b[\x11", [KeyPress("ctrl+q")]),
-        ("\x1b[119;1\x03", [KeyPress("ctrl+c")]),
+        ("i", [KeyEvent("i")]),
+        ("ik", [KeyEvent("i"), KeyEvent("k")]),
+        (" ", [KeyEvent("space")]),
+        (",", [KeyEvent("comma")]),
+        ("\x1b[A", [KeyEvent("up")]),
+        ("\x1b[20~", [KeyEvent("f9")]),
+        ("\x1b[119;;119u", [KeyEvent("w")]),
+        (PRESS_W, [KeyEvent("w")]),
+        (REPEAT_W, [KeyEvent("w", repeat=True)]),
+        (PRESS_W + RELEASE_W, [KeyEvent("w"), KeyEvent("w", release=True)]),
+        ("\x1b[1;1:3A", [KeyEvent("up", release=True)]),
+        ("\x1b[99;5u", [KeyEvent("ctrl+c")]),
+        ("\x1b[33;2:1;33u", [KeyEvent("exclamation_mark")]),
+        ("\x1b[49:33;2;33u", [KeyEvent("exclamation_mark")]),
+        ("\x1b[200~ik\x1b[201~", [KeyEvent("paste")]),
+        ("\x1b[?2048$p!", [KeyEvent("exclamation_mark")]),
+        ("\x1b[?1;2!", [KeyEvent("exclamation_mark")]),
+        ("\x1b[?2048$ ", [KeyEvent("space")]),
+        ("\x1b[\x11", [KeyEvent("ctrl+q")]),
+        ("\x1b[119;1\x03", [KeyEvent("ctrl+c")]),
     ],
     ids=repr,
 )
-def test_one_read_is_one_batch(data: str, keys: list[KeyPress]) -> None:
+def test_one_read_is_one_batch(data: str, keys: list[KeyEvent]) -> None:
     sink, _ = feed(data)
     assert sink.batches == [keys]
 
@@ -80,19 +80,19 @@ def test_one_read_is_one_batch(data: str, keys: list[KeyPress]) -> None:
 def test_the_release_of_a_key_has_the_name_of_its_press() -> None:
     """Shift down, W down, Shift up, W up: the last event says "w", the press said "W"."""
     sink, _ = feed("\x1b[119:87;2:1;87u", "\x1b[57441;1:3u", "\x1b[119;1:3u")
-    assert sink.batches == [[KeyPress("W")], [KeyPress("W", release=True)]]
+    assert sink.batches == [[KeyEvent("W")], [KeyEvent("W", release=True)]]
 
 
 def test_a_key_of_a_cyrillic_layout_drives_by_its_place_and_still_types_its_letter() -> None:
     sink, found = feed("\x1b[1096::105;1:1;1096u", "\x1b[1096::105;1:3u")
-    assert sink.batches == [[KeyPress("i")], [KeyPress("i", release=True)]]
+    assert sink.batches == [[KeyEvent("i")], [KeyEvent("i", release=True)]]
     assert isinstance(found[0], events.Key)
     assert found[0].character == "ш"
 
 
 def test_a_key_of_a_latin_layout_keeps_its_letter() -> None:
     """AZERTY: the key in Q's place types an a and means a, for that is printed on it and on the screen."""
-    assert feed("\x1b[97::113;1:1;97u")[0].batches == [[KeyPress("a")]]
+    assert feed("\x1b[97::113;1:1;97u")[0].batches == [[KeyEvent("a")]]
 
 
 def test_modifiers_alone_are_no_keys() -> None:
@@ -111,7 +111,7 @@ def test_only_a_subfield_proves_that_releases_come() -> None:
 @pytest.mark.parametrize("report", ["\x1b[?27u", "\x1b[?0u", "\x1b[0n", "\x1b[3n"])
 def test_reports_are_not_typed(report: str) -> None:
     sink, found = feed(report, report + "i")
-    assert sink.batches == [[KeyPress("i")]]
+    assert sink.batches == [[KeyEvent("i")]]
     assert [event.key for event in found if isinstance(event, events.Key)] == ["i"]
 
 
@@ -120,7 +120,7 @@ def test_a_pong_is_told() -> None:
 
 
 def test_a_sequence_may_come_in_pieces() -> None:
-    assert feed(*PRESS_W)[0].batches == [[KeyPress("w")]]
+    assert feed(*PRESS_W)[0].batches == [[KeyEvent("w")]]
 
 
 def test_lost_focus_shuts_in_the_same_read() -> None:
@@ -138,7 +138,7 @@ class Clock:
 
 def test_a_paste_is_a_stop_from_its_first_moment_on_and_its_text_is_no_keys() -> None:
     sink, _ = feed("\x1b[200", "~ryi", "i" * 5000, "\x1b[20", "1~", "k")
-    assert sink.batches == [[KeyPress("paste")], [KeyPress("paste")], [KeyPress("k")]]
+    assert sink.batches == [[KeyEvent("paste")], [KeyEvent("paste")], [KeyEvent("k")]]
 
 
 def test_a_paste_whose_end_never_comes_does_not_keep_the_keys_for_ever() -> None:
@@ -148,14 +148,14 @@ def test_a_paste_whose_end_never_comes_does_not_keep_the_keys_for_ever() -> None
     clock.now += 1.9
     parser.tick()
     parser.feed("!")
-    assert sink.batches == [[KeyPress("paste")]]
+    assert sink.batches == [[KeyEvent("paste")]]
     clock.now += 1.9
     parser.tick()
-    assert sink.batches == [[KeyPress("paste")]]
+    assert sink.batches == [[KeyEvent("paste")]]
     clock.now += 0.2
     parser.tick()
     parser.feed("!")
-    assert sink.batches[1:] == [[KeyPress("paste")], [KeyPress("exclamation_mark")]]
+    assert sink.batches[1:] == [[KeyEvent("paste")], [KeyEvent("exclamation_mark")]]
 
 
 @pytest.mark.parametrize("size", ["99999;80", "24;99999"])
@@ -177,7 +177,7 @@ def test_widgets_get_repeats_as_keys_and_releases_apart() -> None:
 )
 def test_noise_does_not_raise(noise: str) -> None:
     sink, _ = feed(noise, "i" * 40)  # more than the longest sequence: what was begun is given up
-    assert KeyPress("i") in sink.batches[-1]
+    assert KeyEvent("i") in sink.batches[-1]
 
 
 # ---- with a real pseudo-terminal and the real app ----
@@ -186,12 +186,12 @@ def test_noise_does_not_raise(noise: str) -> None:
 async def test_a_key_and_its_release_arrive_as_intents() -> None:
     async with app_on_a_pty() as (app, station, terminal):
         terminal.type(PRESS_W)
-        await until(lambda: station.of(Push))
+        await until(lambda: station.of(DriveKeyDown))
         terminal.type(REPEAT_W + RELEASE_W)
-        await until(lambda: station.of(Release))
-        assert app.gate.state is None
-        assert [push.repeat for push in station.of(Push)] == [False, True]
-        assert station.of(ExactKeys) == [ExactKeys()]
+        await until(lambda: station.of(DriveKeyUp))
+        assert app.gate.closure is None
+        assert [push.repeat for push in station.of(DriveKeyDown)] == [False, True]
+        assert station.of(ReportKeyReleases) == [ReportKeyReleases()]
 
 
 async def test_the_terminal_is_asked_for_releases() -> None:
@@ -202,7 +202,7 @@ async def test_the_terminal_is_asked_for_releases() -> None:
 async def test_a_stop_in_the_same_read_wins() -> None:
     async with app_on_a_pty() as (_, station, terminal):
         terminal.type("i")
-        await until(lambda: station.of(Push))
+        await until(lambda: station.of(DriveKeyDown))
         before = len(station.wishes)
         terminal.type("ik")
         await until(lambda: station.of(Stop))
@@ -216,7 +216,7 @@ async def test_keys_that_come_together_leave_the_help_once_and_the_drive_screen_
         terminal.type("xyzxyz")
         await until(lambda: app.screen is app.drive)
         terminal.type("i")
-        await until(lambda: station.of(Push))
+        await until(lambda: station.of(DriveKeyDown))
         assert app.screen is app.drive
 
 
@@ -224,15 +224,15 @@ async def test_no_key_of_a_thousand_is_lost_at_5_ms_gaps() -> None:
     async with app_on_a_pty() as (_, station, terminal):
         keys = "ijl," * 250
         await terminal.type_each(keys, 0.005)
-        await until(lambda: len(station.of(Push)) >= len(keys))
+        await until(lambda: len(station.of(DriveKeyDown)) >= len(keys))
         names = {"i": "i", "j": "j", "l": "l", ",": "comma"}
-        assert [push.key for push in station.of(Push)] == [names[key] for key in keys]
+        assert [push.key for push in station.of(DriveKeyDown)] == [names[key] for key in keys]
 
 
 async def test_no_key_of_a_heap_is_lost() -> None:
     async with app_on_a_pty() as (_, station, terminal):
         terminal.type("ijl," * 250)
-        await until(lambda: len(station.of(Push)) == 1000)
+        await until(lambda: len(station.of(DriveKeyDown)) == 1000)
 
 
 async def test_lost_focus_closes_the_gate_and_stops() -> None:
@@ -240,19 +240,19 @@ async def test_lost_focus_closes_the_gate_and_stops() -> None:
         terminal.type("i\x1b[O")
         await until(lambda: any("focus" in stop.reason for stop in station.of(Stop)))
         await until(lambda: not app.app_focus)  # until then a beat of the loop may open it again
-        await until(lambda: station.of(Gate)[-1].open is False)
+        await until(lambda: station.of(SetKeyGate)[-1].open is False)
         terminal.type("\x1b[I")
-        await until(lambda: app.gate.state is None)
+        await until(lambda: app.gate.closure is None)
 
 
 async def test_a_terminal_that_stops_answering_closes_the_gate_until_it_answers_again() -> None:
     async with app_on_a_pty() as (app, station, terminal):
         await until(lambda: app.gate.ping.round_trip is not None)
         terminal.answers = False
-        await until(lambda: app.gate.state == Shut("the terminal does not answer"))
+        await until(lambda: app.gate.closure == GateClosure("the terminal does not answer"))
         assert station.of(Stop)
         terminal.answers = True
-        await until(lambda: app.gate.state is None)
+        await until(lambda: app.gate.closure is None)
 
 
 async def test_a_terminal_that_never_answers_may_drive() -> None:
@@ -261,13 +261,13 @@ async def test_a_terminal_that_never_answers_may_drive() -> None:
         app.gate.ping.__init__()  # type: ignore[misc]
         begun = asyncio.get_running_loop().time()
         await until(lambda: asyncio.get_running_loop().time() > begun + 1.2)
-        assert app.gate.state is None
+        assert app.gate.closure is None
 
 
 async def test_the_end_of_the_terminal_is_the_end_of_the_app() -> None:
     async with app_on_a_pty() as (app, station, terminal):
         terminal.type("i")
-        await until(lambda: station.of(Push))
+        await until(lambda: station.of(DriveKeyDown))
         terminal.hang_up()
         await until(lambda: not app.is_running)
         assert station.of(Stop)

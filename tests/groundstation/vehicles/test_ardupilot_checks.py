@@ -7,7 +7,7 @@ import math
 import pytest
 
 from dialects.messages import ParamRequestRead, ParamValue
-from groundstation.vehicles.ardupilot_checks import SETTINGS, SettingsCheck
+from groundstation.vehicles.ardupilot_checks import PARAM_CHECKS, ArduPilotChecks
 
 
 def value(name: str, number: float) -> ParamValue:
@@ -26,31 +26,31 @@ def value(name: str, number: float) -> ParamValue:
     ],
 )
 def test_each_setting(name: str, good: float, bad: float, words: str) -> None:
-    check = SettingsCheck(255, (1, 1))
-    assert check.receive(value(name, good)) is None
+    check = ArduPilotChecks(255, (1, 1))
+    assert check.handle_param(value(name, good)) is None
     assert not check.warnings
-    warning = check.receive(value(name, bad))
+    warning = check.handle_param(value(name, bad))
     assert warning is not None
     assert words in warning
     assert check.warnings == (warning,)
-    assert check.receive(value(name, bad)) is None, "said once"
-    check.receive(value(name, good))
+    assert check.handle_param(value(name, bad)) is None, "said once"
+    check.handle_param(value(name, good))
     assert not check.warnings
 
 
 @pytest.mark.parametrize("number", [math.nan, math.inf])
 def test_no_number_is_no_setting(number: float) -> None:
-    check = SettingsCheck(255, (1, 1))
-    assert check.receive(value("MAV_GCS_SYSID", number)) is None
+    check = ArduPilotChecks(255, (1, 1))
+    assert check.handle_param(value("MAV_GCS_SYSID", number)) is None
 
 
 def test_silence_is_asked_again_three_times_and_then_left_alone() -> None:
-    check = SettingsCheck(255, (1, 1))
+    check = ArduPilotChecks(255, (1, 1))
     asked: list[bytes] = []
-    check.receive(value("FS_GCS_ENABLE", 1.0))
+    check.handle_param(value("FS_GCS_ENABLE", 1.0))
     for second in range(20):
         for message in check.tick(second * 0.5):
             assert isinstance(message, ParamRequestRead)
             asked.append(message._param_id_raw)
-    assert len(asked) == 3 * (len(SETTINGS) - 1)
+    assert len(asked) == 3 * (len(PARAM_CHECKS) - 1)
     assert "FS_GCS_ENABLE" not in [name.decode() for name in asked]

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects.axes import NEUTRAL, Axes
-from groundstation.vehicles.demand_stream import CLOSEST, DRIVING, FAREWELL, DemandStream
+from groundstation.vehicles.demand_stream import CLOSEST, DRIVING_PERIOD, FINAL_NEUTRALS, DemandStream
 
 AHEAD = Axes(0.6, 0.0)
 
@@ -14,34 +14,34 @@ AHEAD = Axes(0.6, 0.0)
 def play(stream: DemandStream, demand: Axes, streaming: bool, start: float, seconds: float) -> list[tuple[float, Axes]]:
     """Ask every 10 ms."""
     steps = [start + 0.01 * step for step in range(round(seconds * 100))]
-    return [(now, sent) for now in steps if (sent := stream.due(demand, streaming, now)) is not None]
+    return [(now, sent) for now in steps if (sent := stream.next_due(demand, streaming, now)) is not None]
 
 
 def test_silent_until_it_may_stream() -> None:
     stream = DemandStream()
     assert play(stream, AHEAD, False, 0.0, 2.0) == []
-    assert stream.silent
+    assert stream.finished
 
 
 def test_change_goes_out_at_once() -> None:
     stream = DemandStream()
-    assert stream.due(NEUTRAL, True, 10.0) == NEUTRAL
-    assert stream.due(AHEAD, True, 10.011) == AHEAD
-    assert stream.due(NEUTRAL, True, 10.012) == NEUTRAL, "neutral may follow at any distance"
+    assert stream.next_due(NEUTRAL, True, 10.0) == NEUTRAL
+    assert stream.next_due(AHEAD, True, 10.011) == AHEAD
+    assert stream.next_due(NEUTRAL, True, 10.012) == NEUTRAL, "neutral may follow at any distance"
 
 
 def test_changes_closer_than_the_vehicle_takes_wait_and_the_newest_wins() -> None:
     stream = DemandStream()
-    stream.due(AHEAD, True, 10.0)
-    assert stream.due(Axes(0.6, 0.1), True, 10.001) is None
-    assert stream.due(Axes(0.6, 0.2), True, 10.001 + CLOSEST) == Axes(0.6, 0.2)
+    stream.next_due(AHEAD, True, 10.0)
+    assert stream.next_due(Axes(0.6, 0.1), True, 10.001) is None
+    assert stream.next_due(Axes(0.6, 0.2), True, 10.001 + CLOSEST) == Axes(0.6, 0.2)
 
 
 def test_a_key_just_after_a_repeated_neutral_does_not_wait() -> None:
     stream = DemandStream()
     for step in range(5):
-        stream.due(NEUTRAL, True, 10.0 + step * 0.2)
-    assert stream.due(AHEAD, True, 10.801) == AHEAD
+        stream.next_due(NEUTRAL, True, 10.0 + step * 0.2)
+    assert stream.next_due(AHEAD, True, 10.801) == AHEAD
 
 
 def test_steady_rates() -> None:
@@ -54,13 +54,13 @@ def test_steady_rates() -> None:
 
 def test_a_coarse_tick_keeps_the_rate() -> None:
     stream = DemandStream()
-    sent = [now for step in range(1000) if stream.due(AHEAD, True, now := step * 0.02)]
+    sent = [now for step in range(1000) if stream.next_due(AHEAD, True, now := step * 0.02)]
     assert 395 <= len(sent) <= 405
 
 
 def test_a_pause_is_not_made_up_for() -> None:
     stream = DemandStream()
-    stream.due(AHEAD, True, 0.0)
+    stream.next_due(AHEAD, True, 0.0)
     assert len(play(stream, AHEAD, True, 5.0, 0.1)) <= 3
 
 
@@ -68,10 +68,10 @@ def test_farewell_is_five_neutrals_then_silence() -> None:
     stream = DemandStream()
     play(stream, AHEAD, True, 0.0, 1.0)
     goodbye = play(stream, AHEAD, False, 1.0, 3.0)
-    assert [demand for _, demand in goodbye] == [NEUTRAL] * FAREWELL
+    assert [demand for _, demand in goodbye] == [NEUTRAL] * FINAL_NEUTRALS
     assert goodbye[0][0] == 1.0
-    assert goodbye[-1][0] <= 1.0 + FAREWELL * DRIVING
-    assert stream.silent
+    assert goodbye[-1][0] <= 1.0 + FINAL_NEUTRALS * DRIVING_PERIOD
+    assert stream.finished
 
 
 @given(
@@ -84,11 +84,11 @@ def test_what_may_not_stream_is_only_ever_neutral_and_few(steps: list[tuple[floa
     farewells = 0
     for pause, demand, streaming in steps:
         now += pause
-        sent = stream.due(demand, streaming, now)
+        sent = stream.next_due(demand, streaming, now)
         if streaming:
             farewells = 0
             assert sent is None or sent == demand
         elif sent is not None:
             farewells += 1
             assert sent == NEUTRAL
-        assert farewells <= FAREWELL
+        assert farewells <= FINAL_NEUTRALS

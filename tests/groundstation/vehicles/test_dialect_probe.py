@@ -6,7 +6,7 @@ import itertools
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result
-from groundstation.vehicles.dialect_probe import SELDOM
+from groundstation.vehicles.dialect_probe import LONGEST_RETRY
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 
@@ -76,7 +76,7 @@ def test_a_mute_one_is_asked_ever_more_seldom() -> None:
     cockpit.run(600.0)
     times = asked(vehicle)
     assert 30 < len(times) < 130
-    assert max(later - at for at, later in itertools.pairwise(times)) >= SELDOM
+    assert max(later - at for at, later in itertools.pairwise(times)) >= LONGEST_RETRY
 
 
 def test_one_that_begins_anew_is_asked_again() -> None:

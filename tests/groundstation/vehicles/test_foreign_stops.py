@@ -12,12 +12,23 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command
 from dialects.modes import Mode
-from groundstation.intents import Arm, Disarm, EmergencyStop, ExactKeys, Gate, Push, Quit, Release, SetStyle, Stop
+from groundstation.intents import (
+    Arm,
+    Disarm,
+    DriveKeyDown,
+    DriveKeyUp,
+    EmergencyStop,
+    Quit,
+    ReportKeyReleases,
+    SetKeyGate,
+    SetStyle,
+    Stop,
+)
 from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
 from tests.groundstation.fake_vehicle import Cockpit
 
-FORWARD = Push(key="i", throttle=1, steering=0)
-LEFT = Push(key="j", throttle=0, steering=-1)
+FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
+LEFT = DriveKeyDown(key="j", throttle=0, steering=-1)
 
 
 def driving(style: str = "hold", vehicle: FakeArduPilot | None = None) -> tuple[Cockpit, FakeArduPilot]:
@@ -28,7 +39,7 @@ def driving(style: str = "hold", vehicle: FakeArduPilot | None = None) -> tuple[
     cockpit.do(SetStyle(style=style), Arm())
     cockpit.run(2.0)
     assert (cockpit.view.armed, cockpit.view.mode) == (True, "MANUAL")
-    cockpit.do(ExactKeys(), FORWARD, *([LEFT] if style == "hold" else []))
+    cockpit.do(ReportKeyReleases(), FORWARD, *([LEFT] if style == "hold" else []))
     cockpit.run(1.0)
     assert vehicle.moves
     return cockpit, vehicle
@@ -59,7 +70,7 @@ def test_the_danger_is_real() -> None:
 def test_key_released() -> None:
     cockpit, vehicle = driving()
     released = cockpit.now
-    cockpit.do(Release(key="i"), Release(key="j"))
+    cockpit.do(DriveKeyUp(key="i"), DriveKeyUp(key="j"))
     assert_stopped_by_us(cockpit, vehicle, released)
 
 
@@ -83,7 +94,7 @@ def test_screen_frozen(style: str) -> None:
 def test_gate_closed(style: str) -> None:
     cockpit, vehicle = driving(style)
     closed = cockpit.now
-    cockpit.do(Gate(open=False, reason="help is open"))
+    cockpit.do(SetKeyGate(open=False, reason="help is open"))
     assert_stopped_by_us(cockpit, vehicle, closed)
 
 
@@ -100,7 +111,7 @@ def test_quit(style: str) -> None:
 def test_station_exception(style: str) -> None:
     cockpit, vehicle = driving(style)
     at = cockpit.now
-    cockpit.core.begin(at)
+    cockpit.core.activate(at)
     cockpit.world.settle()
     assert_stopped_by_us(cockpit, vehicle, at)
     assert cockpit.core.finished
@@ -118,7 +129,7 @@ def test_disarmed_and_emergency_stop() -> None:
 
 def test_neutral_flows_while_it_stands_armed() -> None:
     cockpit, vehicle = driving()
-    cockpit.do(Release(key="i"), Release(key="j"))
+    cockpit.do(DriveKeyUp(key="i"), DriveKeyUp(key="j"))
     cockpit.run(2.0)
     start = cockpit.now
     cockpit.run(20.0)
@@ -154,7 +165,7 @@ def test_a_vehicle_of_another_station_does_not_move_and_we_say_whose_it_is() -> 
     assert "it obeys ground station 252 only and we are 255: use --system" in cockpit.view.warnings
     cockpit.do(Arm())
     cockpit.run(1.0)
-    cockpit.do(ExactKeys(), FORWARD)
+    cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(1.0)
     assert not vehicle.moves
 

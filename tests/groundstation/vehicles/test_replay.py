@@ -16,13 +16,13 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega
 
 from dialects.messages import MESSAGES
-from groundstation.intents import Gate, Lease
+from groundstation.intents import RenewLease, SetKeyGate
 from groundstation.ipc import encode
 from groundstation.snapshot import Snapshot
 from groundstation.station.station import COMPONENT, Station
 from link.core import LinkReport
 from link.protocol.channel import Channel
-from link.tlog.tlog import Record, read
+from link.tlog.tlog import Record, read_records
 
 RECORDING = Path(__file__).resolve().parents[4] / "shared" / "data" / "ardurover.tlog"
 OURS = 254
@@ -63,15 +63,15 @@ def replay() -> Replay:
     station = Station(["udpin:127.0.0.1:14550"], system=OURS)
     channel = Channel("recording", 0, system=OURS, component=COMPONENT)
     bare = ardupilotmega.MAVLink(None)
-    station.intend(Gate(open=True), 0.0)
+    station.handle_intent(SetKeyGate(open=True), 0.0)
     moments: list[Moment] = []
     sizes: list[int] = []
     newest: dict[str, Any] = {}
     everything: dict[str, list[Any]] = {}
     due = 0.0
-    for now, raw in seconds(list(read(RECORDING.read_bytes()))):
+    for now, raw in seconds(list(read_records(RECORDING.read_bytes()))):
         while now >= due:
-            station.intend(Lease(), due)
+            station.handle_intent(RenewLease(), due)
             if len(sizes) % 10 == 0:
                 station.observe([channel.report(now=due)], due)
             station.tick(due)
@@ -95,7 +95,7 @@ def test_it_is_known_for_what_it_is() -> None:
     assert last.vehicle.name == "ArduPilot rover 1"
     assert last.vehicles == (1,), "the other ground station is no vehicle"
     assert not last.vehicle.in_control
-    assert last.helm.gate_reason == "not in control"
+    assert last.operator.gate_reason == "not in control"
     assert len(replay().moments) == 1300
 
 

@@ -6,8 +6,15 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, DataStream, Result
-from groundstation.station.link_stats import LinkBook
-from groundstation.vehicles.stream_requests import FRAME, LOAD, SHARE, WANTED, StreamRequests, rate
+from groundstation.station.link_stats import LinkStats
+from groundstation.vehicles.stream_requests import (
+    CAPACITY_SHARE,
+    FRAME,
+    LOAD,
+    STREAM_RATES,
+    StreamRequests,
+    stream_rate,
+)
 from link.core import LinkReport
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
@@ -29,7 +36,7 @@ def groups(vehicle: FakeVehicle) -> dict[int, int]:
 
 
 def test_all_that_the_drive_screen_needs_is_wanted() -> None:
-    assert {m.MESSAGES[number].msgname for number in WANTED} == EXPECTED
+    assert {m.MESSAGES[number].msgname for number in STREAM_RATES} == EXPECTED
 
 
 @pytest.mark.parametrize("autopilot", [Autopilot.ARDUPILOT, Autopilot.PX4])
@@ -37,8 +44,8 @@ def test_a_foreign_vehicle_is_asked_at_once_one_message_after_the_other(autopilo
     vehicle = FakeArduPilot(autopilot=autopilot)
     cockpit = Cockpit(vehicle)
     cockpit.run(2.0)
-    assert asked(vehicle) == {number: pytest.approx(wanted.rate) for number, wanted in WANTED.items()}
-    assert len(vehicle.commands(INTERVAL)) == len(WANTED), "each once: they were acknowledged"
+    assert asked(vehicle) == {number: pytest.approx(wanted.rate) for number, wanted in STREAM_RATES.items()}
+    assert len(vehicle.commands(INTERVAL)) == len(STREAM_RATES), "each once: they were acknowledged"
     assert groups(vehicle) == {}
     cockpit.run(3.0)
     rates = {each.name: each.rate for each in cockpit.snapshot.messages if not each.sent}
@@ -64,7 +71,7 @@ def test_a_vehicle_of_no_known_kind_is_asked_for_what_does_not_come() -> None:
     cockpit.run(2.5)
     assert vehicle.commands(INTERVAL) == []
     cockpit.run(3.0)
-    assert set(asked(vehicle)) == set(WANTED) - {m.Attitude.id}
+    assert set(asked(vehicle)) == set(STREAM_RATES) - {m.Attitude.id}
 
 
 def test_a_vehicle_that_does_not_know_the_command_is_asked_for_groups() -> None:
@@ -100,7 +107,7 @@ def test_one_refused_message_is_asked_for_by_its_group_alone() -> None:
 
     vehicle = Picky()
     Cockpit(vehicle).run(5.0)
-    assert set(asked(vehicle)) == set(WANTED)
+    assert set(asked(vehicle)) == set(STREAM_RATES)
     assert groups(vehicle) == {DataStream.RC_CHANNELS: 5}
 
 
@@ -145,32 +152,32 @@ def test_nobody_is_asked_while_the_screen_is_frozen() -> None:
 
 def test_a_clock_that_starts_anew_is_a_reboot() -> None:
     requests = StreamRequests((1, 1), 0.0)
-    while requests.next(Autopilot.ARDUPILOT, 1.0) is not None:
-        requests.receive(m.Attitude(60_000, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1.0)
-    requests.receive(m.Attitude(59_900, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 2.0)
-    assert requests.next(Autopilot.ARDUPILOT, 2.0) is None
-    requests.receive(m.Attitude(1_000, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 3.0)
-    assert requests.next(Autopilot.ARDUPILOT, 3.0) is not None
+    while requests.next_message(Autopilot.ARDUPILOT, 1.0) is not None:
+        requests.handle_message(m.Attitude(60_000, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1.0)
+    requests.handle_message(m.Attitude(59_900, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 2.0)
+    assert requests.next_message(Autopilot.ARDUPILOT, 2.0) is None
+    requests.handle_message(m.Attitude(1_000, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 3.0)
+    assert requests.next_message(Autopilot.ARDUPILOT, 3.0) is not None
 
 
 # ---- the link ----
 
 
 def total(capacity: float | None) -> float:
-    return sum((m.MESSAGES[number].unpacker.size + FRAME) * rate(number, capacity) for number in WANTED)
+    return sum((m.MESSAGES[number].unpacker.size + FRAME) * stream_rate(number, capacity) for number in STREAM_RATES)
 
 
 @pytest.mark.parametrize("baud", [9600, 19200, 57600, 921600])
 def test_together_they_leave_room_on_the_link(baud: int) -> None:
-    assert total(baud / 10) <= max(SHARE * baud / 10, 1.0) + 1e-6
+    assert total(baud / 10) <= max(CAPACITY_SHARE * baud / 10, 1.0) + 1e-6
     assert total(baud / 10) <= total(None) == LOAD
 
 
 def test_a_slow_link_gets_less_and_a_usual_one_everything() -> None:
-    assert rate(m.Attitude.id, 960.0) == pytest.approx(10 * SHARE * 960 / LOAD)
-    assert rate(m.Attitude.id, 5760.0) == 10.0
-    assert rate(m.Attitude.id, None) == 10.0
-    assert rate(m.GpsRawInt.id, 1.0) == 0.1
+    assert stream_rate(m.Attitude.id, 960.0) == pytest.approx(10 * CAPACITY_SHARE * 960 / LOAD)
+    assert stream_rate(m.Attitude.id, 5760.0) == 10.0
+    assert stream_rate(m.Attitude.id, None) == 10.0
+    assert stream_rate(m.GpsRawInt.id, 1.0) == 0.1
 
 
 def test_the_capacity_is_that_of_the_vehicles_link() -> None:
@@ -178,10 +185,10 @@ def test_the_capacity_is_that_of_the_vehicles_link() -> None:
     cockpit = Cockpit(vehicle)
     cockpit.world.near.channel._capacity = 960.0
     cockpit.run(2.0)
-    assert asked(vehicle)[m.Attitude.id] == pytest.approx(10 * SHARE * 960 / LOAD, rel=0.01)
+    assert asked(vehicle)[m.Attitude.id] == pytest.approx(10 * CAPACITY_SHARE * 960 / LOAD, rel=0.01)
 
 
 def test_a_radio_that_is_full_makes_less_of_the_capacity() -> None:
-    book = LinkBook()
-    book.observe([LinkReport("serial:/dev/ttyUSB0:57600", 0, capacity=5760.0, headroom=0.5)], None, 100.0)
+    book = LinkStats()
+    book.update([LinkReport("serial:/dev/ttyUSB0:57600", 0, capacity=5760.0, headroom=0.5)], None, 100.0)
     assert (book.capacity(0), book.capacity(1)) == (2880.0, None)

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.codec import decode
-from dialects.enums import Autopilot, State
-from groundstation.ipc import decode_up, encode
+from dialects.enums import Autopilot, SystemState
+from groundstation.ipc import decode_from_station, encode
 from groundstation.snapshot import VehicleView
 from groundstation.station.station import Station
 from groundstation.vehicles.vehicle_state import VehicleState
@@ -33,16 +33,16 @@ def state(*messages: m.Message, now: float = 10.0) -> VehicleState:
 
 
 def view(*messages: m.Message, at: float = 10.0) -> VehicleView:
-    return state(*messages).view(at)
+    return state(*messages).build_view(at)
 
 
-def heartbeat(mode: int = 0, base: int = 1, autopilot: int = 0, status: int = State.STANDBY) -> m.Heartbeat:
+def heartbeat(mode: int = 0, base: int = 1, autopilot: int = 0, status: int = SystemState.STANDBY) -> m.Heartbeat:
     return m.Heartbeat(10, autopilot, base, mode, status, 3)
 
 
 def test_heartbeat() -> None:
-    seen = view(heartbeat(mode=4, base=1 | 128, status=State.ACTIVE))
-    assert (seen.mode, seen.armed, seen.status, seen.name) == ("HOLD", True, State.ACTIVE, "Rover 1")
+    seen = view(heartbeat(mode=4, base=1 | 128, status=SystemState.ACTIVE))
+    assert (seen.mode, seen.armed, seen.status, seen.name) == ("HOLD", True, SystemState.ACTIVE, "Rover 1")
 
 
 @pytest.mark.parametrize(
@@ -61,16 +61,16 @@ def test_names(kind: int, autopilot: int, name: str) -> None:
 
 def test_silence_and_life() -> None:
     vehicle = state(heartbeat())
-    assert vehicle.view(12.4).alive
-    assert vehicle.view(12.4).silence == pytest.approx(2.4)
-    assert not vehicle.view(12.6).alive
+    assert vehicle.build_view(12.4).alive
+    assert vehicle.build_view(12.4).silence == pytest.approx(2.4)
+    assert not vehicle.build_view(12.6).alive
 
 
 def test_any_component_is_life_but_only_the_autopilots_word_counts() -> None:
     vehicle = state(heartbeat(mode=4))
     vehicle.receive(received(m.Heartbeat(30, 8, 0, 0, 3, 3), component=154), 20.0)
-    assert vehicle.view(20.0).alive
-    assert vehicle.view(20.0).mode == "HOLD"
+    assert vehicle.build_view(20.0).alive
+    assert vehicle.build_view(20.0).mode == "HOLD"
 
 
 def test_attitude_and_heading_wrap() -> None:
@@ -128,16 +128,16 @@ def test_drive_status() -> None:
 
 
 def test_emergency_stop_is_seen_by_status_or_limit() -> None:
-    assert state(heartbeat(status=State.EMERGENCY)).emergency_stop
+    assert state(heartbeat(status=SystemState.EMERGENCY)).emergency_stop
     assert state(heartbeat(), m.RoverDriveStatus(0, 0, 0, 0, [0] * 4, 64, 0, 0)).emergency_stop
     assert not state(heartbeat()).emergency_stop
 
 
 def test_failsafe_countdown_runs_between_messages() -> None:
     vehicle = state(m.RoverFailsafeStatus(0, 1 | 2, 0, 3000, 4, 0))
-    assert vehicle.view(10.0).failsafes == ("manual loss", "gcs loss")
-    assert vehicle.view(11.0).failsafe_in == pytest.approx(2.0)
-    assert vehicle.view(99.0).failsafe_in == 0.0
+    assert vehicle.build_view(10.0).failsafes == ("manual loss", "gcs loss")
+    assert vehicle.build_view(11.0).failsafe_in == pytest.approx(2.0)
+    assert vehicle.build_view(99.0).failsafe_in == 0.0
     assert view(m.RoverFailsafeStatus(0, 0, 0, 65535, 0, 0)).failsafe_in is None
 
 
@@ -179,4 +179,4 @@ def test_no_message_breaks_the_station(frames: list[tuple[tuple[int, bytes], int
             continue
         station.receive(received(message, component, system), now)
         station.tick(now)
-        assert decode_up(encode(station.snapshot(now, now)))
+        assert decode_from_station(encode(station.snapshot(now, now)))

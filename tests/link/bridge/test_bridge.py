@@ -25,14 +25,14 @@ import pytest
 from rich.console import Console
 
 from dialects.messages import Attitude
-from link.bridge.bridge import DATAGRAM, joined
-from link.bridge.status import LinkStatus, RouteStatus, Status
-from link.bridge.table import NAME_WIDTH, picture, short
-from link.endpoint import FASTEST_BAUD, SCHEMES, SLOWEST_BAUD
-from link.routing.router import REDUNDANT_WITHIN
+from link.bridge.bridge import DATAGRAM, join_frames
+from link.bridge.status import BridgeStatus, LinkStatus, RouteStatus
+from link.bridge.table import NAME_WIDTH, build_tables, format_count
+from link.endpoint import MAX_BAUD, MIN_BAUD, SCHEMES
+from link.routing.router import REDUNDANCY_WINDOW
 from link.routing.routes import PEER_SILENCE, ROUTE_SILENCE
-from link.tlog.tlog import read
-from link.transport.priority_queue import AHEAD, STALE
+from link.tlog.tlog import read_records
+from link.transport.priority_queue import MAX_DRIVER_BACKLOG, STALE
 from link.transport.tcp import MAX_CONNECTIONS
 from tests.link.frames import demand, frame, heartbeat
 from tests.link.ports import Cable
@@ -241,7 +241,7 @@ def test_the_table_is_whole_on_a_terminal_of_80_columns() -> None:
     quiet = replace(busy, endpoint="udpin:0.0.0.0:14550", peers=0)
     route = RouteStatus(255, 190, busy.endpoint, "192.168.100.200:54321", 1234.5, 1000.0, 1234567)
     console = Console(file=io.StringIO(), width=80, height=60, force_terminal=True, color_system=None)
-    console.print(picture(Status((busy, quiet), (route,), 0, 0)))
+    console.print(build_tables(BridgeStatus((busy, quiet), (route,), 0, 0)))
     lines = console.file.getvalue().splitlines()  # type: ignore[attr-defined]
     shown = "".join("".join(line[: NAME_WIDTH + 2].split()) for line in lines)
     assert busy.endpoint in shown
@@ -260,7 +260,7 @@ def test_the_table_is_whole_on_a_terminal_of_80_columns() -> None:
      (999.9e6, "1000M"), (12e9, "12.0G")],
 )  # fmt: skip
 def test_long_numbers_are_short(number: float, text: str) -> None:
-    assert short(number) == text
+    assert format_count(number) == text
     assert len(text) <= 5
 
 
@@ -275,7 +275,7 @@ def test_it_records_what_passes_and_the_file_is_whole_after_a_signal(
     read_until(cable, demand(1))
     assert program.end() == 0
     [log] = (tmp_path / "logs").iterdir()
-    assert [each.raw for each in read(log.read_bytes())] == [VEHICLE, demand(1)]
+    assert [each.raw for each in read_records(log.read_bytes())] == [VEHICLE, demand(1)]
 
 
 # ---- mistakes ----
@@ -310,12 +310,12 @@ def test_a_mistake_is_one_line_and_exit_code_2(words: tuple[str, ...], told: str
 
 
 def test_frames_are_joined_whole_and_in_order() -> None:
-    datagrams = joined(BULK)
+    datagrams = join_frames(BULK)
     assert b"".join(datagrams) == b"".join(BULK)
     assert all(len(each) <= DATAGRAM for each in datagrams)
     assert len(datagrams) == -(-sum(map(len, BULK)) // DATAGRAM)
     assert all(each.startswith(b"\xfd") for each in datagrams)
-    assert joined([BULK[0]]) == [BULK[0]]
+    assert join_frames([BULK[0]]) == [BULK[0]]
 
 
 # ---- the document ----
@@ -335,11 +335,11 @@ def test_the_document_names_every_endpoint_and_option_and_the_right_numbers() ->
         f"until {PEER_SILENCE:g} s of silence",
         f"remembered for {ROUTE_SILENCE / 60:g} minutes",
         f"connections, {MAX_CONNECTIONS} at most",
-        f"{SLOWEST_BAUD} to {FASTEST_BAUD} baud",
-        f"fed {AHEAD * 1000:g} ms of wire time",
+        f"{MIN_BAUD} to {MAX_BAUD} baud",
+        f"fed {MAX_DRIVER_BACKLOG * 1000:g} ms of wire time",
         f"has waited {STALE:g} s",
         f"at most {DATAGRAM} bytes",
-        f"within {REDUNDANT_WITHIN:g} s goes on once",
+        f"within {REDUNDANCY_WINDOW:g} s goes on once",
     )
     for number in numbers:
         assert number in text.replace("\n", " "), number

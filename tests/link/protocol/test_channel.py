@@ -190,7 +190,7 @@ def test_the_audience_is_who_has_shown_a_heartbeat_and_whom_the_user_named() -> 
 def test_who_was_silent_for_long_and_is_back_is_another_peer() -> None:
     channel = vehicle()
     first = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
-    channel.forget_silent(PEER_SILENCE + 0.1)
+    channel.expire_peers(PEER_SILENCE + 0.1)
     assert audience(channel) == ()
     second = channel.receive(heartbeat(1), HERE, 20.0)[0].peer
     assert second != first
@@ -201,14 +201,14 @@ def test_who_was_silent_for_long_and_is_back_is_another_peer() -> None:
 def test_a_named_address_that_was_silent_for_long_is_another_peer_once() -> None:
     channel = vehicle(target=HERE)
     first = audience(channel)
-    channel.forget_silent(100.0)
+    channel.expire_peers(100.0)
     assert audience(channel) == first, "nobody has spoken yet"
     channel.receive(heartbeat(0), HERE, 100.0)
     assert audience(channel) == first
-    channel.forget_silent(100.0 + PEER_SILENCE + 0.1)
+    channel.expire_peers(100.0 + PEER_SILENCE + 0.1)
     second = audience(channel)
     assert second != first
-    channel.forget_silent(200.0)
+    channel.expire_peers(200.0)
     assert audience(channel) == second
     assert channel.receive(demand(1), HERE, 201.0)[0].peer == second[0]
 
@@ -217,7 +217,7 @@ def test_a_connection_that_ends_ends_the_conversation() -> None:
     channel = vehicle(stream=True, target="serial")
     channel.receive(heartbeat(0), "serial", 0.0)
     first = audience(channel)
-    channel.gone("serial")
+    channel.handle_disconnect("serial")
     assert [peer.address for peer in audience(channel)] == ["serial"]
     assert audience(channel) != first
 
@@ -226,11 +226,11 @@ def test_a_connection_is_sent_to_before_it_has_spoken_and_while_it_lasts() -> No
     channel = vehicle(stream=True)
     assert channel.receive(b"", HERE, 0.0) == []
     [peer] = audience(channel)
-    channel.forget_silent(1000.0)
+    channel.expire_peers(1000.0)
     assert audience(channel) == (peer,), "a program that only listens"
     [question] = channel.receive(demand(0), HERE, 1000.0)
     assert (question.may_ask, question.introduced) == (True, False)
-    channel.gone(HERE)
+    channel.handle_disconnect(HERE)
     assert audience(channel) == ()
 
 
@@ -273,7 +273,7 @@ def test_a_silent_peer_is_forgotten_but_not_its_count() -> None:
     channel = vehicle()
     channel.receive(b"noise" + heartbeat(0), HERE, 0.0)
     channel.receive(b"noise" + heartbeat(1), HERE, 0.0)
-    channel.forget_silent(PEER_SILENCE + 0.1)
+    channel.expire_peers(PEER_SILENCE + 0.1)
     report = channel.report()
     assert (report.peers, report.frames, report.resync_bytes) == (0, 2, 10)
 

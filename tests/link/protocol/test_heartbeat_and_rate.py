@@ -12,21 +12,21 @@ from link.protocol.rate import RateMeter, TokenBucket
 
 def test_silence_begins_with_the_last_word() -> None:
     monitor = HeartbeatMonitor(timeout=5.0)
-    assert not monitor.ever
+    assert not monitor.ever_heard
     assert monitor.silence(1.0) == math.inf
-    assert not monitor.alive(1.0)
-    monitor.heard(1.0)
-    assert monitor.ever
-    assert monitor.alive(6.0)
-    assert not monitor.alive(6.1)
+    assert not monitor.is_alive(1.0)
+    monitor.update(1.0)
+    assert monitor.ever_heard
+    assert monitor.is_alive(6.0)
+    assert not monitor.is_alive(6.1)
     assert monitor.silence(3.5) == 2.5
 
 
 def test_a_bucket_lets_a_burst_and_then_its_rate_through() -> None:
     bucket = TokenBucket(rate=10, burst=3)
-    assert [bucket.take(0.0) for _ in range(5)] == [True, True, True, False, False]
-    assert [bucket.take(0.1), bucket.take(0.1)] == [True, False]
-    assert [bucket.take(100.0) for _ in range(4)] == [True, True, True, False]
+    assert [bucket.consume(0.0) for _ in range(5)] == [True, True, True, False, False]
+    assert [bucket.consume(0.1), bucket.consume(0.1)] == [True, False]
+    assert [bucket.consume(100.0) for _ in range(4)] == [True, True, True, False]
 
 
 def test_a_meter_forgets_after_its_window() -> None:

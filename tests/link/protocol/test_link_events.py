@@ -7,7 +7,7 @@ from typing import Any
 from dialects.enums import Severity
 from link.core import LinkReport
 from link.protocol.channel import Channel
-from link.protocol.link_events import News, Troubles, UpsAndDowns
+from link.protocol.link_events import LinkEvent, LinkEvents, UpDownEvents
 
 
 def report(received: int, **changes: Any) -> LinkReport:
@@ -15,17 +15,17 @@ def report(received: int, **changes: Any) -> LinkReport:
 
 
 def test_a_link_that_goes_down_comes_back_and_goes_down_again_is_told_each_time() -> None:
-    troubles = Troubles()
+    troubles = LinkEvents()
     gone = report(0, down="udpin:127.0.0.1:14550: lost the port (hung up); waiting for it")
-    told = [troubles.news(each) for each in (report(0), gone, gone, report(1), report(2), gone)]
-    lost = News("lost the port (hung up); waiting for it", Severity.ERROR)
-    assert told == [None, lost, None, News("it is back", Severity.NOTICE), None, lost]
+    told = [troubles.update(each) for each in (report(0), gone, gone, report(1), report(2), gone)]
+    lost = LinkEvent("lost the port (hung up); waiting for it", Severity.ERROR)
+    assert told == [None, lost, None, LinkEvent("it is back", Severity.NOTICE), None, lost]
 
 
 def test_connecting_is_no_news_and_who_was_never_there_is_not_back() -> None:
-    troubles = Troubles()
+    troubles = LinkEvents()
     whys = ("connecting", "not connected (refused)", None, "lost", "not connected (refused)", None)
-    told = [troubles.news(report(0, down=why)) for why in whys]
+    told = [troubles.update(report(0, down=why)) for why in whys]
     assert [each and each.text for each in told] == [
         None, "not connected (refused)", "connected", "lost", "not connected (refused)", "it is back"
     ]  # fmt: skip
@@ -33,40 +33,40 @@ def test_connecting_is_no_news_and_who_was_never_there_is_not_back() -> None:
 
 
 def test_what_connects_at_once_is_told_once() -> None:
-    troubles = Troubles()
-    told = [troubles.news(report(0, down=why)) for why in ("connecting", "connecting", None, None)]
+    troubles = LinkEvents()
+    told = [troubles.update(report(0, down=why)) for why in ("connecting", "connecting", None, None)]
     assert [each and each.text for each in told] == [None, None, "connected", None]
 
 
 def test_links_are_told_apart() -> None:
-    troubles = UpsAndDowns()
-    assert troubles.news("one", None) is None
-    assert troubles.news("two", "missing") == News("missing", Severity.ERROR)
-    assert troubles.news("one", "missing") == News("missing", Severity.ERROR)
-    assert troubles.news("two", None) == News("connected", Severity.NOTICE)
-    assert troubles.news("one", None) == News("it is back", Severity.NOTICE)
+    troubles = UpDownEvents()
+    assert troubles.update("one", None) is None
+    assert troubles.update("two", "missing") == LinkEvent("missing", Severity.ERROR)
+    assert troubles.update("one", "missing") == LinkEvent("missing", Severity.ERROR)
+    assert troubles.update("two", None) == LinkEvent("connected", Severity.NOTICE)
+    assert troubles.update("one", None) == LinkEvent("it is back", Severity.NOTICE)
 
 
 def test_a_new_reason_is_told_too() -> None:
-    troubles = Troubles()
-    told = [troubles.news(report(0, down=why)) for why in ("lost", "not there", "not there")]
+    troubles = LinkEvents()
+    told = [troubles.update(report(0, down=why)) for why in ("lost", "not there", "not there")]
     assert [each and each.text for each in told] == ["lost", "not there", None]
 
 
 def test_a_wrong_dialect_is_told_once() -> None:
-    troubles = Troubles()
+    troubles = LinkEvents()
     wrong = report(0, dialect_mismatch=("HEARTBEAT",))
-    told = [troubles.news(each) for each in (wrong, report(1), wrong)]
+    told = [troubles.update(each) for each in (wrong, report(1), wrong)]
     assert [each is not None for each in told] == [True, False, False]
 
 
 def test_a_wrong_baud_rate_is_told_once_however_much_noise_there_is() -> None:
     troubles, channel = (
-        Troubles(),
+        LinkEvents(),
         Channel("serial:/dev/ttyS0:57600", 0, system=1, component=1, stream=True, capacity=5760),
     )
     told = []
     for second in range(5):
         channel.receive(bytes(2000), "port", float(second))
-        told.append(troubles.news(channel.report(now=float(second))))
+        told.append(troubles.update(channel.report(now=float(second))))
     assert [each.text for each in told if each] == ["bytes and no MAVLink frame among them; wrong baud rate?"]

@@ -21,7 +21,7 @@ from dialects.messages import (
     SystemTime,
 )
 from dialects.targets import TARGETS, target_of
-from link.routing.router import MAX_FOLLOWED, REDUNDANT_WITHIN, Router
+from link.routing.router import MAX_TRACKED_SOURCES, REDUNDANCY_WINDOW, Router
 from link.routing.routes import MAX_PEERS, MAX_SOURCES, PEER_SILENCE, ROUTE_SILENCE
 from tests.link.frames import demand, frame, heartbeat, version_1
 
@@ -161,7 +161,7 @@ def test_unknown_ids_are_forwarded_unchanged() -> None:
         )
         for data in trains:
             assert rig.send(port, data)[OTHER, "out"] == data
-        assert rig.router.table.ports()[port].unknown == 4
+        assert rig.router.table.transport_reports()[port].unknown == 4
 
 
 def test_unknown_ids_in_pieces_on_a_stream() -> None:
@@ -190,15 +190,15 @@ def test_damaged_frames_and_noise_stay_here() -> None:
     damaged[15] ^= 0x10
     good = frame(BROADCAST, 2, 1, 1)
     assert rig.send(SERIAL, bytes(damaged) + b"noise\xfd\xfe" + good)[UDP, GCS] == good
-    assert rig.router.table.ports()[SERIAL].crc_errors == 1
-    assert rig.router.table.ports()[SERIAL].noise_bytes > 0
+    assert rig.router.table.transport_reports()[SERIAL].crc_errors == 1
+    assert rig.router.table.transport_reports()[SERIAL].noise_bytes > 0
 
 
 def test_unknown_frames_teach_no_routes() -> None:
     rig = Rig()
     rig.send(OTHER, unknown(1, system=9, component=9))
     assert rig.send(UDP, command(9, 9)) == {}
-    assert [route.system for route in rig.router.table.routes(1.0)] == [1, 255]
+    assert [route.system for route in rig.router.table.route_reports(1.0)] == [1, 255]
 
 
 @pytest.mark.parametrize("ids", [(0, 1), (0, 0)])
@@ -209,7 +209,7 @@ def test_system_0_goes_nowhere(ids: tuple[int, int]) -> None:
 def test_component_0_of_a_pymavlink_script_is_a_source_like_others() -> None:
     rig = Rig()
     assert set(rig.send(UDP, heartbeat(0, 254, 0))) == set(rig.send(UDP, heartbeat(0, 253, 190))) != set()
-    assert (254, 0) in [(route.system, route.component) for route in rig.router.table.routes(1.0)]
+    assert (254, 0) in [(route.system, route.component) for route in rig.router.table.route_reports(1.0)]
     assert set(rig.send(SERIAL, frame(CommandLong(254, 0, 400, 0, 1, 0, 0, 0, 0, 0, 0), 1, 1, 1))) == {(UDP, GCS)}
 
 
@@ -236,7 +236,7 @@ def test_the_same_number_long_after_is_another_frame() -> None:
     rig = Rig()
     data = frame(BROADCAST, 9, 1, 1)
     rig.send(SERIAL, data, now=1.0)
-    assert rig.send(OTHER, data, now=1.0 + REDUNDANT_WITHIN) != {}
+    assert rig.send(OTHER, data, now=1.0 + REDUNDANCY_WINDOW) != {}
 
 
 def test_nothing_of_a_vehicle_goes_to_the_vehicle_over_its_other_link() -> None:
@@ -272,7 +272,7 @@ def test_silent_addresses_get_nothing_more_and_their_counts_stay() -> None:
     rig.send(SERIAL, heartbeat(1, 1, 1), now=PEER_SILENCE + 1.2)
     rig.router.tick(PEER_SILENCE + 1.3)
     assert set(rig.send(SERIAL, frame(BROADCAST, 2, 1, 1), now=PEER_SILENCE + 1.4)) == {(OTHER, "out")}
-    assert rig.router.table.ports()[UDP].frames_in == 1
+    assert rig.router.table.transport_reports()[UDP].frames_in == 1
 
 
 def test_a_vehicle_that_fell_silent_is_still_told_to_stop_for_minutes() -> None:
@@ -285,7 +285,7 @@ def test_a_vehicle_that_fell_silent_is_still_told_to_stop_for_minutes() -> None:
 
 def test_a_connection_that_ends_takes_its_routes_along() -> None:
     rig = Rig()
-    rig.router.table.gone(SERIAL, "tty")
+    rig.router.table.handle_disconnect(SERIAL, "tty")
     assert rig.send(UDP, command(1, 1)) == {}
     assert (SERIAL, "tty") in rig.send(UDP, heartbeat(2))  # the port is still there
 
@@ -295,7 +295,7 @@ def test_strangers_fill_no_table() -> None:
     for number in range(5000):
         rig.send(UDP, b"GET / HTTP/1.1\r\n", ("10.1.0.1", number))
         rig.send(UDP, unknown(1), ("10.2.0.1", number))
-    assert rig.router.table.ports()[UDP].peers == 1
+    assert rig.router.table.transport_reports()[UDP].peers == 1
     for number in range(5000):
         rig.send(UDP, heartbeat(0, 2), ("10.3.0.1", number))
     assert len(rig.router.table.peers_of(UDP)) == MAX_PEERS
@@ -303,7 +303,7 @@ def test_strangers_fill_no_table() -> None:
         for component in (1, 2, 3):
             rig.send(UDP, heartbeat(0, system, component))
     assert len(rig.router.table.peers_of(UDP)[GCS].sources) == MAX_SOURCES
-    assert len(rig.router._recent) <= MAX_FOLLOWED
+    assert len(rig.router._recent) <= MAX_TRACKED_SOURCES
     assert (SERIAL, "tty") in rig.send(UDP, heartbeat(7, 200, 9))  # known or not, it is forwarded
 
 
@@ -311,17 +311,17 @@ def test_loss_is_counted_by_link() -> None:
     rig = Rig()
     for number in (1, 2, 5, 4, 6):
         rig.send(SERIAL, frame(BROADCAST, number, 1, 1))
-    report = rig.router.table.ports()[SERIAL]
+    report = rig.router.table.transport_reports()[SERIAL]
     assert (report.received, report.lost) == (6, 1)
 
 
 def test_a_recorder_gets_every_frame_once() -> None:
     rig = Rig()
-    rig.router.tape = []
+    rig.router.captured = []
     data = [frame(BROADCAST, 1, 1, 1), unknown(2), command(9, 9)]
     for port, each in zip((SERIAL, SERIAL, UDP), data, strict=True):
         rig.send(port, each)
-    assert rig.router.tape == data
+    assert rig.router.captured == data
 
 
 # ---- anything ----

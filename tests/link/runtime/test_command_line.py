@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from link.runtime.command_line import Parser
+from link.runtime.command_line import CommandLineParser
 
 
-def parser() -> Parser:
-    parser = Parser(prog="car")
+def parser() -> CommandLineParser:
+    parser = CommandLineParser(prog="car")
     parser.add_argument("files", nargs="*")
     parser.add_argument("--state")
     return parser
@@ -26,14 +26,14 @@ def parser() -> Parser:
 )
 def test_an_empty_word_is_refused_by_name(words: list[str], says: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as left:
-        parser().checked(words)
+        parser().reject_empty(words)
     assert left.value.code == 2
     assert capsys.readouterr().err.startswith(says)
 
 
 def test_other_words_are_taken_as_they_are() -> None:
     words = ["--state", "x", "a=", "-1", "--"]
-    assert parser().checked(words) == words
+    assert parser().reject_empty(words) == words
 
 
 def test_a_mistake_is_one_line_also_where_its_word_is_several(capsys: pytest.CaptureFixture[str]) -> None:

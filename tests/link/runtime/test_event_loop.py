@@ -48,13 +48,13 @@ def test_it_returns_what_main_returns_and_raises_what_it_raises() -> None:
 def test_it_knows_how_long_it_has_waited_and_how_long_it_has_worked() -> None:
     async def work_and_wait() -> tuple[float, float]:
         loop = running_loop()
-        before = loop.waited
+        before = loop.idle_time
         end = time.monotonic() + 0.05
         while time.monotonic() < end:
             continue
-        worked = loop.waited - before
+        worked = loop.idle_time - before
         await asyncio.sleep(0.05)
-        return worked, loop.waited - before
+        return worked, loop.idle_time - before
 
     worked, waited = run_loop(work_and_wait())
     assert worked == 0.0

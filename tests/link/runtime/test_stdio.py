@@ -12,8 +12,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 LOOK = """
 import os, sys
-from link.runtime import stdio as standard_streams
-standard_streams.secure()
+from link.runtime import stdio
+stdio.ensure_open()
 opened = os.open("kept", os.O_WRONLY | os.O_CREAT)
 print("out"); print("err", file=sys.stderr); sys.stdin.read()
 os.write(2, b"a line of the log")

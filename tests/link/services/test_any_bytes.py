@@ -16,7 +16,7 @@ from link.core import Outgoing, Received
 from link.services.ftp.client import FtpClient
 from link.services.log.server import LogServer
 from link.services.mission.client import MissionClient
-from link.services.pacing import Pacer
+from link.services.pacing import BulkPacer
 from link.services.param.client import ParamClient
 from tests.link import ftp_vehicle, mission_vehicle, param_vehicle
 from tests.link.services_world import PEER
@@ -37,7 +37,7 @@ FRAMES = st.tuples(st.sampled_from(IDS), st.binary(max_size=255))
 def log_server() -> LogServer:
     files = ftp_vehicle.Vehicle().tree.find(b"/logs")
     assert files is not None
-    return LogServer(files.folder, system=1, component=1, pacer=Pacer())
+    return LogServer(files.folder, system=1, component=1, pacer=BulkPacer())
 
 
 SERVERS: list[Callable[[], Any]] = [

@@ -8,9 +8,9 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from link.services.ftp.files import MadeFiles, Tree
+from link.services.ftp.files import FileTree, GeneratedFolder
 from link.services.ftp.protocol import crc32
-from link.services.metadata import GENERAL_FILE, PARAMETER_FILE, Metadata, build
+from link.services.metadata import GENERAL_FILE, PARAMETER_FILE, Metadata, build_metadata
 from tests.link.services_world import through_the_wire
 
 
@@ -41,7 +41,7 @@ PARAMETER_KEYS = {
 
 
 def made() -> Metadata:
-    return build(TABLE, vendor="mavhelm", model="rover", version="0.1.0")
+    return build_metadata(TABLE, vendor="mavhelm", model="rover", version="0.1.0")
 
 
 def unpacked(data: bytes) -> Any:
@@ -85,7 +85,7 @@ def test_parameters_are_described_as_in_the_table() -> None:
 
 def test_numbered_parameters_are_one_group() -> None:
     table = [Line(name, 0, 0, 1, "", "") for name in ("BTN0_FUNCTION", "BTN15_FUNCTION", "MOT1_MIN", "MOT_REV_DELAY")]
-    described = unpacked(build(table, vendor="v", model="m", version="1.2.3").parameters)["parameters"]
+    described = unpacked(build_metadata(table, vendor="v", model="m", version="1.2.3").parameters)["parameters"]
     assert [each["group"] for each in described] == ["BTN", "BTN", "MOT", "MOT"]
 
 
@@ -95,7 +95,7 @@ def test_the_message_names_a_file_that_is_served() -> None:
     assert (message.time_boot_ms, message.uri) == (1234, "mftp:///general.json.xz")
     assert message.file_crc == crc32(metadata.general)
     makers = {name: (lambda query, data=data: data) for name, data in metadata.files.items()}
-    tree = Tree(MadeFiles(makers), {})
+    tree = FileTree(GeneratedFolder(makers), {})
     place = tree.find(message.uri.removeprefix("mftp://").encode())
     assert place is not None
     assert place.folder.open(place.name, {}) is not None
@@ -110,4 +110,4 @@ def test_the_files_are_small_enough_for_a_radio() -> None:
     table = tuple(
         Line(f"PARAMETER_{number}", number, 0, 1000, "m/s", f"What it does, {number}") for number in range(100)
     )
-    assert len(build(table, vendor="v", model="m", version="1.2.3").parameters) < 4000
+    assert len(build_metadata(table, vendor="v", model="m", version="1.2.3").parameters) < 4000

@@ -5,51 +5,51 @@ from __future__ import annotations
 import pytest
 
 from link.core import Peer
-from link.services.pacing import MAX_PEERS, MOST_FRAMES, Pacer
+from link.services.pacing import MAX_FRAME_RATE, MAX_PEERS, BulkPacer
 
 SLOW, FAST = Peer(0, "radio"), Peer(1, "network")
 
 
-def taken(pacer: Pacer, peer: Peer, seconds: float, size: int = 100, start: float = 0.0) -> int:
+def taken(pacer: BulkPacer, peer: Peer, seconds: float, size: int = 100, start: float = 0.0) -> int:
     """Bytes that go in ticks of 20 ms."""
     total = 0
     for step in range(round(seconds / 0.02)):
-        while pacer.take(peer, size, start + step * 0.02):
+        while pacer.consume(peer, size, start + step * 0.02):
             total += size
     return total
 
 
 @pytest.mark.parametrize(("peer", "rate"), [(SLOW, 2304.0), (FAST, 400_000.0)])
 def test_each_peer_has_the_rate_of_its_link(peer: Peer, rate: float) -> None:
-    pacer = Pacer(lambda asked: 2304.0 if asked == SLOW else 400_000.0)
+    pacer = BulkPacer(lambda asked: 2304.0 if asked == SLOW else 400_000.0)
     assert taken(pacer, peer, 10.0, size=250) == pytest.approx(rate * 10.0, rel=0.03)
 
 
 def test_short_frames_are_no_more_than_a_ground_station_decodes() -> None:
-    assert taken(Pacer(), FAST, 10.0, size=40) == pytest.approx(MOST_FRAMES * 40 * 10.0, rel=0.03)
+    assert taken(BulkPacer(), FAST, 10.0, size=40) == pytest.approx(MAX_FRAME_RATE * 40 * 10.0, rel=0.03)
 
 
 def test_one_peer_does_not_take_from_the_other() -> None:
-    pacer = Pacer(lambda peer: 1000.0)
+    pacer = BulkPacer(lambda peer: 1000.0)
     taken(pacer, SLOW, 1.0)
-    assert pacer.take(FAST, 100, 1.0)
+    assert pacer.consume(FAST, 100, 1.0)
 
 
 def test_a_link_that_slows_down_slows_the_answers() -> None:
     rate = 10_000.0
-    pacer = Pacer(lambda peer: rate)
+    pacer = BulkPacer(lambda peer: rate)
     assert taken(pacer, SLOW, 1.0) > 9_000
     rate = 1_000.0
     assert 900 <= taken(pacer, SLOW, 1.0, start=1.0) < 1_400
 
 
 def test_the_longest_frame_gets_through_on_the_slowest_link() -> None:
-    pacer = Pacer(lambda peer: 100.0)
+    pacer = BulkPacer(lambda peer: 100.0)
     assert taken(pacer, SLOW, 10.0, size=280) > 0
 
 
 def test_many_addresses_do_not_fill_the_memory() -> None:
-    pacer = Pacer()
+    pacer = BulkPacer()
     for number in range(1000):
-        pacer.take(Peer(0, number), 10, 0.0)
+        pacer.consume(Peer(0, number), 10, 0.0)
     assert len(pacer._buckets) == MAX_PEERS

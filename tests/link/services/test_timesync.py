@@ -6,7 +6,7 @@ import pytest
 
 from dialects.messages import Heartbeat, Message, Ping, Timesync
 from link.core import Peer, Received
-from link.services.timesync import TimesyncClient, answer
+from link.services.timesync import TimesyncClient, handle_request
 
 OURS = (1, 1)
 
@@ -20,7 +20,7 @@ def test_the_round_trip_is_from_question_to_answer() -> None:
     for start in (10.0, 11.0, 12.0):
         client.tick(start)
         [question] = client.messages_to_send()
-        [echo] = answer(received(question.message), 5.0, OURS)
+        [echo] = handle_request(received(question.message), 5.0, OURS)
         client.receive(received(echo.message), start + 0.012)
     assert client.round_trip == pytest.approx(0.012)
     assert client.jitter == pytest.approx(0.0, abs=1e-6)
@@ -42,7 +42,7 @@ def test_answers_to_others_and_repeats_do_not_count() -> None:
 
 
 def test_an_answer_names_the_one_it_is_for() -> None:
-    [echo] = answer(received(Timesync(tc1=0, ts1=7), system=255), 1.0, OURS)
+    [echo] = handle_request(received(Timesync(tc1=0, ts1=7), system=255), 1.0, OURS)
     assert isinstance(echo.message, Timesync)
     assert (echo.message.ts1, echo.message.target_system, echo.message.target_component) == (7, 255, 1)
 
@@ -51,7 +51,7 @@ def test_an_answer_names_the_one_it_is_for() -> None:
     ("target", "answered"), [((0, 0), 1), ((1, 0), 1), ((1, 1), 1), ((0, 1), 1), ((2, 1), 0), ((1, 42), 0)]
 )
 def test_a_question_for_others_is_not_answered(target: tuple[int, int], answered: int) -> None:
-    assert len(answer(received(Timesync(0, 7, *target)), 1.0, OURS)) == answered
+    assert len(handle_request(received(Timesync(0, 7, *target)), 1.0, OURS)) == answered
 
 
 @pytest.mark.parametrize(("target", "counts"), [(0, True), (1, True), (2, False)])
@@ -65,12 +65,12 @@ def test_an_answer_to_us_or_of_an_old_program_counts(target: int, counts: bool) 
 
 
 def test_an_answer_is_never_answered() -> None:
-    assert answer(received(Timesync(tc1=99, ts1=1)), 1.0, OURS) == []
+    assert handle_request(received(Timesync(tc1=99, ts1=1)), 1.0, OURS) == []
 
 
 def test_a_ping_for_all_is_echoed_to_its_sender() -> None:
-    [echo] = answer(received(Ping(17, 4, 0, 0), system=255), 1.0, OURS)
+    [echo] = handle_request(received(Ping(17, 4, 0, 0), system=255), 1.0, OURS)
     ping = echo.message
     assert isinstance(ping, Ping)
     assert (ping.time_usec, ping.seq, ping.target_system, ping.target_component) == (17, 4, 255, 1)
-    assert answer(received(Ping(17, 4, 9, 1)), 1.0, OURS) == []
+    assert handle_request(received(Ping(17, 4, 9, 1)), 1.0, OURS) == []

@@ -14,10 +14,10 @@ from dialects import codec
 from dialects import messages as m
 from dialects.messages import MESSAGES
 from link.protocol.frame import Frame
-from link.protocol.log_tap import SETUP_SIGNING, Tape
+from link.protocol.log_tap import SETUP_SIGNING, LogTap
 from link.runtime.worker import Worker
 from link.tlog.recorder import MAX_BATCH, PENDING, PERIOD, SLOW, RawFile, Recorder
-from link.tlog.tlog import Record, read
+from link.tlog.tlog import Record, read_records
 from tests.link.frames import demand, heartbeat
 
 PATIENCE = 60.0
@@ -46,13 +46,13 @@ class MemoryFile:
 
     @property
     def frames(self) -> list[bytes]:
-        return [each.raw for each in read(self.data)]
+        return [each.raw for each in read_records(self.data)]
 
 
 def seen(recorder: Recorder) -> None:
     """Wait until the thread has done all that it was given."""
     done = threading.Event()
-    recorder.check(done.set)
+    recorder.check_writable(done.set)
     assert done.wait(PATIENCE)
 
 
@@ -61,11 +61,11 @@ def test_what_came_just_before_the_beginning_is_in_the_log_and_nothing_after_its
     recorder.add(1.0, [heartbeat(0)])
     recorder.tick(1.0)  # long before: gone
     recorder.add(1.1, [demand(1)])
-    recorder.begin(lambda: file)
+    recorder.start(lambda: file)
     recorder.add(1.2, [demand(2), demand(3)])
     recorder.tick(1.3)
     recorder.add(1.4, [demand(4)])
-    recorder.end()
+    recorder.stop()
     recorder.add(1.5, [demand(5)])
     recorder.tick(9.0)
     recorder.close()
@@ -75,7 +75,7 @@ def test_what_came_just_before_the_beginning_is_in_the_log_and_nothing_after_its
 
 def test_frames_are_in_the_file_soon_also_without_an_end() -> None:
     recorder, file = Recorder(), MemoryFile()
-    recorder.begin(lambda: file)
+    recorder.start(lambda: file)
     recorder.tick(1.0)
     recorder.add(1.1, [demand(1)])
     recorder.tick(1.0 + PERIOD)
@@ -87,26 +87,26 @@ def test_frames_are_in_the_file_soon_also_without_an_end() -> None:
 def test_times_are_unix_time_and_in_order_whatever_happens_to_the_clock() -> None:
     offsets = iter([1_700_000_000_000_000, 1_600_000_000_000_000])
     recorder, first, second = Recorder(offset=lambda: next(offsets)), MemoryFile(), MemoryFile()
-    recorder.begin(lambda: first)
+    recorder.start(lambda: first)
     recorder.add(1.5, [demand(1)])
     recorder.add(2.0, [demand(2)])
-    recorder.end()
-    recorder.begin(lambda: second)  # somebody has set the clock back
+    recorder.stop()
+    recorder.start(lambda: second)  # somebody has set the clock back
     recorder.add(3.0, [demand(3)])
     recorder.close()
-    assert list(read(first.data)) == [
+    assert list(read_records(first.data)) == [
         Record(1_700_000_001_500_000, demand(1)),
         Record(1_700_000_002_000_000, demand(2)),
     ]
-    assert list(read(second.data)) == [Record(1_600_000_003_000_000, demand(3))]
+    assert list(read_records(second.data)) == [Record(1_600_000_003_000_000, demand(3))]
 
 
 def test_a_new_log_closes_the_one_before() -> None:
     recorder, first, second = Recorder(), MemoryFile(), MemoryFile()
-    recorder.begin(lambda: first)
+    recorder.start(lambda: first)
     recorder.add(1.0, [demand(1)])
     recorder.tick(1.0)
-    recorder.begin(lambda: second)
+    recorder.start(lambda: second)
     recorder.add(2.0, [demand(2)])
     recorder.close()
     assert first.closed
@@ -116,7 +116,7 @@ def test_a_new_log_closes_the_one_before() -> None:
 def test_a_disk_that_sleeps_costs_frames_that_are_counted_and_no_time() -> None:
     recorder, file = Recorder(), MemoryFile()
     file.awake.clear()
-    recorder.begin(lambda: file)
+    recorder.start(lambda: file)
     recorder.add(0.0, [demand(0)])
     recorder.tick(0.0)
     assert file.writing.wait(PATIENCE)
@@ -128,7 +128,7 @@ def test_a_disk_that_sleeps_costs_frames_that_are_counted_and_no_time() -> None:
     file.awake.set()
     seen_when_there_is_room(recorder)
     assert len(file.frames) == PENDING + 1
-    recorder.begin(MemoryFile)
+    recorder.start(MemoryFile)
     assert recorder.problem is None
     recorder.close()
 
@@ -137,7 +137,7 @@ def seen_when_there_is_room(recorder: Recorder) -> None:
     """As `seen`, behind a full queue."""
     done = threading.Event()
     for _ in range(1000):
-        recorder.check(done.set)
+        recorder.check_writable(done.set)
         if done.wait(0.01):
             return
     raise AssertionError("the thread hangs")
@@ -145,7 +145,7 @@ def seen_when_there_is_room(recorder: Recorder) -> None:
 
 def test_a_flood_does_not_wait_for_the_time() -> None:
     recorder, file = Recorder(), MemoryFile()
-    recorder.begin(lambda: file)
+    recorder.start(lambda: file)
     recorder.tick(0.0)
     frames = [demand(number) for number in range(256)]
     while sum(map(len, frames)) < MAX_BATCH:
@@ -167,14 +167,14 @@ def test_a_disk_that_fails_ends_this_log_and_not_the_next(where: str) -> None:
         file.error = full
         return file
 
-    recorder.begin(opened)
+    recorder.start(opened)
     recorder.add(1.0, [demand(1)])
     recorder.tick(1.0)
     seen(recorder)
     assert recorder.problem == "No space left on device"
     recorder.add(2.0, [demand(2)])
     recorder.tick(2.0)
-    recorder.begin(lambda: good)
+    recorder.start(lambda: good)
     recorder.add(3.0, [demand(3)])
     recorder.close()
     assert recorder.problem is None
@@ -194,9 +194,9 @@ def test_a_file_that_somebody_removed_says_so(tmp_path: Path) -> None:
     file.write(b"data")
     file.sync()
     assert path.read_bytes() == b"data"
-    assert not file.removed()
+    assert not file.is_removed()
     path.unlink()
-    assert file.removed()
+    assert file.is_removed()
     file.close()
 
 
@@ -205,8 +205,8 @@ def test_a_file_that_somebody_removed_says_so(tmp_path: Path) -> None:
 
 def test_a_job_that_fails_is_told_and_the_next_is_done(caplog: pytest.LogCaptureFixture) -> None:
     worker, done = Worker("test", 3), threading.Event()
-    worker.put(lambda: print(1 / 0))
-    worker.put(done.set)
+    worker.submit(lambda: print(1 / 0))
+    worker.submit(done.set)
     worker.close(PATIENCE)
     assert done.is_set()
     assert "'test' failed" in caplog.text
@@ -219,8 +219,8 @@ def test_the_end_does_not_wait_for_a_disk_that_hangs() -> None:
         awake.wait(PATIENCE)
         slept.set()
 
-    assert worker.put(sleeping)
-    while worker.put(lambda: None):  # until it is full
+    assert worker.submit(sleeping)
+    while worker.submit(lambda: None):  # until it is full
         pass
     worker.close(0.01)
     assert not slept.is_set()
@@ -241,10 +241,10 @@ class Taped:
 
     def __init__(self) -> None:
         self.frames: list[bytes] = []
-        self.tape = Tape(lambda now, frames: self.frames.extend(frames), system=1, component=1)
+        self.tape = LogTap(lambda now, frames: self.frames.extend(frames), system=1, component=1)
 
     def say(self, message: m.Message) -> None:
-        self.tape.said(type(message).id, codec.encode_payload(message), 1.0)
+        self.tape.record_sent(type(message).id, codec.encode_payload(message), 1.0)
 
 
 def framed(raw: bytes) -> Frame:
@@ -256,7 +256,7 @@ def test_keys_are_never_recorded() -> None:
     kind: Any = MESSAGES[SETUP_SIGNING]
     setup = kind(1, 1, b"k" * 32, 1)
     key = codec.frame(SETUP_SIGNING, codec.encode_payload(setup), 7, 255, 190)
-    taped.tape.heard([framed(demand(1)), framed(key), framed(demand(2))], 1.0)
+    taped.tape.record_received([framed(demand(1)), framed(key), framed(demand(2))], 1.0)
     taped.say(setup)
     assert taped.frames == [demand(1), demand(2)]
 

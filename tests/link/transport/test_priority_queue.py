@@ -14,7 +14,7 @@ from dialects.messages import (
     SetPositionTargetLocalNed,
 )
 from link.protocol.framer import Framer
-from link.transport.priority_queue import AHEAD, MAX_URGENT, STALE, Pacer, TransmitQueue
+from link.transport.priority_queue import MAX_DRIVER_BACKLOG, MAX_URGENT, STALE, TransmitPacer, TransmitQueue
 from tests.link.frames import demand, frame, heartbeat
 
 DISARM = frame(CommandLong(1, 1, 400, 0, 0, 0, 0, 0, 0, 0, 0), 9)
@@ -27,7 +27,7 @@ def attitude(number: int) -> bytes:
 
 def drained(queue: TransmitQueue, now: float = 0.0) -> list[bytes]:
     frames = []
-    while data := queue.take(now):
+    while data := queue.pop(now):
         frames.append(data)
     return frames
 
@@ -36,14 +36,14 @@ def test_control_overtakes_telemetry_and_both_keep_their_order() -> None:
     queue = TransmitQueue(1000)
     order = [attitude(1), attitude(2), ARM, attitude(3), heartbeat(4)]
     for data in order:
-        queue.put(data, 0.0)
+        queue.push(data, 0.0)
     assert drained(queue) == [order[2], order[4], order[0], order[1], order[3]]
 
 
 def test_the_oldest_telemetry_goes_when_it_is_full() -> None:
     queue = TransmitQueue(10 * len(attitude(1)))
     for number in range(30):
-        queue.put(attitude(number), 0.0)
+        queue.push(attitude(number), 0.0)
     assert drained(queue) == [attitude(number) for number in range(20, 30)]
     assert queue.dropped == 20
 
@@ -51,7 +51,7 @@ def test_the_oldest_telemetry_goes_when_it_is_full() -> None:
 def test_only_the_newest_demand_of_a_target_waits_and_keeps_its_place() -> None:
     queue = TransmitQueue(1000)
     for data in (demand(1), ARM, demand(2, target=2), demand(3, throttle=0.0)):
-        queue.put(data, 0.0)
+        queue.push(data, 0.0)
     assert drained(queue) == [demand(3, throttle=0.0), ARM, demand(2, target=2)]
 
 
@@ -63,24 +63,24 @@ def test_setpoints_are_demands_too() -> None:
     elsewhere = frame(SetPositionTargetGlobalInt(0, 1, 1, 6, 1479, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0), 4)
     queue = TransmitQueue(1000)
     for data in (attitude(1), setpoint(1, 0.5), attitude_target, setpoint(2, 0.0), elsewhere):
-        queue.put(data, 0.0)
+        queue.push(data, 0.0)
     assert drained(queue) == [setpoint(2, 0.0), attitude_target, elsewhere, attitude(1)]
 
 
 def test_what_waited_too_long_is_not_sent_but_a_stop_is() -> None:
     queue = TransmitQueue(1000)
     for data in (demand(1), ARM, DISARM, attitude(1)):
-        queue.put(data, 0.0)
-    queue.put(heartbeat(7), STALE)
+        queue.push(data, 0.0)
+    queue.push(heartbeat(7), STALE)
     assert drained(queue, STALE + 0.01) == [DISARM, heartbeat(7)]
     assert queue.dropped == 3
 
 
 def test_a_flood_of_commands_pushes_no_stop_out() -> None:
     queue = TransmitQueue(1000)
-    queue.put(DISARM, 0.0)
+    queue.push(DISARM, 0.0)
     for _ in range(10 * MAX_URGENT):
-        queue.put(ARM, 0.0)
+        queue.push(ARM, 0.0)
     frames = drained(queue)
     assert DISARM in frames
     assert len(frames) == MAX_URGENT
@@ -98,7 +98,7 @@ def test_what_goes_in_comes_out_or_is_counted_and_stops_come_out(puts: list[tupl
     now = 0.0
     for data, later in puts:
         now += later
-        queue.put(data, now)
+        queue.push(data, now)
     frames = drained(queue, now)
     assert len(frames) + queue.dropped == len(puts)
     stops = sum(data == DISARM for data, _ in puts)
@@ -109,43 +109,43 @@ def test_what_goes_in_comes_out_or_is_counted_and_stops_come_out(puts: list[tupl
 
 
 def test_the_driver_never_holds_more_than_20_ms() -> None:
-    pacer, now, written = Pacer(5760.0), 10.0, 0
+    pacer, now, written = TransmitPacer(5760.0), 10.0, 0
     while now < 11.0:
-        wait = pacer.wait(40, 0, now)
+        wait = pacer.delay(40, 0, now)
         if wait == 0.0:
-            pacer.wrote(40, now)
+            pacer.record_written(40, now)
             written += 40
-            assert written <= (now - 10.0 + AHEAD) * 5760 + 1
+            assert written <= (now - 10.0 + MAX_DRIVER_BACKLOG) * 5760 + 1
         now += max(wait, 0.0001)
     assert written > 5700  # and the wire never runs dry
 
 
 def test_a_long_frame_goes_when_the_wire_is_nearly_free() -> None:
-    pacer = Pacer(5760.0)
-    assert pacer.wait(280, 0, 1.0) == 0.0
-    pacer.wrote(280, 1.0)
-    assert 0.04 < pacer.wait(280, 0, 1.0) < 280 / 5760
+    pacer = TransmitPacer(5760.0)
+    assert pacer.delay(280, 0, 1.0) == 0.0
+    pacer.record_written(280, 1.0)
+    assert 0.04 < pacer.delay(280, 0, 1.0) < 280 / 5760
 
 
 def test_the_driver_is_believed_when_it_says_that_it_is_behind() -> None:
-    assert Pacer(5760.0).wait(40, 0, 1.0) == 0.0
-    assert Pacer(5760.0).wait(40, 1024, 1.0) > 0.1
+    assert TransmitPacer(5760.0).delay(40, 0, 1.0) == 0.0
+    assert TransmitPacer(5760.0).delay(40, 1024, 1.0) > 0.1
 
 
 def test_behind_a_full_telemetry_queue_a_demand_has_less_than_30_ms_of_bytes_ahead() -> None:
     # 57600 baud, a parameter list and telemetry for ever. Counted in bytes on the wire, not in time of this machine.
     capacity = 5760.0
-    pacer, queue, now = Pacer(capacity), TransmitQueue(1440), 0.0
+    pacer, queue, now = TransmitPacer(capacity), TransmitQueue(1440), 0.0
     wire: list[bytes] = []
     sent_bytes = 0
     for step in range(5000):
         now = step * 0.001
-        queue.put(attitude(step), now)
+        queue.push(attitude(step), now)
         if step % 50 == 25:
-            queue.put(demand(step % 256), now)
-        while (size := queue.next_size(now)) and pacer.wait(size, 0, now) == 0.0:
-            data = queue.take(now)
-            pacer.wrote(len(data), now)
+            queue.push(demand(step % 256), now)
+        while (size := queue.next_size(now)) and pacer.delay(size, 0, now) == 0.0:
+            data = queue.pop(now)
+            pacer.record_written(len(data), now)
             wire.append(data)
             sent_bytes += len(data)
             message_id, _, _, sequence, _ = Framer(stream=False).feed(data, now)[0]

@@ -14,10 +14,10 @@ import pytest
 
 from dialects.messages import Attitude, CommandLong, ManualControl, RadioStatus
 from link.core import LinkReport
-from link.endpoint import parse
+from link.endpoint import parse_endpoint
 from link.protocol.channel import Channel
 from link.protocol.framer import Framer
-from link.transport.serial import SerialWire, open_serial
+from link.transport.serial import SerialTransport, open_serial
 from link.transport.transport import LinkError
 from tests.link.frames import demand, frame, heartbeat
 from tests.link.ports import BaudCable, Cable, Heard, until
@@ -32,8 +32,8 @@ def cable(tmp_path: Path) -> Iterator[Cable]:
     cable.unplug()
 
 
-def opened(endpoint: str) -> SerialWire:
-    return open_serial(parse(endpoint))
+def opened(endpoint: str) -> SerialTransport:
+    return open_serial(parse_endpoint(endpoint))
 
 
 async def comes(cable: Cable, data: bytes) -> None:
@@ -85,7 +85,7 @@ def test_what_can_never_be_a_port_is_refused_in_one_line(path: str, told: str) -
 
 def test_a_second_program_on_the_port_is_refused(cable: Cable) -> None:
     first = opened(cable.endpoint)
-    code = f"from link.transport.transports import open_wires\nopen_wires([{cable.endpoint!r}])"
+    code = f"from link.transport.transports import open_transports\nopen_transports([{cable.endpoint!r}])"
     second = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
     assert "another program uses" in second.stderr.splitlines()[-1]
     first.close()

@@ -11,10 +11,10 @@ import pytest
 
 from dialects.messages import Attitude, CommandLong, Heartbeat
 from link.core import Outgoing
-from link.endpoint import parse
+from link.endpoint import parse_endpoint
 from link.protocol.channel import Channel
 from link.protocol.framer import Framer
-from link.transport.tcp import MAX_CONNECTIONS, TcpClient, TcpServer, open_tcpin, open_tcpout
+from link.transport.tcp import MAX_CONNECTIONS, TcpClientTransport, TcpServerTransport, open_tcpin, open_tcpout
 from link.transport.transport import LinkError
 from tests.link.frames import demand, frame, heartbeat
 from tests.link.ports import Heard, until
@@ -29,8 +29,8 @@ def port() -> int:
 
 
 @pytest.fixture
-async def server(port: int) -> TcpServer:
-    return open_tcpin(parse(f"tcpin:127.0.0.1:{port}"))
+async def server(port: int) -> TcpServerTransport:
+    return open_tcpin(parse_endpoint(f"tcpin:127.0.0.1:{port}"))
 
 
 @pytest.fixture
@@ -40,8 +40,8 @@ def listener(port: int) -> Iterator[socket.socket]:
         yield sock
 
 
-def client(port: int) -> TcpClient:
-    return open_tcpout(parse(f"tcpout:127.0.0.1:{port}"))
+def client(port: int) -> TcpClientTransport:
+    return open_tcpout(parse_endpoint(f"tcpout:127.0.0.1:{port}"))
 
 
 def connected(port: int) -> socket.socket:
@@ -62,7 +62,7 @@ def said(heard: Heard) -> list[tuple[bytes, object]]:
     return [(data, address) for data, address in heard.data if data]
 
 
-async def test_who_connects_is_heard_of_before_he_has_said_anything(server: TcpServer, port: int) -> None:
+async def test_who_connects_is_heard_of_before_he_has_said_anything(server: TcpServerTransport, port: int) -> None:
     """mavutil and MAVSDK say nothing before they have heard a vehicle."""
     heard = Heard(server)
     with connected(port) as sock:
@@ -76,7 +76,7 @@ async def test_who_connects_is_heard_of_before_he_has_said_anything(server: TcpS
     server.close()
 
 
-async def test_each_client_is_a_peer_of_its_own_and_goes_when_it_closes(server: TcpServer, port: int) -> None:
+async def test_each_client_is_a_peer_of_its_own_and_goes_when_it_closes(server: TcpServerTransport, port: int) -> None:
     heard = Heard(server)
     one, two = connected(port), connected(port)
     one.sendall(heartbeat(0))
@@ -94,7 +94,7 @@ async def test_each_client_is_a_peer_of_its_own_and_goes_when_it_closes(server: 
     server.close()
 
 
-async def test_the_crowd_is_closed_at_once(server: TcpServer, port: int) -> None:
+async def test_the_crowd_is_closed_at_once(server: TcpServerTransport, port: int) -> None:
     heard = Heard(server)
     crowd = [connected(port) for _ in range(MAX_CONNECTIONS + 1)]
     for sock in crowd[:MAX_CONNECTIONS]:
@@ -157,7 +157,7 @@ async def test_nobody_reads_telemetry_is_dropped_and_the_stop_arrives(listener: 
     wire.close()
 
 
-async def test_no_nagle(server: TcpServer, port: int) -> None:
+async def test_no_nagle(server: TcpServerTransport, port: int) -> None:
     heard = Heard(server)
     with connected(port) as sock:
         sock.sendall(heartbeat(0))
@@ -171,7 +171,7 @@ def test_half_a_frame_of_a_lost_connection_is_no_part_of_the_next() -> None:
     channel = Channel("tcpout:127.0.0.1:5760", 0, system=255, component=190, stream=True, target="there")
     channel.receive(heartbeat(0, system=1), "there", 0.0)
     channel.receive(heartbeat(1, system=1)[:10], "there", 0.0)
-    channel.gone("there")
+    channel.handle_disconnect("there")
     found = channel.receive(heartbeat(2, system=1), "there", 0.1)
     assert [each.sequence for each in found] == [2]
     assert channel.report().resync_bytes == 0
@@ -181,8 +181,8 @@ def test_who_comes_after_a_lost_connection_must_introduce_itself() -> None:
     channel = Channel("tcpin:127.0.0.1:5760", 0, system=1, component=1, stream=True)
     channel.receive(heartbeat(0), "one", 0.0)
     assert channel.report().peers == 1
-    channel.gone("one")
-    channel.gone("never was")
+    channel.handle_disconnect("one")
+    channel.handle_disconnect("never was")
     assert channel.report().peers == 0
     assert not channel.receive(demand(1), "one", 0.1)[0].introduced
     assert channel.receive(frame(Heartbeat(6, 8, 0, 0, 4, 3), 2), "one", 0.1)[0].introduced
@@ -190,9 +190,9 @@ def test_who_comes_after_a_lost_connection_must_introduce_itself() -> None:
 
 async def test_one_line_says_why_it_cannot_be_opened(listener: socket.socket, port: int) -> None:
     with pytest.raises(LinkError, match=f"port {port} is in use"):
-        open_tcpin(parse(f"tcpin:127.0.0.1:{port}"))
+        open_tcpin(parse_endpoint(f"tcpin:127.0.0.1:{port}"))
     with pytest.raises(LinkError, match="is not known"):
-        open_tcpout(parse("tcpout:no-such-host.invalid:5760"))
+        open_tcpout(parse_endpoint("tcpout:no-such-host.invalid:5760"))
 
 
 async def test_it_does_not_talk_to_itself() -> None:
@@ -228,7 +228,7 @@ class Names:
         return [(socket.AF_INET, socket.SOCK_STREAM, 6, "", (self.address, port))]
 
 
-async def taken(address: str, port: int, wire: TcpClient) -> None:
+async def taken(address: str, port: int, wire: TcpClientTransport) -> None:
     """A connection that comes to an address, and ends."""
     with socket.create_server((address, port)):
         await until(lambda: wire.problem is None)
@@ -237,7 +237,7 @@ async def taken(address: str, port: int, wire: TcpClient) -> None:
 
 async def test_a_name_that_moves_is_followed(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     names = Names(monkeypatch)
-    wire = open_tcpout(parse(f"tcpout:rover.example:{port}"))
+    wire = open_tcpout(parse_endpoint(f"tcpout:rover.example:{port}"))
     Heard(wire)
     await taken("127.0.0.1", port, wire)
     names.address = "127.0.0.2"
@@ -249,7 +249,7 @@ async def test_a_name_that_moves_is_followed(port: int, monkeypatch: pytest.Monk
 
 async def test_a_name_server_that_hangs_delays_no_connection(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     names = Names(monkeypatch)
-    wire = open_tcpout(parse(f"tcpout:rover.example:{port}"))
+    wire = open_tcpout(parse_endpoint(f"tcpout:rover.example:{port}"))
     names.answers.clear()
     Heard(wire)
     await until(lambda: names.asked == 2)  # the first was at the start

@@ -43,12 +43,12 @@ class AccessoryContract:
     def test_gives_what_it_is_told(self, bench: Bench) -> None:
         accessory = bench.make(0)
         for value in (*bench.values, 0, *reversed(bench.values)):
-            accessory.put(value)
+            accessory.set(value)
             assert bench.has(value)
         accessory.close()
 
     def test_close_may_come_twice(self, bench: Bench) -> None:
         accessory = bench.make(0)
-        accessory.put(bench.values[0])
+        accessory.set(bench.values[0])
         accessory.close()
         accessory.close()

@@ -10,11 +10,11 @@ from gpiozero.pins.mock import MockFactory
 from tests.vehicle.accessories.contract import AccessoryContract, Bench
 from tests.vehicle.motors.fake_pca9685 import FakePca9685
 from vehicle.accessories.gpio import GpioRelay, GpioRelaySettings
-from vehicle.accessories.output import Outlet, Output
+from vehicle.accessories.output import AccessoryOutput, AccessorySpec
 from vehicle.accessories.pca9685 import Pca9685Servo, Pca9685ServoSettings
 from vehicle.accessories.simulated import SimulatedAccessory
 from vehicle.motors import MotorError
-from vehicle.motors.pca9685 import Channel, Pca9685Motors, Pca9685Settings
+from vehicle.motors.pca9685 import Pca9685Channel, Pca9685Motors, Pca9685Settings
 
 STEP = 5
 """us, about a step of the chip."""
@@ -70,7 +70,7 @@ def test_a_relay_whose_pin_is_taken_says_so(pins: MockFactory) -> None:
     first.close()
     assert pins.pin(16).function == "input"
     with pytest.raises(MotorError, match="pin: "):
-        first.put(1)
+        first.set(1)
 
 
 class TestPca9685Servo(AccessoryContract):
@@ -89,7 +89,7 @@ def test_its_pulses_are_those_of_the_chips_clock() -> None:
     fake = FakePca9685()
     servo = Pca9685Servo(Pca9685ServoSettings(channel=15), 0, bus=fake)
     assert fake.pulse(15) is None
-    servo.put(1700)
+    servo.set(1700)
     assert fake.pulse(15) == pytest.approx(1700e-6, abs=122 / 25e6)
     servo.close()
     assert fake.pulse(15) == pytest.approx(1700e-6, abs=122 / 25e6)  # who closes it has made it safe before
@@ -98,14 +98,14 @@ def test_its_pulses_are_those_of_the_chips_clock() -> None:
 
 def test_at_the_motors_board_it_touches_its_own_channel_only() -> None:
     fake = FakePca9685()
-    motors = Pca9685Motors(Pca9685Settings(channels=(Channel(0), Channel(1))), bus=fake)
+    motors = Pca9685Motors(Pca9685Settings(channels=(Pca9685Channel(0), Pca9685Channel(1))), bus=fake)
     motors.enable()
     motors.set((0.5, -0.5))
     before = fake.pulse(0), fake.pulse(1)
     fake.writes.clear()
     servo = Pca9685Servo(Pca9685ServoSettings(channel=4), 1200, bus=fake)
     for width in (1000, 2000, 0, 1500):
-        servo.put(width)
+        servo.set(width)
     own = range(6 + 4 * 4, 6 + 4 * 5)
     assert fake.writes
     assert all(register in own and register + len(data) - 1 in own for register, data in fake.writes)
@@ -119,7 +119,7 @@ def test_a_chip_that_lost_its_power_is_not_woken_by_a_servo() -> None:
     fake.lose_power()
     fake.writes.clear()
     with pytest.raises(MotorError, match="it has lost its power, restart the vehicle"):
-        servo.put(1500)
+        servo.set(1500)
     assert fake.writes == []
 
 
@@ -133,8 +133,8 @@ def test_no_board_and_a_dead_bus_are_said_in_one_line(monkeypatch: pytest.Monkey
     servo = Pca9685Servo(Pca9685ServoSettings(channel=0), 0)
     fake.failing = 1
     with pytest.raises(MotorError, match="PCA9685 at 0x40 on I2C bus 1: Remote I/O error"):
-        servo.put(1500)
-    servo.put(1500)
+        servo.set(1500)
+    servo.set(1500)
     assert fake.pulse(0) == pytest.approx(1500e-6, abs=5e-6)
 
 
@@ -143,18 +143,18 @@ def test_an_outlet_takes_whatever_a_driver_raises() -> None:
         def __init__(self, value: int) -> None:
             self.closed = False
 
-        def put(self, value: int) -> None:
+        def set(self, value: int) -> None:
             raise ZeroDivisionError
 
         def close(self) -> None:
             raise KeyError("pin\n16")
 
-    outlet = Outlet(Output("relay", 0, Broken))
+    outlet = AccessoryOutput(AccessorySpec("relay", 0, Broken))
     outlet.open()
-    outlet.put(1)
-    assert not outlet.step(10.0)
-    assert (outlet.fault, outlet.given) == ("ZeroDivisionError", 0)
+    outlet.set_value(1)
+    assert not outlet.update(10.0)
+    assert (outlet.fault, outlet.actual) == ("ZeroDivisionError", 0)
     outlet.close()
     assert outlet.fault == "'pin\\n16'"
-    assert outlet.given is None
+    assert outlet.actual is None
     outlet.close()

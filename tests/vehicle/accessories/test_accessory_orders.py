@@ -10,10 +10,10 @@ from dialects import messages as m
 from dialects.enums import Command, DriveType, Failsafe, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, NEUTRAL, OTHER, Bench, Equipped, said
-from vehicle.accessories.output import Output, Pulses
+from vehicle.accessories.output import AccessorySpec, PulseRange
 from vehicle.accessories.simulated import SimulatedAccessory
 from vehicle.drive.mixer import MIXERS
-from vehicle.safety.states import State
+from vehicle.safety.states import SafetyState
 
 SET_RELAY, REPEAT_RELAY = Command.DO_SET_RELAY, Command.DO_REPEAT_RELAY
 SET_SERVO, REPEAT_SERVO = Command.DO_SET_SERVO, Command.DO_REPEAT_SERVO
@@ -143,7 +143,7 @@ class TestSafe:
         bench.wait(0.05)
         bench.command(STOP, 0, system=OTHER)
         bench.wait(CYCLE)
-        assert bench.rover.state is State.ESTOP
+        assert bench.rover.state is SafetyState.ESTOP
         assert (bench.rack.values("relay"), pulse(bench)) == ({0: 0, 1: 1, 2: 0}, 0)
         bench.wait(2.0)
         assert said(bench, "Relay 0: off (emergency stop)")
@@ -238,13 +238,13 @@ class TestTold:
         broken = True
 
         class Weak(SimulatedAccessory):
-            def put(self, value: int) -> None:
+            def set(self, value: int) -> None:
                 if broken:
                     raise OSError("no answer")
-                super().put(value)
+                super().set(value)
 
         class WithFault(Bench):
-            outputs = (Output("servo", 9, Weak, pulses=Pulses(1000, 1500, 2000)),)
+            outputs = (AccessorySpec("servo", 9, Weak, pulses=PulseRange(1000, 1500, 2000)),)
 
         bench = WithFault()
         assert bench.command(SET_SERVO, 9, 1600) is Result.ACCEPTED
@@ -262,7 +262,7 @@ class TestTold:
             raise OSError("no such bus")
 
         class Without(Bench):
-            outputs = (Output("relay", 0, absent),)
+            outputs = (AccessorySpec("relay", 0, absent),)
 
         bench = Without()
         bench.drive()
@@ -280,7 +280,8 @@ def test_no_accessory_command_ever_moves_a_motor(kind: DriveType, state: str) ->
 
     class Clashing(Bench):
         outputs = tuple(
-            Output("servo", number, SimulatedAccessory, pulses=Pulses(500, 1500, 2500)) for number in range(1, 17)
+            AccessorySpec("servo", number, SimulatedAccessory, pulses=PulseRange(500, 1500, 2500))
+            for number in range(1, 17)
         )
 
     quiet, asked = Clashing(DRIVE_TYPE=kind), Clashing(DRIVE_TYPE=kind)

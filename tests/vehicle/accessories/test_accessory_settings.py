@@ -11,17 +11,17 @@ from typing import Any
 import pytest
 from msgspec.structs import fields
 
-from link.runtime.command_line import MISTAKE
+from link.runtime.command_line import USAGE_ERROR
 from tests.vehicle.accessories.across_processes import NAME
 from tests.vehicle.motors.across_processes import FiledPca9685
 from tests.vehicle.words import said_by
 from vehicle.accessories import DRIVERS
-from vehicle.accessories.output import Pulses
-from vehicle.accessories.settings import COMMON, outputs_of, settings_type
-from vehicle.config.config import ConfigError, parsed
-from vehicle.config.run_settings import Settings, Simulation
-from vehicle.config.schema import schema
-from vehicle.config.template import sample
+from vehicle.accessories.output import PulseRange
+from vehicle.accessories.settings import COMMON, build_specs, settings_type
+from vehicle.config.config import ConfigError, parse_config
+from vehicle.config.run_settings import RunSettings, Simulation
+from vehicle.config.schema import build_schema
+from vehicle.config.template import build_template
 from vehicle.runtime import daemon
 from vehicle.runtime.lock import MotorLock
 
@@ -34,18 +34,20 @@ PWM = '[motors]\ndriver = "sysfs-pwm"\noutputs = [{ drives = "servo", device = "
 
 def problem(text: str) -> str:
     with pytest.raises(ConfigError) as refusal:
-        parsed(text, "f")
+        parse_config(text, "f")
     assert len(refusal.value.problems) == 1
     return refusal.value.problems[0].removeprefix("f: ")
 
 
 def test_a_file_becomes_outputs() -> None:
     text = f'{RELAY}safe = true\nstart = true\nuntil = "disarm"\n{SERVO}min_us = 900\nsafe = "trim"\n{SIMULATED}'
-    relay, servo, other = outputs_of(parsed(text.replace('9\ndriver = "sim', '10\ndriver = "sim'), "f").accessories)
+    relay, servo, other = build_specs(
+        parse_config(text.replace('9\ndriver = "sim', '10\ndriver = "sim'), "f").accessories
+    )
     assert (relay.name, relay.driver, relay.start, relay.safe, relay.until) == ("relay 0", "gpio", 1, 1, "disarm")
     assert (servo.name, servo.start, servo.safe, servo.until) == ("servo 9", 1500, 1500, "stop")
-    assert servo.pulses == Pulses(900, 1500, 2000)
-    assert (other.start, other.safe, other.pulses) == (0, 0, Pulses(1000, 1500, 2000))
+    assert servo.pulses == PulseRange(900, 1500, 2000)
+    assert (other.start, other.safe, other.pulses) == (0, 0, PulseRange(1000, 1500, 2000))
 
 
 @pytest.mark.parametrize(
@@ -102,26 +104,28 @@ def test_a_mistake_is_one_line_that_says_where_and_what_to_do(text: str, says: s
     ],
 )
 def test_parts_that_get_along_are_no_problem(text: str) -> None:
-    parsed(text, "f")
+    parse_config(text, "f")
 
 
 def test_a_servo_with_a_motors_number_is_refused_at_the_start(caplog: pytest.LogCaptureFixture) -> None:
     """Also in a simulation; which numbers are motors' depends on the kind of drive."""
-    accessories = parsed(SIMULATED.replace("9", "2"), "f").accessories
+    accessories = parse_config(SIMULATED.replace("9", "2"), "f").accessories
     for settings in (
-        Settings(("udpout:127.0.0.1:9",), accessories=accessories, params={"DRIVE_TYPE": 4}),
-        Settings(("udpout:127.0.0.1:9",), accessories=accessories, params={"DRIVE_TYPE": 4}, simulation=Simulation()),
+        RunSettings(("udpout:127.0.0.1:9",), accessories=accessories, params={"DRIVE_TYPE": 4}),
+        RunSettings(
+            ("udpout:127.0.0.1:9",), accessories=accessories, params={"DRIVE_TYPE": 4}, simulation=Simulation()
+        ),
     ):
         caplog.clear()
-        assert daemon.run(settings) == MISTAKE
+        assert daemon.run(settings) == USAGE_ERROR
         assert "servo 2 is a motor where DRIVE_TYPE is 4; it needs another number" in caplog.text
 
 
 def test_other_motors_than_the_files_are_looked_at_again(caplog: pytest.LogCaptureFixture) -> None:
     """`--motors` comes after the file was found right."""
-    accessories = parsed(RELAY.replace("16", "10"), "f").accessories
-    settings = Settings(("udpout:127.0.0.1:9",), motors={"driver": "article-car"}, accessories=accessories)
-    assert daemon.run(settings) == MISTAKE
+    accessories = parse_config(RELAY.replace("16", "10"), "f").accessories
+    settings = RunSettings(("udpout:127.0.0.1:9",), motors={"driver": "article-car"}, accessories=accessories)
+    assert daemon.run(settings) == USAGE_ERROR
     assert "accessories.relays[0]: GPIO 10 is taken by motors already" in caplog.text
 
 
@@ -183,7 +187,9 @@ def test_check_touches_no_accessory_of_a_vehicle_that_runs(tmp_path: Path) -> No
 
 # Sample and schema
 
-LIVE = tomllib.loads(re.sub(r"^#(?=[\w\[])", "", sample()[sample().index("[accessories]") :], flags=re.MULTILINE))
+LIVE = tomllib.loads(
+    re.sub(r"^#(?=[\w\[])", "", build_template()[build_template().index("[accessories]") :], flags=re.MULTILINE)
+)
 
 
 @pytest.mark.parametrize("kind", COMMON)
@@ -195,7 +201,7 @@ def test_every_key_is_in_the_sample_at_its_default(kind: Any) -> None:
     assert set(table) == {"driver", *keys}
     for name, field in keys.items():
         assert field.required or name == "address" or table[name] == field.default
-    outputs_of(parsed(_toml(f"{kind}s", table), "f").accessories)
+    build_specs(parse_config(_toml(f"{kind}s", table), "f").accessories)
 
 
 def _toml(name: str, table: dict[str, Any]) -> str:
@@ -205,7 +211,7 @@ def _toml(name: str, table: dict[str, Any]) -> str:
 
 @pytest.mark.parametrize("kind", COMMON)
 def test_the_schema_knows_every_driver_and_key(kind: Any) -> None:
-    *known, own = json.loads(schema())["$defs"]["Accessories"]["properties"][f"{kind}s"]["items"]["oneOf"]
+    *known, own = json.loads(build_schema())["$defs"]["Accessories"]["properties"][f"{kind}s"]["items"]["oneOf"]
     assert [each["properties"]["driver"]["const"] for each in known] == list(DRIVERS[kind])
     assert own["properties"]["driver"]["pattern"] == ":"
     for each in known:

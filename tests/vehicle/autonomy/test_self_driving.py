@@ -10,12 +10,12 @@ import pytest
 
 from dialects import messages as m
 from dialects.axes import Axes
-from dialects.enums import Command, Failsafe, ModeFlag, Result, State
+from dialects.enums import Command, Failsafe, ModeFlag, Result, SystemState
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, EVERYTHING, NEUTRAL, OTHER, Bench, said
 from tests.vehicle.field import GROUND, Field
 from vehicle.autonomy.modes.homing import TRAIL_MAX, Trail
-from vehicle.navigation.geo import Point, wrap
+from vehicle.navigation.geo import Point, wrap_angle
 
 START = Point(0.0, 0.0)
 
@@ -42,14 +42,14 @@ class TestAcro:
         before = field.yaw
         field.wait(2.0, Axes(0.4, 0.5))
         rate = 90 * (0.5 - 0.03) / 0.97
-        assert math.degrees(wrap(field.yaw - before)) / 2 == pytest.approx(rate, abs=4)
+        assert math.degrees(wrap_angle(field.yaw - before)) / 2 == pytest.approx(rate, abs=4)
 
     def test_without_steering_it_keeps_straight_where_manual_would_not(self) -> None:
         field = Field()
         field.begin(Mode.ACRO)
         field.wait(0.2, NEUTRAL)
         field.wait(6.0, Axes(0.5))
-        assert abs(wrap(field.yaw)) < 0.1
+        assert abs(wrap_angle(field.yaw)) < 0.1
         assert field.truth.north > 3.0
 
     def test_it_is_driven_by_the_driver_so_his_silence_stops_it(self) -> None:
@@ -100,7 +100,7 @@ class TestHoming:
         assert field.command(Command.DO_SET_HOME, 1) is Result.ACCEPTED
         field.wait(0.2)
         home = field.newest(m.HomePosition)
-        assert GROUND.point(home.latitude / 1e7, home.longitude / 1e7).distance(field.truth) < 0.8
+        assert GROUND.to_local(home.latitude / 1e7, home.longitude / 1e7).distance(field.truth) < 0.8
         assert field.command(Command.DO_SET_HOME, 0, 0, 0, 0, 50.0, 8.0, 100.0) is Result.ACCEPTED
         assert field.command(Command.DO_SET_HOME, 0, 0, 0, 0, 95.0, 8.0, 100.0) is Result.DENIED
         assert field.command_int(Command.DO_SET_HOME, 0, x=500000000, y=80000000, frame=1) is Result.UNSUPPORTED_FRAME
@@ -219,7 +219,7 @@ class TestHazards:
             bench.wait(1.2, AHEAD)
         assert bench.turning
         assert not said(bench, "Failsafe")
-        assert {beat.system_status for beat in bench.all(m.Heartbeat)[-4:]} == {State.ACTIVE}
+        assert {beat.system_status for beat in bench.all(m.Heartbeat)[-4:]} == {SystemState.ACTIVE}
 
     def test_both_can_be_turned_off(self) -> None:
         bench = Bench(FS_CRASH_CHECK=0, CRASH_ANGLE=0)

@@ -16,10 +16,10 @@ from dialects.modes import Mode
 from tests.vehicle.autonomy.mission.test_mission import upload, way
 from tests.vehicle.bench import CYCLE, DRIVER, NEUTRAL, OTHER
 from tests.vehicle.field import Field
-from vehicle.modes import OFFERED
+from vehicle.modes import MODES
 from vehicle.navigation.geo import Point
-from vehicle.safety.failsafe import Action
-from vehicle.safety.states import State
+from vehicle.safety.failsafe import FailsafeAction
+from vehicle.safety.states import SafetyState
 
 
 def twist(field: Field) -> None:
@@ -161,11 +161,14 @@ class Witness:
     def check(self) -> None:
         rover = self.field.rover
         outputs = rover.outputs
-        if rover.state is not State.ARMED:
+        if rover.state is not SafetyState.ARMED:
             self.asked = False
             assert not any(outputs.throttles)
             assert not outputs.enabled
-        held = rover._safety.failsafes.action(self.field.now) >= Action.NEUTRAL or not OFFERED[rover._safety.mode].moves
+        held = (
+            rover._safety.failsafes.lasting_action(self.field.now) >= FailsafeAction.NEUTRAL
+            or not MODES[rover._safety.mode].moves
+        )
         if held or not self.asked:
             assert all(abs(new) <= abs(old) for new, old in zip(outputs.throttles, self.before, strict=True))
         assert all(abs(value) <= 1.0 for value in outputs.throttles)

@@ -14,8 +14,8 @@ from tests.vehicle.motors.across_processes import NAME, FiledPca9685
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty
 from tests.vehicle.words import said_by
-from vehicle.config.template import sample
-from vehicle.storage.param_file import dump
+from vehicle.config.template import build_template
+from vehicle.storage.param_file import encode
 
 FREE = 'endpoints = ["udpout:127.0.0.1:9"]\n'
 QUIET = "[sensors]\ncomputer = false\n"
@@ -46,7 +46,7 @@ def line() -> Iterator[OnPty]:
 
 def test_the_sample_is_well_as_it_is(tmp_path: Path) -> None:
     port = free_port()
-    code, lines = checked(tmp_path, sample().replace("0.0.0.0:14550", f"127.0.0.1:{port}"))
+    code, lines = checked(tmp_path, build_template().replace("0.0.0.0:14550", f"127.0.0.1:{port}"))
     assert code == 0
     assert lines[:3] == [
         "ok    settings: FILE",
@@ -207,7 +207,7 @@ def test_it_reckons_with_the_parameters_that_the_vehicle_keeps(tmp_path: Path) -
     assert code == 0
     assert lines[1] == "ok    parameters: 2 from the file, 0 kept in FOLDER"
     assert lines[-1] == "ok    motors: simulated with 2 motors, neutral and without power; reversed: right"
-    (tmp_path / "parameters").write_bytes(dump({"MOT1_REVERSED": 1.0, "MOT2_REVERSED": 0.0, "MOT1_MIN": 60.0}))
+    (tmp_path / "parameters").write_bytes(encode({"MOT1_REVERSED": 1.0, "MOT2_REVERSED": 0.0, "MOT1_MIN": 60.0}))
     code, lines = all_checked(tmp_path, text)
     assert code == 1
     assert lines[1] == (

@@ -8,9 +8,9 @@ from dialects import messages as m
 from dialects.definition import private_enums, private_messages
 from dialects.enums import Command
 from tests.vehicle.words import said_by
-from vehicle.cli.dialect_doc import COMMANDS, answered, document
-from vehicle.commands.inbound import TABLE as HEARD
-from vehicle.modes import OFFERED
+from vehicle.cli.dialect_doc import COMMANDS, answered_commands, build_document
+from vehicle.commands.inbound import INBOUND_MESSAGES as HEARD
+from vehicle.modes import MODES
 from vehicle.params import PARAMETERS
 from vehicle.telemetry.streams import STREAMS
 
@@ -24,13 +24,13 @@ def test_the_file_is_what_the_tables_say() -> None:
 
 
 def test_every_command_has_its_words() -> None:
-    assert {Command(each).name for each in answered()} == {each.name for each in COMMANDS}
+    assert {Command(each).name for each in answered_commands()} == {each.name for each in COMMANDS}
 
 
 def test_nothing_is_left_out() -> None:
-    text = document()
+    text = build_document()
     names = [stream.message.msgname for stream in STREAMS] + [heard.message.msgname for heard in HEARD]
-    names += [*PARAMETERS, *(mode.name for mode in OFFERED), *(each.name for each in COMMANDS)]
+    names += [*PARAMETERS, *(mode.name for mode in MODES), *(each.name for each in COMMANDS)]
     assert [name for name in names if f"| {name} |" not in text] == []
     assert [each.name for each in private_messages() if f"### {each.name} (" not in text] == []
 
@@ -42,14 +42,14 @@ def test_private_messages_are_those_of_the_codec() -> None:
         kind = m.MESSAGES[each.id]
         assert kind.msgname == each.name
         assert [field.name for field in each.fields] == kind.fieldnames
-        assert all(field.words for field in each.fields)
+        assert all(field.description for field in each.fields)
     assert set(private_enums()) >= {field.enum for each in found for field in each.fields
                                     if field.enum.startswith("ROVER_")}  # fmt: skip
 
 
 def test_rows_have_the_columns_of_their_heads() -> None:
     columns = 0
-    for line in document().splitlines():
+    for line in build_document().splitlines():
         if not line.startswith("|"):
             columns = 0
             continue

@@ -10,17 +10,17 @@ import pytest
 
 from vehicle.cli.main import main
 from vehicle.cli.options import GROUND_STATION
-from vehicle.config.run_settings import Settings, Simulation
+from vehicle.config.run_settings import RunSettings, Simulation
 from vehicle.runtime import daemon
 from vehicle.sensors.gps import GpsSettings
 from vehicle.sensors.suite import SensorSettings
 
 
-def settings_of(monkeypatch: pytest.MonkeyPatch, *words: str) -> Settings:
+def settings_of(monkeypatch: pytest.MonkeyPatch, *words: str) -> RunSettings:
     """What the daemon is given for these words."""
-    given: list[Settings] = []
+    given: list[RunSettings] = []
 
-    def run(settings: Settings) -> int:
+    def run(settings: RunSettings) -> int:
         given.append(settings)
         return 0
 

@@ -17,11 +17,11 @@ import pytest
 from tests.vehicle.motors.controllers import RoboClaw
 from tests.vehicle.motors.pty_controller import PATIENCE, OnPty
 from tests.vehicle.words import said_by
-from vehicle.cli.motor_test import RefusedError, Wish, turn, wish
+from vehicle.cli.motor_test import MotorTestOptions, RefusedError, build_options, run_motor_test
 from vehicle.motors import MotorError
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
-from vehicle.storage.param_file import dump
+from vehicle.storage.param_file import encode
 
 ASKED: list[str] = []
 
@@ -69,15 +69,15 @@ def _forget(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_motor_has_a_name_and_a_number(motor: str, drive: int, index: int) -> None:
     throttles = [0.0] * (2 if drive < 3 else 4)
     throttles[index] = -0.3
-    assert wish(motor, -0.3, 3.0, Params({"DRIVE_TYPE": drive})) == Wish(tuple(throttles), 3.0)
+    assert build_options(motor, -0.3, 3.0, Params({"DRIVE_TYPE": drive})) == MotorTestOptions(tuple(throttles), 3.0)
 
 
 def test_the_motor_gets_what_it_gets_when_driving() -> None:
     params = Params({"MOT1_REVERSED": 1, "MOT1_MIN": 20, "MOT2_TRIM": 10})
-    assert wish("left", 0.25, 1.0, params).throttles == pytest.approx((-0.4, 0.0))
+    assert build_options("left", 0.25, 1.0, params).throttles == pytest.approx((-0.4, 0.0))
     car = Params({"DRIVE_TYPE": 2, "MOT1_TRIM": 10, "MOT2_TRIM": 10, "MOT2_REVERSED": 1})
-    assert wish("throttle", 0.25, 1.0, car).throttles == pytest.approx((0.35, 0.1))
-    assert wish("steering", 0.2, 1.0, car).throttles == pytest.approx((0.0, -0.12))
+    assert build_options("throttle", 0.25, 1.0, car).throttles == pytest.approx((0.35, 0.1))
+    assert build_options("steering", 0.2, 1.0, car).throttles == pytest.approx((0.0, -0.12))
 
 
 @pytest.mark.parametrize(
@@ -98,13 +98,13 @@ def test_the_motor_gets_what_it_gets_when_driving() -> None:
 )
 def test_56_what_is_too_much_is_refused(motor: str, throttle: float, seconds: float, says: str) -> None:
     with pytest.raises(RefusedError) as refusal:
-        wish(motor, throttle, seconds, Params())
+        build_options(motor, throttle, seconds, Params())
     assert str(refusal.value).startswith(says)
 
 
 def test_one_motor_turns_and_ends_neutral_and_without_power() -> None:
     began = time.monotonic()
-    assert turn(TABLE, Wish((0.0, 0.2), 0.5)) is None
+    assert run_motor_test(TABLE, MotorTestOptions((0.0, 0.2), 0.5)) is None
     assert time.monotonic() - began >= 0.5
     assert ASKED[:2] == ["open", "enable"]
     assert ASKED[2:-3] == ["0 0.2"] * len(ASKED[2:-3])
@@ -115,7 +115,7 @@ def test_one_motor_turns_and_ends_neutral_and_without_power() -> None:
 def test_a_driver_that_fails_is_stopped_too(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Noted, "breaks_at", 3)
     with pytest.raises(MotorError, match="no reply"):
-        turn(TABLE, Wish((0.2, 0.0), 1.0))
+        run_motor_test(TABLE, MotorTestOptions((0.2, 0.0), 1.0))
     assert "0.2 0" in ASKED
     assert ASKED[-3:] == ["0 0", "disable", "disable"]
 
@@ -125,7 +125,7 @@ def test_a_signal_ends_it_at_once() -> None:
     signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
     signal.pthread_kill(threading.get_ident(), signal.SIGTERM)  # other threads of the test runner do not hold it back
     try:
-        assert turn(TABLE, Wish((0.2, 0.0), 3.0)) is signal.SIGTERM
+        assert run_motor_test(TABLE, MotorTestOptions((0.2, 0.0), 3.0)) is signal.SIGTERM
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
     assert ASKED.count("0.2 0") == 1
@@ -134,7 +134,7 @@ def test_a_signal_ends_it_at_once() -> None:
 
 def test_another_number_of_motors_is_refused_before_any_has_power() -> None:
     with pytest.raises(RefusedError, match="the driver has 2 motors, DRIVE_TYPE needs 4"):
-        turn(TABLE, wish("3", 0.2, 1.0, Params({"DRIVE_TYPE": 4})))
+        run_motor_test(TABLE, build_options("3", 0.2, 1.0, Params({"DRIVE_TYPE": 4})))
     assert "enable" not in ASKED
 
 
@@ -211,7 +211,7 @@ def test_a_reversed_motor_turns_as_the_vehicle_turns_it(line: OnPty, tmp_path: P
     if where == "file":
         (tmp_path / "rover.toml").write_text("[params]\nMOT2_REVERSED = 1\n")
     elif where == "kept":
-        (tmp_path / "parameters").write_bytes(dump({"MOT2_REVERSED": 1.0}))
+        (tmp_path / "parameters").write_bytes(encode({"MOT2_REVERSED": 1.0}))
     words = command(line, tmp_path, "right", "--throttle", "0.25", "--time", "3", "--yes")
     process = subprocess.Popen(words, stderr=subprocess.PIPE)
     wanted = 0.25 if where == "neither" else -0.25

@@ -14,9 +14,9 @@ import msgspec
 import pytest
 
 from vehicle import accessories
-from vehicle.accessories.settings import Accessories, outputs_of
-from vehicle.config.config import Config, parsed
-from vehicle.config.template import sample
+from vehicle.accessories.settings import Accessories, build_specs
+from vehicle.config.config import Config, parse_config
+from vehicle.config.template import build_template
 from vehicle.motors import DRIVERS
 from vehicle.params import Params
 
@@ -27,7 +27,7 @@ TABLES = [tomllib.loads(text) for text in TEXTS]
 
 @pytest.mark.parametrize("text", TEXTS, ids=lambda text: text.split("\n")[1])
 def test_a_file_of_nothing_but_a_table_of_the_guide_is_right(text: str) -> None:
-    assert isinstance(parsed(text, "rover.toml"), Config)
+    assert isinstance(parse_config(text, "rover.toml"), Config)
 
 
 def test_a_table_of_parameters_is_right() -> None:
@@ -50,7 +50,7 @@ def test_check_says_what_the_guide_shows(tmp_path: Path) -> None:
         endpoint = f"udpin:127.0.0.1:{free.getsockname()[1]}"
     file = tmp_path / "rover.toml"
     file.write_text(
-        sample().replace('"udpin:0.0.0.0:14550"', f'"{endpoint}"').replace('"simulated"', '"article-car"', 1)
+        build_template().replace('"udpin:0.0.0.0:14550"', f'"{endpoint}"').replace('"simulated"', '"article-car"', 1)
     )
     pins = {"GPIOZERO_PIN_FACTORY": "mock", "GPIOZERO_MOCK_PIN_CLASS": "mockpwmpin"}
     check = subprocess.run(
@@ -65,5 +65,5 @@ def test_check_says_what_the_guide_shows(tmp_path: Path) -> None:
 
 def test_accessories_have_tables_that_are_right() -> None:
     [table] = [table["accessories"] for table in TABLES if "accessories" in table]
-    outputs = outputs_of(msgspec.convert(table, Accessories))
+    outputs = build_specs(msgspec.convert(table, Accessories))
     assert [output.name for output in outputs] == ["relay 0", "servo 9"]

@@ -12,16 +12,18 @@ from pathlib import Path
 
 import pytest
 
-from link.runtime.command_line import MISTAKE
+from link.runtime.command_line import USAGE_ERROR
 from tests.vehicle.words import said_by
-from vehicle.cli.systemd_unit import Place, owner, unit
+from vehicle.cli.systemd_unit import UnitOptions, build_unit, home_owner
 
 PYTHON = Path(sys.executable)
-NOBODYS = Place(Path("/etc/rover.toml"), Path("/opt/rover/bin/python3"), ("dialout",))
+NOBODYS = UnitOptions(Path("/etc/rover.toml"), Path("/opt/rover/bin/python3"), ("dialout",))
 PLACES = {
-    "of nobody": Place(Path("/etc/rover.toml"), PYTHON, ("dialout",)),
-    "with power": Place(Path("/etc/rover.toml"), PYTHON, power=True),
-    "in a home": Place(Path("/home/pi/rover.toml"), PYTHON, ("dialout", "video"), user="daemon", driver="sysfs-pwm"),
+    "of nobody": UnitOptions(Path("/etc/rover.toml"), PYTHON, ("dialout",)),
+    "with power": UnitOptions(Path("/etc/rover.toml"), PYTHON, power=True),
+    "in a home": UnitOptions(
+        Path("/home/pi/rover.toml"), PYTHON, ("dialout", "video"), user="daemon", driver="sysfs-pwm"
+    ),
 }
 
 analysed = pytest.mark.skipif(
@@ -30,15 +32,15 @@ analysed = pytest.mark.skipif(
 )
 
 
-def service(place: Place) -> dict[str, str]:
+def service(place: UnitOptions) -> dict[str, str]:
     parser = configparser.RawConfigParser(strict=False)
     parser.optionxform = str  # type: ignore[assignment, method-assign]
-    parser.read_string(unit(place))
+    parser.read_string(build_unit(place))
     return dict(parser["Service"])
 
 
 @pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
-def test_it_is_watched_restarted_and_its_motors_are_stopped_after_any_end(place: Place) -> None:
+def test_it_is_watched_restarted_and_its_motors_are_stopped_after_any_end(place: UnitOptions) -> None:
     said = service(place)
     assert said["Type"] == "notify"
     assert said["ExecStart"] == f"{PYTHON} -m vehicle --config {place.config}"
@@ -46,7 +48,7 @@ def test_it_is_watched_restarted_and_its_motors_are_stopped_after_any_end(place:
     assert (said["WatchdogSec"], said["WatchdogSignal"]) == ("1", "SIGKILL")
     assert (said["Restart"], said["RestartSec"]) == ("always", "0.5")
     assert said["StateDirectory"] == "mavhelm"
-    assert "StartLimitIntervalSec=0" in unit(place)
+    assert "StartLimitIntervalSec=0" in build_unit(place)
 
 
 def test_who_it_runs_as_and_what_it_may_touch() -> None:
@@ -54,22 +56,22 @@ def test_who_it_runs_as_and_what_it_may_touch() -> None:
     assert (nobody["DynamicUser"], nobody["ProtectHome"], nobody["ProtectKernelTunables"]) == ("yes", "yes", "yes")
     assert (home["User"], home["ProtectHome"], home["ProtectKernelTunables"]) == ("daemon", "read-only", "no")
     assert nobody["SupplementaryGroups"] == "dialout"
-    assert "SupplementaryGroups" not in service(Place(Path("/etc/rover.toml")))
+    assert "SupplementaryGroups" not in service(UnitOptions(Path("/etc/rover.toml")))
 
 
 def test_a_path_with_odd_characters_is_one_word() -> None:
-    place = Place(Path("/etc/my rover $1 50%.toml"))
+    place = UnitOptions(Path("/etc/my rover $1 50%.toml"))
     assert service(place)["ExecStart"].endswith("--config '/etc/my rover $$1 50%%.toml'")
 
 
 def test_the_owner_of_a_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "rover.toml"
     file.touch()
-    assert owner(file, PYTHON) == owner(Path("/etc/rover.toml"), PYTHON)
+    assert home_owner(file, PYTHON) == home_owner(Path("/etc/rover.toml"), PYTHON)
     monkeypatch.setattr("vehicle.cli.systemd_unit.HOMES", (tmp_path,))
-    assert owner(file, PYTHON) == file.owner()
-    assert owner(Path("/etc/rover.toml"), Path("/usr/bin/python3")) is None
-    assert owner(tmp_path / "none", Path("/usr/bin/python3")) is None
+    assert home_owner(file, PYTHON) == file.owner()
+    assert home_owner(Path("/etc/rover.toml"), Path("/usr/bin/python3")) is None
+    assert home_owner(tmp_path / "none", Path("/usr/bin/python3")) is None
 
 
 def test_a_home_whose_owner_has_no_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,7 +82,7 @@ def test_a_home_whose_owner_has_no_name(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(Path, "owner", nobody)
     file = tmp_path / "rover.toml"
     file.touch()
-    assert owner(file, Path("/usr/bin/python3")) is None
+    assert home_owner(file, Path("/usr/bin/python3")) is None
 
 
 def test_what_is_linked_to_from_elsewhere_may_live_in_a_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -91,20 +93,20 @@ def test_what_is_linked_to_from_elsewhere_may_live_in_a_home(tmp_path: Path, mon
     monkeypatch.setattr("vehicle.cli.systemd_unit.HOMES", (home,))
     (home / "python3.11").touch()
     (elsewhere / "python3").symlink_to(home / "python3.11")
-    place = Place(Path("/etc/rover.toml"), elsewhere / "python3")
+    place = UnitOptions(Path("/etc/rover.toml"), elsewhere / "python3")
     assert service(place)["ProtectHome"] == "read-only"
-    assert owner(place.config, place.python) == (home / "python3.11").owner()
+    assert home_owner(place.config, place.python) == (home / "python3.11").owner()
 
 
 def test_a_mistake_is_the_code_that_ends_the_restarts() -> None:
-    assert service(PLACES["of nobody"])["RestartPreventExitStatus"] == str(MISTAKE)
+    assert service(PLACES["of nobody"])["RestartPreventExitStatus"] == str(USAGE_ERROR)
 
 
 def test_only_where_the_file_allows_it_the_computer_follows_the_exit_code() -> None:
     assert service(PLACES["of nobody"])["RestartPreventExitStatus"] == "2"
-    assert "OnFailure" not in unit(PLACES["of nobody"])
+    assert "OnFailure" not in build_unit(PLACES["of nobody"])
     assert service(PLACES["with power"])["RestartPreventExitStatus"] == "2 81 82"
-    assert "\nOnFailure=rover-reboot.service rover-poweroff.service\n" in unit(PLACES["with power"])
+    assert "\nOnFailure=rover-reboot.service rover-poweroff.service\n" in build_unit(PLACES["with power"])
 
 
 @pytest.mark.parametrize(("word", "code"), [("reboot", 81), ("poweroff", 82)])
@@ -132,9 +134,9 @@ def test_the_command_sees_what_the_file_allows(tmp_path: Path, params: str, allo
 
 @analysed
 @pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
-def test_its_exposure_is_low(place: Place, tmp_path: Path) -> None:
+def test_its_exposure_is_low(place: UnitOptions, tmp_path: Path) -> None:
     file = tmp_path / "rover.service"
-    file.write_text(unit(place))
+    file.write_text(build_unit(place))
     words = ["systemd-analyze", "security", "--offline=true", "--no-pager", str(file)]
     told = subprocess.run(words, capture_output=True, text=True, check=False, timeout=60)
     found = re.search(r"Overall exposure level for \S+: ([\d.]+)", told.stdout)
@@ -144,9 +146,9 @@ def test_its_exposure_is_low(place: Place, tmp_path: Path) -> None:
 
 @analysed
 @pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
-def test_systemd_understands_every_line(place: Place, tmp_path: Path) -> None:
+def test_systemd_understands_every_line(place: UnitOptions, tmp_path: Path) -> None:
     file = tmp_path / "rover.service"
-    file.write_text(unit(place))
+    file.write_text(build_unit(place))
     told = subprocess.run(
         ["systemd-analyze", "verify", str(file)], capture_output=True, text=True, check=False, timeout=60
     )
@@ -157,7 +159,7 @@ def test_systemd_understands_every_line(place: Place, tmp_path: Path) -> None:
 @analysed
 def test_the_check_would_see_a_wrong_line(tmp_path: Path) -> None:
     file = tmp_path / "rover.service"
-    file.write_text(unit(PLACES["of nobody"]).replace("WatchdogSec=1", "WatchdogSek=1"))
+    file.write_text(build_unit(PLACES["of nobody"]).replace("WatchdogSec=1", "WatchdogSek=1"))
     told = subprocess.run(
         ["systemd-analyze", "verify", str(file)], capture_output=True, text=True, check=False, timeout=60
     )

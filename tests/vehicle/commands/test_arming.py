@@ -9,7 +9,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.axes import Axes
-from dialects.enums import Command, ModeFlag, Result, State
+from dialects.enums import Command, ModeFlag, Result, SystemState
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, Bench, said
 from vehicle.drive.gate import Outputs
@@ -28,7 +28,7 @@ class TestArming:
         assert bench.arm() is Result.ACCEPTED
         beat = bench.newest(m.Heartbeat)
         assert beat.base_mode == ModeFlag.CUSTOM | ModeFlag.MANUAL | ModeFlag.ARMED
-        assert beat.system_status == State.ACTIVE
+        assert beat.system_status == SystemState.ACTIVE
         assert said(bench, f"Armed by GCS {DRIVER}, mode MANUAL")
 
     @pytest.mark.parametrize("wish", [0.5, NAN, 2, -1, math.inf])

@@ -8,7 +8,7 @@ from dialects import messages as m
 from dialects.enums import Command
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench, said
-from vehicle.commands.buttons import FUNCTIONS, SOURCES
+from vehicle.commands.buttons import FUNCTIONS, STATIONS_MAX
 from vehicle.params import BUTTONS, PARAMETERS
 from vehicle.safety import states
 
@@ -60,7 +60,7 @@ def test_stops_of_anybody_are_at_once(function: int, system: int) -> None:
     hold(bench, system=system)
     hold(bench, function, system=system, wait=0)
     assert not bench.turning
-    assert bench.rover.state is (states.State.SAFE if function == DISARM else states.State.ESTOP)
+    assert bench.rover.state is (states.SafetyState.SAFE if function == DISARM else states.SafetyState.ESTOP)
 
 
 def test_hold_ramps_down_and_manual_drives_again_after_neutral() -> None:
@@ -141,7 +141,7 @@ def test_for_others_and_of_strangers_they_do_nothing(wrong: dict[str, int]) -> N
 def test_of_several_at_once_the_stop_wins() -> None:
     bench = driving()
     press(bench, ARM, STOP, MANUAL, system=DRIVER)
-    assert bench.rover.state is states.State.ESTOP
+    assert bench.rover.state is states.SafetyState.ESTOP
     assert not bench.turning
 
 
@@ -168,14 +168,14 @@ def test_of_very_many_stations_only_so_many_are_remembered() -> None:
     bench = fitted()
     for system in range(1, 200):
         hold(bench, system=system, wait=0)
-    assert len(bench.rover._buttons._held) == SOURCES
+    assert len(bench.rover._buttons._held) == STATIONS_MAX
 
 
 def test_every_function_is_in_the_range_of_its_parameter() -> None:
     for bit in range(BUTTONS):
         parameter = PARAMETERS[f"BTN{bit}_FUNCTION"]
         assert (parameter.default, parameter.low, parameter.high) == (0, 0, max(FUNCTIONS))
-        assert all(f"{number} {each.words}" in parameter.description for number, each in FUNCTIONS.items())
+        assert all(f"{number} {each.label}" in parameter.description for number, each in FUNCTIONS.items())
 
 
 def test_a_stick_that_is_held_drives_on() -> None:

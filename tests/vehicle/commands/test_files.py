@@ -10,30 +10,30 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Capability, Command, Result
-from link.services.ftp.protocol import FtpError, FtpPacket, Op, crc32, parse
+from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, crc32, parse_packet
 from link.services.param.pack import MAGIC
 from tests.vehicle.bench import DRIVER, OTHER, Bench, said
 from vehicle.params import TABLE
 
 
-def ask(bench: Bench, op: Op, data: bytes = b"", *, size: int | None = None, named: bool = False) -> FtpPacket:
+def ask(bench: Bench, op: FtpOpcode, data: bytes = b"", *, size: int | None = None, named: bool = False) -> FtpPacket:
     """The answer of the file server."""
     before = len(bench.all(m.FileTransferProtocol))
     question = FtpPacket(before * 7, op, 0, data, size=size)
     bench.say(question.message(1, 1), introduced=not named, named=named)
     (answer,) = bench.all(m.FileTransferProtocol)[before:]
-    return parse(answer)
+    return parse_packet(answer)
 
 
 def fetch(bench: Bench, path: bytes) -> bytes:
     """A file that fits into one answer or a few."""
-    (length,) = struct.unpack("<I", ask(bench, Op.OPEN, path).data)
+    (length,) = struct.unpack("<I", ask(bench, FtpOpcode.OPEN, path).data)
     content = b""
     while len(content) < length:
-        packet = FtpPacket(10_000 + len(content), Op.READ, 0, b"", len(content), size=239)
+        packet = FtpPacket(10_000 + len(content), FtpOpcode.READ, 0, b"", len(content), size=239)
         bench.say(packet.message(1, 1))
-        content += parse(bench.newest(m.FileTransferProtocol)).data
-    ask(bench, Op.TERMINATE)
+        content += parse_packet(bench.newest(m.FileTransferProtocol)).data
+    ask(bench, FtpOpcode.TERMINATE)
     return content
 
 
@@ -59,11 +59,11 @@ def test_there_are_no_logs() -> None:
     bench.say(m.LogRequestList(1, 1, 0, 0xFFFF))
     bench.wait(0.1)
     assert bench.newest(m.LogEntry).num_logs == 0
-    assert ask(bench, Op.LIST, b"/logs").data[0] == FtpError.END_OF_FILE
+    assert ask(bench, FtpOpcode.LIST, b"/logs").data[0] == FtpError.END_OF_FILE
 
 
 def test_the_root_lists_what_there_is() -> None:
-    listing = ask(Bench(), Op.LIST, b"/").data.split(b"\0")
+    listing = ask(Bench(), FtpOpcode.LIST, b"/").data.split(b"\0")
     assert [line.partition(b"\t")[0] for line in listing if line] == [
         b"D@PARAM", b"Dlogs", b"Dmissions", b"Fgeneral.json.xz", b"Fparameter.json.xz",
     ]  # fmt: skip
@@ -93,17 +93,17 @@ def test_files_are_offered_in_the_capabilities() -> None:
 
 @pytest.mark.parametrize("path", [b"/etc/passwd", b"../rover.toml", b"@PARAM/../x", b"/logs/none", b"\xff" * 239])
 def test_nothing_else_is_there(path: bytes) -> None:
-    answer = ask(Bench(), Op.OPEN, path)
-    assert (answer.op, answer.data[0]) == (Op.NAK, FtpError.NOT_FOUND)
+    answer = ask(Bench(), FtpOpcode.OPEN, path)
+    assert (answer.op, answer.data[0]) == (FtpOpcode.NAK, FtpError.NOT_FOUND)
 
 
 def test_plans_are_files() -> None:
     bench = Bench()
     plan = b"QGC WPL 110\n0\t0\t3\t16\t0\t0\t0\t0\t47.1\t8.5\t0\t1\n"
     path = b"/missions/mission.waypoints"
-    assert ask(bench, Op.CREATE, path).op == Op.ACK
-    bench.say(FtpPacket(500, Op.WRITE, 0, plan).message(1, 1))
-    assert ask(bench, Op.TERMINATE).op == Op.ACK
+    assert ask(bench, FtpOpcode.CREATE, path).op == FtpOpcode.ACK
+    bench.say(FtpPacket(500, FtpOpcode.WRITE, 0, plan).message(1, 1))
+    assert ask(bench, FtpOpcode.TERMINATE).op == FtpOpcode.ACK
     bench.say(m.MissionRequestList(1, 1, 0))
     assert bench.newest(m.MissionCount).count == 1
     assert b"47.1000000\t8.5000000" in fetch(bench, path)
@@ -111,29 +111,29 @@ def test_plans_are_files() -> None:
 
 def test_a_file_that_is_no_plan_is_refused_in_words_and_one_that_has_no_place_at_once() -> None:
     bench = Bench()
-    assert ask(bench, Op.CREATE, b"/missions/fence.waypoints").op == Op.ACK
-    bench.say(FtpPacket(500, Op.WRITE, 0, b"no plan").message(1, 1))
-    assert ask(bench, Op.TERMINATE).op == Op.NAK
+    assert ask(bench, FtpOpcode.CREATE, b"/missions/fence.waypoints").op == FtpOpcode.ACK
+    bench.say(FtpPacket(500, FtpOpcode.WRITE, 0, b"no plan").message(1, 1))
+    assert ask(bench, FtpOpcode.TERMINATE).op == FtpOpcode.NAK
     bench.wait(0.1)
     assert said(bench, "File of the fence not taken: line 1 is not 'QGC WPL 110'")
-    answer = ask(bench, Op.CREATE, b"/missions/other.txt")
-    assert (answer.op, answer.data[0]) == (Op.NAK, FtpError.PROTECTED)
+    answer = ask(bench, FtpOpcode.CREATE, b"/missions/other.txt")
+    assert (answer.op, answer.data[0]) == (FtpOpcode.NAK, FtpError.PROTECTED)
 
 
 def test_only_the_driver_in_control_writes_plans() -> None:
     bench = Bench()
     assert bench.arm(system=OTHER) is Result.ACCEPTED
-    assert ask(bench, Op.CREATE, b"/missions/mission.waypoints").op == Op.NAK
+    assert ask(bench, FtpOpcode.CREATE, b"/missions/mission.waypoints").op == FtpOpcode.NAK
 
 
-@pytest.mark.parametrize("op", [Op.CREATE, Op.REMOVE, Op.OPEN_TO_WRITE])
-def test_nothing_is_written(op: Op) -> None:
-    assert ask(Bench(), op, b"/general.json.xz").op == Op.NAK
+@pytest.mark.parametrize("op", [FtpOpcode.CREATE, FtpOpcode.REMOVE, FtpOpcode.OPEN_TO_WRITE])
+def test_nothing_is_written(op: FtpOpcode) -> None:
+    assert ask(Bench(), op, b"/general.json.xz").op == FtpOpcode.NAK
 
 
 def test_who_is_at_an_address_that_the_user_named_may_ask_before_its_heartbeat() -> None:
     bench = Bench()
-    assert ask(bench, Op.LIST, b"/", named=True).op == Op.ACK
+    assert ask(bench, FtpOpcode.LIST, b"/", named=True).op == FtpOpcode.ACK
     asked = m.CommandLong(1, 1, Command.REQUEST_MESSAGE, 0, m.AutopilotVersion.id, 0, 0, 0, 0, 0, 0)
     bench.say(asked, introduced=False, named=True)
     assert bench.newest(m.CommandAck).result == Result.ACCEPTED
@@ -156,6 +156,6 @@ def test_for_another_system_there_is_silence() -> None:
     count = len(bench.sent)
     bench.say(m.MissionRequestList(2, 1, 0))
     bench.say(m.LogRequestList(1, 9, 0, 0xFFFF))
-    bench.say(FtpPacket(1, Op.LIST, 0, b"/").message(2, 1))
+    bench.say(FtpPacket(1, FtpOpcode.LIST, 0, b"/").message(2, 1))
     bench.say(m.Ping(1, 7, 1, 1))
     assert len(bench.sent) == count

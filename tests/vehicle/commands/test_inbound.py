@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from dialects import messages as m
-from vehicle.commands.inbound import HEARD, TABLE
+from vehicle.commands.inbound import INBOUND_IDS, INBOUND_MESSAGES
 from vehicle.telemetry.streams import STREAMS
 
 ROOT = Path(__file__).parents[3]
@@ -26,18 +26,18 @@ def handled() -> set[str]:
 
 
 def test_what_a_handler_knows_is_heard() -> None:
-    names = {name for name in handled() if getattr(m, name).id not in HEARD}
+    names = {name for name in handled() if getattr(m, name).id not in INBOUND_IDS}
     assert handled() >= {"ManualControl", "ParamSet", "MissionCount", "LogErase", "FileTransferProtocol"}
     assert names == set()
 
 
 def test_each_message_has_one_line_and_its_handler_is_there() -> None:
-    assert len(HEARD) == len(TABLE)
-    for heard in TABLE:
+    assert len(INBOUND_IDS) == len(INBOUND_MESSAGES)
+    for heard in INBOUND_MESSAGES:
         for name in heard.handler.split(", "):
             assert (ROOT / name).exists(), name
 
 
 def test_nobody_elses_telemetry_is_decoded() -> None:
     told = {stream.message.id for stream in STREAMS} - {m.Heartbeat.id}
-    assert not told & HEARD
+    assert not told & INBOUND_IDS

@@ -22,7 +22,7 @@ ELSEWHERE = Point(400, -300)
 
 
 def degrees(place: Point) -> tuple[int, int]:
-    latitude, longitude = GROUND.globe(place)
+    latitude, longitude = GROUND.to_global(place)
     return round(latitude * 1e7), round(longitude * 1e7)
 
 

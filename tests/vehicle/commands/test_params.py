@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, ParamFault, Result
+from dialects.enums import Command, ParamErrorCode, Result
 from link.core import LinkReport, Peer
 from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench, said
 from vehicle.params import TABLE, Params
@@ -28,7 +28,7 @@ class Memory:
         self.idle = True
         self.saves = 0
 
-    def keep(self, name: str, value: float) -> None:
+    def set(self, name: str, value: float) -> None:
         self.kept[name] = value
 
     def save(self) -> None:
@@ -102,7 +102,7 @@ def test_read_by_name_and_by_index() -> None:
 def test_62_what_is_not_there_is_an_error_and_no_value(name: bytes, index: int) -> None:
     answer = read(Bench(), name, index)
     assert isinstance(answer, m.ParamError)
-    assert answer.error == ParamFault.DOES_NOT_EXIST
+    assert answer.error == ParamErrorCode.DOES_NOT_EXIST
 
 
 def test_strangers_and_other_targets_get_nothing() -> None:
@@ -150,7 +150,7 @@ def test_60_a_bad_value_is_refused_with_the_one_that_stays(name: str, value: flo
 def test_60_another_type_is_refused() -> None:
     bench, memory = bench_with(Params())
     set_(bench, "MOT_THR_MAX", 50, kind=6)
-    assert bench.newest(m.ParamError).error == ParamFault.TYPE_MISMATCH
+    assert bench.newest(m.ParamError).error == ParamErrorCode.TYPE_MISMATCH
     assert memory.kept == {}
 
 
@@ -158,7 +158,7 @@ def test_60_an_unknown_name_is_an_error_and_said() -> None:
     bench = Bench()
     bench.say(m.ParamSet(1, 1, b"NO_SUCH", 2.0, REAL32))
     bench.wait(0.1)
-    assert bench.newest(m.ParamError).error == ParamFault.DOES_NOT_EXIST
+    assert bench.newest(m.ParamError).error == ParamErrorCode.DOES_NOT_EXIST
     assert said(bench, "No parameter NO_SUCH")
 
 
@@ -180,7 +180,7 @@ def test_61_safety_settings_are_locked_while_armed() -> None:
     bench.drive()
     assert set_(bench, "MAN_TIMEOUT", 2.0) == pytest.approx(0.45)
     assert set_(bench, "MOT_THR_MAX", 30) == 100
-    assert bench.newest(m.ParamError).error == ParamFault.PERMISSION_DENIED
+    assert bench.newest(m.ParamError).error == ParamErrorCode.PERMISSION_DENIED
     assert memory.kept == {}
     assert set_(bench, "MANUAL_EXPO", 0.5) == 0.5
     bench.command(Command.COMPONENT_ARM_DISARM, 0)
@@ -211,7 +211,7 @@ def test_only_who_is_in_control_sets() -> None:
 def test_what_the_file_of_settings_says_stays() -> None:
     bench, memory = bench_with(Params({"SPEED_MAX": 2.0}, pinned={"SPEED_MAX"}))
     assert set_(bench, "SPEED_MAX", 3.0) == 2.0
-    assert bench.newest(m.ParamError).error == ParamFault.READ_ONLY
+    assert bench.newest(m.ParamError).error == ParamErrorCode.READ_ONLY
     assert memory.kept == {}
 
 

@@ -10,17 +10,17 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionType, Result
-from link.tlog.tlog import read, record
+from link.tlog.tlog import encode_record, read_records
 from tests.vehicle.autonomy.mission.test_mission import send, way
 from tests.vehicle.bench import AHEAD, DRIVER, OTHER, Bench, said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, drive, running
 from tests.vehicle.storage.test_plan_store import SlowDisk, field_with
-from vehicle.commands.reboot import Leave
+from vehicle.commands.reboot import RebootRequest
 from vehicle.navigation.geo import Point
-from vehicle.params import Params, in_force
+from vehicle.params import Params, merge_params
 from vehicle.rover import Rover
-from vehicle.runtime.shutdown import Ending
+from vehicle.runtime.shutdown import Shutdown
 from vehicle.storage.param_store import ParamStore
 
 REBOOT, STORAGE = Command.PREFLIGHT_REBOOT_SHUTDOWN, Command.PREFLIGHT_STORAGE
@@ -33,7 +33,7 @@ class TestReboot:
         for wish in ((1, 0), (0, 1), (0, 2)):
             assert bench.command(REBOOT, *wish) is Result.DENIED
         bench.wait(2.0)
-        assert bench.rover.leaving(bench.now) is None
+        assert bench.rover.reboot_request(bench.now) is None
 
     @pytest.mark.parametrize("enabled", [0, 2])
     def test_57_while_armed_it_fails(self, enabled: float) -> None:
@@ -42,35 +42,35 @@ class TestReboot:
         assert bench.command(REBOOT, 1, 0, 0, 0, 0, 20190226) is Result.FAILED
         bench.wait(1.0, AHEAD)
         assert bench.turning
-        assert bench.rover.leaving(bench.now) is None
+        assert bench.rover.reboot_request(bench.now) is None
         assert said(bench, "PREFLIGHT_REBOOT_SHUTDOWN refused: armed")
 
     @pytest.mark.parametrize(
         ("wish", "leave"),
         [
-            ((1, 0), Leave.RESTART),
-            ((0, 1), Leave.REBOOT),
-            ((1, 1), Leave.REBOOT),
-            ((0, 2), Leave.POWER_OFF),
-            ((1, 2), Leave.POWER_OFF),
-            ((1, *(NAN,) * 6), Leave.RESTART),  # MAVSDK 4
-            ((2, *(NAN,) * 6), Leave.POWER_OFF),
-            ((1, 1, 1, 1), Leave.REBOOT),  # MAVSDK before
-            ((2, 2, 2, 2), Leave.POWER_OFF),
-            ((0, 0, 1, 0), Leave.RESTART),  # all components
-            ((0, 0, 2, 1), Leave.POWER_OFF),  # this one
-            ((1, 0, 1, 100), Leave.RESTART),  # a camera that we have not
+            ((1, 0), RebootRequest.RESTART),
+            ((0, 1), RebootRequest.REBOOT),
+            ((1, 1), RebootRequest.REBOOT),
+            ((0, 2), RebootRequest.POWER_OFF),
+            ((1, 2), RebootRequest.POWER_OFF),
+            ((1, *(NAN,) * 6), RebootRequest.RESTART),  # MAVSDK 4
+            ((2, *(NAN,) * 6), RebootRequest.POWER_OFF),
+            ((1, 1, 1, 1), RebootRequest.REBOOT),  # MAVSDK before
+            ((2, 2, 2, 2), RebootRequest.POWER_OFF),
+            ((0, 0, 1, 0), RebootRequest.RESTART),  # all components
+            ((0, 0, 2, 1), RebootRequest.POWER_OFF),  # this one
+            ((1, 0, 1, 100), RebootRequest.RESTART),  # a camera that we have not
         ],
     )
-    def test_first_the_answer_then_the_end(self, wish: tuple[float, ...], leave: Leave) -> None:
+    def test_first_the_answer_then_the_end(self, wish: tuple[float, ...], leave: RebootRequest) -> None:
         bench = Bench(REBOOT_ENABLE=2)
         assert bench.command(REBOOT, *wish) is Result.ACCEPTED
-        assert bench.rover.leaving(bench.now) is None
+        assert bench.rover.reboot_request(bench.now) is None
         bench.wait(0.3)
         assert bench.command(REBOOT, *wish) is Result.ACCEPTED  # its answer was lost: the same end
         bench.wait(0.22)
-        assert bench.rover.leaving(bench.now) is leave
-        assert said(bench, f"GCS {DRIVER}: {leave.words}")
+        assert bench.rover.reboot_request(bench.now) is leave
+        assert said(bench, f"GCS {DRIVER}: {leave.label}")
 
     @pytest.mark.parametrize(
         "wish",
@@ -94,7 +94,7 @@ class TestReboot:
         bench = Bench(REBOOT_ENABLE=2)
         assert bench.command(REBOOT, *wish) is Result.DENIED
         bench.wait(1.0)
-        assert bench.rover.leaving(bench.now) is None
+        assert bench.rover.reboot_request(bench.now) is None
 
     def test_the_setting_may_allow_the_program_only(self) -> None:
         bench = Bench(REBOOT_ENABLE=1)
@@ -108,10 +108,10 @@ class TestReboot:
         bench.command(REBOOT, 1)
         bench.arm()
         bench.wait(1.0)
-        assert bench.rover.leaving(bench.now) is None
+        assert bench.rover.reboot_request(bench.now) is None
         bench.command(Command.COMPONENT_ARM_DISARM, 0)
         bench.wait(1.0)
-        assert bench.rover.leaving(bench.now) is None
+        assert bench.rover.reboot_request(bench.now) is None
         assert said(bench, "Armed: no restart")
 
     def test_only_who_is_in_control_may(self) -> None:
@@ -146,7 +146,7 @@ def test_the_process_ends_with_the_code_that_says_what_is_wanted(
         ask(ground, REBOOT, *wish, until=lambda: vehicle.process.poll() is not None)
         ended, lines = vehicle.ended()
         assert ended == code
-        assert lines[-1] == f"vehicle: {Leave(code).words} as a ground station asked, motors neutral"
+        assert lines[-1] == f"vehicle: {RebootRequest(code).label} as a ground station asked, motors neutral"
         ground.drain()
         assert answers(ground, REBOOT)[-1] == Result.ACCEPTED
 
@@ -179,9 +179,9 @@ def test_a_signal_that_came_first_decides_the_code() -> None:
     import asyncio
 
     async def both() -> int:
-        ending = Ending(Nothing(), Nothing())  # type: ignore[arg-type]
+        ending = Shutdown(Nothing(), Nothing())  # type: ignore[arg-type]
         ending._end("stopped by SIGTERM")
-        ending.leave(Leave.POWER_OFF)
+        ending.handle_reboot_request(RebootRequest.POWER_OFF)
         return ending._code
 
     assert asyncio.run(both()) == 0
@@ -196,7 +196,7 @@ class Kept:
         self.idle = True
         self.saved = 0
 
-    def keep(self, name: str, value: float) -> None:
+    def set(self, name: str, value: float) -> None:
         self.values[name] = value
 
     def save(self) -> None:
@@ -265,7 +265,7 @@ class TestStorage:
         """FS_LOOP_TIMEOUT of a simulation, which runs on a desktop."""
         keeper, given = Kept(), {"FS_LOOP_TIMEOUT": 1.0, "WP_SPEED": 2.0}
         keeper.values = {"WP_SPEED": 1.5}
-        params, _ = in_force(given, kept=keeper.values, usual={}, run=given)
+        params, _ = merge_params(given, kept=keeper.values, usual={}, run=given)
         bench = Bench()
         bench.rover = Rover(params, now=bench.now, keeper=keeper)
         bench.wait(0.1)
@@ -423,6 +423,6 @@ class TestSigning:
         message = m.SetupSigning(1, 1, self.KEY, 1)
         frame = codec.frame(message.id, codec.encode_payload(message), 0, 255, 190)
         beat = codec.frame(0, codec.encode_payload(m.Heartbeat(6, 8, 0, 0, 4, 3)), 1, 255, 190)
-        kept = record(1_000_000, beat) + record(1_000_001, frame) + record(1_000_002, beat)
+        kept = encode_record(1_000_000, beat) + encode_record(1_000_001, frame) + encode_record(1_000_002, beat)
         assert self.KEY not in kept
-        assert [each.raw for each in read(kept)] == [beat, beat]
+        assert [each.raw for each in read_records(kept)] == [beat, beat]

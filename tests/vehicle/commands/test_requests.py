@@ -12,7 +12,7 @@ from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.core import LinkReport, Peer
 from tests.vehicle.bench import EVERYTHING, OTHER, Bench, Equipped
-from vehicle.modes import OFFERED
+from vehicle.modes import MODES
 from vehicle.telemetry.streams import STREAMS, Stream
 
 REQUEST, SET, GET = Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL
@@ -47,13 +47,13 @@ def test_modes_one_by_one_and_all_at_once() -> None:
     bench = equipped()
     assert bench.command(REQUEST, m.AvailableModes.id, 0) is Result.ACCEPTED
     modes = bench.all(m.AvailableModes)
-    assert [(mode.mode_index, mode.custom_mode) for mode in modes] == list(enumerate(OFFERED, start=1))
-    assert all(mode.number_modes == len(OFFERED) for mode in modes)
+    assert [(mode.mode_index, mode.custom_mode) for mode in modes] == list(enumerate(MODES, start=1))
+    assert all(mode.number_modes == len(MODES) for mode in modes)
     assert bench.command(REQUEST, m.AvailableModes.id, 3) is Result.ACCEPTED
     assert bench.newest(m.AvailableModes).custom_mode == Mode.HOLD
     assert bench.command(REQUEST, m.AvailableModes.id, math.nan) is Result.ACCEPTED  # left out: all
-    assert bench.newest(m.AvailableModes).mode_index == len(OFFERED)
-    for index in (len(OFFERED) + 1, -1, 0.5, math.inf):
+    assert bench.newest(m.AvailableModes).mode_index == len(MODES)
+    for index in (len(MODES) + 1, -1, 0.5, math.inf):
         assert bench.command(REQUEST, m.AvailableModes.id, index) is Result.DENIED
 
 

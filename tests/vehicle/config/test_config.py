@@ -9,20 +9,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle.config.config import Config, ConfigError, Identity, LogSettings, load, parsed
+from vehicle.config.config import Config, ConfigError, Identity, LogSettings, load, parse_config
 from vehicle.sensors.gps import GpsSettings
 from vehicle.sensors.suite import SensorSettings
 
 
 def problems(text: str) -> tuple[str, ...]:
     with pytest.raises(ConfigError) as refusal:
-        parsed(text, "rover.toml")
+        parse_config(text, "rover.toml")
     assert not any("\n" in problem for problem in refusal.value.problems)
     return refusal.value.problems
 
 
 def test_an_empty_file_is_all_defaults() -> None:
-    assert parsed("", "rover.toml") == Config()
+    assert parse_config("", "rover.toml") == Config()
 
 
 def test_every_section_is_read() -> None:
@@ -47,7 +47,7 @@ file = "/var/log/rover"
 verbose = true
 motors = "/tmp/motors"
 """
-    assert parsed(text, "rover.toml") == Config(
+    assert parse_config(text, "rover.toml") == Config(
         endpoints=("udpin:0.0.0.0:14550", "serial:/dev/ttyAMA0:57600"),
         state="/srv/rover",
         identity=Identity(system=7),
@@ -161,4 +161,4 @@ def test_the_mark_of_a_windows_editor_is_no_mistake(tmp_path: Path) -> None:
 @given(st.text())
 def test_any_text_is_settings_or_a_refusal(text: str) -> None:
     with contextlib.suppress(ConfigError):
-        assert isinstance(parsed(text, "f"), Config)
+        assert isinstance(parse_config(text, "f"), Config)

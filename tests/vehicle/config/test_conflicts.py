@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from vehicle.config.config import ConfigError, load, parsed
+from vehicle.config.config import ConfigError, load, parse_config
 
 CAR = '[motors]\ndriver = "article-car"\n'
 BOARD = '[motors]\ndriver = "pca9685"\nchannels = [{ channel = 0 }]\n'
@@ -32,7 +32,7 @@ def wheels(*pins: int) -> str:
 )
 def test_what_is_wanted_twice_is_said_before_anything_is_opened(text: str, says: str) -> None:
     with pytest.raises(ConfigError) as refusal:
-        parsed(text, "f")
+        parse_config(text, "f")
     assert len(refusal.value.problems) == 1
     assert refusal.value.problems[0].startswith(f"f: {says}")
 
@@ -59,4 +59,4 @@ def test_one_serial_port_cannot_be_the_link_and_the_motors(driver: str, tmp_path
     ],
 )
 def test_what_is_apart_is_left_alone(text: str) -> None:
-    parsed(text, "f")
+    parse_config(text, "f")

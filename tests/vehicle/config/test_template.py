@@ -13,15 +13,15 @@ import pytest
 
 import vehicle
 from tests.vehicle.words import said_by
-from vehicle.config.config import Config, LogSettings, parsed
-from vehicle.config.schema import schema
-from vehicle.config.template import LISTENING, SIMULATED, sample
+from vehicle.config.config import Config, LogSettings, parse_config
+from vehicle.config.schema import build_schema
+from vehicle.config.template import LISTENING, SIMULATED, build_template
 from vehicle.motors import DRIVERS, PROFILES, settings_type
-from vehicle.motors.settings import Around, Safety
+from vehicle.motors.settings import CommonMotorSettings, SafetyPinSettings
 from vehicle.params import TABLE, Params
 from vehicle.sensors.suite import SensorSettings
 
-BLOCKS = re.split(r"^# ---- (.+?)(?::.*)?$|^(?=\[sensors\])", sample(), flags=re.MULTILINE)
+BLOCKS = re.split(r"^# ---- (.+?)(?::.*)?$|^(?=\[sensors\])", build_template(), flags=re.MULTILINE)
 OWN = [name for name in DRIVERS if name != "simulated"]
 
 
@@ -41,12 +41,12 @@ def block(title: str) -> str:
 
 
 def test_as_it_is_it_holds_the_defaults() -> None:
-    assert parsed(sample(), "rover.toml") == Config(endpoints=tuple(LISTENING), motors=SIMULATED)
+    assert parse_config(build_template(), "rover.toml") == Config(endpoints=tuple(LISTENING), motors=SIMULATED)
 
 
 def test_everything_in_it_is_a_setting() -> None:
     text = "".join(part for part in (BLOCKS[0], BLOCKS[-1]) if part)
-    found = parsed(made_live(text).replace("MAV_SYSID", "#"), "rover.toml")
+    found = parse_config(made_live(text).replace("MAV_SYSID", "#"), "rover.toml")
     assert set(live(text)) == set(Config.__struct_fields__)
     assert set(live(text)["log"]) == set(LogSettings.__struct_fields__)
     assert found.log.verbose is LogSettings().verbose
@@ -70,7 +70,7 @@ def test_every_sensor_is_in_it_with_every_key_at_its_default() -> None:
 def test_every_driver_is_in_it_with_every_key_at_its_default(name: str) -> None:
     text = made_live("[motors]\n" + block(name))
     table = tomllib.loads(text)["motors"]
-    assert parsed(text, "rover.toml").motors == table
+    assert parse_config(text, "rover.toml").motors == table
     assert table.pop("driver") == name
     kind = settings_type(name)
     assert kind is not None
@@ -85,15 +85,15 @@ def test_every_driver_is_in_it_with_every_key_at_its_default(name: str) -> None:
 def test_what_goes_around_a_driver_is_in_it() -> None:
     text = made_live(block("for any driver"))
     table = tomllib.loads(text)["motors"]
-    assert set(table) == set(Around.__struct_fields__)
-    assert set(table["safety"]) == set(Safety.__struct_fields__)
-    assert parsed(f'[motors]\ndriver = "simulated"\n{text}', "rover.toml").motors["safety"]
+    assert set(table) == set(CommonMotorSettings.__struct_fields__)
+    assert set(table["safety"]) == set(SafetyPinSettings.__struct_fields__)
+    assert parse_config(f'[motors]\ndriver = "simulated"\n{text}', "rover.toml").motors["safety"]
 
 
 def test_init_writes_it_once(tmp_path: Path) -> None:
     file = tmp_path / "rover.toml"
     assert said_by("init", str(file)) == (0, f"wrote {file}; edit it, then: vehicle check {file}\n", "")
-    assert file.read_text() == sample()
+    assert file.read_text() == build_template()
     file.write_text("mine")
     code, _, error = said_by("init", str(file))
     assert (code, error) == (2, f"vehicle init: {file} is there already; name another file, or remove it\n")
@@ -103,7 +103,7 @@ def test_init_writes_it_once(tmp_path: Path) -> None:
 
 
 def test_the_schema_knows_every_key_with_its_help() -> None:
-    whole = json.loads(schema())
+    whole = json.loads(build_schema())
     assert set(whole["properties"]) == set(Config.__struct_fields__)
     assert whole["additionalProperties"] is False
     *drivers, own = whole["properties"]["motors"]["oneOf"]
@@ -114,22 +114,22 @@ def test_the_schema_knows_every_key_with_its_help() -> None:
     assert roboclaw["required"] == ["driver", "port"]
     assert roboclaw["properties"]["timeout"]["description"].startswith("s of silence until the controller stops")
     assert set(whole["properties"]["params"]["properties"]) == {parameter.name for parameter in TABLE}
-    assert said_by("schema") == (0, schema(), "")
+    assert said_by("schema") == (0, build_schema(), "")
 
 
 def test_the_shipped_schema_is_the_codes() -> None:
     shipped = Path(vehicle.__file__).with_name("config") / "rover.schema.json"
-    assert shipped.read_text() == schema(), "run: .venv/bin/vehicle schema > vehicle/config/rover.schema.json"
+    assert shipped.read_text() == build_schema(), "run: .venv/bin/vehicle schema > vehicle/config/rover.schema.json"
 
 
 def test_every_reference_in_the_schema_leads_somewhere() -> None:
-    text = schema()
+    text = build_schema()
     for name in re.findall(r'"#/\$defs/(\w+)"', text):
         assert name in json.loads(text)["$defs"]
 
 
 def test_schema_and_sample_agree() -> None:
     """Each key of the sample stands in the schema."""
-    properties = json.loads(schema())["properties"]
+    properties = json.loads(build_schema())["properties"]
     for name in live(BLOCKS[-1])["params"]:
         assert name in properties["params"]["properties"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from dialects.axes import Axes, manual_control
-from dialects.enums import Command, Limit
+from dialects.axes import Axes, build_manual_control
+from dialects.enums import Command, DriveLimit
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, OTHER, Bench, said
 
 
@@ -51,8 +51,8 @@ def test_32_of_another_ground_station_is_ignored_counted_and_said_once() -> None
 def test_a_peer_that_has_shown_no_heartbeat_is_ignored() -> None:
     bench = Bench()
     bench.arm()
-    bench.say(manual_control(NEUTRAL, 1), introduced=False)
-    bench.say(manual_control(AHEAD, 1), introduced=False)
+    bench.say(build_manual_control(NEUTRAL, 1), introduced=False)
+    bench.say(build_manual_control(AHEAD, 1), introduced=False)
     bench.wait(CYCLE)
     assert not bench.turning
 
@@ -155,7 +155,7 @@ def test_35_full_throttle_from_the_first_frame_waits_for_neutral() -> None:
     bench.arm()
     bench.wait(1.0, AHEAD)
     assert not bench.turning
-    assert bench.newest(m.RoverDriveStatus).limits & Limit.NEUTRAL_FIRST
+    assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.NEUTRAL_FIRST
     bench.wait(0.1, NEUTRAL)
     bench.wait(0.1, AHEAD)
     assert bench.turning
@@ -164,10 +164,10 @@ def test_35_full_throttle_from_the_first_frame_waits_for_neutral() -> None:
 def test_36_a_replayed_frame_does_not_keep_the_rover_going() -> None:
     bench = Bench()
     bench.drive()
-    bench.say(manual_control(AHEAD, 1), sequence=77)
+    bench.say(build_manual_control(AHEAD, 1), sequence=77)
     for _ in range(50):
         bench.wait(0.04)
-        bench.say(manual_control(AHEAD, 1), sequence=77)
+        bench.say(build_manual_control(AHEAD, 1), sequence=77)
     assert not bench.turning
 
 
@@ -228,7 +228,7 @@ def test_41_full_ahead_to_full_reverse_goes_through_zero_in_time() -> None:
     assert seen.count(0.0) >= 9  # 0.2 s at zero
     assert seen[-1] == -1.0
     assert max(abs(new - old) for new, old in zip(seen[1:], seen, strict=False)) <= 0.0501
-    assert any(message.limits & Limit.REVERSE_DELAY for message in bench.all(m.RoverDriveStatus))
+    assert any(message.limits & DriveLimit.REVERSE_DELAY for message in bench.all(m.RoverDriveStatus))
 
 
 def test_a_small_demand_is_neutral() -> None:

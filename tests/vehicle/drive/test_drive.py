@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from dialects.enums import Limit
+from dialects.enums import DriveLimit
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, Bench, said
 from vehicle.drive.demand import Demand
@@ -23,7 +23,7 @@ def demand(throttle: float, steering: float = 0.0) -> Demand:
 
 def run(drive: Drive, wish: Demand | None, cycles: int = 100, *, limited: bool = False, start: float = 0.0) -> Outputs:
     for cycle in range(1, cycles + 1):
-        drive.step(wish, CLEARED, limited=limited, now=start + cycle * CYCLE)
+        drive.update(wish, CLEARED, limited=limited, now=start + cycle * CYCLE)
     return drive.outputs
 
 
@@ -34,18 +34,18 @@ def test_nan_becomes_zero_and_not_speed(wrong: Demand, kind: int, largest: float
     drive = Drive(Params({"DRIVE_TYPE": kind, "MOT_THR_MAX": largest}), 0.0)
     assert any(run(drive, demand(1.0)).throttles)
     for cycle in range(1, 5):
-        outputs = drive.step(wrong, CLEARED, limited=False, now=2.0 + cycle * CYCLE)
+        outputs = drive.update(wrong, CLEARED, limited=False, now=2.0 + cycle * CYCLE)
         assert outputs == Outputs((0.0,) * len(drive.mixer.motors), enabled=False)
-        assert drive.refused == cycle
+        assert drive.rejected_cycles == cycle
     assert any(run(drive, demand(1.0), start=3.0).throttles)
-    assert drive.refused == 0
+    assert drive.rejected_cycles == 0
 
 
 def test_a_sideways_demand_that_is_no_number_becomes_zero() -> None:
     drive = Drive(Params({"DRIVE_TYPE": 4}), 0.0)
     assert any(run(drive, Demand(0.0, 0.0, 0.0, 255, 0, sideways=1.0)).throttles)
     wrong = Demand(0.0, 0.0, 0.0, 255, 0, sideways=math.nan)
-    assert drive.step(wrong, CLEARED, limited=False, now=2.1) == Outputs((0.0,) * 4, enabled=False)
+    assert drive.update(wrong, CLEARED, limited=False, now=2.1) == Outputs((0.0,) * 4, enabled=False)
 
 
 def test_three_cycles_of_nan_are_hold() -> None:
@@ -68,7 +68,7 @@ def test_a_limited_throttle_is_told() -> None:
     for start, throttle, limited in ((0.0, 1.0, False), (2.0, 1.0, True), (4.0, 0.3, True)):
         throttles = run(drive, demand(throttle), limited=limited, start=start).throttles
         found.append((round(throttles[0], 2), drive.limits))
-    assert found == [(0.7, Limit.SPEED), (0.5, Limit.SPEED), (0.28, Limit(0))]
+    assert found == [(0.7, DriveLimit.SPEED), (0.5, DriveLimit.SPEED), (0.28, DriveLimit(0))]
 
 
 def test_expo_is_softer_around_neutral() -> None:
@@ -79,16 +79,16 @@ def test_expo_is_softer_around_neutral() -> None:
 def test_a_stop_makes_every_motor_fall_from_the_first_cycle_on() -> None:
     drive = Drive(Params(), 0.0)
     before = run(drive, demand(0.8, -0.6)).throttles
-    assert drive.limits == Limit.SATURATED
-    after = drive.step(None, CLEARED, limited=False, now=2.0 + CYCLE).throttles
+    assert drive.limits == DriveLimit.SATURATED
+    after = drive.update(None, CLEARED, limited=False, now=2.0 + CYCLE).throttles
     assert all(abs(new) < abs(old) for new, old in zip(after, before, strict=True))
 
 
 def test_time_that_stands_still_changes_nothing() -> None:
     drive = Drive(Params(), 0.0)
     before = run(drive, demand(0.5), cycles=5).throttles
-    assert drive.step(demand(1.0), CLEARED, limited=False, now=0.1).throttles == before
-    assert drive.step(demand(1.0), CLEARED, limited=False, now=0.05).throttles == before
+    assert drive.update(demand(1.0), CLEARED, limited=False, now=0.1).throttles == before
+    assert drive.update(demand(1.0), CLEARED, limited=False, now=0.05).throttles == before
 
 
 def test_a_parameter_that_is_set_while_driving_counts_from_the_next_cycle() -> None:
@@ -96,6 +96,6 @@ def test_a_parameter_that_is_set_while_driving_counts_from_the_next_cycle() -> N
     drive = Drive(params, 0.0)
     assert run(drive, demand(1.0)).throttles == (1.0, 1.0)
     params.set("MOT1_MAX", 60)
-    assert drive.step(demand(1.0), CLEARED, limited=False, now=2.02).throttles == (0.6, 1.0)
+    assert drive.update(demand(1.0), CLEARED, limited=False, now=2.02).throttles == (0.6, 1.0)
     params.set("MOT_DECEL", 1000)
-    assert drive.step(demand(0.0), CLEARED, limited=False, now=2.04).throttles[1] == pytest.approx(0.8)
+    assert drive.update(demand(0.0), CLEARED, limited=False, now=2.04).throttles[1] == pytest.approx(0.8)

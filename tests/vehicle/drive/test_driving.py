@@ -7,11 +7,11 @@ from typing import TypeVar
 
 import pytest
 
-from dialects.axes import Axes, manual_control
-from dialects.enums import Autopilot, Command, DriveType, ModeFlag, State, Type
+from dialects.axes import Axes, build_manual_control
+from dialects.enums import Autopilot, Command, DriveType, ModeFlag, SystemState, VehicleType
 from dialects.messages import CommandLong, Heartbeat, LocalPositionNed, Message, StatusText, SysStatus
 from link.core import Peer, Received
-from vehicle.control_loop import RETRY, Machine
+from vehicle.control_loop import MOTOR_RETRY_TIME, ControlLoop
 from vehicle.motors import MotorError
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
@@ -45,7 +45,7 @@ class Drive:
         self.motors = Unplugged()
         self.rover = Rover(params or Params(), now=self.now)
         body = SimulatedBody(lambda: self.motors.outputs, battery=Battery(battery), chassis=chassis or SkidChassis())
-        self.machine = Machine(self.rover, self.motors, body)
+        self.machine = ControlLoop(self.rover, self.motors, body)
         self.said: list[Message] = []
         self._sequence = 0
         self.run(0.5)
@@ -55,7 +55,7 @@ class Drive:
         for cycle in range(round(seconds / CYCLE)):
             self.now += CYCLE
             if demand is not None and cycle % 2 == 0:
-                self.say(manual_control(demand, 1))
+                self.say(build_manual_control(demand, 1))
             self.machine.tick(self.now)
             self.said += [outgoing.message for outgoing in self.machine.messages_to_send()]
 
@@ -66,7 +66,7 @@ class Drive:
 
     def arm(self) -> None:
         """Take control and arm with a neutral demand."""
-        self.say(Heartbeat(Type.GCS, Autopilot.INVALID, 0, 0, State.ACTIVE, 3))
+        self.say(Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3))
         self.say(CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0))
         self.run(1.2, Axes())
 
@@ -130,13 +130,13 @@ def test_motors_that_fail_disarm_and_may_be_armed_again_once_repaired() -> None:
     drive.run(CYCLE, AHEAD)
     assert drive.motors.outputs == (0.0, 0.0)
     assert not drive.motors.enabled
-    drive.run(2 * RETRY, AHEAD)
+    drive.run(2 * MOTOR_RETRY_TIME, AHEAD)
     assert not drive.armed
     assert "no answer" in drive.texts()
     drive.arm()
     assert not drive.armed, "the fault is still there"
     drive.motors.plugged = True
-    drive.run(2 * RETRY)
+    drive.run(2 * MOTOR_RETRY_TIME)
     drive.arm()
     assert drive.armed
     drive.run(1.0, AHEAD)
@@ -156,5 +156,5 @@ def test_after_shutdown_nothing_turns_and_the_last_word_is_poweroff() -> None:
     assert drive.motors.outputs == (0.0, 0.0)
     drive.run(1.0, AHEAD)
     assert drive.motors.outputs == (0.0, 0.0)
-    assert drive.newest(Heartbeat).system_status == State.POWEROFF
+    assert drive.newest(Heartbeat).system_status == SystemState.POWEROFF
     assert not drive.armed

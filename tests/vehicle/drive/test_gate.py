@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle.drive.gate import TRIAL_LARGEST, TRIAL_LONGEST, Clearance, Gate, Outputs, Permit, Trial
+from vehicle.drive.gate import MOTOR_TEST_THROTTLE_MAX, MOTOR_TEST_TIME_MAX, Clearance, Gate, MotorTest, Outputs, Permit
 
 CLEARED = Clearance(armed=True, late=False, held=False, neutral_seen=True, demand_age=0.1, timeout=0.45)
 FALL_TIME = 0.4
@@ -17,10 +17,10 @@ ZERO = Outputs((0.0, 0.0), enabled=False)
 
 
 def judge(
-    gate: Gate, values: Sequence[float], permit: Permit, fall_time: float, now: float, trial: Trial | None = None
+    gate: Gate, values: Sequence[float], permit: Permit, fall_time: float, now: float, trial: MotorTest | None = None
 ) -> Outputs:  # fmt: skip
     """With motors that get what their wheels are to do."""
-    return gate.judge(values, values, permit, fall_time, now, trial)
+    return gate.filter(values, values, permit, fall_time, now, trial)
 
 
 def test_all_facts_right_permits_to_drive() -> None:
@@ -32,13 +32,13 @@ def test_all_facts_right_permits_to_drive() -> None:
     [
         ({"armed": False}, Permit.NONE),
         ({"late": True}, Permit.NONE),
-        ({"held": True}, Permit.FALL),
-        ({"neutral_seen": False}, Permit.FALL),
-        ({"demand_age": None}, Permit.FALL),
-        ({"demand_age": 0.451}, Permit.FALL),
-        ({"demand_age": -0.001}, Permit.FALL),
-        ({"demand_age": math.nan}, Permit.FALL),
-        ({"timeout": math.nan}, Permit.FALL),
+        ({"held": True}, Permit.RAMP_DOWN),
+        ({"neutral_seen": False}, Permit.RAMP_DOWN),
+        ({"demand_age": None}, Permit.RAMP_DOWN),
+        ({"demand_age": 0.451}, Permit.RAMP_DOWN),
+        ({"demand_age": -0.001}, Permit.RAMP_DOWN),
+        ({"demand_age": math.nan}, Permit.RAMP_DOWN),
+        ({"timeout": math.nan}, Permit.RAMP_DOWN),
     ],
 )
 def test_each_fact_alone_takes_the_permit_away(change: dict[str, float], permit: Permit) -> None:
@@ -74,22 +74,22 @@ def test_values_that_are_none_are_refused_all_together(bad: tuple[float, ...]) -
 def test_fall_lets_values_fall_and_nothing_else() -> None:
     gate = Gate(2)
     judge(gate, (1.0, -1.0), Permit.DRIVE, FALL_TIME, 0.0)
-    assert judge(gate, (0.9, -0.9), Permit.FALL, FALL_TIME, 0.02) == Outputs((0.9, -0.9), enabled=True)
-    assert judge(gate, (0.91, -0.8), Permit.FALL, FALL_TIME, 0.04) == ZERO
-    assert judge(gate, (0.8, -0.8), Permit.FALL, FALL_TIME, 0.06) == ZERO
+    assert judge(gate, (0.9, -0.9), Permit.RAMP_DOWN, FALL_TIME, 0.02) == Outputs((0.9, -0.9), enabled=True)
+    assert judge(gate, (0.91, -0.8), Permit.RAMP_DOWN, FALL_TIME, 0.04) == ZERO
+    assert judge(gate, (0.8, -0.8), Permit.RAMP_DOWN, FALL_TIME, 0.06) == ZERO
 
 
 def test_a_fall_that_does_not_end_is_ended() -> None:
     gate = Gate(2)
     judge(gate, (1.0, 1.0), Permit.DRIVE, FALL_TIME, 0.0)
-    assert judge(gate, (1.0, 1.0), Permit.FALL, FALL_TIME, 0.02).enabled
-    assert judge(gate, (1.0, 1.0), Permit.FALL, FALL_TIME, 0.46).enabled
-    assert judge(gate, (1.0, 1.0), Permit.FALL, FALL_TIME, 0.48) == ZERO
+    assert judge(gate, (1.0, 1.0), Permit.RAMP_DOWN, FALL_TIME, 0.02).enabled
+    assert judge(gate, (1.0, 1.0), Permit.RAMP_DOWN, FALL_TIME, 0.46).enabled
+    assert judge(gate, (1.0, 1.0), Permit.RAMP_DOWN, FALL_TIME, 0.48) == ZERO
 
 
 def test_at_rest_without_permit_the_enable_line_is_off() -> None:
     gate = Gate(2)
-    assert not judge(gate, (0.0, 0.0), Permit.FALL, FALL_TIME, 0.0).enabled
+    assert not judge(gate, (0.0, 0.0), Permit.RAMP_DOWN, FALL_TIME, 0.0).enabled
     assert judge(gate, (0.0, 0.0), Permit.DRIVE, FALL_TIME, 0.02).enabled
 
 
@@ -98,52 +98,52 @@ def test_at_rest_without_permit_the_enable_line_is_off() -> None:
 
 def test_the_motors_get_what_was_made_of_the_wheels() -> None:
     gate = Gate(2)
-    assert gate.judge((0.5, 0.5), (-0.6, 0.7), Permit.DRIVE, FALL_TIME, 0.0) == Outputs((-0.6, 0.7), enabled=True)
+    assert gate.filter((0.5, 0.5), (-0.6, 0.7), Permit.DRIVE, FALL_TIME, 0.0) == Outputs((-0.6, 0.7), enabled=True)
     assert gate.wheels == (0.5, 0.5)
 
 
 @pytest.mark.parametrize("bad", [(math.nan, 0.5), (0.5, -1.01), (math.inf, 0.5), (0.5,), (0.5, 0.5, 0.5)])
 def test_motor_values_that_are_none_are_refused_all_together(bad: tuple[float, ...]) -> None:
     gate = Gate(2)
-    assert gate.judge((0.5, 0.5), (0.5, 0.5), Permit.DRIVE, FALL_TIME, 0.0).enabled
-    assert gate.judge((0.5, 0.5), bad, Permit.DRIVE, FALL_TIME, 0.02) == ZERO
+    assert gate.filter((0.5, 0.5), (0.5, 0.5), Permit.DRIVE, FALL_TIME, 0.0).enabled
+    assert gate.filter((0.5, 0.5), bad, Permit.DRIVE, FALL_TIME, 0.02) == ZERO
     assert gate.refused == 1
     assert gate.wheels == (0.0, 0.0)
 
 
 def test_a_wheel_that_is_to_stand_has_a_motor_that_gets_nothing() -> None:
     assert judge(Gate(2), (0.5, 0.0), Permit.DRIVE, FALL_TIME, 0.0).enabled
-    assert Gate(2).judge((0.5, 0.0), (0.5, 0.01), Permit.DRIVE, FALL_TIME, 0.0) == ZERO
-    centred = Gate(2, driven=1).judge((0.5, 0.0), (0.5, 0.1), Permit.DRIVE, FALL_TIME, 0.0)  # of a steering servo
+    assert Gate(2).filter((0.5, 0.0), (0.5, 0.01), Permit.DRIVE, FALL_TIME, 0.0) == ZERO
+    centred = Gate(2, driven=1).filter((0.5, 0.0), (0.5, 0.1), Permit.DRIVE, FALL_TIME, 0.0)  # of a steering servo
     assert centred == Outputs((0.5, 0.1), enabled=True)
 
 
 def test_a_servo_off_its_centre_keeps_nothing_enabled() -> None:
     gate = Gate(2, driven=1)
-    gate.judge((0.5, 0.0), (0.5, 0.1), Permit.DRIVE, FALL_TIME, 0.0)
-    assert gate.judge((0.1, 0.0), (0.1, 0.1), Permit.FALL, FALL_TIME, 0.02) == Outputs((0.1, 0.1), enabled=True)
-    assert gate.judge((0.0, 0.0), (0.0, 0.1), Permit.FALL, FALL_TIME, 0.04) == ZERO
+    gate.filter((0.5, 0.0), (0.5, 0.1), Permit.DRIVE, FALL_TIME, 0.0)
+    assert gate.filter((0.1, 0.0), (0.1, 0.1), Permit.RAMP_DOWN, FALL_TIME, 0.02) == Outputs((0.1, 0.1), enabled=True)
+    assert gate.filter((0.0, 0.0), (0.0, 0.1), Permit.RAMP_DOWN, FALL_TIME, 0.04) == ZERO
 
 
 def test_a_smallest_output_is_a_step_at_zero_and_falls_in_time() -> None:
     gate = Gate(1)
     for step in range(21):
         wheel = 1.0 - step / 20
-        outputs = gate.judge((wheel,), (0.5 + wheel / 2 if wheel else 0.0,), Permit.FALL if step else Permit.DRIVE,
+        outputs = gate.filter((wheel,), (0.5 + wheel / 2 if wheel else 0.0,), Permit.RAMP_DOWN if step else Permit.DRIVE,
                              FALL_TIME, step * 0.02)  # fmt: skip
         assert outputs.enabled == (step < 20)
     assert gate.refused == 0
 
 
-TRIAL = Trial(1, 0, 0.2)
+TRIAL = MotorTest(1, 0, 0.2)
 
 
 def test_a_motor_test_is_permitted_while_disarmed_and_on_time() -> None:
-    asked = Clearance(trial=TRIAL)
+    asked = Clearance(motor_test=TRIAL)
     assert asked.permit is Permit.TEST
     assert asked._replace(late=True).permit is Permit.NONE
-    assert asked._replace(armed=True).permit is Permit.FALL
-    assert CLEARED._replace(trial=TRIAL).permit is Permit.DRIVE
+    assert asked._replace(armed=True).permit is Permit.RAMP_DOWN
+    assert CLEARED._replace(motor_test=TRIAL).permit is Permit.DRIVE
 
 
 def test_a_motor_test_passes_one_motor_for_three_seconds_and_no_longer() -> None:
@@ -168,29 +168,29 @@ def test_without_a_request_there_is_no_motor_test() -> None:
     assert judge(Gate(2), (0.2, 0.0), Permit.TEST, FALL_TIME, 0.0) == ZERO
 
 
-@pytest.mark.parametrize("between", [Permit.NONE, Permit.FALL, Permit.DRIVE])
+@pytest.mark.parametrize("between", [Permit.NONE, Permit.RAMP_DOWN, Permit.DRIVE])
 def test_an_interrupted_motor_test_is_over_and_a_new_request_has_its_own_time(between: Permit) -> None:
     gate = Gate(2)
     assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL).enabled
     judge(gate, (0.0, 0.0), between, FALL_TIME, 0.02, TRIAL)
     assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.04, TRIAL) == ZERO
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.06, Trial(2, 0, 0.2)).enabled
+    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.06, MotorTest(2, 0, 0.2)).enabled
     assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.08, TRIAL) == ZERO  # an older one does not come back
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.10, Trial(2, 0, 0.2)) == ZERO
+    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.10, MotorTest(2, 0, 0.2)) == ZERO
 
 
 def test_a_renewed_motor_test_goes_on() -> None:
     gate = Gate(2)
     for number in range(1, 11):
         for now in (float(number), number + 0.9):
-            assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, now, Trial(number, 0, 0.2)).enabled
-    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 13.5, Trial(10, 0, 0.2)) == ZERO
+            assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, now, MotorTest(number, 0, 0.2)).enabled
+    assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 13.5, MotorTest(10, 0, 0.2)) == ZERO
 
 
 def test_nothing_ramps_down_from_a_motor_test() -> None:
     gate = Gate(2)
     judge(gate, (0.3, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL)
-    assert judge(gate, (0.2, 0.0), Permit.FALL, FALL_TIME, 0.02) == ZERO
+    assert judge(gate, (0.2, 0.0), Permit.RAMP_DOWN, FALL_TIME, 0.02) == ZERO
 
 
 def test_a_clock_that_goes_back_ends_a_motor_test() -> None:
@@ -214,16 +214,16 @@ def test_no_request_turns_a_motor_for_longer_or_faster_than_it_may(
     gate, now, first = Gate(2), 0.0, dict[int, float]()
     for number, values, dt in moves:
         now += dt
-        trial = None if number is None else Trial(number, 0, 0.2)
+        trial = None if number is None else MotorTest(number, 0, 0.2)
         outputs = judge(gate, values, Permit.NONE if trial is None else Permit.TEST, FALL_TIME, now, trial)
         if number is None:
             assert outputs == ZERO
             continue
         first.setdefault(number, now)
         if any(outputs.throttles):
-            assert abs(outputs.throttles[0]) <= TRIAL_LARGEST
+            assert abs(outputs.throttles[0]) <= MOTOR_TEST_THROTTLE_MAX
             assert outputs.throttles[1] == 0
-            assert now - first[number] < TRIAL_LONGEST
+            assert now - first[number] < MOTOR_TEST_TIME_MAX
 
 
 @given(
@@ -247,7 +247,7 @@ def test_whatever_comes_what_leaves_is_sound_and_permitted(
         if permit is Permit.DRIVE:
             drove = now
         elif any(outputs.throttles):
-            assert permit is Permit.FALL
+            assert permit is Permit.RAMP_DOWN
             assert all(abs(new) <= abs(old) for new, old in zip(outputs.throttles, before, strict=True))
             assert now - drove <= FALL_TIME + 0.05 + 0.3
         before = outputs.throttles

@@ -9,12 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects.enums import DriveType
-from vehicle.drive.mixer import MIXERS, AtLimit, ackermann, deadband, expo, four_wheels, pivot_share, skid
+from vehicle.drive.mixer import MIXERS, MixerLimits, ackermann, deadband, expo, four_wheels, pivot_scale, skid
 from vehicle.params import PARAMETERS
 
 UNIT = st.floats(-1, 1)
-FAIR = AtLimit()
-LIMITS = st.builds(AtLimit, st.floats(0.2, 1), st.floats(1, 10))
+FAIR = MixerLimits()
+LIMITS = st.builds(MixerLimits, st.floats(0.2, 1), st.floats(1, 10))
 
 
 @pytest.mark.parametrize(
@@ -34,11 +34,11 @@ def test_skid_at_its_limit_cuts_both_alike_by_default() -> None:
 
 
 def test_skid_can_keep_all_of_the_steering() -> None:
-    assert skid(1.0, 0.8, 0.0, AtLimit(mix=1.0)).throttles == pytest.approx((1.0, -0.6))
+    assert skid(1.0, 0.8, 0.0, MixerLimits(mix=1.0)).throttles == pytest.approx((1.0, -0.6))
 
 
 def test_skid_can_keep_more_of_the_throttle() -> None:
-    left, right = skid(1.0, 1.0, 0.0, AtLimit(mix=0.2)).throttles
+    left, right = skid(1.0, 1.0, 0.0, MixerLimits(mix=0.2)).throttles
     assert left == pytest.approx(1.0)
     assert right > 0.5
 
@@ -68,7 +68,7 @@ def reference(throttle: float, steering: float, mix: float, asymmetry: float) ->
 
 
 @given(UNIT, UNIT, LIMITS)
-def test_skid_saturates_as_ardurover_does(throttle: float, steering: float, limit: AtLimit) -> None:
+def test_skid_saturates_as_ardurover_does(throttle: float, steering: float, limit: MixerLimits) -> None:
     found = skid(throttle, steering, 0.0, limit).throttles
     assert found == pytest.approx(reference(throttle, steering, limit.mix, limit.asymmetry), abs=1e-9)
 
@@ -87,7 +87,7 @@ def test_skid_saturates_as_ardurover_does(throttle: float, steering: float, limi
 def test_motors_that_push_half_as_much_backwards(
     throttle: float, steering: float, wheels: tuple[float, float]
 ) -> None:  # fmt: skip
-    mixed = skid(throttle, steering, 0.0, AtLimit(asymmetry=2.0))
+    mixed = skid(throttle, steering, 0.0, MixerLimits(asymmetry=2.0))
     assert mixed.throttles == pytest.approx(wheels)
     assert mixed.saturated == (throttle == -1.0 or steering == 1.0)
 
@@ -98,7 +98,7 @@ def test_motors_that_push_half_as_much_backwards(
      ((0.25, 0.5, -0.25), 0.7), ((0.0, 0.0, 1.0), 1.0), ((0.0, 0.0, 0.0), 1.0)],
 )  # fmt: skip
 def test_turning_on_the_spot_gets_its_share(demand: tuple[float, float, float], share: float) -> None:
-    assert pivot_share(*demand, 0.4) == pytest.approx(share)
+    assert pivot_scale(*demand, 0.4) == pytest.approx(share)
 
 
 def test_ackermann_keeps_them_apart() -> None:
@@ -136,12 +136,12 @@ def test_no_number_is_not_made_one(place: int) -> None:
     assert all(map(math.isnan, four_wheels(throttle, steering, sideways, FAIR).throttles))
     if place < 2:
         assert all(map(math.isnan, skid(throttle, steering, 0.0, FAIR).throttles))
-    assert math.isnan(pivot_share(throttle, steering, sideways, 0.4))
+    assert math.isnan(pivot_scale(throttle, steering, sideways, 0.4))
 
 
 @given(UNIT, UNIT, UNIT, LIMITS, st.sampled_from(sorted(MIXERS)))
 def test_every_mixer_stays_within_full(
-    throttle: float, steering: float, sideways: float, limit: AtLimit, kind: DriveType
+    throttle: float, steering: float, sideways: float, limit: MixerLimits, kind: DriveType
 ) -> None:
     mixer = MIXERS[kind]
     values = mixer.mix(throttle, steering, sideways, limit).throttles
@@ -150,7 +150,7 @@ def test_every_mixer_stays_within_full(
 
 
 @given(LIMITS)
-def test_nothing_in_is_nothing_out(limit: AtLimit) -> None:
+def test_nothing_in_is_nothing_out(limit: MixerLimits) -> None:
     for mixer in MIXERS.values():
         assert not any(mixer.mix(0.0, 0.0, 0.0, limit).throttles)
 

@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.axes import Axes
-from dialects.enums import Command, Failsafe, Limit, ParamFault, Result
+from dialects.enums import Command, DriveLimit, Failsafe, ParamErrorCode, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, EVERYTHING, NEUTRAL, Bench, said
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
 from vehicle.drive.gate import Clearance, Outputs
-from vehicle.motors import USUAL_PARAMS
-from vehicle.params import ASCENDING, PARAMETERS, Params, in_force
+from vehicle.motors import PROFILE_PARAMS
+from vehicle.params import ORDERED_PAIRS, PARAMETERS, Params, merge_params
 from vehicle.rover import Rover
 
 MOTOR_PARAMS = [name for name in PARAMETERS if name.startswith("MOT")]
@@ -84,7 +84,7 @@ def test_the_reverse_delay_is_for_wheels_and_not_for_a_servo() -> None:
     bench.drive(Axes(throttle=0.5, steering=1.0))
     bench.wait(1.0, Axes(throttle=-0.5, steering=-1.0))
     assert bench.throttles == (0.0, -1.0)
-    assert bench.newest(m.RoverDriveStatus).limits & Limit.REVERSE_DELAY
+    assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.REVERSE_DELAY
     bench.wait(1.0, Axes(throttle=-0.5, steering=-1.0))
     assert bench.throttles[0] < -0.4
 
@@ -137,7 +137,7 @@ def test_none_of_them_changes_while_armed(name: str) -> None:
     other = parameter.high if parameter.default != parameter.high else parameter.low
     bench.drive()
     assert set_(bench, name, other) == pytest.approx(parameter.default)
-    assert bench.newest(m.ParamError).error == ParamFault.PERMISSION_DENIED
+    assert bench.newest(m.ParamError).error == ParamErrorCode.PERMISSION_DENIED
     bench.command(Command.COMPONENT_ARM_DISARM, 0)
     assert set_(bench, name, other) == pytest.approx(other)
 
@@ -145,7 +145,7 @@ def test_none_of_them_changes_while_armed(name: str) -> None:
 def test_values_that_do_not_fit_each_other_are_refused_over_the_link() -> None:
     bench = Bench(MOT1_MAX=50)
     assert set_(bench, "MOT1_MIN", 60) == 0
-    assert bench.newest(m.ParamError).error == ParamFault.VALUE_OUT_OF_RANGE
+    assert bench.newest(m.ParamError).error == ParamErrorCode.VALUE_OUT_OF_RANGE
     bench.wait(0.1)
     assert said(bench, "MOT1_MIN not changed: MOT1_MIN 60 must be smaller than MOT1_MAX 50")
     assert set_(bench, "MOT1_MAX", 80) == 80
@@ -154,7 +154,7 @@ def test_values_that_do_not_fit_each_other_are_refused_over_the_link() -> None:
 
 def test_a_reset_goes_back_to_the_cars_own_and_not_to_full_power() -> None:
     bench = Bench()
-    params, _ = in_force({}, kept={"MOT1_MAX": 100.0, "MOT1_MIN": 70.0}, usual=USUAL_PARAMS["article-car"])
+    params, _ = merge_params({}, kept={"MOT1_MAX": 100.0, "MOT1_MIN": 70.0}, usual=PROFILE_PARAMS["article-car"])
     assert params["MOT1_MAX"] == 100.0
     bench.rover = Rover(params, now=bench.now)
     bench.wait(CYCLE)
@@ -169,7 +169,7 @@ def test_a_reset_goes_back_to_the_cars_own_and_not_to_full_power() -> None:
 def any_params(draw: st.DrawFn) -> Params:
     values = {name: draw(st.floats(PARAMETERS[name].low, PARAMETERS[name].high)) for name in MOTOR_PARAMS}
     values |= {name: draw(st.integers(0, 1)) for name in MOTOR_PARAMS if PARAMETERS[name].whole}
-    for small, large in ASCENDING:
+    for small, large in ORDERED_PAIRS:
         values[small] = min(values[small], values[large] - 1)
     return Params({**values, "DRIVE_TYPE": draw(st.integers(1, 4)), "MANUAL_EXPO": draw(st.floats(0, 0.9))})
 
@@ -187,11 +187,11 @@ def test_what_leaves_is_sound_zero_stays_zero_and_disarmed_is_off(
         now += dt
         demand = Demand(throttle, steering, now, 255, 0, sideways)
         clearance = Clearance(armed=armed, held=held, neutral_seen=True, demand_age=0.0, timeout=0.45)
-        outputs = drive.step(demand, clearance, limited=False, now=now)
+        outputs = drive.update(demand, clearance, limited=False, now=now)
         assert all(math.isfinite(value) and abs(value) <= 1.0 for value in outputs.throttles)
         assert outputs.enabled or not any(outputs.throttles)
         assert armed or not outputs.enabled
-        for wheel, motor in zip(drive.driving, outputs.throttles, strict=False):
+        for wheel, motor in zip(drive.driven_wheels, outputs.throttles, strict=False):
             assert wheel or motor == 0.0
 
 
@@ -199,7 +199,7 @@ def test_what_leaves_is_sound_zero_stays_zero_and_disarmed_is_off(
 def test_a_demand_of_zero_ends_at_zero(params: Params, throttle: float, steering: float) -> None:
     drive = Drive(params, 0.0)
     clearance = Clearance(armed=True, held=False, neutral_seen=True, demand_age=0.0, timeout=0.45)
-    drive.step(Demand(throttle, steering, 0.0, 255, 0), clearance, limited=False, now=20.0)
-    outputs = drive.step(Demand(0.0, 0.0, 0.0, 255, 0), clearance, limited=False, now=21.0)
+    drive.update(Demand(throttle, steering, 0.0, 255, 0), clearance, limited=False, now=20.0)
+    outputs = drive.update(Demand(0.0, 0.0, 0.0, 255, 0), clearance, limited=False, now=21.0)
     assert outputs.enabled
-    assert outputs.throttles[: drive.mixer.driven] == (0.0,) * drive.mixer.driven
+    assert outputs.throttles[: drive.mixer.driven_count] == (0.0,) * drive.mixer.driven_count

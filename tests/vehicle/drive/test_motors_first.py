@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dialects import messages as m
-from dialects.axes import Axes, manual_control
+from dialects.axes import Axes, build_manual_control
 from dialects.enums import Command
 from link.core import Peer, Received
-from vehicle.control_loop import Machine
+from vehicle.control_loop import ControlLoop
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
 from vehicle.rover import Rover
@@ -33,7 +33,7 @@ class Watched(SimulatedMotors):
 def test_a_cycle_writes_the_motors_before_it_makes_a_message() -> None:
     rover = Rover(Params(), now=0.0)
     motors = Watched(rover)
-    machine = Machine(rover, motors, NoSensors())
+    machine = ControlLoop(rover, motors, NoSensors())
     peer, told = Peer(0, "gcs"), 0
 
     def say(message: m.Message, number: int, now: float) -> None:
@@ -45,7 +45,7 @@ def test_a_cycle_writes_the_motors_before_it_makes_a_message() -> None:
     say(m.CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0), 1, 0.0)
     for number in range(2, 202):
         now = number * CYCLE
-        say(manual_control(Axes(throttle=0.5 if number > 20 else 0.0), 1), number, now)
+        say(build_manual_control(Axes(throttle=0.5 if number > 20 else 0.0), 1), number, now)
         motors.said.clear()
         machine.tick(now)
         assert motors.said == [0] or number < 50  # once, with nothing made before

@@ -9,105 +9,115 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle.drive.mixer import MIXERS
-from vehicle.drive.output_scaling import NAMES, Fit, fits_of, fitted, thrust
+from vehicle.drive.output_scaling import (
+    PARAM_NAMES,
+    OutputScaling,
+    build_output_scaling,
+    linearize_thrust,
+    scale_outputs,
+)
 from vehicle.params import MOTORS, PARAMETERS, Params
 
 UNIT = st.floats(-1.0, 1.0)
 
 
 @st.composite
-def fits(draw: st.DrawFn) -> Fit:
+def fits(draw: st.DrawFn) -> OutputScaling:
     """All that the parameters can say."""
-    ranges = [PARAMETERS[name] for name in NAMES[0]]
+    ranges = [PARAMETERS[name] for name in PARAM_NAMES[0]]
     _, smallest, largest, trim = (draw(st.floats(each.low, each.high)) for each in ranges)
     low = min(smallest, largest - 0.01)
-    return Fit(draw(st.booleans()), low / 100, largest / 100, trim / 100, draw(st.floats(-1, 1)))
+    return OutputScaling(draw(st.booleans()), low / 100, largest / 100, trim / 100, draw(st.floats(-1, 1)))
 
 
 @pytest.mark.parametrize(
     ("fit", "throttle", "output"),
     [
-        (Fit(), 0.5, 0.5),
-        (Fit(), -1.0, -1.0),
-        (Fit(reversed=True), 0.5, -0.5),
-        (Fit(reversed=True), -0.5, 0.5),
-        (Fit(largest=0.9), 1.0, 0.9),
-        (Fit(largest=0.9), -1.0, -0.9),
-        (Fit(smallest=0.2), 0.5, 0.6),
-        (Fit(smallest=0.2), -0.5, -0.6),
-        (Fit(smallest=0.2), 1e-9, 0.2),
-        (Fit(smallest=0.2), 0.0, 0.0),
-        (Fit(smallest=0.2, largest=0.8), 1.0, 0.8),
-        (Fit(trim=0.1), 0.5, 0.6),
-        (Fit(trim=0.1), -0.5, -0.4),
-        (Fit(trim=0.1), 0.0, 0.0),
-        (Fit(trim=0.1), -0.05, 0.0),  # not round
-        (Fit(trim=0.1), 1.0, 1.0),  # not beyond full
-        (Fit(trim=0.1, largest=0.8), 1.0, 0.8),
-        (Fit(trim=0.1, reversed=True), 0.5, -0.4),
-        (Fit(curve=1.0), 0.25, 0.5),
-        (Fit(curve=1.0, smallest=0.2, reversed=True), 0.25, -0.6),
+        (OutputScaling(), 0.5, 0.5),
+        (OutputScaling(), -1.0, -1.0),
+        (OutputScaling(reversed=True), 0.5, -0.5),
+        (OutputScaling(reversed=True), -0.5, 0.5),
+        (OutputScaling(largest=0.9), 1.0, 0.9),
+        (OutputScaling(largest=0.9), -1.0, -0.9),
+        (OutputScaling(smallest=0.2), 0.5, 0.6),
+        (OutputScaling(smallest=0.2), -0.5, -0.6),
+        (OutputScaling(smallest=0.2), 1e-9, 0.2),
+        (OutputScaling(smallest=0.2), 0.0, 0.0),
+        (OutputScaling(smallest=0.2, largest=0.8), 1.0, 0.8),
+        (OutputScaling(trim=0.1), 0.5, 0.6),
+        (OutputScaling(trim=0.1), -0.5, -0.4),
+        (OutputScaling(trim=0.1), 0.0, 0.0),
+        (OutputScaling(trim=0.1), -0.05, 0.0),  # not round
+        (OutputScaling(trim=0.1), 1.0, 1.0),  # not beyond full
+        (OutputScaling(trim=0.1, largest=0.8), 1.0, 0.8),
+        (OutputScaling(trim=0.1, reversed=True), 0.5, -0.4),
+        (OutputScaling(curve=1.0), 0.25, 0.5),
+        (OutputScaling(curve=1.0, smallest=0.2, reversed=True), 0.25, -0.6),
     ],
 )
-def test_a_motor_that_drives(fit: Fit, throttle: float, output: float) -> None:
-    assert fit.drive(throttle) == pytest.approx(output)
+def test_a_motor_that_drives(fit: OutputScaling, throttle: float, output: float) -> None:
+    assert fit.scale_throttle(throttle) == pytest.approx(output)
 
 
 @pytest.mark.parametrize(
     ("fit", "steering", "output"),
     [
-        (Fit(), 0.5, 0.5),
-        (Fit(reversed=True), 1.0, -1.0),
-        (Fit(trim=0.1), 0.0, 0.1),
-        (Fit(trim=0.1, reversed=True), 0.0, 0.1),  # wheels that point ahead still do when the servo is reversed
-        (Fit(trim=0.1), 1.0, 1.0),
-        (Fit(trim=0.1), -1.0, -1.0),
-        (Fit(trim=0.1), 0.5, 0.55),
-        (Fit(trim=-0.2, largest=0.6), -0.5, -0.4),
-        (Fit(smallest=0.5), 0.01, 0.01),  # a step at its centre would make it flutter
-        (Fit(curve=1.0), 0.25, 0.25),
+        (OutputScaling(), 0.5, 0.5),
+        (OutputScaling(reversed=True), 1.0, -1.0),
+        (OutputScaling(trim=0.1), 0.0, 0.1),
+        (
+            OutputScaling(trim=0.1, reversed=True),
+            0.0,
+            0.1,
+        ),  # wheels that point ahead still do when the servo is reversed
+        (OutputScaling(trim=0.1), 1.0, 1.0),
+        (OutputScaling(trim=0.1), -1.0, -1.0),
+        (OutputScaling(trim=0.1), 0.5, 0.55),
+        (OutputScaling(trim=-0.2, largest=0.6), -0.5, -0.4),
+        (OutputScaling(smallest=0.5), 0.01, 0.01),  # a step at its centre would make it flutter
+        (OutputScaling(curve=1.0), 0.25, 0.25),
     ],
 )
-def test_a_steering_servo(fit: Fit, steering: float, output: float) -> None:
-    assert fit.steer(steering) == pytest.approx(output)
+def test_a_steering_servo(fit: OutputScaling, steering: float, output: float) -> None:
+    assert fit.scale_steering(steering) == pytest.approx(output)
 
 
 @given(fits(), UNIT)
-def test_no_fit_turns_a_motor_on_or_round_or_leaves_its_range(fit: Fit, throttle: float) -> None:
-    output = fit.drive(throttle)
+def test_no_fit_turns_a_motor_on_or_round_or_leaves_its_range(fit: OutputScaling, throttle: float) -> None:
+    output = fit.scale_throttle(throttle)
     assert abs(output) <= fit.largest
     assert throttle or output == 0.0
     assert output * throttle * (-1 if fit.reversed else 1) >= 0.0
 
 
 @given(fits(), st.tuples(UNIT, UNIT).map(sorted))
-def test_more_throttle_is_never_less_output(fit: Fit, throttles: list[float]) -> None:
+def test_more_throttle_is_never_less_output(fit: OutputScaling, throttles: list[float]) -> None:
     """So that a wheel that falls has a motor that falls."""
-    less, more = ((-1 if fit.reversed else 1) * fit.drive(throttle) for throttle in throttles)
+    less, more = ((-1 if fit.reversed else 1) * fit.scale_throttle(throttle) for throttle in throttles)
     assert less <= more + 1e-9
-    less, more = ((-1 if fit.reversed else 1) * fit.steer(steering) for steering in throttles)
+    less, more = ((-1 if fit.reversed else 1) * fit.scale_steering(steering) for steering in throttles)
     assert less <= more + 1e-9
 
 
 @given(fits(), UNIT)
-def test_a_servo_stays_within_its_ends(fit: Fit, steering: float) -> None:
-    assert abs(fit.steer(steering)) <= fit.largest
-    assert fit.steer(1.0) == pytest.approx(fit.largest * (-1 if fit.reversed else 1))
+def test_a_servo_stays_within_its_ends(fit: OutputScaling, steering: float) -> None:
+    assert abs(fit.scale_steering(steering)) <= fit.largest
+    assert fit.scale_steering(1.0) == pytest.approx(fit.largest * (-1 if fit.reversed else 1))
 
 
 @given(st.floats(0.01, 1.0), st.floats(-1.0, 1.0).filter(lambda curve: abs(curve) > 1e-3))
 def test_the_curve_is_ardurovers(throttle: float, curve: float) -> None:
     theirs = (curve - 1 + math.sqrt(max(0, (1 - curve) ** 2 + 4 * curve * throttle))) / (2 * curve)
-    assert thrust(throttle, curve) == pytest.approx(theirs, abs=1e-6)
-    assert thrust(1.0, curve) == pytest.approx(1.0)
-    assert thrust(0.0, curve) == 0.0
+    assert linearize_thrust(throttle, curve) == pytest.approx(theirs, abs=1e-6)
+    assert linearize_thrust(1.0, curve) == pytest.approx(1.0)
+    assert linearize_thrust(0.0, curve) == 0.0
 
 
 def test_each_motor_has_its_own() -> None:
     params = Params({"MOT1_REVERSED": 1, "MOT2_MIN": 20, "MOT3_MAX": 50, "MOT4_TRIM": -10})
-    assert fitted((0.5,) * 4, 4, fits_of(params)) == pytest.approx((-0.5, 0.6, 0.25, 0.4))
+    assert scale_outputs((0.5,) * 4, 4, build_output_scaling(params)) == pytest.approx((-0.5, 0.6, 0.25, 0.4))
     params = Params({"MOT1_TRIM": 10, "MOT2_TRIM": 10, "MOT2_MIN": 50})
-    assert fitted((0.0, 0.0), 1, fits_of(params)) == pytest.approx((0.0, 0.1))
+    assert scale_outputs((0.0, 0.0), 1, build_output_scaling(params)) == pytest.approx((0.0, 0.1))
 
 
 def test_there_are_parameters_for_every_motor() -> None:
@@ -116,4 +126,4 @@ def test_there_are_parameters_for_every_motor() -> None:
 
 @pytest.mark.parametrize("curve", [-1.0, -0.5, 0.0, 0.5, 1.0])
 def test_what_is_no_number_stays_none(curve: float) -> None:
-    assert math.isnan(thrust(math.nan, curve))
+    assert math.isnan(linearize_thrust(math.nan, curve))

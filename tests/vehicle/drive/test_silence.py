@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from dialects import messages as m
-from dialects.enums import Command, Failsafe, Result, State
+from dialects.enums import Command, Failsafe, Result, SystemState
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, NEUTRAL, OTHER, Bench, said
 
@@ -74,7 +74,7 @@ class TestManualLoss:
         assert bench.newest(m.RoverFailsafeStatus).active == Failsafe.MANUAL_LOSS
         bench.wait(0.3)
         assert bench.newest(m.Heartbeat).custom_mode == Mode.HOLD
-        assert bench.newest(m.Heartbeat).system_status == State.CRITICAL
+        assert bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL
         beats(bench, 27)
         assert bench.armed
         bench.wait(lost + 30.1 - bench.now)
@@ -96,14 +96,14 @@ class TestManualLoss:
         bench.wait(0.2, NEUTRAL)
         bench.wait(0.5, AHEAD)
         assert not bench.turning
-        assert bench.newest(m.Heartbeat).system_status == State.CRITICAL  # latched
+        assert bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL  # latched
         assert bench.set_mode(Mode.MANUAL) is Result.ACCEPTED
         bench.wait(0.5, AHEAD)
         assert not bench.turning
         bench.wait(0.1, NEUTRAL)
         bench.wait(0.1, AHEAD)
         assert bench.turning
-        assert bench.newest(m.Heartbeat).system_status == State.ACTIVE
+        assert bench.newest(m.Heartbeat).system_status == SystemState.ACTIVE
 
     def test_the_countdown_is_told(self) -> None:
         bench = Bench()

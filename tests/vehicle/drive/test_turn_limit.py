@@ -11,12 +11,12 @@ from dialects.modes import Mode
 from tests.vehicle.field import Field
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point
-from vehicle.navigation.guidance import GRAVITY, Guide
+from vehicle.navigation.guidance import GRAVITY, PathFollower
 from vehicle.params import Params
 
 
-def guide(kind: DriveType = DriveType.SKID, **params: float) -> Guide:
-    return Guide(Params({"ATC_STR_RAT_MAX": 720, **params}), kind)
+def guide(kind: DriveType = DriveType.SKID, **params: float) -> PathFollower:
+    return PathFollower(Params({"ATC_STR_RAT_MAX": 720, **params}), kind)
 
 
 HERE = Point(0.0, 0.0)
@@ -31,15 +31,15 @@ def at(speed: float, yaw: float = 0.0, place: Point = HERE) -> Estimate:
 def test_no_way_of_steering_is_sharper_at_speed(grip: float, speed: float) -> None:
     limit = grip * GRAVITY / abs(speed)
     path = guide(ATC_TURN_MAX_G=grip, ATC_STR_ANG_P=10, WP_PIVOT_ANGLE=180, SPEED_MAX=30)
-    assert path.limited(100.0, speed, at(0.0)) == pytest.approx(min(limit, math.radians(720)))
-    assert path.limited(-100.0, 0.0, at(speed)) == pytest.approx(-min(limit, math.radians(720)))
-    for motion in (path.steer(2.0, at(speed), speed), path.head(2.0, at(speed), abs(speed))):
+    assert path.limit_turn_rate(100.0, speed, at(0.0)) == pytest.approx(min(limit, math.radians(720)))
+    assert path.limit_turn_rate(-100.0, 0.0, at(speed)) == pytest.approx(-min(limit, math.radians(720)))
+    for motion in (path.steer_heading(2.0, at(speed), speed), path.steer_course(2.0, at(speed), abs(speed))):
         assert abs(motion.turn_rate) * abs(speed) <= grip * GRAVITY + 1e-9
         assert motion.turn_rate
 
 
 def test_at_rest_only_the_turn_rate_counts() -> None:
-    assert guide(ATC_TURN_MAX_G=0.1).limited(99.0, 0.0, at(0.0)) == pytest.approx(math.radians(720))
+    assert guide(ATC_TURN_MAX_G=0.1).limit_turn_rate(99.0, 0.0, at(0.0)) == pytest.approx(math.radians(720))
 
 
 def test_a_circle_is_driven_as_fast_as_it_may_be() -> None:

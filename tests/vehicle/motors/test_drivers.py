@@ -14,7 +14,7 @@ from vehicle.motors import (
     Motors,
     MotorSettingsError,
     UnknownDriverError,
-    checked,
+    check_throttles,
     open_motors,
     safe_stop,
     settings_type,
@@ -151,6 +151,6 @@ def test_a_driver_of_your_own_that_does_not_start_is_said_in_one_line() -> None:
 
 
 def test_checked_gives_what_it_was_given() -> None:
-    assert checked([1.0, -1.0, 0.0], 3) == (1.0, -1.0, 0.0)
+    assert check_throttles([1.0, -1.0, 0.0], 3) == (1.0, -1.0, 0.0)
     with pytest.raises(MotorError, match="2 throttles for 3 motors"):
-        checked([0.0, 0.0], 3)
+        check_throttles([0.0, 0.0], 3)

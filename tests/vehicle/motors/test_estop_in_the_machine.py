@@ -9,14 +9,14 @@ import pytest
 from gpiozero.pins.mock import MockFactory
 
 from dialects import messages as m
-from dialects.enums import Command, Failsafe, ModeFlag, Result, State
+from dialects.enums import Command, Failsafe, ModeFlag, Result, SystemState
 from link.core import Received
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, OTHER, Bench, said
-from vehicle.control_loop import RETRY, Machine
+from vehicle.control_loop import MOTOR_RETRY_TIME, ControlLoop
 from vehicle.drive.gate import Outputs
-from vehicle.motors import MotorError, open_motors, stop_input
+from vehicle.motors import MotorError, estop_reader, open_motors
 from vehicle.motors.safety_pins import PRESSED, GuardedMotors, SafetyPins
-from vehicle.motors.settings import Safety
+from vehicle.motors.settings import SafetyPinSettings
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.safety import states
 from vehicle.sensors import NoSensors
@@ -33,14 +33,14 @@ class Car(Bench):
         factory = MockFactory()
         self.wheels = SimulatedMotors()
         self.contact, self.power = factory.pin(ESTOP), factory.pin(ENABLE)
-        self.pins = SafetyPins(Safety(estop_pin=ESTOP, enable_pin=enable_pin), pin_factory=factory)
+        self.pins = SafetyPins(SafetyPinSettings(estop_pin=ESTOP, enable_pin=enable_pin), pin_factory=factory)
         self.press() if pressed else self.let_go()
         super().__init__()
 
     @cached_property
-    def machine(self) -> Machine:
+    def machine(self) -> ControlLoop:
         guarded = GuardedMotors(self.wheels, self.pins)
-        return Machine(self.rover, guarded, NoSensors(), stop_input=stop_input(guarded))
+        return ControlLoop(self.rover, guarded, NoSensors(), stop_input=estop_reader(guarded))
 
     def press(self) -> None:
         self.contact.drive_high()
@@ -63,7 +63,7 @@ class Car(Bench):
         self.machine.tick(self.now)
 
 
-def state(car: Car) -> states.State:
+def state(car: Car) -> states.SafetyState:
     return car.rover.state
 
 
@@ -79,10 +79,10 @@ def test_pressed_everything_is_off_in_the_same_cycle_and_the_state_is_the_emerge
     car.cycle()
     assert car.rover.outputs == ZERO
     assert (car.wheels.outputs, car.wheels.enabled) == ((0.0, 0.0), False)
-    assert state(car) is states.State.ESTOP
+    assert state(car) is states.SafetyState.ESTOP
     car.wait(0.2, AHEAD)
     beat = car.newest(m.Heartbeat)
-    assert beat.system_status == State.EMERGENCY
+    assert beat.system_status == SystemState.EMERGENCY
     assert not beat.base_mode & ModeFlag.ARMED
     failsafes = car.newest(m.RoverFailsafeStatus)
     assert failsafes.active == failsafes.latched == Failsafe.ESTOP, "it is no fault of the motor driver"
@@ -95,7 +95,7 @@ def test_a_message_between_press_and_cycle_stops_too() -> None:
     car.drive()
     car.press()
     car.stick(NEUTRAL)
-    assert state(car) is states.State.ESTOP
+    assert state(car) is states.SafetyState.ESTOP
     assert not car.rolling
     assert not car.wheels.enabled
 
@@ -113,12 +113,12 @@ def test_leaving_it_needs_the_contact_closed_and_the_ground_station_in_control_a
     assert said(car, f"PreArm: {PRESSED}")
 
     car.let_go()
-    car.wait(3 * RETRY, AHEAD)
-    assert state(car) is states.State.ESTOP, "closing the contact releases nothing"
+    car.wait(3 * MOTOR_RETRY_TIME, AHEAD)
+    assert state(car) is states.SafetyState.ESTOP, "closing the contact releases nothing"
     assert car.arm() is Result.FAILED
     assert car.command(SWITCH, DANGEROUS, system=OTHER) is Result.FAILED
     assert car.command(SWITCH, DANGEROUS) is Result.ACCEPTED
-    assert state(car) is states.State.SAFE
+    assert state(car) is states.SafetyState.SAFE
     car.wait(1.0, AHEAD)
     assert not car.rolling
     car.wait(0.1, NEUTRAL)
@@ -128,13 +128,13 @@ def test_leaving_it_needs_the_contact_closed_and_the_ground_station_in_control_a
 
 def test_open_at_boot_nothing_arms_and_the_checks_say_why() -> None:
     car = Car(pressed=True)
-    assert state(car) is states.State.ESTOP
+    assert state(car) is states.SafetyState.ESTOP
     assert car.arm() is Result.FAILED
     assert car.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.FAILED, "nor by force"
     assert car.command(Command.RUN_PREARM_CHECKS) is Result.ACCEPTED
     car.wait(0.2)
     assert car.texts.count(f"PreArm: {PRESSED}") == 1
-    assert car.newest(m.Heartbeat).system_status == State.EMERGENCY
+    assert car.newest(m.Heartbeat).system_status == SystemState.EMERGENCY
     car.let_go()
     car.wait(CYCLE)
     assert car.arm() is Result.FAILED
@@ -147,12 +147,12 @@ def test_pressed_while_disarmed_it_stays_too_even_a_touch_shorter_than_a_cycle()
     car.press()
     car.let_go()
     car.cycle()
-    assert state(car) is states.State.ESTOP
+    assert state(car) is states.SafetyState.ESTOP
     assert car.arm() is Result.FAILED
     car.cycle()
     assert car.command(SWITCH, DANGEROUS) is Result.ACCEPTED
     car.drive()
-    assert state(car) is states.State.ARMED, "an old touch must not come back"
+    assert state(car) is states.SafetyState.ARMED, "an old touch must not come back"
 
 
 def test_pressed_between_arming_and_the_first_cycle() -> None:
@@ -163,7 +163,7 @@ def test_pressed_between_arming_and_the_first_cycle() -> None:
     car.stick(AHEAD)
     assert not car.rolling
     car.cycle()
-    assert state(car) is states.State.ESTOP
+    assert state(car) is states.SafetyState.ESTOP
     assert not car.rolling
 
 
@@ -189,7 +189,7 @@ def test_a_contact_that_cannot_be_read_is_open(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(car.pins, "_open", broken)
     car.cycle()
     assert not car.rolling
-    assert state(car) is states.State.ESTOP
+    assert state(car) is states.SafetyState.ESTOP
     car.wait(0.1)
     assert said(car, "EMERGENCY STOP by button: emergency stop: Input/output error")
     assert car.command(SWITCH, DANGEROUS) is Result.FAILED
@@ -203,19 +203,19 @@ def test_a_failed_driver_is_not_forgotten_behind_the_stop() -> None:
     car.rover.motor_failed("no answer", car.now)
     car.press()
     car.cycle()
-    assert state(car) is states.State.ESTOP
+    assert state(car) is states.SafetyState.ESTOP
     car.let_go()
     car.cycle()
     assert car.command(SWITCH, DANGEROUS) is Result.ACCEPTED
-    assert state(car) is states.State.FAULT
+    assert state(car) is states.SafetyState.FAULT
 
 
 def test_after_the_end_the_contact_says_nothing_any_more() -> None:
     car = Car()
     car.machine.shutdown(car.now)
-    car.rover.stop_input(PRESSED, car.now)
-    assert state(car) is states.State.OFF
+    car.rover.update_estop_input(PRESSED, car.now)
+    assert state(car) is states.SafetyState.OFF
 
 
 def test_a_driver_without_such_an_input_never_stops() -> None:
-    assert stop_input(open_motors("simulated"))() is None
+    assert estop_reader(open_motors("simulated"))() is None

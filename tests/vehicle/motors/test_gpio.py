@@ -14,7 +14,7 @@ from vehicle.drive.drive import Drive
 from vehicle.drive.gate import Clearance
 from vehicle.motors import (
     DRIVERS,
-    USUAL_PARAMS,
+    PROFILE_PARAMS,
     MotorError,
     Motors,
     MotorSettingsError,
@@ -23,7 +23,7 @@ from vehicle.motors import (
 )
 from vehicle.motors.gpio import GpioMotors, GpioSettings, PhaseEnable, TwoInputs
 from vehicle.motors.pins import translated
-from vehicle.params import in_force
+from vehicle.params import merge_params
 
 TWO_INPUTS = GpioSettings(bridges=(TwoInputs(10, 9), TwoInputs(8, 7)))
 PHASE_ENABLE = GpioSettings(bridges=(PhaseEnable(enable=12, phase=5), PhaseEnable(enable=13, phase=6)))
@@ -113,10 +113,10 @@ def article_car() -> Motors:
 
 def driven(sticks: tuple[float, float], driver: str, kept: dict[str, float] | None = None) -> tuple[float, ...]:
     """What the vehicle's motors get once throttle and steering were held for a while."""
-    params, _ = in_force({"MAN_DEADBAND": 0}, kept=kept or {}, usual=USUAL_PARAMS[driver])
+    params, _ = merge_params({"MAN_DEADBAND": 0}, kept=kept or {}, usual=PROFILE_PARAMS[driver])
     drive = Drive(params, 0.0)
     clearance = Clearance(armed=True, held=False, neutral_seen=True, demand_age=0.0, timeout=1.0)
-    return drive.step(Demand(*sticks, 0.0, 255, 0), clearance, limited=False, now=10.0).throttles
+    return drive.update(Demand(*sticks, 0.0, 255, 0), clearance, limited=False, now=10.0).throttles
 
 
 class TestArticleCar:

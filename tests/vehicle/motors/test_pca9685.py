@@ -7,13 +7,13 @@ import pytest
 from tests.vehicle.motors.contract import Bench, MotorsContract
 from tests.vehicle.motors.fake_pca9685 import ADDRESS, FakePca9685
 from vehicle.motors import MotorError, MotorSettingsError, open_motors, safe_stop
-from vehicle.motors.pca9685 import Channel, Pca9685Motors, Pca9685Settings
+from vehicle.motors.pca9685 import Pca9685Channel, Pca9685Motors, Pca9685Settings
 from vehicle.motors.pulses import Pulse
 
 STEP = 122 / 25e6
 """s, 4.88 us."""
 NARROW = Pulse(min_us=1100, trim_us=1480, max_us=1900)
-SETTINGS = Pca9685Settings(channels=(Channel(0), Channel(15, NARROW)))
+SETTINGS = Pca9685Settings(channels=(Pca9685Channel(0), Pca9685Channel(15, NARROW)))
 SILENT = Pca9685Settings(channels=SETTINGS.channels, idle="off")
 
 
@@ -76,7 +76,7 @@ def test_the_frequency_is_50_hz_as_near_as_the_chip_can() -> None:
 
 
 def test_a_measured_oscillator_makes_up_for_a_slow_chip() -> None:
-    settings = Pca9685Settings(channels=(Channel(0),), oscillator=24e6)
+    settings = Pca9685Settings(channels=(Pca9685Channel(0),), oscillator=24e6)
     assert settings.prescale == 116
     assert settings.step == pytest.approx(117 / 24e6)
 

@@ -10,11 +10,11 @@ from gpiozero.pins.mock import MockFactory
 from tests.vehicle.motors.contract import Bench, MotorsContract
 from vehicle.motors import MotorError, open_motors, safe_stop
 from vehicle.motors.safety_pins import GuardedMotors, SafetyPins
-from vehicle.motors.settings import Safety
+from vehicle.motors.settings import SafetyPinSettings
 from vehicle.motors.simulated import SimulatedMotors
 
 ESTOP, ENABLE, HEARTBEAT = 17, 22, 27
-ALL = Safety(estop_pin=ESTOP, enable_pin=ENABLE, heartbeat_pin=HEARTBEAT)
+ALL = SafetyPinSettings(estop_pin=ESTOP, enable_pin=ENABLE, heartbeat_pin=HEARTBEAT)
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def press(factory: MockFactory) -> None:
 class Guarded:
     """Simulated motors behind pins."""
 
-    def __init__(self, factory: MockFactory, safety: Safety = ALL) -> None:
+    def __init__(self, factory: MockFactory, safety: SafetyPinSettings = ALL) -> None:
         self.inner = SimulatedMotors()
         self.motors = GuardedMotors(self.inner, SafetyPins(safety, pin_factory=factory))
         self._level, self._active_high = factory.pin(ENABLE), safety.enable_active_high
@@ -63,7 +63,7 @@ class TestGuardedMotors(MotorsContract):
 
     @pytest.fixture(params=[True, False], ids=["active high", "active low"])
     def bench(self, request: pytest.FixtureRequest, pins: MockFactory) -> Bench:
-        guarded = Guarded(pins, Safety(estop_pin=ESTOP, enable_pin=ENABLE, enable_active_high=request.param))
+        guarded = Guarded(pins, SafetyPinSettings(estop_pin=ESTOP, enable_pin=ENABLE, enable_active_high=request.param))
         level = pins.pin(ENABLE)
         return Bench(
             guarded.motors,

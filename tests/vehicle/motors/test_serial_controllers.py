@@ -21,8 +21,8 @@ from tests.vehicle.motors.contract import Bench, MotorsContract
 from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty, recorded
 from tests.waits import Waits
-from vehicle.control_loop import Machine
-from vehicle.motors import MotorError, Motors, MotorSettingsError, open_motors, proof, safe_stop
+from vehicle.control_loop import ControlLoop
+from vehicle.motors import MotorError, Motors, MotorSettingsError, arming_check, open_motors, safe_stop
 from vehicle.motors.roboclaw import RoboClawMotors, RoboClawSettings
 from vehicle.motors.sabertooth import SabertoothMotors, SabertoothSettings
 from vehicle.motors.serial_controller import tenths
@@ -46,8 +46,8 @@ class InMachine(RoverBench):
         super().__init__()
 
     @cached_property
-    def machine(self) -> Machine:
-        return Machine(self.rover, self._motors, NoSensors(), prove=proof(self._motors))
+    def machine(self) -> ControlLoop:
+        return ControlLoop(self.rover, self._motors, NoSensors(), prove=arming_check(self._motors))
 
     def _receive(self, received: Received) -> None:
         self.machine.receive(received, self.now)
@@ -215,13 +215,13 @@ class TestRoboClaw(SerialContract):
 
     def test_it_proves_its_timeout_and_turns_nothing(self, line: OnPty) -> None:
         motors = RoboClawMotors(RoboClawSettings(port=line.path, timeout=0.5))
-        proof(motors)()
+        arming_check(motors)()
         motors.set((1.0, 1.0))
         assert line.controller.timeout == 0.5
         assert line.controller.outputs == [0.0, 0.0]
         line.controller.longest_timeout = 0.1
         with pytest.raises(MotorError, match=r"its serial timeout is 0.1 s and not 0.5 s"):
-            proof(motors)()
+            arming_check(motors)()
 
     def test_a_damaged_reply_is_asked_for_again(self, line: OnPty) -> None:
         motors = RoboClawMotors(RoboClawSettings(port=line.path))

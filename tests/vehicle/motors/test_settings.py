@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from vehicle.motors import DRIVERS, USUAL_PARAMS, MotorSettingsError, open_motors, safe_stop
+from vehicle.motors import DRIVERS, PROFILE_PARAMS, MotorSettingsError, open_motors, safe_stop
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params
 
@@ -33,7 +33,7 @@ def test_a_file_of_before_stops_the_motors() -> None:
     assert isinstance(open_motors("simulated", old), SimulatedMotors)
 
 
-@pytest.mark.parametrize("name", USUAL_PARAMS)
+@pytest.mark.parametrize("name", PROFILE_PARAMS)
 def test_a_known_car_has_parameters_that_there_are(name: str) -> None:
     assert name in DRIVERS
-    assert Params(USUAL_PARAMS[name])
+    assert Params(PROFILE_PARAMS[name])

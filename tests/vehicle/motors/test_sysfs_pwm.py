@@ -11,7 +11,7 @@ from tests.vehicle.motors.contract import Bench, MotorsContract
 from tests.vehicle.motors.fake_sysfs import FakeSysfs
 from vehicle.motors import MotorError, MotorSettingsError, open_motors, safe_stop
 from vehicle.motors.pulses import Pulse
-from vehicle.motors.pwm_channel import exported
+from vehicle.motors.pwm_channel import export_channel
 from vehicle.motors.sysfs_pwm import BridgePwm, ServoPwm, SysfsPwmMotors, SysfsPwmSettings
 
 DEVICE = "fe20c000.pwm"
@@ -211,5 +211,5 @@ def test_a_freshly_exported_channel_is_waited_for_until_it_may_be_written(
         return next(answers)
 
     monkeypatch.setattr("vehicle.motors.pwm_channel.os.access", access)
-    exported(FakeSysfs(tmp_path).root, DEVICE, 1, lambda path, text: None)
+    export_channel(FakeSysfs(tmp_path).root, DEVICE, 1, lambda path, text: None)
     assert [path.name for path in asked] == ["enable"] * 3

@@ -6,14 +6,14 @@ import math
 
 import pytest
 
-from vehicle.navigation.dead_reckoning import Gain, Reckoning
+from vehicle.navigation.dead_reckoning import AveragingGain, DeadReckoning
 
 
-def driven(yaw: float = 0.0, scale: float = 1.0) -> Reckoning:
+def driven(yaw: float = 0.0, scale: float = 1.0) -> DeadReckoning:
     """40 m in steps of a control cycle."""
-    reckoning = Reckoning()
+    reckoning = DeadReckoning()
     for _ in range(2500):
-        reckoning.step(0.016 * scale, yaw)
+        reckoning.advance(0.016 * scale, yaw)
     return reckoning
 
 
@@ -23,36 +23,36 @@ def test_steps_add_up_along_the_yaw() -> None:
 
 def test_a_heading_that_was_wrong_moves_the_way_behind_too() -> None:
     reckoning = driven(yaw=0.02)
-    reckoning.turn(-0.02)
+    reckoning.correct_heading(-0.02)
     assert reckoning.place == pytest.approx((40.0, 0.0), abs=0.02)
 
 
 def test_wheels_that_were_wrong_stretch_the_way_behind_too() -> None:
     reckoning = driven(scale=1.02)
-    reckoning.stretch(1 / 1.02)
+    reckoning.correct_scale(1 / 1.02)
     assert reckoning.place == pytest.approx((40.0, 0.0))
 
 
 @pytest.mark.parametrize(("believed", "left"), [(1.0, 0.0), (0.5, 0.4), (0.0, 0.8)])
 def test_what_a_fix_has_replaced_is_corrected_no_more(believed: float, left: float) -> None:
     reckoning = driven()
-    reckoning.pull(0.0, 0.0, believed)
-    reckoning.turn(0.02)
+    reckoning.correct_position(0.0, 0.0, believed)
+    reckoning.correct_heading(0.02)
     assert reckoning.place == pytest.approx((40.0, left))
 
 
 def test_a_fix_pulls_by_its_gain() -> None:
     reckoning = driven()
-    reckoning.pull(1.0, -2.0, 0.25)
+    reckoning.correct_position(1.0, -2.0, 0.25)
     assert reckoning.place == pytest.approx((40.25, -0.5))
 
 
 def test_a_gain_begins_as_a_mean_and_settles() -> None:
-    gain = Gain(10.0)
+    gain = AveragingGain(10.0)
     gains = [gain.next(1.0) for _ in range(50)]
     assert gains[:3] == pytest.approx([1.0, 1 / 2, 1 / 3])
     assert gains[-1] == pytest.approx(1 / 11)
 
 
 def test_what_it_begins_with_may_be_worth_something() -> None:
-    assert Gain(10.0, credit=4).next(0.1) == pytest.approx(1 / 5)
+    assert AveragingGain(10.0, credit=4).next(0.1) == pytest.approx(1 / 5)

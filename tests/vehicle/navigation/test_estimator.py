@@ -10,22 +10,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dialects import messages as m
-from dialects.enums import Estimated
+from dialects.enums import EstimatorFlag
 from tests.vehicle.bench import EVERYTHING, Bench
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.estimator import GPS_LOST, Estimator
-from vehicle.navigation.geo import Origin, Point, wrap
+from vehicle.navigation.geo import Origin, Point, wrap_angle
 from vehicle.readings import Readings
-from vehicle.sim.body import Home, SimulatedBody
-from vehicle.sim.noise import Noise
+from vehicle.sim.body import SimulatedBody, SimulatedHome
+from vehicle.sim.noise import SensorNoise
 
-HOME = Home(50.0, 8.0)
+HOME = SimulatedHome(50.0, 8.0)
 
 
 class Ride:
     """A simulated rover that drives squares and what the filter makes of its sensors."""
 
-    def __init__(self, seed: int | None, noise: Noise | None = None, **missing: None) -> None:
+    def __init__(self, seed: int | None, noise: SensorNoise | None = None, **missing: None) -> None:
         self.throttles = (0.0, 0.0)
         self.body = SimulatedBody(lambda: self.throttles, home=HOME, seed=seed, noise=noise)
         self.estimator = Estimator()
@@ -44,14 +44,14 @@ class Ride:
     @property
     def believed(self) -> Point:
         """On the globe, as metres from the plant's home."""
-        assert self.estimate.globe is not None
-        return Origin(HOME.latitude, HOME.longitude).point(*self.estimate.globe)
+        assert self.estimate.lat_lon is not None
+        return Origin(HOME.latitude, HOME.longitude).to_local(*self.estimate.lat_lon)
 
     def run(self, seconds: float) -> None:
         for _ in range(round(seconds * 50)):
             self.cycle += 1
             readings = replace(self.body.read(self.cycle / 50), **self.missing)  # type: ignore[arg-type]
-            self.estimator.sense(readings, self.cycle / 50)
+            self.estimator.update(readings, self.cycle / 50)
             if self.estimate.origin is not None:
                 self.errors.append(self.believed.distance(self.truth))
 
@@ -69,7 +69,7 @@ def test_perfect_sensors_give_the_truth() -> None:
     ride = Ride(None)
     ride.squares(2)
     assert max(ride.errors) < 0.05
-    assert abs(wrap((ride.estimate.yaw or 0.0) - ride.body.motion.yaw)) < 0.01
+    assert abs(wrap_angle((ride.estimate.yaw or 0.0) - ride.body.motion.yaw)) < 0.01
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -79,20 +79,20 @@ def test_noisy_sensors_give_decimetres(seed: int) -> None:
     errors = sorted(ride.errors[1000:])
     assert errors[len(errors) // 2] < 0.45
     assert errors[-1] < 0.8
-    assert abs(wrap((ride.estimate.yaw or 0.0) - ride.body.motion.yaw)) < 0.03  # the compass alone is 0.03 off
+    assert abs(wrap_angle((ride.estimate.yaw or 0.0) - ride.body.motion.yaw)) < 0.03  # the compass alone is 0.03 off
     assert ride.estimate.good
     assert errors[-1] < ride.estimate.accuracy
 
 
 def test_the_bias_of_the_gyro_is_learned() -> None:
-    ride = Ride(7, Noise(gyro_bias=0.05))
+    ride = Ride(7, SensorNoise(gyro_bias=0.05))
     ride.run(120.0)
     assert ride.estimate.yaw_rate == pytest.approx(0.0, abs=0.03)
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_wheels_that_are_not_what_the_settings_say_are_learned(seed: int) -> None:
-    ride = Ride(seed, Noise(wheel_scale=0.08))
+    ride = Ride(seed, SensorNoise(wheel_scale=0.08))
     ride.throttles = (0.6, 0.6)
     ride.run(90.0)
     assert ride.estimate.speed == pytest.approx(ride.body.motion.speed, abs=0.07)  # 0.02 of it is a reading's own noise
@@ -103,7 +103,7 @@ def test_wheels_that_slip_on_the_spot_teach_nothing() -> None:
     slipping, steady = Estimator(), Estimator()
     for cycle in range(3000):
         for estimator, speed in ((slipping, 1.0), (steady, 0.0)):
-            estimator.sense(
+            estimator.update(
                 Readings(yaw=0.0, speed=speed, latitude=50.0, longitude=8.0, gps_fix=3, velocity_north=0.0,
                          velocity_east=0.0), cycle / 50
             )  # fmt: skip
@@ -127,7 +127,7 @@ def test_without_gps_it_counts_from_where_it_started_and_knows_no_place_on_the_g
     ride.run(5.0)
     assert ride.estimate.moving_place
     assert ride.estimate.place.distance(ride.truth) < 0.05
-    assert (ride.estimate.globe, ride.estimate.good) == (None, False)
+    assert (ride.estimate.lat_lon, ride.estimate.good) == (None, False)
 
 
 def test_a_first_fix_on_the_way_does_not_move_what_was_driven() -> None:
@@ -156,13 +156,13 @@ def test_a_lost_gps_is_seen_and_one_that_comes_back_is_believed() -> None:
 def test_one_wild_fix_is_left_out_and_many_are_believed() -> None:
     estimator = Estimator()
     for cycle in range(500):
-        estimator.sense(Readings(yaw=0.0, speed=0.0, latitude=50.0, longitude=8.0, gps_fix=3), cycle / 50)
+        estimator.update(Readings(yaw=0.0, speed=0.0, latitude=50.0, longitude=8.0, gps_fix=3), cycle / 50)
     wild = Readings(yaw=0.0, speed=0.0, latitude=50.001, longitude=8.0, gps_fix=3)
-    estimator.sense(wild, 10.0)
+    estimator.update(wild, 10.0)
     assert estimator.estimate.place.distance(Point(0.0, 0.0)) < 0.01
     assert estimator.estimate.resets == 0
     for cycle in range(600):
-        estimator.sense(wild, 10.02 + cycle / 50)
+        estimator.update(wild, 10.02 + cycle / 50)
     assert estimator.estimate.place.north == pytest.approx(111.3, abs=0.2)
     assert estimator.estimate.resets == 1
 
@@ -177,7 +177,7 @@ def test_no_reading_makes_it_something_that_is_no_number(rows: list[tuple[float 
     names = ("yaw", "yaw_rate", "speed", "latitude", "longitude", "velocity_north", "velocity_east")
     for number, row in enumerate(rows):
         values: dict[str, float | None] = dict(zip(names, row, strict=True))
-        estimate = estimator.sense(Readings(gps_fix=3, **values), number * dt)  # type: ignore[arg-type]
+        estimate = estimator.update(Readings(gps_fix=3, **values), number * dt)  # type: ignore[arg-type]
         numbers = (estimate.yaw, estimate.yaw_rate, estimate.speed, *estimate.place, *estimate.velocity)
         assert all(value is None or math.isfinite(value) for value in numbers)
 
@@ -190,6 +190,6 @@ def test_the_estimate_is_told_with_its_health() -> None:
     bench.readings = EVERYTHING
     bench.wait(1.5)
     status = bench.newest(m.EstimatorStatus)
-    assert status.flags == sum(Estimated)
+    assert status.flags == sum(EstimatorFlag)
     assert 0.5 < status.pos_horiz_accuracy < 5.0
     assert bench.newest(m.LocalPositionNed).vx == pytest.approx(0.5, abs=0.02)

@@ -121,7 +121,7 @@ class TestReturnPoint:
         field.say(m.MissionRequestList(1, 1, MissionType.FENCE))
         assert field.newest(m.MissionCount).count == len(plan)
         field.say(m.MissionRequestInt(1, 1, 0, MissionType.FENCE))
-        back, (latitude, longitude) = field.newest(m.MissionItemInt), GROUND.globe(Point(1.0, 1.0))
+        back, (latitude, longitude) = field.newest(m.MissionItemInt), GROUND.to_global(Point(1.0, 1.0))
         assert (back.command, back.x, back.y) == (5000, round(latitude * 1e7), round(longitude * 1e7))
         field.arm()
         field.wait(0.2, NEUTRAL)

@@ -14,17 +14,17 @@ from pathlib import Path
 
 import pytest
 
-from dialects.enums import State
+from dialects.enums import SystemState
 from dialects.messages import Heartbeat, LocalPositionNed, ManualControl
 from link.runner import Runner
-from link.runtime.command_line import MISTAKE
+from link.runtime.command_line import USAGE_ERROR
 from tests.vehicle.ground import Ground, drive, running
 from tests.vehicle.script import driving
-from vehicle.config.run_settings import Settings, Simulation
+from vehicle.config.run_settings import RunSettings, Simulation
 from vehicle.motors import MotorError
 from vehicle.runtime import daemon
 from vehicle.runtime.daemon import FAULT
-from vehicle.runtime.shutdown import Ending
+from vehicle.runtime.shutdown import Shutdown
 
 BREAKING = "tests.vehicle.motors.breaking"
 
@@ -42,7 +42,7 @@ def test_a_signal_while_driving_stops_the_wheels(tmp_path: Path, number: signal.
         assert not any(vehicle.outputs()[-1])
         ground.drain()
         assert not ground.armed
-        assert [m for m in ground.heard if isinstance(m, Heartbeat)][-1].system_status == State.POWEROFF
+        assert [m for m in ground.heard if isinstance(m, Heartbeat)][-1].system_status == SystemState.POWEROFF
 
 
 @pytest.mark.e2e
@@ -137,9 +137,9 @@ def test_gets_ready_and_says_where_it_listens(tmp_path: Path) -> None:
 
 async def test_an_exception_in_a_callback_of_the_loop_stops_the_motors_and_ends_the_run() -> None:
     machine, _, motors = driving()
-    ending = Ending(machine, Runner(machine, [], period=0.02))
+    ending = Shutdown(machine, Runner(machine, [], period=0.02))
     loop = asyncio.get_running_loop()
-    ending.listen(loop)
+    ending.install_handlers(loop)
     loop.call_soon(int, "not a number")
     with pytest.raises(ValueError, match="not a number"):
         await ending.wait()
@@ -150,8 +150,8 @@ async def test_an_exception_in_a_callback_of_the_loop_stops_the_motors_and_ends_
 async def test_a_signal_to_motors_that_do_not_stop_is_a_fault() -> None:
     machine, mind, motors = driving()
     motors.broken["disable"] = OSError("bus is gone")
-    ending = Ending(machine, Runner(machine, [], period=0.02))
-    ending.listen(asyncio.get_running_loop())
+    ending = Shutdown(machine, Runner(machine, [], period=0.02))
+    ending.install_handlers(asyncio.get_running_loop())
     signal.raise_signal(signal.SIGTERM)
     with pytest.raises(MotorError, match="cut their power: bus is gone"):
         await ending.wait()
@@ -170,12 +170,12 @@ def said(caplog: pytest.LogCaptureFixture) -> str:
 
 
 def test_an_unknown_driver_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
-    assert daemon.run(Settings(("udpout:127.0.0.1:9",), motors={"driver": "gipo"})) == MISTAKE
+    assert daemon.run(RunSettings(("udpout:127.0.0.1:9",), motors={"driver": "gipo"})) == USAGE_ERROR
     assert "unknown motor driver 'gipo'" in said(caplog)
 
 
 def test_missing_hardware_is_a_fault(caplog: pytest.LogCaptureFixture) -> None:
-    assert daemon.run(Settings(("udpout:127.0.0.1:9",), motors={"driver": f"{BREAKING}:NoHardware"})) == FAULT
+    assert daemon.run(RunSettings(("udpout:127.0.0.1:9",), motors={"driver": f"{BREAKING}:NoHardware"})) == FAULT
     assert said(caplog) == "motor driver: no board at address 0x40"
 
 
@@ -183,19 +183,19 @@ def test_a_port_in_use_may_be_free_later(caplog: pytest.LogCaptureFixture) -> No
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
         port = taken.getsockname()[1]
-        assert daemon.run(Settings((f"udpin:127.0.0.1:{port}",), simulation=Simulation())) == FAULT
+        assert daemon.run(RunSettings((f"udpin:127.0.0.1:{port}",), simulation=Simulation())) == FAULT
     assert f"port {port} is in use" in said(caplog)
 
 
 def test_a_host_that_nobody_knows_may_be_known_later(caplog: pytest.LogCaptureFixture) -> None:
-    assert daemon.run(Settings(("udpout:no-such-host.invalid:14550",), simulation=Simulation())) == FAULT
+    assert daemon.run(RunSettings(("udpout:no-such-host.invalid:14550",), simulation=Simulation())) == FAULT
     assert "host 'no-such-host.invalid' is not known" in said(caplog)
 
 
 def test_a_bad_endpoint_or_parameter_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
-    assert daemon.run(Settings(("carrier-pigeon:1",), simulation=Simulation())) == MISTAKE
+    assert daemon.run(RunSettings(("carrier-pigeon:1",), simulation=Simulation())) == USAGE_ERROR
     caplog.clear()
-    assert daemon.run(Settings((), simulation=Simulation(), params={"MAN_TIMEOUT": 99.0})) == MISTAKE
+    assert daemon.run(RunSettings((), simulation=Simulation(), params={"MAN_TIMEOUT": 99.0})) == USAGE_ERROR
     assert "MAN_TIMEOUT" in said(caplog)
 
 
@@ -223,6 +223,6 @@ def test_the_simulator_drives_four_wheels_sideways_too(tmp_path: Path, kind: int
 
 
 def test_a_motor_log_that_cannot_be_written_is_the_users_mistake(caplog: pytest.LogCaptureFixture) -> None:
-    settings = Settings(("udpout:127.0.0.1:9",), simulation=Simulation(), motor_log="/no/such/folder/motors")
-    assert daemon.run(settings) == MISTAKE
+    settings = RunSettings(("udpout:127.0.0.1:9",), simulation=Simulation(), motor_log="/no/such/folder/motors")
+    assert daemon.run(settings) == USAGE_ERROR
     assert said(caplog) == "motor log /no/such/folder/motors: No such file or directory"

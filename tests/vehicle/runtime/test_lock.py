@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from vehicle.config.run_settings import SettingsError
-from vehicle.runtime.lock import InUseError, MotorLock, state_lock
+from vehicle.runtime.lock import InUseError, MotorLock, lock_state_folder
 
 # A serial port of each test's own, so that tests that run at the same time do not meet.
 MINE = {"driver": "roboclaw", "port": f"/dev/test-{os.getpid()}"}
@@ -65,27 +65,27 @@ def test_a_killed_process_holds_nothing() -> None:
 def test_the_second_vehicle_of_a_folder_is_refused_until_the_first_lets_go(tmp_path: Path) -> None:
     folder = tmp_path / "new" / "state"
     words = f"state folder {folder} is in use by another vehicle; end that, or name another folder with --state"
-    with state_lock(folder), pytest.raises(SettingsError, match=words), state_lock(folder):
+    with lock_state_folder(folder), pytest.raises(SettingsError, match=words), lock_state_folder(folder):
         pass
-    with state_lock(folder), state_lock(tmp_path):
+    with lock_state_folder(folder), lock_state_folder(tmp_path):
         pass
 
 
 def test_a_killed_vehicle_holds_no_folder(tmp_path: Path) -> None:
     script = f"""
 from pathlib import Path
-from vehicle.runtime.lock import state_lock
-with state_lock(Path({str(tmp_path)!r})):
+from vehicle.runtime.lock import lock_state_folder
+with lock_state_folder(Path({str(tmp_path)!r})):
     print(flush=True); input()
 """
     process = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     assert process.stdout is not None
     process.stdout.readline()
-    with pytest.raises(SettingsError), state_lock(tmp_path):
+    with pytest.raises(SettingsError), lock_state_folder(tmp_path):
         pass
     process.send_signal(signal.SIGKILL)
     process.communicate()
-    with state_lock(tmp_path):
+    with lock_state_folder(tmp_path):
         pass
 
 
@@ -93,5 +93,5 @@ with state_lock(Path({str(tmp_path)!r})):
 def test_a_folder_that_is_none_is_not_the_locks_matter(folder: str, tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     (tmp_path / "loop").symlink_to("loop")
-    with state_lock(tmp_path / folder):
+    with lock_state_folder(tmp_path / folder):
         pass

@@ -12,7 +12,7 @@ import pytest
 
 from link.runtime import journald
 from vehicle.runtime import log as vehicle_log
-from vehicle.runtime.log import QUEUE_LINES, Log
+from vehicle.runtime.log import QUEUE_LINES, DaemonLog
 
 log = logging.getLogger("vehicle.test")
 
@@ -36,7 +36,7 @@ def fail() -> None:
 def test_the_journal_gets_the_severity_in_front(stderr: int, monkeypatch: pytest.MonkeyPatch) -> None:
     stream = os.fstat(stderr)  # both ends of a pipe have one inode
     monkeypatch.setenv("JOURNAL_STREAM", f"{stream.st_dev}:{stream.st_ino}")
-    lines = Log()
+    lines = DaemonLog()
     log.info("ready")
     log.error("no board")
     lines.close()
@@ -44,7 +44,7 @@ def test_the_journal_gets_the_severity_in_front(stderr: int, monkeypatch: pytest
 
 
 def test_a_terminal_gets_nothing_that_it_would_obey(stderr: int) -> None:
-    lines = Log()
+    lines = DaemonLog()
     log.info("No parameter %s", "\x1b[2J\r\n\x07X")
     lines.close()
     assert os.read(stderr, 4096) == b"vehicle: No parameter \\x1b[2J \\x07X\n"
@@ -53,7 +53,7 @@ def test_a_terminal_gets_nothing_that_it_would_obey(stderr: int) -> None:
 def test_a_person_gets_one_line_and_the_file_the_traceback(stderr: int, tmp_path: Path) -> None:
     path = tmp_path / "log"
     path.write_text("earlier\n")
-    lines = Log(str(path))
+    lines = DaemonLog(str(path))
     try:
         fail()
     except ZeroDivisionError:
@@ -68,7 +68,7 @@ def test_a_person_gets_one_line_and_the_file_the_traceback(stderr: int, tmp_path
 
 @pytest.mark.parametrize(("verbose", "says"), [(False, b"vehicle: more\n"), (True, b"vehicle: much\nvehicle: more\n")])
 def test_verbose_says_more(stderr: int, verbose: bool, says: bytes) -> None:
-    lines = Log(verbose=verbose)
+    lines = DaemonLog(verbose=verbose)
     log.debug("much")
     log.info("more")
     lines.close()
@@ -76,7 +76,7 @@ def test_verbose_says_more(stderr: int, verbose: bool, says: bytes) -> None:
 
 
 def test_nothing_is_logged_after_close(stderr: int) -> None:
-    lines = Log()
+    lines = DaemonLog()
     log.info("before")
     lines.close()
     log.info("after")
@@ -85,7 +85,7 @@ def test_nothing_is_logged_after_close(stderr: int) -> None:
 
 def test_who_logs_never_waits_for_who_reads(stderr: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(vehicle_log, "DRAIN", 0.05)
-    lines = Log()
+    lines = DaemonLog()
     start = time.monotonic()
     for number in range(QUEUE_LINES * 2):
         log.info("%d %s", number, "." * 100)
@@ -99,7 +99,7 @@ def test_who_logs_never_waits_for_who_reads(stderr: int, monkeypatch: pytest.Mon
 
 
 def test_a_full_disk_is_nobodys_fault(stderr: int) -> None:
-    lines = Log("/dev/full")
+    lines = DaemonLog("/dev/full")
     log.info("hello")
     log.info("again")
     lines.close()
@@ -110,4 +110,4 @@ def test_a_full_disk_is_nobodys_fault(stderr: int) -> None:
 def test_a_pipe_that_nobody_reads_is_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "log")
     with pytest.raises(OSError, match="No such device"):
-        Log(str(tmp_path / "log"))
+        DaemonLog(str(tmp_path / "log"))

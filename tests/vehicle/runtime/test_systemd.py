@@ -13,7 +13,7 @@ import pytest
 
 from tests.vehicle.ground import Ground, running
 from tests.vehicle.script import AHEAD, MESSAGE, Bench, Script
-from vehicle.control_loop import Machine
+from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError
 from vehicle.runtime.systemd import Notifier
 from vehicle.sensors import NoSensors
@@ -101,9 +101,9 @@ def test_a_manager_that_reads_nothing_does_not_hold_the_loop(manager: socket.soc
 # ---- only a completed cycle counts
 
 
-def machine() -> tuple[Machine, Script, Bench, list[float]]:
+def machine() -> tuple[ControlLoop, Script, Bench, list[float]]:
     mind, motors, cycles = Script(), Bench(), list[float]()
-    return Machine(mind, motors, NoSensors(), completed=cycles.append), mind, motors, cycles
+    return ControlLoop(mind, motors, NoSensors(), completed=cycles.append), mind, motors, cycles
 
 
 def test_a_cycle_counts_when_the_motors_have_their_outputs() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from dialects.axes import Axes
-from dialects.enums import Command, Result, State
+from dialects.enums import Command, Result, SystemState
 from dialects.messages import CommandAck, CommandLong, Heartbeat
 from tests.vehicle.ground import Ground, drive, running
 from tests.vehicle.motors.filed_pins import installed
@@ -47,7 +47,7 @@ def test_open_at_the_start_closed_pressed_while_driving_and_released(tmp_path: P
         with running(tmp_path, "--config", str(file)) as vehicle:
             vehicle.ready()
             ground.demand = Axes()
-            ground.wait(lambda: status(ground) == State.EMERGENCY, "no wire: pressed from the start on")
+            ground.wait(lambda: status(ground) == SystemState.EMERGENCY, "no wire: pressed from the start on")
             ground.wait(asking(ground, Command.COMPONENT_ARM_DISARM, 1, Result.FAILED), "arming is refused")
             ground.wait(asking(ground, switch, 1, Result.FAILED), "so is a release")
 
@@ -59,5 +59,5 @@ def test_open_at_the_start_closed_pressed_while_driving_and_released(tmp_path: P
 
             header.hold(BUTTON, high=True)
             ground.wait(lambda: not header.driven_high(), "all pins are low")
-            ground.wait(lambda: status(ground) == State.EMERGENCY, "and the vehicle says why")
+            ground.wait(lambda: status(ground) == SystemState.EMERGENCY, "and the vehicle says why")
             assert any("EMERGENCY STOP by button" in text for text in ground.texts())

@@ -8,14 +8,14 @@ from dataclasses import replace
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, Failsafe, Limit, Result, State
+from dialects.enums import Command, DriveLimit, Failsafe, Result, SystemState
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, Bench, said
 from vehicle.drive.gate import Outputs
 from vehicle.params import Params
-from vehicle.readings import Computer, Readings
+from vehicle.readings import ComputerReadings, Readings
 from vehicle.safety import states
-from vehicle.safety.failsafe import RULES, Action, Failsafes
+from vehicle.safety.failsafe import RULES, FailsafeAction, Failsafes
 
 ZERO = Outputs((0.0, 0.0), enabled=False)
 
@@ -39,7 +39,7 @@ class TestBattery:
         bench.wait(0.1, NEUTRAL)
         bench.wait(1.0, AHEAD)
         assert bench.throttles == (0.5, 0.5)
-        assert bench.newest(m.RoverDriveStatus).limits & Limit.BATTERY
+        assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.BATTERY
 
     def test_low_can_be_set_to_slow_down_only(self) -> None:
         bench = Bench(FS_LOW_ACT=0)
@@ -92,7 +92,7 @@ class TestBattery:
 
 class TestComputer:
     def pi(self, bench: Bench, temperature: float = 50.0, *, weak: bool | None = False) -> None:
-        bench.readings = Readings(computer=Computer(temperature=temperature, under_voltage=weak))
+        bench.readings = Readings(computer=ComputerReadings(temperature=temperature, under_voltage=weak))
         bench.wait(0.04, AHEAD if bench.turning else None)
 
     @pytest.mark.parametrize(("temperature", "weak"), [(86.0, False), (50.0, True)])
@@ -104,14 +104,14 @@ class TestComputer:
         assert bench.throttles == (0.5, 0.5)
         assert said(bench, "Failsafe: Pi too hot or its supply too weak: half speed")
         assert bench.newest(m.RoverFailsafeStatus).active == Failsafe.OVERHEAT
-        assert bench.newest(m.RoverDriveStatus).limits & Limit.SPEED
-        assert not bench.newest(m.RoverDriveStatus).limits & Limit.BATTERY
+        assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.SPEED
+        assert not bench.newest(m.RoverDriveStatus).limits & DriveLimit.BATTERY
         bench.wait(8.5, AHEAD)
         assert bench.turning
         bench.wait(1.0, AHEAD)
         assert not bench.turning
         assert bench.mode is Mode.HOLD
-        assert bench.newest(m.Heartbeat).system_status == State.CRITICAL
+        assert bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL
         bench.set_mode(Mode.MANUAL)
         bench.wait(0.1, NEUTRAL)
         bench.wait(1.0, AHEAD)
@@ -159,7 +159,7 @@ class TestComputer:
         assert bench.throttles == (throttle, throttle)
         assert bench.mode is mode
         assert said(bench, "Pi under-voltage")
-        assert (bench.newest(m.Heartbeat).system_status == State.CRITICAL) == bool(act)
+        assert (bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL) == bool(act)
 
     @pytest.mark.parametrize(("limit", "throttle"), [(0, 1.0), (95, 1.0), (85, 0.5)])
     def test_so_is_the_temperature(self, limit: float, throttle: float) -> None:
@@ -236,7 +236,7 @@ class TestMotorDriver:
         bench.drive()
         bench.rover.motor_failed("no answer on /dev/ttyAMA0", bench.now)
         assert bench.rover.outputs == ZERO
-        assert bench.rover.state is states.State.FAULT
+        assert bench.rover.state is states.SafetyState.FAULT
         bench.wait(1.2)
         assert bench.newest(m.RoverFailsafeStatus).active == Failsafe.MOTOR_DRIVER
         assert said(bench, "Motor driver failed: no answer on")
@@ -249,7 +249,7 @@ class TestMotorDriver:
         bench.rover.motor_failed("broken", bench.now)
         bench.command(Command.DO_SET_SAFETY_SWITCH_STATE, 0)
         assert bench.command(Command.DO_SET_SAFETY_SWITCH_STATE, 1) is Result.ACCEPTED
-        assert bench.rover.state is states.State.FAULT
+        assert bench.rover.state is states.SafetyState.FAULT
         assert bench.arm() is Result.FAILED
 
 
@@ -271,7 +271,7 @@ class TestShutdown:
         bench.rover.shutdown(bench.now)
         assert bench.rover.outputs == ZERO
         last = bench.rover.messages_to_send()
-        assert [each.message.system_status for each in last] == [State.POWEROFF]  # type: ignore[attr-defined]
+        assert [each.message.system_status for each in last] == [SystemState.POWEROFF]  # type: ignore[attr-defined]
         bench.wait(1.0, AHEAD)
         bench.rover.shutdown(bench.now)
         assert bench.rover.messages_to_send() == []
@@ -284,9 +284,9 @@ class TestTable:
     def test_worst_wins(self) -> None:
         failsafes = Failsafes(Params())
         failsafes.update({Failsafe.BATTERY_LOW: 0.0}, 0.0)
-        assert failsafes.action(0.0) is Action.LIMIT
+        assert failsafes.lasting_action(0.0) is FailsafeAction.LIMIT
         failsafes.update({Failsafe.BATTERY_LOW: 0.0, Failsafe.MANUAL_LOSS: 0.0}, 0.0)
-        assert failsafes.action(0.0) is Action.NEUTRAL
+        assert failsafes.lasting_action(0.0) is FailsafeAction.NEUTRAL
 
     def test_each_step_is_taken_once(self) -> None:
         failsafes = Failsafes(Params())
@@ -295,7 +295,7 @@ class TestTable:
             for cycle in range(2000)
             for step in failsafes.update({Failsafe.MANUAL_LOSS: 0.0}, cycle * CYCLE)
         ]
-        assert taken == [Action.NEUTRAL, Action.HOLD, Action.DISARM]
+        assert taken == [FailsafeAction.NEUTRAL, FailsafeAction.HOLD, FailsafeAction.DISARM]
 
     def test_a_condition_that_returns_begins_anew(self) -> None:
         failsafes = Failsafes(Params())
@@ -303,13 +303,13 @@ class TestTable:
         failsafes.update({}, 1.0)
         assert failsafes.active == 0
         assert failsafes.latched == Failsafe.GCS_LOSS
-        assert [step.action for step in failsafes.update({Failsafe.GCS_LOSS: 2.0}, 2.0)] == [Action.HOLD]
+        assert [step.action for step in failsafes.update({Failsafe.GCS_LOSS: 2.0}, 2.0)] == [FailsafeAction.HOLD]
 
     def test_no_rule_starts_a_motion_and_every_rule_has_words(self) -> None:
         for rule in RULES.values():
-            assert rule.words
+            assert rule.label
             assert rule.steps
-            assert all(step.action in Action for step in rule.steps)
+            assert all(step.action in FailsafeAction for step in rule.steps)
 
     def test_the_driver_in_control_is_not_named_in_vain(self) -> None:
         bench = Bench()

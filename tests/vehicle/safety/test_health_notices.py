@@ -10,7 +10,7 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Severity
 from tests.vehicle.bench import AHEAD, EVERYTHING, Bench, said
-from vehicle.readings import Computer, Readings, SensorFault
+from vehicle.readings import ComputerReadings, Readings, SensorFault
 
 NO_CHIP = replace(EVERYTHING, faults=(SensorFault("battery", "no chip at 0x40"),))
 
@@ -24,7 +24,7 @@ def after(bench: Bench, readings: Readings, seconds: float) -> list[str]:
 
 
 def pi(temperature: float | None = None, under_voltage: bool | None = None) -> Readings:
-    return replace(EVERYTHING, computer=Computer(temperature=temperature, under_voltage=under_voltage))
+    return replace(EVERYTHING, computer=ComputerReadings(temperature=temperature, under_voltage=under_voltage))
 
 
 def test_a_sensors_fault_is_told_once_and_so_is_its_end() -> None:

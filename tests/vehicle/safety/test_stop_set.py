@@ -7,7 +7,7 @@ import math
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, Failsafe, Limit, ModeFlag, Result, State
+from dialects.enums import Command, DriveLimit, Failsafe, ModeFlag, Result, SystemState
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, Bench, said
 from vehicle.drive.gate import Outputs
@@ -51,10 +51,10 @@ def test_emergency_stop_is_told() -> None:
     bench.command(SWITCH, 0)
     bench.wait(0.1)
     beat = bench.newest(m.Heartbeat)
-    assert beat.system_status == State.EMERGENCY
+    assert beat.system_status == SystemState.EMERGENCY
     assert not beat.base_mode & ModeFlag.ARMED
     assert bench.newest(m.RoverFailsafeStatus).latched == Failsafe.ESTOP
-    assert bench.newest(m.RoverDriveStatus).limits & Limit.ESTOP
+    assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.ESTOP
     assert said(bench, f"EMERGENCY STOP by GCS {DRIVER}")
 
 
@@ -64,7 +64,7 @@ def test_release_then_arm_then_neutral() -> None:
     bench.command(SWITCH, 0)
     assert bench.command(SWITCH, 1, system=OTHER) is Result.FAILED  # not in control
     assert bench.command(SWITCH, 1) is Result.ACCEPTED
-    assert bench.rover.state is states.State.SAFE
+    assert bench.rover.state is states.SafetyState.SAFE
     bench.wait(0.5, NEUTRAL)
     assert bench.arm() is Result.ACCEPTED
     bench.wait(0.5, AHEAD)
@@ -90,7 +90,7 @@ def test_termination_lasts_until_a_restart() -> None:
     assert bench.command(ARM, 1, 21196) is Result.FAILED
     assert said(bench, "PreArm: terminated, restart the vehicle")
     bench.wait(0.1)
-    assert bench.newest(m.Heartbeat).system_status == State.FLIGHT_TERMINATION
+    assert bench.newest(m.Heartbeat).system_status == SystemState.FLIGHT_TERMINATION
 
 
 @pytest.mark.parametrize("wish", [NAN, 0, 0.5, -1])

@@ -8,47 +8,47 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle.motors import MotorError
-from vehicle.sensors.encoders import Encoders, EncoderSettings, Speedometer, Wheel
+from vehicle.sensors.encoders import Encoders, EncoderSettings, Wheel, WheelSpeedFilter
 
 SETTINGS = EncoderSettings(wheels=(Wheel(5, 6), Wheel(16, 26)), lines=20, diameter=0.065)
 
 
 def test_a_steady_wheel() -> None:
-    meter = Speedometer(0.01)
-    speeds = [meter.speed(cycle, cycle * 0.02) for cycle in range(50)]
+    meter = WheelSpeedFilter(0.01)
+    speeds = [meter.update(cycle, cycle * 0.02) for cycle in range(50)]
     assert speeds[0] == 0.0
     assert speeds[1:] == pytest.approx([0.5] * 49)
 
 
 def test_a_wheel_that_stands_is_zero_after_the_window() -> None:
-    meter = Speedometer(0.01)
+    meter = WheelSpeedFilter(0.01)
     for cycle in range(20):
-        meter.speed(cycle, cycle * 0.02)
-    assert meter.speed(19, 0.48) > 0.0
+        meter.update(cycle, cycle * 0.02)
+    assert meter.update(19, 0.48) > 0.0
     for cycle in range(25, 40):
-        speed = meter.speed(19, cycle * 0.02)
+        speed = meter.update(19, cycle * 0.02)
     assert speed == 0.0
 
 
 def test_backwards_is_negative() -> None:
-    meter = Speedometer(0.01)
-    meter.speed(0, 0.0)
-    assert meter.speed(-3, 0.1) == pytest.approx(-0.3)
+    meter = WheelSpeedFilter(0.01)
+    meter.update(0, 0.0)
+    assert meter.update(-3, 0.1) == pytest.approx(-0.3)
 
 
 def test_the_same_time_twice_and_time_that_goes_back_are_no_speed() -> None:
-    meter = Speedometer(0.01)
-    assert meter.speed(5, 1.0) == 0.0
-    assert meter.speed(9, 1.0) == 0.0
-    assert meter.speed(9, 0.5) == 0.0
+    meter = WheelSpeedFilter(0.01)
+    assert meter.update(5, 1.0) == 0.0
+    assert meter.update(9, 1.0) == 0.0
+    assert meter.update(9, 0.5) == 0.0
 
 
 @given(st.lists(st.tuples(st.integers(-1000, 1000), st.floats(0.0, 1.0)), max_size=50))
 def test_no_counts_and_times_give_a_speed_that_is_no_number(steps: list[tuple[int, float]]) -> None:
-    meter, now = Speedometer(0.01), 0.0
+    meter, now = WheelSpeedFilter(0.01), 0.0
     for count, later in steps:
         now += later
-        assert math.isfinite(meter.speed(count, now)) or later < 1e-300
+        assert math.isfinite(meter.update(count, now)) or later < 1e-300
 
 
 def turn(factory: MockFactory, wheel: Wheel, counts: int) -> None:

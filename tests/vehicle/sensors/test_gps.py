@@ -13,7 +13,7 @@ import pytest
 
 from tests.ports import free_port
 from vehicle.sensors import gps
-from vehicle.sensors.gps import Gpsd, GpsSettings
+from vehicle.sensors.gps import GpsdClient, GpsSettings
 
 RECORDED = Path(__file__).with_name("gpsd_3_22.jsonl").read_bytes()
 
@@ -62,7 +62,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 async def test_a_recorded_stream_over_tcp() -> None:
     server = Server(RECORDED)
     async with server.running() as port:
-        source = Gpsd(GpsSettings(port=port), clock=lambda: 100.0)
+        source = GpsdClient(GpsSettings(port=port), clock=lambda: 100.0)
         await until(lambda: (reading := source.latest(100.0)) and reading.sky.satellites and reading.fix.velocity_east)
         assert server.asked == [b'?WATCH={"enable":true,"json":true};\n']
         reading = source.latest(103.0)
@@ -76,7 +76,7 @@ async def test_a_recorded_stream_over_tcp() -> None:
 @pytest.mark.usefixtures("quick")
 async def test_a_gpsd_that_is_not_there_is_found_when_it_comes() -> None:
     port = free_port()
-    source = Gpsd(GpsSettings(port=port))
+    source = GpsdClient(GpsSettings(port=port))
     await until(lambda: source.fault)
     assert source.fault is not None
     assert source.fault.startswith(f"gpsd at 127.0.0.1:{port}: ")
@@ -91,7 +91,7 @@ async def test_a_gpsd_that_is_not_there_is_found_when_it_comes() -> None:
 async def test_a_connection_that_is_lost_is_made_again() -> None:
     server = Server(RECORDED, hang_up=True)
     async with server.running() as port:
-        source = Gpsd(GpsSettings(port=port))
+        source = GpsdClient(GpsSettings(port=port))
         await until(lambda: len(server.asked) >= 3)
         source.close()
 
@@ -103,7 +103,7 @@ async def test_a_connection_that_is_lost_is_made_again() -> None:
 async def test_noise_ends_in_a_new_connection_or_in_silence_and_never_in_an_exception(noise: bytes) -> None:
     server = Server(noise, hang_up=True)
     async with server.running() as port:
-        source = Gpsd(GpsSettings(port=port))
+        source = GpsdClient(GpsSettings(port=port))
         await until(lambda: len(server.asked) >= 2)
         assert source.latest(asyncio.get_running_loop().time()) is None
         source.close()
@@ -123,10 +123,10 @@ async def test_a_real_gpsd_with_a_receiver_on_a_terminal_line() -> None:
     process = await asyncio.create_subprocess_exec(
         GPSD, "-N", "-n", "-S", str(port), os.ttyname(slave), stderr=asyncio.subprocess.DEVNULL
     )
-    source = Gpsd(GpsSettings(port=port))
+    source = GpsdClient(GpsSettings(port=port))
     try:
         async with asyncio.timeout(60):
-            while (reading := source.latest(asyncio.get_running_loop().time())) is None or reading.fix.fix < 3:
+            while (reading := source.latest(asyncio.get_running_loop().time())) is None or reading.fix.fix_type < 3:
                 for sentence in (
                     "GPGGA,120000.00,5230.9780,N,01322.6620,E,1,08,0.9,34.5,M,39.5,M,,",
                     "GPGSA,A,3,01,02,03,04,,,,,,,,,1.6,0.9,1.3",

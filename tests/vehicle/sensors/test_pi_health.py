@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from vehicle.readings import Computer
+from vehicle.readings import ComputerReadings
 from vehicle.sensors.pi_health import PiHealth
 
 THROTTLED = "sys/devices/platform/soc/soc:firmware/get_throttled"
@@ -31,7 +31,7 @@ def write(root: Path, name: str, text: str) -> None:
 
 
 def test_everything_at_once(pi: Path) -> None:
-    assert PiHealth(pi).sample() == Computer(
+    assert PiHealth(pi).sample() == ComputerReadings(
         temperature=51.54,
         load=1.2 / (os.cpu_count() or 1),
         memory_used=2_000_000 * 1024,
@@ -78,14 +78,14 @@ def test_the_voltage_monitor_of_other_kernels(pi: Path, alarm: str, under_voltag
 
 
 def test_a_computer_without_any_of_it(tmp_path: Path) -> None:
-    assert PiHealth(tmp_path).sample() == Computer()
+    assert PiHealth(tmp_path).sample() == ComputerReadings()
 
 
 @pytest.mark.parametrize("rubbish", ["", "\n", "hot", "-", "\0" * 10])
 def test_rubbish_is_not_known(pi: Path, rubbish: str) -> None:
     for file in [path for path in pi.rglob("*") if path.is_file()]:
         file.write_text(rubbish)
-    assert PiHealth(pi).sample() == Computer()
+    assert PiHealth(pi).sample() == ComputerReadings()
 
 
 def test_this_computer_is_read_too() -> None:

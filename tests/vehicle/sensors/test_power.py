@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle.sensors.power import Power, PowerMonitor, PowerSettings, ina219, ina260, signed
+from vehicle.sensors.power import PowerMonitor, PowerReading, PowerSettings, ina219, ina260, signed
 
 
 class FakeMonitor:
@@ -49,13 +49,13 @@ class FakeMonitor:
 @pytest.mark.parametrize(
     ("shunt_register", "bus_register", "shunt", "power"),
     [
-        (0x0000, 0x0000, 0.1, Power(0.0, 0.0)),
-        (0x0FA0, 0x5D98 & ~7 | 2, 0.1, Power(11.98, 0.4)),  # data sheet, figure 27: 40 mV, 12 V range
-        (0xF060, 0x5D98 & ~7 | 2, 0.1, Power(11.98, -0.4)),
-        (0x7D00, 0x1F40, 0.01, Power(4.0, 32.0)),
+        (0x0000, 0x0000, 0.1, PowerReading(0.0, 0.0)),
+        (0x0FA0, 0x5D98 & ~7 | 2, 0.1, PowerReading(11.98, 0.4)),  # data sheet, figure 27: 40 mV, 12 V range
+        (0xF060, 0x5D98 & ~7 | 2, 0.1, PowerReading(11.98, -0.4)),
+        (0x7D00, 0x1F40, 0.01, PowerReading(4.0, 32.0)),
     ],
 )
-def test_an_ina219(shunt_register: int, bus_register: int, shunt: float, power: Power) -> None:
+def test_an_ina219(shunt_register: int, bus_register: int, shunt: float, power: PowerReading) -> None:
     measured = ina219(shunt_register, bus_register, shunt)
     assert measured.voltage == pytest.approx(power.voltage)
     assert measured.current == pytest.approx(power.current)
@@ -63,9 +63,13 @@ def test_an_ina219(shunt_register: int, bus_register: int, shunt: float, power: 
 
 @pytest.mark.parametrize(
     ("current_register", "bus_register", "power"),
-    [(0x2710, 0x2570, Power(11.98, 12.5)), (0xD8F0, 0x2570, Power(11.98, -12.5)), (0, 0, Power(0.0, 0.0))],
+    [
+        (0x2710, 0x2570, PowerReading(11.98, 12.5)),
+        (0xD8F0, 0x2570, PowerReading(11.98, -12.5)),
+        (0, 0, PowerReading(0.0, 0.0)),
+    ],
 )
-def test_an_ina260(current_register: int, bus_register: int, power: Power) -> None:
+def test_an_ina260(current_register: int, bus_register: int, power: PowerReading) -> None:
     measured = ina260(current_register, bus_register, 0.0)
     assert measured.voltage == pytest.approx(power.voltage)
     assert measured.current == pytest.approx(power.current)
@@ -87,14 +91,14 @@ def test_a_chip_that_fails_is_set_up_again() -> None:
     chip = FakeMonitor()
     monitor = PowerMonitor(PowerSettings(kind="ina260"), open_bus=chip.open)
     chip.registers.update({1: 80, 2: 9600})
-    assert monitor.sample() == Power(12.0, 0.1)
+    assert monitor.sample() == PowerReading(12.0, 0.1)
     chip.failing = True
     for _ in range(2):
         with pytest.raises(OSError, match="ina260 at 0x40 on I2C bus 1: Remote I/O error: nothing answers there"):
             monitor.sample()
     chip.failing = False
     chip.registers[0] = 0x6127
-    assert monitor.sample() == Power(12.0, 0.1)
+    assert monitor.sample() == PowerReading(12.0, 0.1)
     assert chip.registers[0] == 0x6527
     assert chip.opened == chip.closed + 1
 

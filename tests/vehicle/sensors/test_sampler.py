@@ -3,26 +3,26 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from vehicle.sensors.latest import Latest
+from vehicle.sensors.latest import LatestValue
 from vehicle.sensors.sampler import Sampler
 
 
 def test_a_value_counts_for_its_time_and_no_longer() -> None:
-    latest = Latest[int](max_age=2.0)
-    assert latest.at(0.0) is None
-    latest.take(7, 10.0)
-    assert latest.at(12.0) == 7
-    assert latest.at(12.1) is None
+    latest = LatestValue[int](max_age=2.0)
+    assert latest.get(0.0) is None
+    latest.update(7, 10.0)
+    assert latest.get(12.0) == 7
+    assert latest.get(12.1) is None
 
 
 def test_a_fault_is_told_in_one_line_and_forgotten_with_the_next_value() -> None:
-    latest = Latest[int](max_age=2.0)
-    latest.take(7, 10.0)
-    latest.missed(OSError("two\nlines"))
-    assert (latest.at(10.0), latest.fault) == (7, "two lines")
-    latest.take(8, 11.0)
+    latest = LatestValue[int](max_age=2.0)
+    latest.update(7, 10.0)
+    latest.set_fault(OSError("two\nlines"))
+    assert (latest.get(10.0), latest.fault) == (7, "two lines")
+    latest.update(8, 11.0)
     assert latest.fault is None
-    latest.missed(ValueError())
+    latest.set_fault(ValueError())
     assert latest.fault == "ValueError"
 
 

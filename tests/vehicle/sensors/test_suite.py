@@ -4,12 +4,12 @@ from typing import Generic, TypeVar
 
 import pytest
 
-from vehicle.readings import NO_READINGS, Computer, Readings, SensorFault
+from vehicle.readings import NO_READINGS, ComputerReadings, Readings, SensorFault
 from vehicle.sensors import Sensors
 from vehicle.sensors.gps import GpsReading, GpsSettings
-from vehicle.sensors.gpsd import Fix, Sky
-from vehicle.sensors.power import Power, PowerSettings
-from vehicle.sensors.suite import SensorSettings, Sources, Suite, open_sensors
+from vehicle.sensors.gpsd import GpsFix, GpsSky
+from vehicle.sensors.power import PowerReading, PowerSettings
+from vehicle.sensors.suite import SensorSettings, SensorSources, SensorSuite, open_sensors
 
 T = TypeVar("T")
 
@@ -32,11 +32,11 @@ class Given(Generic[T]):
 
 
 def test_everything_becomes_one_reading() -> None:
-    computer = Computer(temperature=50.0)
-    suite: Sensors = Suite(
-        Sources(
-            battery=Given(Power(12.1, 1.5)),
-            gps=Given(GpsReading(Fix(3, 1.0, 2.0, 3.0, 0.4, 0.5), Sky(9, 0.8))),
+    computer = ComputerReadings(temperature=50.0)
+    suite: Sensors = SensorSuite(
+        SensorSources(
+            battery=Given(PowerReading(12.1, 1.5)),
+            gps=Given(GpsReading(GpsFix(3, 1.0, 2.0, 3.0, 0.4, 0.5), GpsSky(9, 0.8))),
             encoders=Given((0.4, 0.6)),
             computer=Given(computer),
         )
@@ -60,14 +60,14 @@ def test_everything_becomes_one_reading() -> None:
 
 
 def test_nothing_there_and_nothing_known_is_nothing() -> None:
-    assert Suite(Sources()).read(0.0) == NO_READINGS
-    nothing = Suite(Sources(Given(None), Given(None), Given(None), Given(None)))
+    assert SensorSuite(SensorSources()).read(0.0) == NO_READINGS
+    nothing = SensorSuite(SensorSources(Given(None), Given(None), Given(None), Given(None)))
     assert nothing.read(0.0) == Readings(configured=("battery", "gps", "encoders", "computer"))
 
 
 def test_faults_are_listed_and_every_sensor_is_closed() -> None:
-    battery, gps = Given[Power](None, "no chip"), Given[GpsReading](None)
-    suite = Suite(Sources(battery=battery, gps=gps))
+    battery, gps = Given[PowerReading](None, "no chip"), Given[GpsReading](None)
+    suite = SensorSuite(SensorSources(battery=battery, gps=gps))
     assert suite.read(0.0).faults == (SensorFault("battery", "no chip"),)
     with pytest.raises(OSError, match="no chip"):
         suite.close()
@@ -77,10 +77,10 @@ def test_faults_are_listed_and_every_sensor_is_closed() -> None:
 
 def test_a_sensor_that_says_nothing_at_all_is_a_fault_after_a_while() -> None:
     gps = Given[GpsReading](None)
-    suite = Suite(Sources(gps=gps))
+    suite = SensorSuite(SensorSources(gps=gps))
     assert suite.read(100.0).faults == suite.read(105.0).faults == ()
     assert suite.read(105.1).faults == (SensorFault("gps", "silent for 5 s"),)
-    gps.value = GpsReading(Fix(1), Sky())
+    gps.value = GpsReading(GpsFix(1), GpsSky())
     assert suite.read(106.0).faults == ()
     gps.value = None
     assert suite.read(111.0).faults == ()

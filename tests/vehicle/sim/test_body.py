@@ -7,7 +7,7 @@ import pytest
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.readings import Readings
 from vehicle.sim.battery import Battery
-from vehicle.sim.body import Home, SimulatedBody
+from vehicle.sim.body import SimulatedBody, SimulatedHome
 from vehicle.sim.chassis import AckermannChassis
 
 
@@ -19,7 +19,7 @@ def read_for(body: SimulatedBody, seconds: float, start: float = 0.0) -> Reading
 
 
 def test_a_rover_at_rest_measures_rest() -> None:
-    body = SimulatedBody(lambda: (0.0, 0.0), home=Home(50.0, 8.0, 100.0))
+    body = SimulatedBody(lambda: (0.0, 0.0), home=SimulatedHome(50.0, 8.0, 100.0))
     readings = read_for(body, 1.0)
     assert (body.motion.north, body.motion.east, readings.speed, readings.yaw) == (0.0, 0.0, 0.0, 0.0)
     assert (readings.roll, readings.pitch, readings.yaw_rate) == (0.0, 0.0, 0.0)
@@ -47,7 +47,7 @@ def test_it_follows_the_motors_only_while_they_have_power() -> None:
 
 
 def test_driving_north_raises_the_latitude() -> None:
-    body = SimulatedBody(lambda: (1.0, 1.0), home=Home(50.0, 8.0))
+    body = SimulatedBody(lambda: (1.0, 1.0), home=SimulatedHome(50.0, 8.0))
     readings = read_for(body, 10.0)
     assert body.motion.north > 10.0
     assert readings.latitude == pytest.approx(50.0 + body.motion.north / 111_320, abs=1e-6)
@@ -57,7 +57,7 @@ def test_driving_north_raises_the_latitude() -> None:
 
 def test_driving_east_raises_the_longitude() -> None:
     throttles = [(1.0, -1.0)]
-    body = SimulatedBody(lambda: throttles[0], home=Home(60.0, 8.0))
+    body = SimulatedBody(lambda: throttles[0], home=SimulatedHome(60.0, 8.0))
     now = 0.0
     while (body.read(now).yaw or 0.0) < math.pi / 2:
         now += 0.02
@@ -118,7 +118,7 @@ def test_a_long_stop_of_the_process_is_left_out() -> None:
 
 def test_noise_is_repeatable_and_small() -> None:
     def measured(seed: int | None) -> tuple[Readings, SimulatedBody]:
-        body = SimulatedBody(lambda: (0.0, 0.0), home=Home(50.0, 8.0), seed=seed)
+        body = SimulatedBody(lambda: (0.0, 0.0), home=SimulatedHome(50.0, 8.0), seed=seed)
         return read_for(body, 30.0), body
 
     assert measured(1)[0] == measured(1)[0]

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vehicle.sim.chassis import AckermannChassis, Chassis, FourWheelChassis, Frame, SkidChassis
+from vehicle.sim.chassis import AckermannChassis, Chassis, ChassisDimensions, FourWheelChassis, SkidChassis
 
 Kind = type[SkidChassis] | type[AckermannChassis] | type[FourWheelChassis]
 KINDS = pytest.mark.parametrize("kind", [SkidChassis, AckermannChassis, FourWheelChassis])
@@ -28,7 +28,7 @@ REST: dict[Kind, tuple[float, ...]] = {kind: (0.0,) * len(ahead) for kind, ahead
 
 @KINDS
 def test_reaches_its_top_speed_straight_north(kind: Kind) -> None:
-    chassis = kind(Frame(top_speed=2.0))
+    chassis = kind(ChassisDimensions(top_speed=2.0))
     drive(chassis, AHEAD[kind], 5.0)
     assert chassis.motion.speed == pytest.approx(2.0)
     assert chassis.motion.yaw == 0.0
@@ -38,7 +38,7 @@ def test_reaches_its_top_speed_straight_north(kind: Kind) -> None:
 
 @KINDS
 def test_lags_as_a_motor_does(kind: Kind) -> None:
-    chassis = kind(Frame(top_speed=1.0, motor_lag=0.2))
+    chassis = kind(ChassisDimensions(top_speed=1.0, motor_lag=0.2))
     drive(chassis, AHEAD[kind], 0.2)
     assert chassis.motion.speed == pytest.approx(1 - math.exp(-1))
 
@@ -58,7 +58,7 @@ def test_stands_still_at_last(kind: Kind) -> None:
 
 @KINDS
 def test_a_weak_battery_drives_slower(kind: Kind) -> None:
-    chassis = kind(Frame(top_speed=1.0))
+    chassis = kind(ChassisDimensions(top_speed=1.0))
     drive(chassis, AHEAD[kind], 3.0, strength=0.8)
     assert chassis.motion.speed == pytest.approx(0.8)
 
@@ -72,14 +72,14 @@ def test_skid_turns_on_the_spot(throttles: tuple[float, float], sign: int) -> No
 
 
 def test_skid_turns_right_with_the_left_side_faster() -> None:
-    chassis = SkidChassis(Frame(top_speed=1.0, track_width=0.5, scrub=2.0))
+    chassis = SkidChassis(ChassisDimensions(top_speed=1.0, track_width=0.5, scrub=2.0))
     drive(chassis, (1.0, 0.5), 3.0)
     assert chassis.motion.yaw_rate == pytest.approx(0.5)
     assert chassis.motion.wheel_speeds == pytest.approx((1.0, 0.5))
 
 
 def test_a_car_turns_on_its_circle() -> None:
-    frame = Frame(top_speed=1.0, wheelbase=0.3, steering_max=0.5)
+    frame = ChassisDimensions(top_speed=1.0, wheelbase=0.3, steering_max=0.5)
     chassis = AckermannChassis(frame)
     drive(chassis, (1.0, 1.0), 3.0)
     assert chassis.motion.speed / chassis.motion.yaw_rate == pytest.approx(0.3 / math.tan(0.5))
@@ -102,7 +102,7 @@ def test_a_car_that_backs_up_turns_the_other_way() -> None:
     [((1, -1, -1, 1), (0, 1)), ((-1, 1, 1, -1), (0, -1)), ((1, 0, 0, 1), (0.5, 0.5)), ((0, 1, 1, 0), (0.5, -0.5))],
 )
 def test_rollers_take_it_aside_without_a_turn(throttles: tuple[float, ...], way: tuple[float, float]) -> None:
-    chassis = FourWheelChassis(Frame(top_speed=1.0))
+    chassis = FourWheelChassis(ChassisDimensions(top_speed=1.0))
     drive(chassis, throttles, 3.0)
     assert (chassis.motion.speed, chassis.motion.sideways) == pytest.approx(way, abs=1e-6)
     assert chassis.motion.yaw == 0.0
@@ -111,7 +111,7 @@ def test_rollers_take_it_aside_without_a_turn(throttles: tuple[float, ...], way:
 
 
 def test_four_wheels_turn_on_the_spot_by_the_reach_of_their_corners() -> None:
-    chassis = FourWheelChassis(Frame(top_speed=1.0, track_width=0.6, wheelbase=0.4))
+    chassis = FourWheelChassis(ChassisDimensions(top_speed=1.0, track_width=0.6, wheelbase=0.4))
     drive(chassis, (1.0, -1.0, 1.0, -1.0), 2.0)
     assert chassis.motion.yaw_rate == pytest.approx(2.0, abs=1e-4)
     assert math.hypot(chassis.motion.north, chassis.motion.east) < 1e-9
@@ -137,7 +137,7 @@ throttle = st.floats(-1, 1)
 @KINDS
 @given(st.lists(st.tuples(throttle, throttle, throttle, throttle), min_size=1, max_size=50), st.floats(0.001, 0.02))
 def test_never_runs_away(kind: Kind, course: list[tuple[float, ...]], dt: float) -> None:
-    chassis = kind(Frame(top_speed=1.5))
+    chassis = kind(ChassisDimensions(top_speed=1.5))
     for throttles in course:
         chassis.step(throttles[: len(AHEAD[kind])], 1.0, dt)
         assert abs(chassis.motion.speed) + abs(chassis.motion.sideways) <= 1.5 + 1e-9

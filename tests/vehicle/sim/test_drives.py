@@ -16,20 +16,22 @@ from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
 from vehicle.drive.gate import Clearance
 from vehicle.params import Params
-from vehicle.sim.chassis import CHASSIS, Frame, Motion
+from vehicle.sim.chassis import CHASSIS, ChassisDimensions, ChassisMotion
 
 SKID, ACKERMANN, OMNI, MECANUM = DriveType.SKID, DriveType.ACKERMANN, DriveType.OMNI, DriveType.MECANUM
 CLEARED = Clearance(armed=True, late=False, held=False, neutral_seen=True, demand_age=0.1, timeout=0.45)
-FRAME = Frame(top_speed=1.0, track_width=0.6, wheelbase=0.4)
+FRAME = ChassisDimensions(top_speed=1.0, track_width=0.6, wheelbase=0.4)
 
 
-def driven(kind: DriveType, throttle: float, steering: float, sideways: float = 0.0, seconds: float = 3.0) -> Motion:
+def driven(
+    kind: DriveType, throttle: float, steering: float, sideways: float = 0.0, seconds: float = 3.0
+) -> ChassisMotion:
     """How it moves after that long."""
     drive = Drive(Params({"DRIVE_TYPE": kind, "MAN_DEADBAND": 0}), 0.0)
     chassis = CHASSIS[kind](FRAME)
     for cycle in range(1, round(seconds / CYCLE) + 1):
         wish = Demand(throttle, steering, cycle * CYCLE, 255, 0, sideways)
-        outputs = drive.step(wish, CLEARED, limited=False, now=cycle * CYCLE)
+        outputs = drive.update(wish, CLEARED, limited=False, now=cycle * CYCLE)
         chassis.step(outputs.throttles, 1.0, CYCLE)
     return chassis.motion
 

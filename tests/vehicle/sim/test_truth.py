@@ -7,13 +7,13 @@ import math
 import pytest
 
 from vehicle.sim.body import SimulatedBody
-from vehicle.sim.truth import WatchedBody
+from vehicle.sim.truth import RecordedBody
 
 
 def test_the_truth_is_told_ten_times_a_second_and_the_readings_stay_what_they_are() -> None:
     lines: list[str] = []
     watched, alone = (SimulatedBody(lambda: (0.5, 0.5), seed=3) for _ in range(2))
-    body = WatchedBody(watched, lines.append, lambda: 7)
+    body = RecordedBody(watched, lines.append, lambda: 7)
     for cycle in range(101):
         assert body.read(cycle / 50) == alone.read(cycle / 50)
     rows = [[float(word) for word in line.split()] for line in lines]

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from vehicle.storage.dir_check import TRIED, obstacle
+from vehicle.storage.dir_check import PROBE_SIZE, write_problem
 
 NOBODY = 65534
 
@@ -37,28 +37,28 @@ def somebody_else() -> Iterator[None]:
 
 
 def test_a_folder_that_is_well_and_one_that_can_be_made(tmp_path: Path) -> None:
-    assert obstacle(tmp_path, "state") is None
-    assert obstacle(tmp_path / "not" / "there", "state") is None
+    assert write_problem(tmp_path, "state") is None
+    assert write_problem(tmp_path / "not" / "there", "state") is None
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_file_in_its_place_or_on_the_way(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     told = f"{tmp_path}/file is no folder; remove it, or name another folder as state"
-    assert obstacle(tmp_path / "file", "state") == told
-    assert obstacle(tmp_path / "file" / "logs", "state") == told
+    assert write_problem(tmp_path / "file", "state") == told
+    assert write_problem(tmp_path / "file" / "logs", "state") == told
 
 
 def test_a_link_to_nowhere_is_no_folder(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    assert "link is no folder" in (obstacle(tmp_path / "link", "state") or "")
+    assert "link is no folder" in (write_problem(tmp_path / "link", "state") or "")
 
 
 @pytest.mark.parametrize("below", ["", "logs/deep"])
 def test_a_folder_of_another_user(open_folder: Path, below: str) -> None:
     os.chmod(open_folder, 0o555)
     with somebody_else():
-        told = obstacle(open_folder / below, "log.tlog")
+        told = write_problem(open_folder / below, "log.tlog")
     assert told is not None
     assert told.startswith(f"{open_folder} may not be written by ")
     assert told.endswith("or name another folder as log.tlog")
@@ -72,7 +72,7 @@ def test_a_folder_behind_a_closed_door(open_folder: Path) -> None:
     (open_folder / "door" / "room").mkdir(parents=True)
     os.chmod(open_folder / "door", 0)
     with somebody_else():
-        told = obstacle(open_folder / "door" / "room", "state")
+        told = write_problem(open_folder / "door" / "room", "state")
     os.chmod(open_folder / "door", 0o755)
     assert told is not None
     assert f"{open_folder}/door" in told
@@ -84,7 +84,7 @@ def test_a_link_into_what_a_service_keeps_for_itself(open_folder: Path) -> None:
     (open_folder / "mavhelm").symlink_to(open_folder / "private" / "mavhelm")
     os.chmod(open_folder / "private", 0)
     with somebody_else():
-        told = obstacle(open_folder / "mavhelm", "state")
+        told = write_problem(open_folder / "mavhelm", "state")
     os.chmod(open_folder / "private", 0o755)
     assert told is not None
     assert "nor looked at; run this with sudo" in told
@@ -92,9 +92,9 @@ def test_a_link_into_what_a_service_keeps_for_itself(open_folder: Path) -> None:
 
 def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (TRIED // 2, limits[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (PROBE_SIZE // 2, limits[1]))
     try:
-        told = obstacle(tmp_path, "state")
+        told = write_problem(tmp_path, "state")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert told == f"{tmp_path} is full; make room, or name another folder as state"
@@ -102,7 +102,7 @@ def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
 
 
 def test_a_file_system_that_takes_no_files() -> None:
-    told = obstacle(Path("/proc"), "state")
+    told = write_problem(Path("/proc"), "state")
     assert told is not None
     assert told.startswith("/proc ")
     assert "or name another folder as state" in told

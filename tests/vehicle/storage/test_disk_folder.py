@@ -11,10 +11,10 @@ from typing import TypeVar
 
 import pytest
 
-from link.services.ftp.files import Content, Entry, MadeFiles, NotYetError, Tree
-from link.services.ftp.protocol import FtpError, FtpPacket, Op, parse
+from link.services.ftp.files import Content, Entry, FileTree, GeneratedFolder, NotReadyError
+from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
 from link.services.ftp.server import FtpServer
-from link.services.pacing import Pacer
+from link.services.pacing import BulkPacer
 from tests.link.services_world import from_gcs, messages
 from vehicle.storage import disk_folder
 from vehicle.storage.disk_folder import MAX_ASKED, MAX_ENTRIES, MAX_SIZE, PIECE, DiskFolder
@@ -41,7 +41,7 @@ def soon(ask: Callable[[], T]) -> T:
     while True:
         try:
             return ask()
-        except NotYetError:
+        except NotReadyError:
             assert time.monotonic() < deadline
             threading.Event().wait(0.002)
 
@@ -67,7 +67,7 @@ def whole(content: Content) -> bytes:
 
 
 def test_files_are_listed_and_read(folder: DiskFolder) -> None:
-    with pytest.raises(NotYetError):
+    with pytest.raises(NotReadyError):
         folder.entries()
     assert soon(folder.entries) == [Entry("1.tlog", len(DATA)), Entry("2.tlog", 0)]
     content, empty = opened(folder, "1.tlog"), opened(folder, "2.tlog")
@@ -175,9 +175,9 @@ def test_of_very_many_files_the_last_are_listed(folder: DiskFolder, tmp_path: Pa
 
 def test_a_disk_that_sleeps_is_asked_only_so_often(folder: DiskFolder) -> None:
     awake = threading.Event()
-    folder._worker.put(lambda: _ignore(awake.wait(PATIENCE)))
+    folder._worker.submit(lambda: _ignore(awake.wait(PATIENCE)))
     for number in range(200):
-        with pytest.raises(NotYetError):
+        with pytest.raises(NotReadyError):
             folder.open(f"{number}.tlog", {})
     assert len(folder._asked) == MAX_ASKED
     awake.set()
@@ -187,14 +187,14 @@ def test_a_disk_that_sleeps_is_asked_only_so_often(folder: DiskFolder) -> None:
 def test_an_answer_that_nobody_fetched_is_not_the_answer_to_a_later_question(
     folder: DiskFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(NotYetError):
+    with pytest.raises(NotReadyError):
         folder.entries()
     done = threading.Event()
-    folder._worker.put(done.set)
+    folder._worker.submit(done.set)
     assert done.wait(PATIENCE)
     (tmp_path / "logs/3.tlog").touch()
     monkeypatch.setattr(disk_folder, "FRESH", 0.0)
-    with pytest.raises(NotYetError):
+    with pytest.raises(NotReadyError):
         folder.entries()
     monkeypatch.undo()
     assert len(soon(folder.entries)) == 3
@@ -211,12 +211,12 @@ class Vehicle:
     """A file server over the folder; its clock is the test's."""
 
     def __init__(self, folder: DiskFolder, *, allowed: bool = True) -> None:
-        tree = Tree(MadeFiles({}), {"logs": folder})
-        pacer = Pacer(lambda peer: 1e9)
+        tree = FileTree(GeneratedFolder({}), {"logs": folder})
+        pacer = BulkPacer(lambda peer: 1e9)
         self.server = FtpServer(tree, system=1, component=1, pacer=pacer, allowed=lambda received: allowed)
         self._sequence = 0
 
-    def ask(self, op: Op, data: bytes = b"", *, offset: int = 0, size: int | None = None) -> FtpPacket:
+    def ask(self, op: FtpOpcode, data: bytes = b"", *, offset: int = 0, size: int | None = None) -> FtpPacket:
         """Its first answer, some ticks later."""
         self._sequence += 7
         packet = FtpPacket(self._sequence, op, 0, data, offset, size=size)
@@ -226,36 +226,36 @@ class Vehicle:
             assert time.monotonic() < deadline
             threading.Event().wait(0.002)
             outgoing = self.server.tick(1.0)
-        return parse(messages(outgoing)[0])
+        return parse_packet(messages(outgoing)[0])
 
 
 def test_it_is_served_as_every_other_folder(folder: DiskFolder) -> None:
     vehicle = Vehicle(folder)
-    assert vehicle.ask(Op.LIST, b"/logs").data == b"F1.tlog\t%d\0F2.tlog\t0\0" % len(DATA)
-    assert int.from_bytes(vehicle.ask(Op.OPEN, b"/logs/1.tlog").data, "little") == len(DATA)
-    assert vehicle.ask(Op.READ, offset=PIECE - 3, size=10).data == DATA[PIECE - 3 : PIECE + 7]
-    assert vehicle.ask(Op.BURST, offset=100, size=239).data == DATA[100:339]
-    assert vehicle.ask(Op.CRC, b"/logs/1.tlog").op == Op.ACK
-    assert vehicle.ask(Op.OPEN, b"/logs/none.tlog").data == bytes([FtpError.NOT_FOUND])
-    assert vehicle.ask(Op.REMOVE, b"/logs/1.tlog").op == Op.ACK
-    assert vehicle.ask(Op.LIST, b"/logs").data == b"F2.tlog\t0\0"
+    assert vehicle.ask(FtpOpcode.LIST, b"/logs").data == b"F1.tlog\t%d\0F2.tlog\t0\0" % len(DATA)
+    assert int.from_bytes(vehicle.ask(FtpOpcode.OPEN, b"/logs/1.tlog").data, "little") == len(DATA)
+    assert vehicle.ask(FtpOpcode.READ, offset=PIECE - 3, size=10).data == DATA[PIECE - 3 : PIECE + 7]
+    assert vehicle.ask(FtpOpcode.BURST, offset=100, size=239).data == DATA[100:339]
+    assert vehicle.ask(FtpOpcode.CRC, b"/logs/1.tlog").op == FtpOpcode.ACK
+    assert vehicle.ask(FtpOpcode.OPEN, b"/logs/none.tlog").data == bytes([FtpError.NOT_FOUND])
+    assert vehicle.ask(FtpOpcode.REMOVE, b"/logs/1.tlog").op == FtpOpcode.ACK
+    assert vehicle.ask(FtpOpcode.LIST, b"/logs").data == b"F2.tlog\t0\0"
 
 
 def test_only_who_may_write_removes(folder: DiskFolder) -> None:
-    answer = Vehicle(folder, allowed=False).ask(Op.REMOVE, b"/logs/1.tlog")
-    assert (answer.op, answer.data) == (Op.NAK, bytes([FtpError.PROTECTED]))
+    answer = Vehicle(folder, allowed=False).ask(FtpOpcode.REMOVE, b"/logs/1.tlog")
+    assert (answer.op, answer.data) == (FtpOpcode.NAK, bytes([FtpError.PROTECTED]))
     assert len(soon(folder.entries)) == 2
 
 
-@pytest.mark.parametrize("op", [Op.READ, Op.BURST])
+@pytest.mark.parametrize("op", [FtpOpcode.READ, FtpOpcode.BURST])
 def test_a_file_that_goes_while_it_is_fetched_is_a_failure_and_not_silence(
-    folder: DiskFolder, tmp_path: Path, op: Op
+    folder: DiskFolder, tmp_path: Path, op: FtpOpcode
 ) -> None:
     vehicle = Vehicle(folder)
-    assert vehicle.ask(Op.OPEN, b"/logs/1.tlog").op == Op.ACK
+    assert vehicle.ask(FtpOpcode.OPEN, b"/logs/1.tlog").op == FtpOpcode.ACK
     (tmp_path / "logs/1.tlog").unlink()
     answer = vehicle.ask(op, offset=0, size=239)
-    assert (answer.op, answer.data, answer.asked) == (Op.NAK, bytes([FtpError.FAIL]), op)
+    assert (answer.op, answer.data, answer.asked) == (FtpOpcode.NAK, bytes([FtpError.FAIL]), op)
     assert vehicle.server.tick(2.0) == []
 
 
@@ -265,7 +265,7 @@ def test_a_checksum_of_a_file_that_is_cut_meanwhile_is_a_failure(folder: DiskFol
         return True
 
     folder.fetch = cut  # type: ignore[method-assign]
-    assert Vehicle(folder).ask(Op.CRC, b"/logs/1.tlog").data == bytes([FtpError.FAIL])
+    assert Vehicle(folder).ask(FtpOpcode.CRC, b"/logs/1.tlog").data == bytes([FtpError.FAIL])
 
 
 def test_a_disk_that_answers_at_once_does_not_hold_up_what_is_read_next(

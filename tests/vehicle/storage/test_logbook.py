@@ -10,11 +10,11 @@ from dialects import messages as m
 from dialects.enums import Command, Result, Sensor
 from link.core import RECORDER
 from link.services.ftp.files import MemoryFolder
-from link.services.ftp.protocol import Op
+from link.services.ftp.protocol import FtpOpcode
 from tests.vehicle.bench import DRIVER, NEUTRAL, OTHER, Bench
 from tests.vehicle.commands.test_files import ask
 from vehicle.params import TABLE
-from vehicle.storage.logbook import AFTERWARDS
+from vehicle.storage.logbook import DISARM_PERSIST
 
 
 @dataclass
@@ -28,19 +28,19 @@ class Writer:
         default_factory=lambda: MemoryFolder({"1.tlog": b"one", "2.tlog": b"two"}, accept=lambda name, data: None)
     )
 
-    def begin(self, files: int, megabytes_free: int) -> None:
+    def start(self, files: int, megabytes_free: int) -> None:
         self.told.append(f"begin {files} {megabytes_free}")
 
-    def end(self) -> None:
+    def stop(self) -> None:
         self.told.append("end")
 
     def tick(self, now: float) -> None:
         self.ticks += 1
 
-    def clear(self) -> None:
+    def remove_all(self) -> None:
         self.told.append("clear")
 
-    def when(self, name: str) -> int:
+    def unix_time(self, name: str) -> int:
         return 1_700_000_000 + int(name[0])
 
 
@@ -68,7 +68,7 @@ def test_a_log_from_arming_until_some_seconds_after_disarming() -> None:
     rover.wait(5.0, NEUTRAL)
     assert writer.told == [BEGIN]
     disarm(rover)
-    rover.wait(AFTERWARDS - 0.1)
+    rover.wait(DISARM_PERSIST - 0.1)
     assert writer.told == [BEGIN]
     rover.wait(0.2)
     assert writer.told == [BEGIN, "end"]
@@ -83,7 +83,7 @@ def test_each_arming_is_a_log_of_its_own() -> None:
         disarm(rover)
         rover.wait(1.0)
     assert writer.told == [BEGIN] * 3
-    rover.wait(AFTERWARDS)
+    rover.wait(DISARM_PERSIST)
     assert writer.told == [BEGIN] * 3 + ["end"]
 
 
@@ -100,7 +100,7 @@ def test_log_disarmed_records_from_the_start_and_each_drive_apart() -> None:
     rover.arm()
     rover.wait(0.5, NEUTRAL)
     disarm(rover)
-    rover.wait(2 * AFTERWARDS)
+    rover.wait(2 * DISARM_PERSIST)
     assert writer.told == [BEGIN] * 2
 
 
@@ -218,14 +218,14 @@ def test_a_log_is_removed_as_a_file_while_disarmed(armed: bool) -> None:
     rover, writer = bench()
     if armed:
         rover.arm()
-    answer = ask(rover, Op.REMOVE, b"/logs/1.tlog")
-    assert answer.op == (Op.NAK if armed else Op.ACK)
+    answer = ask(rover, FtpOpcode.REMOVE, b"/logs/1.tlog")
+    assert answer.op == (FtpOpcode.NAK if armed else FtpOpcode.ACK)
     assert ("1.tlog" in writer.folder.files) is armed
 
 
-@pytest.mark.parametrize("op", [Op.CREATE, Op.OPEN_TO_WRITE])
-def test_logs_are_not_written(op: Op) -> None:
-    assert ask(bench()[0], op, b"/logs/1.tlog").op == Op.NAK
+@pytest.mark.parametrize("op", [FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE])
+def test_logs_are_not_written(op: FtpOpcode) -> None:
+    assert ask(bench()[0], op, b"/logs/1.tlog").op == FtpOpcode.NAK
 
 
 def test_the_list_tells_when_a_log_was_begun() -> None:

@@ -18,12 +18,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vehicle.config import effective_params
-from vehicle.config.run_settings import Settings, Simulation
+from vehicle.config.run_settings import RunSettings, Simulation
 from vehicle.params import PARAMETERS
-from vehicle.runtime.factory import params_of
-from vehicle.storage.checksummed_file import DamagedError
-from vehicle.storage.file_writer import Scribe
-from vehicle.storage.param_file import dump, parsed
+from vehicle.runtime.factory import build_params
+from vehicle.storage.checksummed_file import CorruptFileError
+from vehicle.storage.file_writer import FileWriter
+from vehicle.storage.param_file import decode, encode
 from vehicle.storage.param_store import ParamStore
 
 VALUES = {"MAN_TIMEOUT": 0.4, "SPEED_MAX": 2.0}
@@ -34,35 +34,35 @@ NUMBERS = st.dictionaries(st.sampled_from(sorted(PARAMETERS)), st.floats(allow_n
 def kept(folder: Path, **values: float) -> ParamStore:
     store = ParamStore(folder)
     for name, value in values.items():
-        store.keep(name, value)
+        store.set(name, value)
     store.close()
     return store
 
 
 @given(NUMBERS)
 def test_what_is_written_is_read_to_the_last_digit(values: dict[str, float]) -> None:
-    assert parsed(dump(values)) == values
+    assert decode(encode(values)) == values
 
 
 @given(NUMBERS, st.data())
 def test_half_a_file_is_damaged(values: dict[str, float], data: st.DataObject) -> None:
-    whole = dump(values)
-    with pytest.raises(DamagedError):
-        parsed(whole[: data.draw(st.integers(0, len(whole) - 1))])
+    whole = encode(values)
+    with pytest.raises(CorruptFileError):
+        decode(whole[: data.draw(st.integers(0, len(whole) - 1))])
 
 
 @given(NUMBERS, st.data())
 def test_a_flipped_bit_is_damage(values: dict[str, float], data: st.DataObject) -> None:
-    whole = bytearray(dump(values))
+    whole = bytearray(encode(values))
     whole[data.draw(st.integers(0, len(whole) - 1))] ^= 1 << data.draw(st.integers(0, 7))
-    with pytest.raises(DamagedError):
-        parsed(bytes(whole))
+    with pytest.raises(CorruptFileError):
+        decode(bytes(whole))
 
 
 @given(st.binary())
 def test_any_bytes_are_values_or_damage(data: bytes) -> None:
-    with pytest.raises(DamagedError):
-        parsed(data)
+    with pytest.raises(CorruptFileError):
+        decode(data)
 
 
 def test_a_first_start_has_nothing_and_no_damage(tmp_path: Path) -> None:
@@ -136,9 +136,9 @@ def test_to_keep_does_not_wait_for_the_disk(tmp_path: Path, monkeypatch: pytest.
 
     monkeypatch.setattr(os, "fsync", slow)
     store = ParamStore(tmp_path)
-    store.keep("SPEED_MAX", 2.0)
+    store.set("SPEED_MAX", 2.0)
     assert writing.wait(60)
-    store.keep("SPEED_MAX", 3.0)  # returned, though the disk hangs
+    store.set("SPEED_MAX", 3.0)  # returned, though the disk hangs
     released.set()
     store.close()
     assert ParamStore(tmp_path).values == {"SPEED_MAX": 3.0}
@@ -157,7 +157,7 @@ def test_a_slow_disk_gets_the_newest_of_many_wishes(tmp_path: Path) -> None:
         made.append(word)
         return word.encode()
 
-    scribe = Scribe(tmp_path)
+    scribe = FileWriter(tmp_path)
     scribe.write("parameters", slow)
     assert writing.wait(60)
     for number in range(1000):
@@ -186,7 +186,7 @@ store = ParamStore(Path(sys.argv[1]))  # reading is not what dies
 for name in ("open", "write", "fsync", "close"):
     setattr(os, name, dying(getattr(os, name)))
 Path.replace = dying(Path.replace)
-store.keep("SPEED_MAX", 9.0)
+store.set("SPEED_MAX", 9.0)
 store.close()
 """
 
@@ -205,21 +205,21 @@ def test_64_killed_at_any_step_of_a_save_leaves_the_old_file_or_the_new(tmp_path
 def test_what_wins(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     """Kept over defaults, the file of settings over kept, this run over all."""
     kept(tmp_path, SPEED_MAX=2.0, TRACK_WIDTH=1.0, WHEELBASE=1.0, GONE=1.0, MAN_TIMEOUT=99.0)
-    settings = Settings((), pinned={"TRACK_WIDTH": 2.0}, params={"WHEELBASE": 3.0})
-    params = params_of(settings, ParamStore(tmp_path))
+    settings = RunSettings((), pinned={"TRACK_WIDTH": 2.0}, params={"WHEELBASE": 3.0})
+    params = build_params(settings, ParamStore(tmp_path))
     assert [params[name] for name in ("SPEED_MAX", "TRACK_WIDTH", "WHEELBASE", "MAN_TIMEOUT")] == [2.0, 2.0, 3.0, 0.45]
     assert params.pinned == {"TRACK_WIDTH"}
-    assert params.run == {"WHEELBASE": 3.0}
+    assert params.run_values == {"WHEELBASE": 3.0}
     assert [record.levelname for record in caplog.records] == ["WARNING", "WARNING"]
     assert params.damage is None
 
 
 def test_a_known_cars_parameters_are_its_defaults(tmp_path: Path) -> None:
     kept(tmp_path, MOT2_MAX=80.0)
-    settings = Settings((), motors={"driver": "article-car"}, pinned={"MOT_PIVOT_MAX": 50.0})
-    params = params_of(settings, ParamStore(tmp_path))
+    settings = RunSettings((), motors={"driver": "article-car"}, pinned={"MOT_PIVOT_MAX": 50.0})
+    params = build_params(settings, ParamStore(tmp_path))
     assert [params[name] for name in ("MOT1_MAX", "MOT2_MAX", "MOT_PIVOT_MAX")] == [60.0, 80.0, 50.0]
-    simulated = params_of(replace(settings, simulation=Simulation()), None)
+    simulated = build_params(replace(settings, simulation=Simulation()), None)
     assert simulated["MOT1_MAX"] == 100.0
 
 
@@ -227,21 +227,21 @@ def test_where_the_programs_beside_a_vehicle_look(tmp_path: Path, monkeypatch: p
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "home"))
     monkeypatch.delenv("STATE_DIRECTORY", raising=False)
     monkeypatch.setattr(effective_params, "SERVICE", tmp_path / "service")
-    assert effective_params.state_of(None) == tmp_path / "home" / "mavhelm"
+    assert effective_params.state_folder_of(None) == tmp_path / "home" / "mavhelm"
     (tmp_path / "service").symlink_to("/no/such/folder")  # of a user that exists only while the service runs
-    assert effective_params.state_of(None) == tmp_path / "service"
+    assert effective_params.state_folder_of(None) == tmp_path / "service"
     monkeypatch.setenv("STATE_DIRECTORY", "/run/one:/run/two")
-    assert effective_params.state_of(None) == Path("/run/one")
-    assert effective_params.state_of("/srv/rover") == Path("/srv/rover")
+    assert effective_params.state_folder_of(None) == Path("/run/one")
+    assert effective_params.state_folder_of("/srv/rover") == Path("/srv/rover")
 
 
 def test_damage_reaches_the_arming_checks(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "parameters").write_text("half")
-    assert params_of(Settings(()), ParamStore(tmp_path)).damage == "parameter file damaged"
+    assert build_params(RunSettings(()), ParamStore(tmp_path)).damage == "parameter file damaged"
     assert "nobody can arm" in caplog.text
 
 
 def test_damage_is_told_with_its_folder(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "parameters").write_text("half")
-    params_of(Settings((), state=tmp_path), ParamStore(tmp_path))
+    build_params(RunSettings((), state=tmp_path), ParamStore(tmp_path))
     assert f"{tmp_path}: parameter file damaged: all parameters" in caplog.text

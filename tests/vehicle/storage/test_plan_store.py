@@ -17,7 +17,7 @@ from dialects.enums import Command, FenceItem, MissionResult, MissionType, Resul
 from dialects.modes import Mode
 from link.core import Peer, Received
 from link.services.mission.client import MissionClient, MissionOutcome
-from link.services.mission.commit import Forgotten, Keeping
+from link.services.mission.commit import NullPlanWrite, PendingPlanWrite
 from link.services.mission.items import Items, MissionItem
 from link.services.mission.plans import plan_id
 from tests.link.mission_vehicle import plain
@@ -48,7 +48,7 @@ PLANS: dict[MissionType, Items] = {
 def kept(folder: Path, plans: dict[MissionType, Items]) -> PlanStore:
     store = PlanStore(folder)
     for kind, items in plans.items():
-        store.keep(kind, items)
+        store.save(kind, items)
     store.close()
     return store
 
@@ -62,9 +62,9 @@ class Memory:
         self.problem: str | None = None
         self.idle = True
 
-    def keep(self, kind: MissionType, items: Items) -> Keeping:
+    def save(self, kind: MissionType, items: Items) -> PendingPlanWrite:
         self.plans[kind] = items
-        return Forgotten()
+        return NullPlanWrite()
 
 
 class Wish:
@@ -83,7 +83,7 @@ class SlowDisk(Memory):
         super().__init__()
         self.wishes: list[Wish] = []
 
-    def keep(self, kind: MissionType, items: Items) -> Keeping:
+    def save(self, kind: MissionType, items: Items) -> PendingPlanWrite:
         self.idle = False
         self.wishes.append(Wish(kind, items))
         return self.wishes[-1]

@@ -22,11 +22,11 @@ from link.core import Peer, Received
 from link.protocol.frame import Frame, payload_of
 from link.protocol.framer import Framer
 from link.services.ftp.client import FtpClient, FtpOutcome
-from link.tlog.tlog import Record, read
+from link.tlog.tlog import Record, read_records
 from tests.ports import free_port
 from tests.vehicle.ground import Ground, drive, running
 from vehicle.params import TABLE
-from vehicle.storage.tlog_files import number_of, time_of
+from vehicle.storage.tlog_files import log_number, log_time
 
 pytestmark = pytest.mark.e2e
 
@@ -139,9 +139,9 @@ def test_a_drive_is_recorded_fetched_three_ways_and_read(tmp_path: Path) -> None
         vehicle.process.send_signal(signal.SIGTERM)
         vehicle.ended()
     [log] = logs_of(folder)
-    assert number_of(log.name) == 1
+    assert log_number(log.name) == 1
     assert abs(growing.time_utc - log.stat().st_mtime) < 120
-    assert time_of(log.name) == growing.time_utc
+    assert log_time(log.name) == growing.time_utc
     assert log.read_bytes().startswith(whole)
     messages = by_pymavlink(log)
     found = sources(messages)
@@ -153,7 +153,7 @@ def test_a_drive_is_recorded_fetched_three_ways_and_read(tmp_path: Path) -> None
     texts = [message.text for message in messages if message.get_type() == "STATUSTEXT"]
     assert "Armed by GCS 255, mode MANUAL" in texts
     assert "Disarmed: by GCS 255" in texts
-    stamps = [each.microseconds for each in read(log.read_bytes())]
+    stamps = [each.microseconds for each in read_records(log.read_bytes())]
     assert stamps == sorted(stamps)
 
 
@@ -182,7 +182,7 @@ def test_each_message_is_recorded_once_for_all_who_listen(tmp_path: Path) -> Non
             for ground in (one, other):
                 ground.wait(partial(told, ground), "telemetry")
             one.wait(lambda: recorded(folder)["ATTITUDE", 1] >= 5, "a log with something in it")
-    frames = [frame for frame in map(framed, read(logs_of(folder)[0].read_bytes())) if frame[1] == 1]
+    frames = [frame for frame in map(framed, read_records(logs_of(folder)[0].read_bytes())) if frame[1] == 1]
     times = [payload_of(raw)[:4] for message_id, *_, raw in frames if message_id == m.Attitude.id]
     assert len(times) == len(set(times)) >= 5
     numbers = [sequence for _, _, _, sequence, _ in frames]
@@ -240,7 +240,7 @@ def test_a_killed_vehicle_leaves_a_log_that_can_be_read(tmp_path: Path) -> None:
         vehicle.ready()
         ground.arm()
         ground.wait(lambda: len(logs_of(folder)) == 2, "a second log")
-    assert [number_of(each.name) for each in logs_of(folder)] == [1, 2]
+    assert [log_number(each.name) for each in logs_of(folder)] == [1, 2]
 
 
 def told_of(found: Counter[tuple[str, int]]) -> bool:
@@ -260,7 +260,7 @@ def test_log_disarmed_and_erase(tmp_path: Path) -> None:
         ground.say(m.LogErase(1, 1))
         ground.wait(lambda: "Logs erased by GCS 255" in ground.texts(), "the erasing is told")
         ground.wait(lambda: len(logs_of(folder)) == 1, "the old log goes")
-        assert [number_of(each.name) for each in logs_of(folder)] == [6]
+        assert [log_number(each.name) for each in logs_of(folder)] == [6]
         name = logs_of(folder)[0].name
         refused = ground.fetch(lambda client: client.download(f"/logs/{name}x", 0.0))
         assert not refused.done
@@ -279,7 +279,9 @@ def test_a_disk_that_takes_no_more_is_told_and_the_wheels_go_on(tmp_path: Path) 
         assert ground.armed
     [log] = logs_of(folder)
     assert log.stat().st_size == 6000
-    whole = list(map(framed, read(log.read_bytes())))  # pymavlink's reader stumbles over half a frame at the end
+    whole = list(
+        map(framed, read_records(log.read_bytes()))
+    )  # pymavlink's reader stumbles over half a frame at the end
     assert len(whole) > 50
     assert {1, 255} <= {system for _, system, *_ in whole}
 

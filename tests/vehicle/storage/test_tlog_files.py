@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 from vehicle.storage import tlog_files
-from vehicle.storage.tlog_files import LEAST_FREE, Limits, LogFiles, name_of, number_of, time_of
+from vehicle.storage.tlog_files import FREE_SPACE_MIN, LogFiles, LogLimits, log_name, log_number, log_time
 
 NOW = 1_795_269_909.5  # 2026-11-21 14:05:09 UTC
-MANY = Limits(500, 0)
+MANY = LogLimits(500, 0)
 PLENTY = 10**9
 
 
@@ -29,60 +29,60 @@ def names(folder: Path) -> list[str]:
 
 
 def test_a_name_carries_number_and_time() -> None:
-    name = name_of(12, NOW)
+    name = log_name(12, NOW)
     assert name == "00000012_2026-11-21T14-05-09Z.tlog"
-    assert (number_of(name), time_of(name)) == (12, int(NOW))
+    assert (log_number(name), log_time(name)) == (12, int(NOW))
 
 
 def test_without_a_clock_a_name_carries_its_number() -> None:
-    name = name_of(7, 1234.5)
+    name = log_name(7, 1234.5)
     assert name == "00000007.tlog"
-    assert (number_of(name), time_of(name)) == (7, 0)
+    assert (log_number(name), log_time(name)) == (7, 0)
 
 
 @pytest.mark.parametrize(
     "name", ["notes.txt", "1.tlog", "00000001.tlog.gz", "00000001_now.tlog", "../00000001.tlog", ""]
 )
 def test_other_names_are_none_of_ours(name: str) -> None:
-    assert (number_of(name), time_of(name)) == (None, 0)
+    assert (log_number(name), log_time(name)) == (None, 0)
 
 
 def test_digits_that_are_no_date_are_no_time() -> None:
-    assert time_of("00000001_2026-13-41T99-05-09Z.tlog") == 0
+    assert log_time("00000001_2026-13-41T99-05-09Z.tlog") == 0
 
 
 def test_numbers_go_on_after_a_restart_and_after_all_were_removed(tmp_path: Path) -> None:
     folder = tmp_path / "state" / "logs"
     for _ in range(2):
         files(folder).open(MANY).close()
-    assert [number_of(name) for name in names(folder)] == [1, 2]
+    assert [log_number(name) for name in names(folder)] == [1, 2]
     same = files(folder)
     same.open(MANY).close()
     for name in names(folder):
         (folder / name).unlink()
     same.open(MANY).close()
-    assert [number_of(name) for name in names(folder)] == [4]
+    assert [log_number(name) for name in names(folder)] == [4]
 
 
 def test_logs_sort_by_number_also_where_the_clock_was_wrong(tmp_path: Path) -> None:
     for now in (NOW, 30.0, NOW - 1e7):
         files(tmp_path, now=now).open(MANY).close()
-    assert [number_of(name) for name in names(tmp_path)] == [1, 2, 3]
+    assert [log_number(name) for name in names(tmp_path)] == [1, 2, 3]
 
 
 def test_the_oldest_goes_where_there_are_too_many(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
     for _ in range(5):
-        files(tmp_path).open(Limits(3, 0)).close()
-    assert [number_of(name) for name in names(tmp_path)] == [3, 4, 5, None]
+        files(tmp_path).open(LogLimits(3, 0)).close()
+    assert [log_number(name) for name in names(tmp_path)] == [3, 4, 5, None]
 
 
 def test_the_oldest_go_until_enough_is_free(tmp_path: Path) -> None:
     for _ in range(5):
         files(tmp_path).open(MANY).close()
     free = iter([10, 20, 30, 40, PLENTY])
-    LogFiles(tmp_path, clock=lambda: NOW, free=lambda path: next(free)).open(Limits(500, 40)).close()
-    assert [number_of(name) for name in names(tmp_path)] == [4, 5, 6]
+    LogFiles(tmp_path, clock=lambda: NOW, free=lambda path: next(free)).open(LogLimits(500, 40)).close()
+    assert [log_number(name) for name in names(tmp_path)] == [4, 5, 6]
 
 
 def test_what_is_written_is_there_at_once_and_the_file_has_its_name_while_it_is_written(tmp_path: Path) -> None:
@@ -97,9 +97,9 @@ def test_what_is_written_is_there_at_once_and_the_file_has_its_name_while_it_is_
 
 
 def test_a_log_that_grows_long_goes_on_in_another_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tlog_files, "WHOLE_FILE", 10)
+    monkeypatch.setattr(tlog_files, "FILE_SIZE_MAX", 10)
     folder = files(tmp_path)
-    log = folder.open(Limits(2, 0))
+    log = folder.open(LogLimits(2, 0))
     for data in (b"one", b"two", b"three", b"four", b"more than a file"):
         log.write(data)
         assert folder.current == names(tmp_path)[-1]
@@ -112,12 +112,12 @@ def test_a_log_that_grows_long_goes_on_in_another_file(tmp_path: Path, monkeypat
 
 def test_an_all_but_full_disk_gets_no_file(tmp_path: Path) -> None:
     with pytest.raises(OSError, match="No space"):
-        files(tmp_path, free=LEAST_FREE - 1).open(MANY)
+        files(tmp_path, free=FREE_SPACE_MIN - 1).open(MANY)
     assert names(tmp_path) == []
 
 
 def test_a_disk_that_fills_up_ends_the_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tlog_files, "SYNC", 0.0)
+    monkeypatch.setattr(tlog_files, "SYNC_INTERVAL", 0.0)
     free = iter([PLENTY, PLENTY, 5])
     log = LogFiles(tmp_path, clock=lambda: NOW, free=lambda path: next(free)).open(MANY)
     log.write(b"data")
@@ -128,7 +128,7 @@ def test_a_disk_that_fills_up_ends_the_log(tmp_path: Path, monkeypatch: pytest.M
 
 
 def test_a_disk_without_room_for_the_next_file_ends_the_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tlog_files, "WHOLE_FILE", 10)
+    monkeypatch.setattr(tlog_files, "FILE_SIZE_MAX", 10)
     closed: list[int] = []
     close = os.close
 
@@ -148,7 +148,7 @@ def test_a_disk_without_room_for_the_next_file_ends_the_log(tmp_path: Path, monk
 
 
 def test_a_file_that_somebody_removed_ends_the_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tlog_files, "SYNC", 0.0)
+    monkeypatch.setattr(tlog_files, "SYNC_INTERVAL", 0.0)
     log = files(tmp_path).open(MANY)
     (tmp_path / names(tmp_path)[0]).unlink()
     with pytest.raises(FileNotFoundError, match="removed"):
@@ -159,14 +159,14 @@ def test_a_file_that_somebody_removed_ends_the_log(tmp_path: Path, monkeypatch: 
 def test_a_file_in_place_of_the_folder_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "logs").write_text("")
     with pytest.raises(OSError, match="exists"):
-        files(tmp_path / "logs").probe()
+        files(tmp_path / "logs").require_writable()
 
 
 def test_a_folder_that_may_not_be_written_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    files(tmp_path).probe()
+    files(tmp_path).require_writable()
     monkeypatch.setattr(os, "access", lambda path, mode: False)  # as for a user who is not root
     with pytest.raises(PermissionError, match=re.escape(os.strerror(errno.EACCES))):
-        files(tmp_path).probe()
+        files(tmp_path).require_writable()
 
 
 @pytest.fixture
@@ -184,7 +184,7 @@ def card(tmp_path: Path) -> Iterator[Path]:
 
 
 def test_a_real_card_that_fills_up(card: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tlog_files, "SYNC", 0.0)
+    monkeypatch.setattr(tlog_files, "SYNC_INTERVAL", 0.0)
     log = LogFiles(card, clock=time.time).open(MANY)
 
     def fill() -> None:
@@ -197,7 +197,7 @@ def test_a_real_card_that_fills_up(card: Path, monkeypatch: pytest.MonkeyPatch) 
     [name] = names(card)
     status = os.statvfs(card)
     assert (card / name).stat().st_size > 500_000
-    assert status.f_bavail * status.f_frsize > LEAST_FREE - 200_000
+    assert status.f_bavail * status.f_frsize > FREE_SPACE_MIN - 200_000
 
 
 def test_a_real_card_that_is_read_only(card: Path) -> None:

@@ -12,12 +12,12 @@ from dialects.enums import Command, Result
 from link.core import RECORDER, Peer
 from link.protocol.channel import MAX_PEERS
 from tests.vehicle.crowd import Crowd, weight
-from vehicle.commands.inbound import HEARD
-from vehicle.storage.logbook import NoRecording
+from vehicle.commands.inbound import INBOUND_IDS
+from vehicle.storage.logbook import NullLogRecorder
 from vehicle.telemetry import telemetry
-from vehicle.telemetry.schedule import BUDGET
-from vehicle.telemetry.streams import STREAMS, Family, Stream
-from vehicle.telemetry.telemetry import LINK_BUDGET
+from vehicle.telemetry.schedule import PEER_MESSAGE_RATE_MAX
+from vehicle.telemetry.streams import STREAMS, DialectLevel, Stream
+from vehicle.telemetry.telemetry import LINK_MESSAGE_RATE_MAX
 
 ONE, OTHER, THIRD = Peer(0, "one"), Peer(0, "other"), Peer(0, "third")
 RADIO = Peer(1, "radio")
@@ -43,9 +43,9 @@ def greedy(crowd: Crowd, peer: Peer, rate: float = 50) -> None:
 
 @pytest.mark.parametrize("stream", STREAMS, ids=lambda stream: stream.message.msgname)
 def test_a_stream_is_common_where_pymavlink_knows_it_and_nowhere_else(stream: Stream) -> None:
-    assert known(stream.message.id) == (stream.family is Family.COMMON)
-    assert (stream.family is Family.ROVER) == stream.message.msgname.startswith("ROVER_")
-    assert stream.group is None or stream.family is Family.COMMON, "REQUEST_DATA_STREAM must turn on no other"
+    assert known(stream.message.id) == (stream.level is DialectLevel.COMMON)
+    assert (stream.level is DialectLevel.ROVER) == stream.message.msgname.startswith("ROVER_")
+    assert stream.group is None or stream.level is DialectLevel.COMMON, "REQUEST_DATA_STREAM must turn on no other"
 
 
 def test_who_shows_no_more_than_a_heartbeat_is_told_what_pymavlink_knows() -> None:
@@ -127,7 +127,7 @@ def test_whom_the_user_named_is_told_the_usual_before_a_heartbeat() -> None:
 
 
 def test_the_log_hears_all_there_is_also_where_nobody_listens() -> None:
-    crowd = Crowd(recording=NoRecording())
+    crowd = Crowd(recording=NullLogRecorder())
     crowd.wait(5.0)
     usual = {stream.message for stream in STREAMS if stream.rate}
     assert usual - UNTOLD <= crowd.kinds(RECORDER)
@@ -155,7 +155,7 @@ def test_a_newcomer_is_told_all_it_understands_at_once() -> None:
     crowd.wait(0.02)
     assert m.Heartbeat in crowd.kinds(ONE)
     crowd.wait(0.5)
-    usual = {stream.message for stream in STREAMS if stream.rate and stream.family is Family.COMMON}
+    usual = {stream.message for stream in STREAMS if stream.rate and stream.level is DialectLevel.COMMON}
     assert usual - UNTOLD <= crowd.kinds(ONE)
 
 
@@ -272,14 +272,14 @@ def test_54_the_budget_of_one_and_that_of_a_link() -> None:
     crowd.wait(2.0)
     crowd.forget()
     crowd.wait(10.0)
-    assert len(crowd.told[crowd.peers[0]]) <= 10 * BUDGET
+    assert len(crowd.told[crowd.peers[0]]) <= 10 * PEER_MESSAGE_RATE_MAX
     assert len(crowd.told[crowd.peers[1]]) == pytest.approx(27 * 10, abs=10), "what it gets where it is alone"
     for peer in crowd.peers:
         greedy(crowd, peer)
     crowd.wait(2.0)
     crowd.forget()
     crowd.wait(10.0)
-    assert sum(map(len, crowd.told.values())) <= 10 * LINK_BUDGET * 1.05
+    assert sum(map(len, crowd.told.values())) <= 10 * LINK_MESSAGE_RATE_MAX * 1.05
     assert all(len(crowd.all(peer, m.Heartbeat)) == 10 for peer in crowd.peers)
     assert all(len(crowd.all(peer, m.HomePosition)) >= 5 for peer in crowd.peers), "nothing starves"
 
@@ -331,7 +331,7 @@ def test_a_crowd_of_newcomers_fills_no_table() -> None:
 
 
 def test_what_shows_something_or_asks_is_heard() -> None:
-    assert {kind.id for kind in telemetry._TOPICS} <= HEARD
+    assert {kind.id for kind in telemetry._HANDLERS} <= INBOUND_IDS
 
 
 def test_an_origin_is_told_when_it_is_known_and_to_each_newcomer_once() -> None:

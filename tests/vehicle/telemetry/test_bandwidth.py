@@ -123,22 +123,22 @@ class Wire:
         self.armed = False
         self.now = 0.0
         self.bandwidth = Bandwidth(lambda: self.armed)
-        self.bandwidth.observe([report(SIK)])
+        self.bandwidth.update([report(SIK)])
 
     def bulk(self, seconds: float, size: int = 263) -> float:
         """Share of the link that bulk gets while it wants all of it."""
         sent, start = 0, self.now
         for cycle in range(1, round(seconds * 50) + 1):
             self.now = start + cycle * 0.02
-            while self.bandwidth.pacer.take(Peer(0, "gcs"), size, self.now):
+            while self.bandwidth.pacer.consume(Peer(0, "gcs"), size, self.now):
                 sent += size
             if cycle % 50 == 0:
-                self.bandwidth.observe([report(SIK)])
+                self.bandwidth.update([report(SIK)])
         return sent / seconds / SIK
 
     @property
     def telemetry(self) -> float:
-        return self.bandwidth.telemetry[0] / SIK
+        return self.bandwidth.telemetry_rates[0] / SIK
 
 
 @pytest.mark.parametrize(("size", "least"), [(37, 0.57), (263, 0.52)])
@@ -168,14 +168,14 @@ def test_when_bulk_has_ended_telemetry_has_all_again() -> None:
     wire = Wire()
     wire.bulk(3.0)
     for _ in range(2):
-        wire.bandwidth.observe([report(SIK)])
+        wire.bandwidth.update([report(SIK)])
     assert wire.telemetry == pytest.approx(0.6)
 
 
 def test_bulk_on_a_network_slows_no_telemetry() -> None:
     wire = Wire()
     for _ in range(3):
-        wire.bandwidth.pacer.take(Peer(1, "gcs"), 263, wire.now)
-        wire.bandwidth.observe([report(SIK), report(None, index=1)])
+        wire.bandwidth.pacer.consume(Peer(1, "gcs"), 263, wire.now)
+        wire.bandwidth.update([report(SIK), report(None, index=1)])
     assert wire.telemetry == pytest.approx(0.6)
     assert wire.bandwidth.pacer._rate(Peer(1, "gcs")) == DEFAULT_RATE

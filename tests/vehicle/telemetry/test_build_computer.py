@@ -12,15 +12,15 @@ from hypothesis import strategies as st
 from dialects import messages as m
 from dialects.enums import Command, Result
 from tests.vehicle.bench import EVERYTHING, Bench
-from vehicle.readings import Computer
+from vehicle.readings import ComputerReadings
 
-WELL = Computer(
+WELL = ComputerReadings(
     temperature=48.6, load=0.25, memory_used=300 * 2**20, memory_total=1024 * 2**20, uptime=90.5,
     under_voltage=False, throttled=False,
 )  # fmt: skip
 
 
-def watched(computer: Computer) -> Bench:
+def watched(computer: ComputerReadings) -> Bench:
     bench = Bench()
     bench.readings = replace(EVERYTHING, computer=computer)
     return bench
@@ -62,7 +62,7 @@ def test_a_weak_supply_and_a_slow_processor_are_flags(under_voltage: bool, throt
 
 
 def test_what_nobody_knows_is_said_so() -> None:
-    bench = watched(Computer())
+    bench = watched(ComputerReadings())
     bench.wait(3.0)
     told = bench.newest(m.OnboardComputerStatus)
     assert (told.temperature_core, told.cpu_cores) == ([127] * 8, [255] * 8)
@@ -74,8 +74,10 @@ BYTES = st.one_of(st.none(), st.integers(min_value=-(2**70), max_value=2**70))
 
 
 @settings(max_examples=60)
-@given(st.builds(Computer, temperature=NUMBER, load=NUMBER, uptime=NUMBER, memory_used=BYTES, memory_total=BYTES))
-def test_no_reading_of_the_computer_breaks_a_message(computer: Computer) -> None:
+@given(
+    st.builds(ComputerReadings, temperature=NUMBER, load=NUMBER, uptime=NUMBER, memory_used=BYTES, memory_total=BYTES)
+)
+def test_no_reading_of_the_computer_breaks_a_message(computer: ComputerReadings) -> None:
     """The bench encodes every message that leaves."""
     bench = watched(computer)
     bench.wait(2.5)

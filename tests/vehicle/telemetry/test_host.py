@@ -12,8 +12,8 @@ from tests.vehicle.bench import Bench
 from tests.vehicle.ground import Ground, running
 from vehicle.params import Params
 from vehicle.rover import Rover
-from vehicle.runtime.host_info import HostMeter, uid_of
-from vehicle.telemetry.host import Host
+from vehicle.runtime.host_info import HostMonitor, read_uid
+from vehicle.telemetry.host import HostInfo
 
 MACHINE = "0123456789abcdef0123456789abcdef"
 UID = "92b243149fc64d0cb6e4fa9e55479f8b"
@@ -31,19 +31,19 @@ def computer(folder: Path, text: bytes | None) -> Path:
 
 
 def test_the_id_is_that_of_the_computer_and_hides_it(tmp_path: Path) -> None:
-    uid = uid_of(computer(tmp_path, f"{MACHINE}\n".encode()))
+    uid = read_uid(computer(tmp_path, f"{MACHINE}\n".encode()))
     assert uid.hex() == UID
-    assert uid == uid_of(tmp_path)
+    assert uid == read_uid(tmp_path)
 
 
 @pytest.mark.parametrize(
     "text", [None, b"", b"uninitialized\n", b"0" * 32, b"\xff" * 32, MACHINE.upper().encode(), MACHINE[1:].encode()]
 )
 def test_what_is_no_id_gives_none(tmp_path: Path, text: bytes | None) -> None:
-    assert uid_of(computer(tmp_path, text)) == b""
+    assert read_uid(computer(tmp_path, text)) == b""
 
 
-def with_host(host: Host) -> Bench:
+def with_host(host: HostInfo) -> Bench:
     bench = Bench()
     bench.rover = Rover(Params(), now=bench.now, host=host)
     bench.meet()
@@ -52,7 +52,7 @@ def with_host(host: Host) -> Bench:
 
 
 def test_the_id_is_in_autopilot_version() -> None:
-    bench = with_host(Host(uid=bytes.fromhex(UID)))
+    bench = with_host(HostInfo(uid=bytes.fromhex(UID)))
     bench.command(Command.REQUEST_MESSAGE, m.AutopilotVersion.id)
     told = bench.newest(m.AutopilotVersion)
     assert bytes(told.uid2).hex() == UID + "0000"
@@ -60,7 +60,7 @@ def test_the_id_is_in_autopilot_version() -> None:
 
 
 def test_without_an_id_there_is_none() -> None:
-    bench = with_host(Host())
+    bench = with_host(HostInfo())
     bench.command(Command.REQUEST_MESSAGE, m.AutopilotVersion.id)
     told = bench.newest(m.AutopilotVersion)
     assert (told.uid, any(told.uid2)) == (0, False)
@@ -68,39 +68,39 @@ def test_without_an_id_there_is_none() -> None:
 
 @pytest.mark.parametrize(("share", "told"), [(0.0, 0), (0.0421, 42), (1.0, 1000)])
 def test_the_load_is_in_sys_status(share: float, told: int) -> None:
-    bench = with_host(Host(load=share))
+    bench = with_host(HostInfo(load=share))
     bench.command(Command.REQUEST_MESSAGE, m.SysStatus.id)
     assert bench.newest(m.SysStatus).load == told
 
 
 def test_the_load_is_what_was_not_waited() -> None:
-    host, waited = Host(), 5.0
-    meter = HostMeter(host, lambda: waited, lambda: 0.0, now=100.0)
+    host, waited = HostInfo(), 5.0
+    meter = HostMonitor(host, lambda: waited, lambda: 0.0, now=100.0)
     waited += 0.5
-    meter.look(100.5)
+    meter.update(100.5)
     assert host.load == 0.0  # not yet
     waited += 0.4
-    meter.look(101.0)
+    meter.update(101.0)
     assert host.load == pytest.approx(0.1)
-    meter.look(102.0)
+    meter.update(102.0)
     assert host.load == 1.0
     waited += 1.1  # clocks are read one after the other
-    meter.look(103.0)
+    meter.update(103.0)
     assert host.load == 0.0
 
 
 def test_the_wall_clock_is_asked_again() -> None:
     """A Pi without a battery for its clock learns the time some seconds or minutes after boot."""
-    host, wall = Host(), 5.0
-    meter = HostMeter(host, lambda: 0.0, lambda: wall, now=100.0)
+    host, wall = HostInfo(), 5.0
+    meter = HostMonitor(host, lambda: 0.0, lambda: wall, now=100.0)
     assert host.unix_time(100.25) == 5.25
     wall = NEW_YEAR
-    meter.look(101.0)
+    meter.update(101.0)
     assert host.unix_time(101.5) == NEW_YEAR + 0.5
 
 
 def test_system_time_follows_it() -> None:
-    host = Host()
+    host = HostInfo()
     bench = with_host(host)
     bench.command(Command.REQUEST_MESSAGE, m.SystemTime.id)
     assert bench.newest(m.SystemTime).time_unix_usec == 0  # nobody knows

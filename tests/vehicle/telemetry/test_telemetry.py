@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.axes import Axes
-from dialects.enums import Autopilot, Command, DriveType, Limit, Sensor, State, Type
+from dialects.enums import Autopilot, Command, DriveLimit, DriveType, Sensor, SystemState, VehicleType
 from link.core import LinkReport
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench, said
 from vehicle.readings import Readings
@@ -55,7 +55,11 @@ def test_without_sensors_it_tells_only_what_it_knows() -> None:
 def test_the_first_word_is_a_heartbeat_with_the_right_ids() -> None:
     beat = Bench().sent[0]
     assert isinstance(beat, m.Heartbeat)
-    assert (beat.type, beat.autopilot, beat.system_status) == (Type.GROUND_ROVER, Autopilot.GENERIC, State.STANDBY)
+    assert (beat.type, beat.autopilot, beat.system_status) == (
+        VehicleType.GROUND_ROVER,
+        Autopilot.GENERIC,
+        SystemState.STANDBY,
+    )
 
 
 def test_health_is_told_truthfully() -> None:
@@ -139,20 +143,20 @@ def test_changes_are_told_20_times_a_second_at_most() -> None:
 def test_the_drive_status_says_why_nothing_moves() -> None:
     bench = Bench()
     bench.wait(0.2)
-    assert bench.newest(m.RoverDriveStatus).limits & Limit.DISARMED
+    assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.DISARMED
     assert bench.newest(m.RoverDriveStatus).demand_age_ms == m.UINT16_MAX
     bench.arm()
     bench.wait(0.2, AHEAD)
     told = bench.newest(m.RoverDriveStatus)
-    assert told.limits == Limit.NEUTRAL_FIRST
+    assert told.limits == DriveLimit.NEUTRAL_FIRST
     assert told.demand_throttle == 10_000
     bench.wait(0.1, NEUTRAL)
     bench.wait(0.1, AHEAD)
-    assert bench.newest(m.RoverDriveStatus).limits == Limit.SLEW
+    assert bench.newest(m.RoverDriveStatus).limits == DriveLimit.SLEW
     bench.wait(0.8)
     told = bench.newest(m.RoverDriveStatus)
-    assert told.limits & Limit.STALE
-    assert told.limits & Limit.FAILSAFE
+    assert told.limits & DriveLimit.STALE
+    assert told.limits & DriveLimit.FAILSAFE
     assert told.demand_throttle == 0
     assert 600 < told.demand_age_ms <= 850
 
@@ -160,7 +164,7 @@ def test_the_drive_status_says_why_nothing_moves() -> None:
 def test_full_ahead_and_full_turn_is_told_as_saturated() -> None:
     bench = Bench()
     bench.drive(Axes(1.0, 1.0))
-    assert bench.newest(m.RoverDriveStatus).limits & Limit.SATURATED
+    assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.SATURATED
 
 
 def test_servo_pulses_stand_where_ardurover_has_them() -> None:

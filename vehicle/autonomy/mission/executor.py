@@ -14,23 +14,23 @@ from enum import IntEnum
 
 from dialects.enums import Command
 from link.services.mission.items import Items, MissionItem
-from vehicle.autonomy.mission.nav_items import Circle, Face, Go, Task, Wait
-from vehicle.autonomy.mission.rules import ACCESSORIES
-from vehicle.autonomy.modes.homing import Done
+from vehicle.autonomy.mission.nav_items import ConditionYaw, NavDelay, NavLoiterTurns, NavTask, NavWaypoint
+from vehicle.autonomy.mission.rules import ACCESSORY_COMMANDS
+from vehicle.autonomy.modes.homing import ModeFinished
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point
-from vehicle.navigation.guidance import STOPPED_SHORT, Guide, Leg
-from vehicle.navigation.rally import Haven
-from vehicle.navigation.speed_control import Motion
+from vehicle.navigation.guidance import STOP_RADIUS, Leg, PathFollower
+from vehicle.navigation.rally import ReturnPoint
+from vehicle.navigation.speed_control import DesiredMotion
 from vehicle.params import Params
 
-SEARCH_MAX = 100
+ITEM_SEARCH_MAX = 100
 """Items looked through for the next NAV item; more is a circle of jumps."""
-CONDITIONS = (Command.CONDITION_DELAY, Command.CONDITION_DISTANCE)
-EFFECTS = (Command.DO_CHANGE_SPEED, Command.DO_SET_REVERSE, Command.DO_FENCE_ENABLE, *ACCESSORIES)
+CONDITION_COMMANDS = (Command.CONDITION_DELAY, Command.CONDITION_DISTANCE)
+DO_COMMANDS = (Command.DO_CHANGE_SPEED, Command.DO_SET_REVERSE, Command.DO_FENCE_ENABLE, *ACCESSORY_COMMANDS)
 
 
-class Progress(IntEnum):
+class MissionState(IntEnum):
     """MISSION_STATE of MISSION_CURRENT, as far as the mission itself knows it."""
 
     NONE = 1
@@ -39,14 +39,14 @@ class Progress(IntEnum):
     COMPLETE = 5
 
 
-class Mission:
+class MissionExecutor:
     """The mission in force, and how far it is."""
 
     def __init__(
         self,
         params: Params,
-        guide: Guide,
-        haven: Callable[[Estimate], Haven | None],
+        guide: PathFollower,
+        haven: Callable[[Estimate], ReturnPoint | None],
         effect: Callable[[MissionItem], None],
         barred: Callable[[Point], str | None] = lambda place: None,
     ) -> None:
@@ -55,18 +55,18 @@ class Mission:
         self.items: Items = ()
         self.current = 0
         """Index of the item under way, or of the one to begin with."""
-        self.progress = Progress.NONE
-        self.reached: list[int] = []
+        self.state = MissionState.NONE
+        self.reached_items: list[int] = []
         """Items reached and not told yet."""
-        self.for_accessories: list[MissionItem] = []
+        self.pending_accessory_items: list[MissionItem] = []
         """Items whose turn came, and that nobody has done yet: Plans hands them on."""
         self._params = params
         self._guide = guide
-        self._haven = haven
+        self._return_point = haven
         self._effect = effect
-        self._barred = barred
+        self._rejection = barred
         self._refused: str | None = None
-        self._task: Task | None = None
+        self._task: NavTask | None = None
         self._waiting: list[tuple[int, MissionItem]] = []
         self._held_since: float | None = None
         self._jumped: dict[int, int] = {}
@@ -79,19 +79,19 @@ class Mission:
         return self._task.goal if self._task else None
 
     @property
-    def missing(self) -> str:
+    def missing_reason(self) -> str:
         """Why there is none."""
         return self._damage or "there is no mission"
 
     def load(self, items: Items, damage: str | None = None) -> None:
         """Another mission, from its first item. `damage`: why the kept one is lost."""
         self.items, self._damage = items, damage
-        self.select(0)
+        self.set_current(0)
 
-    def select(self, index: int, *, anew: bool = True) -> None:
+    def set_current(self, index: int, *, anew: bool = True) -> None:
         """Begin or go on with this item; `anew` forgets how often it has jumped."""
         self.current = index
-        self.progress = Progress.NOT_STARTED if self.items else Progress.NONE
+        self.state = MissionState.NOT_STARTED if self.items else MissionState.NONE
         self._task = self._ending = None
         self._waiting.clear()
         if anew:
@@ -99,18 +99,18 @@ class Mission:
 
     def unready(self, estimate: Estimate) -> str | None:
         """Why it cannot begin."""
-        return None if self.items else self.missing
+        return None if self.items else self.missing_reason
 
     def begin(self, estimate: Estimate, now: float) -> None:
         """Chosen: go on with the item that was under way, on a new line from here. A complete one begins anew."""
-        if self.progress is Progress.COMPLETE:
-            self.select(0)
+        if self.state is MissionState.COMPLETE:
+            self.set_current(0)
         self._task = None
 
-    def step(self, estimate: Estimate, speed: float, now: float) -> Motion | Done:
+    def step(self, estimate: Estimate, speed: float, now: float) -> DesiredMotion | ModeFinished:
         """The task under way, or the next one."""
         start = estimate.place
-        for _ in range(SEARCH_MAX):
+        for _ in range(ITEM_SEARCH_MAX):
             if self._task is None:
                 self._next(self.current, estimate, start)
             if self._task is None:
@@ -126,40 +126,40 @@ class Mission:
 
     def _finish(self, estimate: Estimate) -> Point:
         """The task is done; where the next leg begins."""
-        self.reached.append(self.current)
+        self.reached_items.append(self.current)
         task, self._task = self._task, None
         self.current += 1
-        return task.leg.end if isinstance(task, Go) else estimate.place
+        return task.leg.end if isinstance(task, NavWaypoint) else estimate.place
 
-    def _end(self) -> Done:
+    def _end(self) -> ModeFinished:
         if self._refused is not None:  # it is not over: somebody may change the fence or choose another item
             why, self._refused = self._refused, None
-            return Done(why)
-        self.progress, self.current = Progress.COMPLETE, 0
-        return Done(self._ending or "mission complete")
+            return ModeFinished(why)
+        self.state, self.current = MissionState.COMPLETE, 0
+        return ModeFinished(self._ending or "mission complete")
 
     def _next(self, index: int, estimate: Estimate, start: Point) -> None:
         """The next NAV item from `index` on; the DO items before it run beside it."""
         self._waiting, self._held_since = [], None
-        for _ in range(SEARCH_MAX):
+        for _ in range(ITEM_SEARCH_MAX):
             if not index < len(self.items) or self._ending:
                 return
             item = self.items[index]
             if item.command == Command.DO_JUMP:
                 index = self._jump(index, item, count=True)
-            elif item.command in CONDITIONS or item.command in EFFECTS:
+            elif item.command in CONDITION_COMMANDS or item.command in DO_COMMANDS:
                 self._waiting.append((index, item))
                 index += 1
             else:
-                self.current, self.progress = index, Progress.ACTIVE
-                self._guide.begin()
+                self.current, self.state = index, MissionState.ACTIVE
+                self._guide.reset()
                 self._begin_task(item, index, estimate, start)
                 return
         self._ending = "its jumps go in a circle"
 
     def _begin_task(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> None:
-        task = self._begun(item, index, estimate, start)
-        why = None if task.goal is None or self._ending else self._barred(task.goal)
+        task = self._build_task(item, index, estimate, start)
+        why = None if task.goal is None or self._ending else self._rejection(task.goal)
         if why is None:
             self._task = task
         else:
@@ -173,47 +173,47 @@ class Mission:
             self._jumped[index] = done + 1
         return int(item.params[0])
 
-    def _begun(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> Task:
+    def _build_task(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> NavTask:
         first = _number(item.params[0])
         match item.command:
             case Command.NAV_DELAY:
-                return Wait(first)
+                return NavDelay(first)
             case Command.CONDITION_YAW:
                 turn = math.radians(first) * (-1.0 if item.params[2] < 0.0 else 1.0)
-                return Face((estimate.yaw or 0.0) + turn if item.params[3] else math.radians(first))
+                return ConditionYaw((estimate.yaw or 0.0) + turn if item.params[3] else math.radians(first))
             case Command.NAV_LOITER_TURNS:
                 radius = _number(item.params[2]) or self._params["LOIT_RADIUS"]
-                return Circle(self._place(item, estimate), radius, first)
+                return NavLoiterTurns(self._place(item, estimate), radius, first)
             case Command.NAV_RETURN_TO_LAUNCH:
-                haven = self._haven(estimate) or Haven(start, "the end")
-                self._ending = f"{haven.words} is reached"
-                return Go(Leg(start, haven.point), STOPPED_SHORT)
+                haven = self._return_point(estimate) or ReturnPoint(start, "the end")
+                self._ending = f"{haven.name} is reached"
+                return NavWaypoint(Leg(start, haven.point), STOP_RADIUS)
         return self._leg(item, index, estimate, start)
 
-    def _leg(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> Task:
+    def _leg(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> NavTask:
         leg = Leg(start, self._place(item, estimate))
         stay = math.inf if item.command == Command.NAV_LOITER_UNLIM else _number(item.params[0])
         end_speed = 0.0 if stay else self._corner(leg, index, estimate)
-        radius = self._params["WP_RADIUS"] if end_speed else STOPPED_SHORT
-        return Go(leg, radius, end_speed, stay)
+        radius = self._params["WP_RADIUS"] if end_speed else STOP_RADIUS
+        return NavWaypoint(leg, radius, end_speed, stay)
 
     def _corner(self, leg: Leg, index: int, estimate: Estimate) -> float:
         """How fast the end of a leg may be passed."""
-        onward = self._onward(index + 1)
+        onward = self._following_nav_item(index + 1)
         if onward is None or onward.command != Command.NAV_WAYPOINT:
             return 0.0
         turn = Leg(leg.end, self._place(onward, estimate)).bearing - leg.bearing
         return self._guide.corner_speed(math.remainder(turn, math.tau), self._params["WP_SPEED"])
 
-    def _onward(self, index: int) -> MissionItem | None:
+    def _following_nav_item(self, index: int) -> MissionItem | None:
         """The NAV item that will follow."""
-        for _ in range(SEARCH_MAX):
+        for _ in range(ITEM_SEARCH_MAX):
             if index >= len(self.items):
                 return None
             item = self.items[index]
             if item.command == Command.DO_JUMP:
                 index = self._jump(index, item, count=False)
-            elif item.command in CONDITIONS or item.command in EFFECTS:
+            elif item.command in CONDITION_COMMANDS or item.command in DO_COMMANDS:
                 index += 1
             else:
                 return item
@@ -222,18 +222,18 @@ class Mission:
     def _place(self, item: MissionItem, estimate: Estimate) -> Point:
         if estimate.origin is None or (item.x, item.y) == (0, 0) or abs(item.latitude) > 90.0:
             return estimate.place
-        return estimate.origin.point(item.latitude, item.longitude)
+        return estimate.origin.to_local(item.latitude, item.longitude)
 
     def _run_waiting(self, estimate: Estimate, now: float) -> None:
         """DO items up to the next condition that does not hold. Each counts as reached, as in ArduPilot: by the last
         one of a mission MAVSDK knows that it is finished."""
         while self._waiting and self._may_run(self._waiting[0][1], estimate, now):
             number, item = self._waiting.pop(0)
-            self.reached.append(number)
+            self.reached_items.append(number)
             self._held_since = None
-            if item.command in ACCESSORIES:
-                self.for_accessories.append(item)
-            elif item.command in EFFECTS:
+            if item.command in ACCESSORY_COMMANDS:
+                self.pending_accessory_items.append(item)
+            elif item.command in DO_COMMANDS:
                 self._effect(item)
 
     def _may_run(self, item: MissionItem, estimate: Estimate, now: float) -> bool:

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from dialects import messages as m
 from link.core import Outgoing
 
-TIMES, GAP = 4, 0.5
+SEND_COUNT, SEND_PERIOD = 4, 0.5
 """How often it is said, and s between."""
 
 
-class Reached:
+class ItemReachedSender:
     """The newest item that was done; older ones are not said again."""
 
     def __init__(self) -> None:
@@ -26,12 +26,12 @@ class Reached:
         """What to say: each of `done`, the items done since the last call, and the newest again where it is time."""
         said = [Outgoing(m.MissionItemReached(index)) for index in done]
         if done:
-            self._index, self._left, self._due = done[-1], TIMES - 1, now + GAP
+            self._index, self._left, self._due = done[-1], SEND_COUNT - 1, now + SEND_PERIOD
         elif self._left and now >= self._due:
             said.append(Outgoing(m.MissionItemReached(self._index)))
-            self._left, self._due = self._left - 1, now + GAP
+            self._left, self._due = self._left - 1, now + SEND_PERIOD
         return said
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Another mission, or another item of it: what was done before is of no interest."""
         self._left = 0

@@ -11,7 +11,7 @@ from collections.abc import Collection
 from functools import partial
 
 from dialects.enums import Command, FenceItem, MissionResult, MissionType
-from link.services.mission.items import ItemRule, Items, Place, PlanRules
+from link.services.mission.items import ItemRule, Items, PlanRules, PositionRule
 from vehicle.accessories import LARGEST_RELAY, LARGEST_SERVO, PERIOD_MAX, TIMES_MAX
 from vehicle.navigation.fence import POLYGONS
 
@@ -19,9 +19,9 @@ DAY = 86400.0
 TURNS_MAX = 1000.0
 SPEED_LOW, SPEED_HIGH = -2.0, 100.0
 """m/s; -1 and -2 are "no change" and "the usual one"."""
-OF_RELAYS = (Command.DO_SET_RELAY, Command.DO_REPEAT_RELAY)
-OF_SERVOS = (Command.DO_SET_SERVO, Command.DO_REPEAT_SERVO)
-ACCESSORIES = (*OF_SERVOS, *OF_RELAYS)
+RELAY_COMMANDS = (Command.DO_SET_RELAY, Command.DO_REPEAT_RELAY)
+SERVO_COMMANDS = (Command.DO_SET_SERVO, Command.DO_REPEAT_SERVO)
+ACCESSORY_COMMANDS = (*SERVO_COMMANDS, *RELAY_COMMANDS)
 _SERVOS, _RELAYS = (1.0, LARGEST_SERVO), (0.0, LARGEST_RELAY)
 _PULSES = (500.0, 2500.0)
 """us; what any servo takes. What this one takes is its own matter."""
@@ -29,14 +29,14 @@ _TIMES, _PERIOD = (1.0, TIMES_MAX), (0.0, PERIOD_MAX)
 CORNERS_MIN = 3
 RADIUS_MAX = 1e5
 
-_GO = ItemRule(Place.NEEDED, {1: (0.0, DAY)})
-_HERE = ItemRule(Place.OPTIONAL)
+_GO = ItemRule(PositionRule.NEEDED, {1: (0.0, DAY)})
+_HERE = ItemRule(PositionRule.OPTIONAL)
 
-MISSION: dict[int, ItemRule] = {
+MISSION_RULES: dict[int, ItemRule] = {
     Command.NAV_WAYPOINT: _GO,
     Command.NAV_LOITER_UNLIM: _HERE,
-    Command.NAV_LOITER_TURNS: ItemRule(Place.OPTIONAL, {1: (0.0, TURNS_MAX)}),
-    Command.NAV_LOITER_TIME: ItemRule(Place.OPTIONAL, {1: (0.0, DAY)}),
+    Command.NAV_LOITER_TURNS: ItemRule(PositionRule.OPTIONAL, {1: (0.0, TURNS_MAX)}),
+    Command.NAV_LOITER_TIME: ItemRule(PositionRule.OPTIONAL, {1: (0.0, DAY)}),
     Command.NAV_RETURN_TO_LAUNCH: ItemRule(),
     Command.NAV_DELAY: ItemRule(ranges={1: (0.0, DAY)}),
     Command.CONDITION_DELAY: ItemRule(ranges={1: (0.0, DAY)}),
@@ -52,15 +52,15 @@ MISSION: dict[int, ItemRule] = {
     Command.DO_REPEAT_RELAY: ItemRule(ranges={1: _RELAYS, 2: _TIMES, 3: _PERIOD}),
 }
 
-FENCE: dict[int, ItemRule] = {
-    FenceItem.RETURN_POINT: ItemRule(Place.NEEDED),
-    FenceItem.POLYGON_INCLUSION: ItemRule(Place.NEEDED, {1: (CORNERS_MIN, 500.0)}),
-    FenceItem.POLYGON_EXCLUSION: ItemRule(Place.NEEDED, {1: (CORNERS_MIN, 500.0)}),
-    FenceItem.CIRCLE_INCLUSION: ItemRule(Place.NEEDED, {1: (0.1, RADIUS_MAX)}),
-    FenceItem.CIRCLE_EXCLUSION: ItemRule(Place.NEEDED, {1: (0.1, RADIUS_MAX)}),
+FENCE_RULES: dict[int, ItemRule] = {
+    FenceItem.RETURN_POINT: ItemRule(PositionRule.NEEDED),
+    FenceItem.POLYGON_INCLUSION: ItemRule(PositionRule.NEEDED, {1: (CORNERS_MIN, 500.0)}),
+    FenceItem.POLYGON_EXCLUSION: ItemRule(PositionRule.NEEDED, {1: (CORNERS_MIN, 500.0)}),
+    FenceItem.CIRCLE_INCLUSION: ItemRule(PositionRule.NEEDED, {1: (0.1, RADIUS_MAX)}),
+    FenceItem.CIRCLE_EXCLUSION: ItemRule(PositionRule.NEEDED, {1: (0.1, RADIUS_MAX)}),
 }
 
-RALLY: dict[int, ItemRule] = {FenceItem.RALLY_POINT: ItemRule(Place.NEEDED)}
+RALLY_RULES: dict[int, ItemRule] = {FenceItem.RALLY_POINT: ItemRule(PositionRule.NEEDED)}
 
 
 def _mission_is_sane(items: Items, motors: Collection[int]) -> MissionResult:
@@ -70,8 +70,8 @@ def _mission_is_sane(items: Items, motors: Collection[int]) -> MissionResult:
         return [item.params[0] for item in items if item.command in commands]
 
     sane = all(target == int(target) and target < len(items) for target in numbers(Command.DO_JUMP))
-    sane &= all(servo == int(servo) and servo not in motors for servo in numbers(*OF_SERVOS))
-    sane &= all(relay == int(relay) for relay in numbers(*OF_RELAYS))
+    sane &= all(servo == int(servo) and servo not in motors for servo in numbers(*SERVO_COMMANDS))
+    sane &= all(relay == int(relay) for relay in numbers(*RELAY_COMMANDS))
     return MissionResult.ACCEPTED if sane else MissionResult.INVALID_PARAM1
 
 
@@ -91,10 +91,10 @@ def _fence_is_sane(items: Items) -> MissionResult:
     return MissionResult.ACCEPTED
 
 
-def rules(motors: Collection[int]) -> dict[MissionType, PlanRules]:
+def plan_rules(motors: Collection[int]) -> dict[MissionType, PlanRules]:
     """The rules of each plan; `motors` are the servo outputs that motors are at."""
     return {
-        MissionType.MISSION: PlanRules(MISSION, check=partial(_mission_is_sane, motors=motors)),
-        MissionType.FENCE: PlanRules(FENCE, capacity=200, check=_fence_is_sane),
-        MissionType.RALLY: PlanRules(RALLY, capacity=20),
+        MissionType.MISSION: PlanRules(MISSION_RULES, check=partial(_mission_is_sane, motors=motors)),
+        MissionType.FENCE: PlanRules(FENCE_RULES, capacity=200, check=_fence_is_sane),
+        MissionType.RALLY: PlanRules(RALLY_RULES, capacity=20),
     }

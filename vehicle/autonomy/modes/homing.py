@@ -7,38 +7,38 @@ from dataclasses import dataclass
 
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point
-from vehicle.navigation.guidance import STOPPED_SHORT, Guide, Leg, arrived
-from vehicle.navigation.rally import Haven
-from vehicle.navigation.speed_control import STAND, Motion
+from vehicle.navigation.guidance import STOP_RADIUS, Leg, PathFollower, has_arrived
+from vehicle.navigation.rally import ReturnPoint
+from vehicle.navigation.speed_control import STATIONARY, DesiredMotion
 from vehicle.params import Params
 
-CRUMB = 1.0
+TRAIL_SPACING = 1.0
 """m between two points of the trail: finer than the corners this rover can drive around."""
 TRAIL_MAX = 500
 """Points; when full, every second one is dropped and the trail gets coarser."""
 
 
 @dataclass(frozen=True, slots=True)
-class Done:
+class ModeFinished:
     """A mode has nothing more to do: HOLD follows."""
 
-    why: str
+    reason: str
 
 
-class Return:
+class RtlMode:
     """RTL: straight to the nearest of home and the rally points, then HOLD."""
 
-    def __init__(self, params: Params, guide: Guide, haven: Callable[[Estimate], Haven | None]) -> None:
+    def __init__(self, params: Params, guide: PathFollower, haven: Callable[[Estimate], ReturnPoint | None]) -> None:
         self._params = params
         self._guide = guide
         self._best = haven
-        self._haven: Haven | None = None
+        self._return_point: ReturnPoint | None = None
         self._leg: Leg | None = None
 
     @property
     def goal(self) -> Point | None:
         """Where it goes; chosen once, when it begins."""
-        return self._haven.point if self._haven else None
+        return self._return_point.point if self._return_point else None
 
     def unready(self, estimate: Estimate) -> str | None:
         """Why it cannot begin."""
@@ -46,17 +46,17 @@ class Return:
 
     def begin(self, estimate: Estimate, now: float) -> None:
         """From here."""
-        self._haven = self._best(estimate)
-        self._leg = Leg(estimate.place, self._haven.point) if self._haven else None
-        self._guide.begin()
+        self._return_point = self._best(estimate)
+        self._leg = Leg(estimate.place, self._return_point.point) if self._return_point else None
+        self._guide.reset()
 
-    def step(self, estimate: Estimate, speed: float, now: float) -> Motion | Done:
+    def step(self, estimate: Estimate, speed: float, now: float) -> DesiredMotion | ModeFinished:
         """On the line."""
-        if self._haven is None or self._leg is None:
-            return Done("home is not known")
-        if arrived(self._leg, estimate.place, STOPPED_SHORT):
-            return Done(f"{self._haven.words} is reached")
-        return self._guide.follow(self._leg, estimate, self._params["RTL_SPEED"] or speed, 0.0)
+        if self._return_point is None or self._leg is None:
+            return ModeFinished("home is not known")
+        if has_arrived(self._leg, estimate.place, STOP_RADIUS):
+            return ModeFinished(f"{self._return_point.name} is reached")
+        return self._guide.follow_leg(self._leg, estimate, self._params["RTL_SPEED"] or speed, 0.0)
 
 
 class Trail:
@@ -64,12 +64,12 @@ class Trail:
 
     def __init__(self) -> None:
         self.points: list[Point] = []
-        self._spacing = CRUMB
+        self._spacing = TRAIL_SPACING
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """A new drive begins."""
         self.points.clear()
-        self._spacing = CRUMB
+        self._spacing = TRAIL_SPACING
 
     def add(self, place: Point) -> None:
         """The rover is here now."""
@@ -85,10 +85,10 @@ class Trail:
             self._spacing *= 2
 
 
-class Retrace:
+class SmartRtlMode:
     """SMART_RTL: back along the trail, then HOLD."""
 
-    def __init__(self, params: Params, guide: Guide, trail: Trail) -> None:
+    def __init__(self, params: Params, guide: PathFollower, trail: Trail) -> None:
         self.goal: Point | None = None
         self._params = params
         self._guide = guide
@@ -105,17 +105,19 @@ class Retrace:
         self._way = list(self._trail.points)
         self.goal = self._way[0] if self._way else None
         self._leg = None
-        self._guide.begin()
+        self._guide.reset()
 
-    def step(self, estimate: Estimate, speed: float, now: float) -> Motion | Done:
+    def step(self, estimate: Estimate, speed: float, now: float) -> DesiredMotion | ModeFinished:
         """On to the next point of the trail."""
-        while self._leg is None or arrived(self._leg, estimate.place, CRUMB / 2 if self._way else STOPPED_SHORT):
+        while self._leg is None or has_arrived(
+            self._leg, estimate.place, TRAIL_SPACING / 2 if self._way else STOP_RADIUS
+        ):
             if not self._way:
-                return Done("the start is reached")
+                return ModeFinished("the start is reached")
             start = self._leg.end if self._leg else estimate.place
             self._leg = Leg(start, self._way.pop())
         speed = self._params["RTL_SPEED"] or speed
-        return self._guide.follow(self._leg, estimate, speed, self._corner(self._leg, speed))
+        return self._guide.follow_leg(self._leg, estimate, speed, self._corner(self._leg, speed))
 
     def _corner(self, leg: Leg, speed: float) -> float:
         if not self._way:
@@ -123,10 +125,10 @@ class Retrace:
         return self._guide.corner_speed(abs(leg.bearing - Leg(leg.end, self._way[-1]).bearing), speed)
 
 
-class Loiter:
+class LoiterMode:
     """LOITER: stays within LOIT_RADIUS of where it was chosen, and drives back when it was moved away."""
 
-    def __init__(self, params: Params, guide: Guide) -> None:
+    def __init__(self, params: Params, guide: PathFollower) -> None:
         self.goal: Point | None = None
         self._params = params
         self._guide = guide
@@ -140,11 +142,13 @@ class Loiter:
         """Here."""
         self.goal = estimate.place
         self._returning = False
-        self._guide.begin()
+        self._guide.reset()
 
-    def step(self, estimate: Estimate, speed: float, now: float) -> Motion:
+    def step(self, estimate: Estimate, speed: float, now: float) -> DesiredMotion:
         """Stand, or go back to the middle."""
         goal = self.goal or estimate.place
         away = goal.distance(estimate.place)
-        self._returning = away > (STOPPED_SHORT if self._returning else self._params["LOIT_RADIUS"])
-        return self._guide.follow(Leg(estimate.place, goal), estimate, speed, 0.0) if self._returning else STAND
+        self._returning = away > (STOP_RADIUS if self._returning else self._params["LOIT_RADIUS"])
+        return (
+            self._guide.follow_leg(Leg(estimate.place, goal), estimate, speed, 0.0) if self._returning else STATIONARY
+        )

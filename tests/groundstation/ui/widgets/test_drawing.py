@@ -10,21 +10,21 @@ from hypothesis import strategies as st
 from textual.strip import Strip
 
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.snapshot import MessageRate, TextLine
+from groundstation.snapshot import LogLine, MessageRate
 from groundstation.ui.colours import style
-from groundstation.ui.keynames import key_name, main_key
+from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.chart import Chart, Series
 from groundstation.ui.widgets.footer import KeyFooter
-from groundstation.ui.widgets.heading_tape import tape
-from groundstation.ui.widgets.horizon import Attitude, Horizon, ground
-from groundstation.ui.widgets.keycaps import lit
-from groundstation.ui.widgets.log import Log
-from groundstation.ui.widgets.rates import Rates
-from groundstation.ui.widgets.speed import figures
-from groundstation.ui.widgets.status import Status, StatusValue
-from groundstation.ui.widgets.sticks import Bar, bars, cells
-from groundstation.ui.widgets.track import Track, TrackValue, fit
+from groundstation.ui.widgets.heading_tape import heading_marks
+from groundstation.ui.widgets.horizon import Horizon, HorizonValue, ground_fraction
+from groundstation.ui.widgets.keycaps import lit_actions
+from groundstation.ui.widgets.log import LogPanel
+from groundstation.ui.widgets.rates import RatesPanel
+from groundstation.ui.widgets.speed import speed_text
+from groundstation.ui.widgets.status import StatusBar, StatusBarValue
+from groundstation.ui.widgets.sticks import Bar, bar_cells, build_bars
+from groundstation.ui.widgets.track import TrackMap, TrackValue, fit_view
 from tests.groundstation.ui.examples import RATES, helm, snapshot, vehicle
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])
@@ -72,23 +72,23 @@ def test_the_vehicle_is_always_on_the_map(
 ) -> None:
     value = TrackValue(position, heading, (0.0, 0.0), tuple(track))
     canvas = Canvas(36, 14)
-    x, y = fit(value, canvas.across, canvas.down).dot(position, canvas)
+    x, y = fit_view(value, canvas.across, canvas.down).to_canvas(position, canvas)
     assert 0 <= x < canvas.across
     assert 0 <= y < canvas.down
-    assert len(Track(value).draw(36, 14)) == 14
+    assert len(TrackMap(value).draw(36, 14)) == 14
 
 
 def test_the_map_stands_still_while_the_vehicle_moves_a_little() -> None:
     a = TrackValue((3.0, 4.0), 0.0, (0.0, 0.0), ((0.0, 0.0), (3.0, 4.0)))
     b = TrackValue((3.1, 4.1), 0.0, (0.0, 0.0), ((0.0, 0.0), (3.1, 4.1)))
-    assert fit(a, 72, 56) == fit(b, 72, 56)
+    assert fit_view(a, 72, 56) == fit_view(b, 72, 56)
 
 
 def test_north_is_up_and_east_is_right() -> None:
     canvas = Canvas(36, 14)
-    view = fit(TrackValue((0.0, 0.0)), canvas.across, canvas.down)
-    x, y = view.dot((0.0, 0.0), canvas)
-    north, east = view.dot((1.0, 0.0), canvas), view.dot((0.0, 1.0), canvas)
+    view = fit_view(TrackValue((0.0, 0.0)), canvas.across, canvas.down)
+    x, y = view.to_canvas((0.0, 0.0), canvas)
+    north, east = view.to_canvas((1.0, 0.0), canvas), view.to_canvas((0.0, 1.0), canvas)
     assert north[1] < y
     assert east[0] > x
 
@@ -97,24 +97,24 @@ def test_north_is_up_and_east_is_right() -> None:
 
 
 def test_level_is_half_ground() -> None:
-    level = Attitude(0.0, 0.0)
-    assert [ground(level, 0, row, 4) for row in range(4)] == [0.0, 0.0, 1.0, 1.0]
+    level = HorizonValue(0.0, 0.0)
+    assert [ground_fraction(level, 0, row, 4) for row in range(4)] == [0.0, 0.0, 1.0, 1.0]
 
 
 def test_nose_up_shows_sky_and_right_side_down_lifts_the_horizon_at_the_right() -> None:
-    up, right = Attitude(0.0, 0.2), Attitude(0.3, 0.0)
-    assert ground(up, 0, 2, 4) < 1.0
-    assert ground(right, 8, 1, 4) > ground(right, -8, 1, 4)
+    up, right = HorizonValue(0.0, 0.2), HorizonValue(0.3, 0.0)
+    assert ground_fraction(up, 0, 2, 4) < 1.0
+    assert ground_fraction(right, 8, 1, 4) > ground_fraction(right, -8, 1, 4)
 
 
 @given(st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi))
 def test_the_horizon_fills_its_place_at_any_attitude(roll: float, pitch: float) -> None:
-    assert all(len(line) == 22 for line in text(Horizon(Attitude(roll, pitch)).draw(22, 5)))
+    assert all(len(line) == 22 for line in text(Horizon(HorizonValue(roll, pitch)).draw(22, 5)))
 
 
 @pytest.mark.parametrize(("heading", "middle"), [(0, "N"), (90, "E"), (359, "N"), (225, "SW"), (120, "120")])
 def test_the_tape_has_the_heading_in_its_middle(heading: int, middle: str) -> None:
-    marks = tape(heading, 41)
+    marks = heading_marks(heading, 41)
     assert len(marks) == 41
     assert middle in marks[17:24]
 
@@ -127,7 +127,7 @@ def test_the_tape_has_the_heading_in_its_middle(heading: int, middle: str) -> No
     ],
 )  # fmt: skip
 def test_the_speed_keeps_its_width(speed: float | None, shown: str) -> None:
-    assert figures(vehicle(speed=speed)) == shown
+    assert speed_text(vehicle(speed=speed)) == shown
 
 
 # ---- bars ----
@@ -136,13 +136,13 @@ def test_the_speed_keeps_its_width(speed: float | None, shown: str) -> None:
 @given(st.integers(-100, 100), st.none() | st.integers(-100, 100), st.integers(5, 60))
 def test_a_bar_always_has_its_width(percent: int, obeyed: int | None, width: int) -> None:
     width |= 1
-    assert len("".join(part for part, _ in cells(Bar("x", "#ffffff", percent, obeyed), width))) == width
+    assert len("".join(part for part, _ in bar_cells(Bar("x", "#ffffff", percent, obeyed), width))) == width
 
 
 def test_a_bar_grows_from_the_middle() -> None:
     def filled(percent: int) -> list[int]:
         parts = [
-            (len(part), look.bgcolor.name) for part, look in cells(Bar("x", "#123456", percent), 21) if look.bgcolor
+            (len(part), look.bgcolor.name) for part, look in bar_cells(Bar("x", "#123456", percent), 21) if look.bgcolor
         ]
         return [length for length, ground in parts if ground == "#123456"]
 
@@ -153,9 +153,9 @@ def test_a_bar_grows_from_the_middle() -> None:
 
 
 def test_two_motors_are_left_and_right_and_others_are_counted() -> None:
-    assert [bar.label for bar in bars(snapshot())] == ["throttle", "steering", "left", "right"]
+    assert [bar.label for bar in build_bars(snapshot())] == ["throttle", "steering", "left", "right"]
     four = snapshot(vehicle=vehicle(outputs=(0.1, 0.2, 0.3, 0.4)))
-    assert [bar.label for bar in bars(four)][2:] == ["motor 1", "motor 2", "motor 3", "motor 4"]
+    assert [bar.label for bar in build_bars(four)][2:] == ["motor 1", "motor 2", "motor 3", "motor 4"]
 
 
 # ---- keys ----
@@ -174,12 +174,12 @@ def test_two_motors_are_left_and_right_and_others_are_counted() -> None:
     ],
 )
 def test_keys_are_written_as_people_do(key: str, shown: str) -> None:
-    assert key_name(key) == shown
+    assert format_key(key) == shown
 
 
 def test_an_arrow_lights_the_cap_of_its_direction() -> None:
-    assert lit(frozenset({"up"}), STANDARD) == lit(frozenset({"i"}), STANDARD) == {"drive.forward"}
-    assert lit(frozenset({"r", "question_mark"}), STANDARD) == frozenset()
+    assert lit_actions(frozenset({"up"}), STANDARD) == lit_actions(frozenset({"i"}), STANDARD) == {"drive.forward"}
+    assert lit_actions(frozenset({"r", "question_mark"}), STANDARD) == frozenset()
 
 
 def test_caps_show_the_block_around_k() -> None:
@@ -201,33 +201,33 @@ def test_the_footer_always_has_the_stops_and_the_way_out(width: int, keymap: str
 
 
 def test_control_characters_from_the_wire_do_not_reach_the_terminal() -> None:
-    nasty = TextLine(time=0.0, severity=6, label="vehicle", text="a\x1b[2Jb\x07\n", count=1)
-    assert "\x1b" not in "".join(text(Log((nasty,)).draw(80, 1)))
+    nasty = LogLine(time=0.0, severity=6, label="vehicle", text="a\x1b[2Jb\x07\n", count=1)
+    assert "\x1b" not in "".join(text(LogPanel((nasty,)).draw(80, 1)))
 
 
 def test_the_log_shows_the_newest_and_how_often() -> None:
-    lines = tuple(TextLine(time=0.0, severity=6, label="vehicle", text=str(n), count=n) for n in range(10))
-    shown = text(Log(lines).draw(80, 3))
+    lines = tuple(LogLine(time=0.0, severity=6, label="vehicle", text=str(n), count=n) for n in range(10))
+    shown = text(LogPanel(lines).draw(80, 3))
     assert [line.split()[2] for line in shown] == ["7", "8", "9"]
     assert "×9" in shown[-1]
 
 
 def test_a_table_that_is_too_long_says_so() -> None:
     rates = tuple(MessageRate(name=name, rate=rate, count=count, sent=sent) for name, rate, count, sent in RATES)
-    assert text(Rates(rates).draw(40, 6))[-1] == f"and {len(rates) - 4} more"
-    assert len(Rates(rates).draw(40, 30)) == len(rates) + 1
+    assert text(RatesPanel(rates).draw(40, 6))[-1] == f"and {len(rates) - 4} more"
+    assert len(RatesPanel(rates).draw(40, 30)) == len(rates) + 1
 
 
 @pytest.mark.parametrize("width", [80, 100, 119])
 def test_on_two_lines_nothing_important_is_left_out(width: int) -> None:
-    value = StatusValue(snapshot(helm=helm()), 0.004)
-    lines = " ".join(text(Status(value).draw(width, 2)))
+    value = StatusBarValue(snapshot(operator=helm()), 0.004)
+    lines = " ".join(text(StatusBar(value).draw(width, 2)))
     for words in ("ARMED", "you drive", "link", "loss", "rtt", "cmd", "key→motor", "tty", "batt", "gps"):
         assert words in lines
 
 
 def test_a_vehicle_in_emergency_stop_is_not_shown_as_armed() -> None:
-    line = Status(StatusValue(snapshot(vehicle=vehicle(emergency_stop=True, armed=True)))).draw(80, 2)[0].text
+    line = StatusBar(StatusBarValue(snapshot(vehicle=vehicle(emergency_stop=True, armed=True)))).draw(80, 2)[0].text
     assert "EMERGENCY STOP" in line
     assert "ARMED" not in line
 

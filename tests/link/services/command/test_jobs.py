@@ -5,8 +5,8 @@ from __future__ import annotations
 from dialects.enums import Result
 from dialects.messages import CommandAck, CommandCancel, CommandInt, CommandLong, Message
 from link.core import Outgoing, Peer, Received
-from link.services.command.jobs import NEWS, REMEMBER, Job
-from link.services.command.server import CommandClient, CommandRequest, CommandServer, Handler
+from link.services.command.jobs import PROGRESS_PERIOD, REPEAT_WINDOW, CommandJob
+from link.services.command.server import CommandClient, CommandHandler, CommandRequest, CommandServer
 
 HERE, THERE = Peer(0, "here"), Peer(0, "there")
 TEST, OTHER = 209, 310
@@ -33,10 +33,10 @@ class Vehicle:
     def __init__(self) -> None:
         self.works: list[Work] = []
         self.refusal: Result | None = None
-        handler = Handler(self.begin)
+        handler = CommandHandler(self.begin)
         self.server = CommandServer({TEST: handler, OTHER: handler}, system=1, component=1)
 
-    def begin(self, request: CommandRequest, now: float) -> Result | Job:
+    def begin(self, request: CommandRequest, now: float) -> Result | CommandJob:
         if self.refusal is not None:
             return self.refusal
         self.works.append(Work(now))
@@ -116,8 +116,8 @@ def test_a_repeat_with_nan_parameters_is_still_a_repeat() -> None:
 def test_long_after_its_beginning_only_what_says_so_is_a_repeat() -> None:
     vehicle = Vehicle()
     vehicle.ask(0.0)
-    assert vehicle.ask(REMEMBER + 1, confirmation=2) == [Result.IN_PROGRESS]
-    assert vehicle.ask(REMEMBER + 1) == [Result.TEMPORARILY_REJECTED]
+    assert vehicle.ask(REPEAT_WINDOW + 1, confirmation=2) == [Result.IN_PROGRESS]
+    assert vehicle.ask(REPEAT_WINDOW + 1) == [Result.TEMPORARILY_REJECTED]
 
 
 def test_a_repeat_after_the_end_hears_of_the_end_and_a_new_wish_begins_anew() -> None:
@@ -136,7 +136,7 @@ def test_a_command_int_has_no_confirmation_and_counts_as_a_repeat_for_a_while() 
     vehicle.say(same, 0.0)
     vehicle.server.tick(2.0)
     assert results(vehicle.say(same, 2.1)) == [Result.ACCEPTED]
-    assert results(vehicle.say(same, 2.0 + REMEMBER)) == [Result.IN_PROGRESS]
+    assert results(vehicle.say(same, 2.0 + REPEAT_WINDOW)) == [Result.IN_PROGRESS]
     assert len(vehicle.works) == 2
 
 
@@ -146,7 +146,7 @@ def test_a_cancel_stops_it_and_is_its_end() -> None:
     [outgoing] = vehicle.cancel(0.5)
     assert (ack_of(outgoing).command, ack_of(outgoing).result) == (TEST, Result.CANCELLED)
     assert (vehicle.works[0].cancelled, vehicle.works[0].stepped) == (1, 0)
-    assert vehicle.server.tick(2.0 + NEWS) == []
+    assert vehicle.server.tick(2.0 + PROGRESS_PERIOD) == []
     assert results(vehicle.cancel(0.9)) == [Result.CANCELLED]  # said again because the answer was lost
     assert vehicle.works[0].cancelled == 1
 
@@ -175,7 +175,7 @@ def test_a_cancel_long_after_the_end_is_ignored() -> None:
     vehicle = Vehicle()
     vehicle.ask(0.0)
     vehicle.server.tick(2.0)
-    assert vehicle.cancel(2.0 + REMEMBER) == []
+    assert vehicle.cancel(2.0 + REPEAT_WINDOW) == []
 
 
 def test_a_client_waits_for_the_end_on_a_line_that_loses_the_first_words() -> None:

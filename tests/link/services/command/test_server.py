@@ -9,7 +9,14 @@ import pytest
 from dialects.enums import Command, Result
 from dialects.messages import CommandAck, CommandInt, CommandLong, Heartbeat, Message
 from link.core import Outgoing, Peer, Received
-from link.services.command.server import REPEAT_AFTER, TRIES, CommandClient, CommandRequest, CommandServer, Handler
+from link.services.command.server import (
+    REPEAT_AFTER,
+    TRIES,
+    CommandClient,
+    CommandHandler,
+    CommandRequest,
+    CommandServer,
+)
 
 PEER = Peer(0, "there")
 
@@ -32,8 +39,8 @@ class Vehicle:
         self.result = result
         self.server = CommandServer(
             {
-                Command.COMPONENT_ARM_DISARM: Handler(self.run),
-                Command.DO_FLIGHTTERMINATION: Handler(self.run, broadcast=True),
+                Command.COMPONENT_ARM_DISARM: CommandHandler(self.run),
+                Command.DO_FLIGHTTERMINATION: CommandHandler(self.run, broadcast=True),
             },
             system=1,
             component=1,
@@ -142,7 +149,7 @@ def test_answers_to_others_and_from_others_do_not_count() -> None:
     client.receive(received(CommandAck(400, 0, target_system=255), 2, 1), 0.1)
     client.receive(ack(176, Result.ACCEPTED), 0.1)
     assert client.outcomes() == []
-    assert client.waits(400, 1)
+    assert client.is_waiting(400, 1)
 
 
 def test_an_unknown_result_is_a_failure_with_its_number() -> None:

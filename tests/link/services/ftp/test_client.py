@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from dialects import messages as m
 from link.core import Outgoing
 from link.services.ftp.client import MAX_SIZE, TRIES, FtpClient, FtpOutcome
-from link.services.ftp.protocol import FtpError, FtpPacket, Op, parse
-from link.services.ftp.reassembly import Assembly, Coverage
+from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
+from link.services.ftp.reassembly import FileReassembly, RangeSet
 from tests.link.ftp_vehicle import Vehicle
 from tests.link.services_world import Pair, from_vehicle, messages
 
@@ -89,7 +89,7 @@ def test_silence_ends_too() -> None:
         sent += client.messages_to_send()
     assert [(outcome.done, outcome.error) for outcome in client.outcomes()] == [(False, None)]
     assert len(sent) == TRIES
-    assert len({parse(message).sequence for message in messages(sent)}) == 1, "repeated, not asked anew"
+    assert len({parse_packet(message).sequence for message in messages(sent)}) == 1, "repeated, not asked anew"
 
 
 def test_a_vehicle_that_falls_silent_in_the_middle_ends_too() -> None:
@@ -110,7 +110,7 @@ class Foreign:
         self.data, self.announced = data, announced
 
     def receive(self, received: Any, now: float) -> list[Any]:
-        question = parse(received.message)
+        question = parse_packet(received.message)
         return [Outgoing(answer.message(255, 190)) for answer in self.answers(question)]
 
     def tick(self, now: float) -> list[Any]:
@@ -118,17 +118,17 @@ class Foreign:
 
     def answers(self, question: FtpPacket) -> list[FtpPacket]:
         after, session = question.sequence + 1, question.session
-        end = FtpPacket(after, Op.NAK, session, bytes([FtpError.END_OF_FILE]), question.offset, question.op)
-        if question.op == Op.OPEN:
+        end = FtpPacket(after, FtpOpcode.NAK, session, bytes([FtpError.END_OF_FILE]), question.offset, question.op)
+        if question.op == FtpOpcode.OPEN:
             size = self.announced.to_bytes(4, "little")
-            return [FtpPacket(after, Op.ACK, session, size, 0, Op.OPEN)]
-        if question.op == Op.READ:
+            return [FtpPacket(after, FtpOpcode.ACK, session, size, 0, FtpOpcode.OPEN)]
+        if question.op == FtpOpcode.READ:
             data = self.data[question.offset : question.offset + (question.size or 0)]
-            return [FtpPacket(after, Op.ACK, session, data, question.offset, Op.READ)] if data else [end]
-        if question.op != Op.BURST:
+            return [FtpPacket(after, FtpOpcode.ACK, session, data, question.offset, FtpOpcode.READ)] if data else [end]
+        if question.op != FtpOpcode.BURST:
             return []
         pieces = [
-            FtpPacket(after + number, Op.ACK, session, self.data[at : at + 239], at, Op.BURST)
+            FtpPacket(after + number, FtpOpcode.ACK, session, self.data[at : at + 239], at, FtpOpcode.BURST)
             for number, at in enumerate(range(question.offset, len(self.data), 239))
         ]
         return [*pieces, end]
@@ -151,8 +151,8 @@ def opened(size: bytes) -> FtpClient:
     client = FtpClient(255, 190, target_system=1)
     client.download("/x", 0.0)
     [question] = messages(client.messages_to_send())
-    asked = parse(question)
-    answer = FtpPacket(asked.sequence + 1, Op.ACK, asked.session, size, 0, Op.OPEN)
+    asked = parse_packet(question)
+    answer = FtpPacket(asked.sequence + 1, FtpOpcode.ACK, asked.session, size, 0, FtpOpcode.OPEN)
     client.receive(from_vehicle(answer.message(255, 190)), 0.1)
     return client
 
@@ -177,14 +177,17 @@ def test_any_answer_raises_nothing_and_stays_in_bounds(payloads: list[bytes], si
 def test_names_in_a_listing_are_fit_for_a_terminal() -> None:
     client = FtpClient(255, 190, target_system=1)
     client.list_folder("/", 0.0)
-    asked = parse(messages(client.messages_to_send())[0])
+    asked = parse_packet(messages(client.messages_to_send())[0])
     lines = b"D\x1b[2J\0Fgood.bin\t12\0Fbad\tsize\0Sskipped\0"
     client.receive(
-        from_vehicle(FtpPacket(asked.sequence + 1, Op.ACK, asked.session, lines, 0, Op.LIST).message(255, 190)), 0.1
+        from_vehicle(
+            FtpPacket(asked.sequence + 1, FtpOpcode.ACK, asked.session, lines, 0, FtpOpcode.LIST).message(255, 190)
+        ),
+        0.1,
     )
-    asked = parse(messages(client.messages_to_send())[-1])
+    asked = parse_packet(messages(client.messages_to_send())[-1])
     assert asked.offset == 4
-    end = FtpPacket(asked.sequence + 1, Op.NAK, asked.session, bytes([FtpError.END_OF_FILE]), 4, Op.LIST)
+    end = FtpPacket(asked.sequence + 1, FtpOpcode.NAK, asked.session, bytes([FtpError.END_OF_FILE]), 4, FtpOpcode.LIST)
     client.receive(from_vehicle(end.message(255, 190)), 0.2)
     [outcome] = client.outcomes()
     assert [tuple(entry) for entry in outcome.entries] == [("\N{REPLACEMENT CHARACTER}[2J", None), ("good.bin", 12)]
@@ -195,7 +198,7 @@ def test_names_in_a_listing_are_fit_for_a_terminal() -> None:
 
 @given(st.lists(st.tuples(st.integers(0, 60), st.integers(0, 12)), max_size=30))
 def test_coverage_is_a_set_of_bytes(ranges: list[tuple[int, int]]) -> None:
-    coverage, model = Coverage(), set[int]()
+    coverage, model = RangeSet(), set[int]()
     for start, length in ranges:
         coverage.add(start, start + length)
         model |= set(range(start, start + length))
@@ -206,19 +209,19 @@ def test_coverage_is_a_set_of_bytes(ranges: list[tuple[int, int]]) -> None:
 
 
 def test_a_piece_beyond_the_end_takes_no_memory() -> None:
-    file = Assembly(1000)
-    file.take(990, bytes(20))
-    file.take(2_000_000_000, b"x")
-    assert (file.here.end, file.data) == (0, b"")
+    file = FileReassembly(1000)
+    file.add_piece(990, bytes(20))
+    file.add_piece(2_000_000_000, b"x")
+    assert (file.received.end, file.data) == (0, b"")
 
 
 def test_pieces_under_way_are_not_asked_for_twice() -> None:
-    file = Assembly(1000)
-    file.take(200, bytes(300))
-    assert file.wanted(4, 100) == [(0, 100), (100, 100), (500, 100), (600, 100)]
-    file.asked(7, 0, due=1.0)
-    assert file.wanted(2, 100) == [(100, 100)]
-    assert not file.forget_overdue(0.9)
-    assert file.forget_overdue(1.0)
-    assert file.wanted(2, 100) == [(0, 100), (100, 100)]
-    assert file.answered(7) is None
+    file = FileReassembly(1000)
+    file.add_piece(200, bytes(300))
+    assert file.next_missing(4, 100) == [(0, 100), (100, 100), (500, 100), (600, 100)]
+    file.mark_requested(7, 0, due=1.0)
+    assert file.next_missing(2, 100) == [(100, 100)]
+    assert not file.expire_requests(0.9)
+    assert file.expire_requests(1.0)
+    assert file.next_missing(2, 100) == [(0, 100), (100, 100)]
+    assert file.pop_request(7) is None

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dialects import messages as m
-from link.services.ftp.protocol import MAX_OFFSET, FtpError, FtpPacket, Op, parse
+from link.services.ftp.protocol import MAX_OFFSET, FtpError, FtpOpcode, FtpPacket, parse_packet
 from tests.link.ftp_vehicle import LOG, Vehicle, error
 from tests.link.services_world import PEER, from_gcs
 
@@ -43,8 +43,11 @@ PATHS = [
 
 
 @pytest.mark.parametrize("path", PATHS)
-@pytest.mark.parametrize("op", [Op.OPEN, Op.CRC, Op.CREATE, Op.OPEN_TO_WRITE, Op.REMOVE, Op.TRUNCATE])
-def test_71_no_path_leads_out(path: bytes, op: Op) -> None:
+@pytest.mark.parametrize(
+    "op",
+    [FtpOpcode.OPEN, FtpOpcode.CRC, FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE, FtpOpcode.REMOVE, FtpOpcode.TRUNCATE],
+)
+def test_71_no_path_leads_out(path: bytes, op: FtpOpcode) -> None:
     assert error(Vehicle().ask(op, path)) in (FtpError.NOT_FOUND, FtpError.PROTECTED)
 
 
@@ -62,10 +65,10 @@ def test_only_names_that_are_served_are_found(path: bytes) -> None:
 
 
 @pytest.mark.parametrize("size", [240, 255])
-@pytest.mark.parametrize("op", [Op.OPEN, Op.READ, Op.BURST, Op.WRITE, Op.LIST])
-def test_72_a_size_that_cannot_be_is_refused(size: int, op: Op) -> None:
+@pytest.mark.parametrize("op", [FtpOpcode.OPEN, FtpOpcode.READ, FtpOpcode.BURST, FtpOpcode.WRITE, FtpOpcode.LIST])
+def test_72_a_size_that_cannot_be_is_refused(size: int, op: FtpOpcode) -> None:
     vehicle = Vehicle()
-    vehicle.ask(Op.OPEN, b"/logs/1.bin")
+    vehicle.ask(FtpOpcode.OPEN, b"/logs/1.bin")
     assert error(vehicle.ask(op, b"A" * 239, size=size)) is FtpError.INVALID_SIZE
 
 
@@ -74,24 +77,24 @@ def test_73_unknown_questions_are_unknown(op: int) -> None:
     assert error(Vehicle().ask(op, b"/")) is FtpError.UNKNOWN_COMMAND
 
 
-@pytest.mark.parametrize("op", [Op.READ, Op.BURST, Op.WRITE])
-def test_72_a_session_that_is_not_open(op: Op) -> None:
+@pytest.mark.parametrize("op", [FtpOpcode.READ, FtpOpcode.BURST, FtpOpcode.WRITE])
+def test_72_a_session_that_is_not_open(op: FtpOpcode) -> None:
     assert error(Vehicle().ask(op, session=200)) is FtpError.INVALID_SESSION
 
 
-@pytest.mark.parametrize("op", [Op.RENAME, Op.MAKE_DIRECTORY, Op.REMOVE_DIRECTORY])
-def test_the_tree_keeps_its_shape(op: Op) -> None:
+@pytest.mark.parametrize("op", [FtpOpcode.RENAME, FtpOpcode.MAKE_DIRECTORY, FtpOpcode.REMOVE_DIRECTORY])
+def test_the_tree_keeps_its_shape(op: FtpOpcode) -> None:
     assert error(Vehicle().ask(op, b"/missions/new")) is FtpError.PROTECTED
 
 
 def test_answers_are_never_answered() -> None:
-    for op in (Op.ACK, Op.NAK):
+    for op in (FtpOpcode.ACK, FtpOpcode.NAK):
         assert Vehicle().send(FtpPacket(1, op)) == []
 
 
 def test_what_is_meant_for_others_or_comes_from_strangers_is_not_answered() -> None:
     vehicle = Vehicle()
-    question = FtpPacket(1, Op.LIST, data=b"/")
+    question = FtpPacket(1, FtpOpcode.LIST, data=b"/")
     for target in ((2, 1), (0, 0), (1, 42)):
         assert vehicle.server.receive(from_gcs(question.message(*target)), 0.0) == []
     assert vehicle.send(question, introduced=False) == []
@@ -147,13 +150,13 @@ def test_any_order_of_questions_raises_nothing_and_writes_only_plans(questions: 
     )
 )
 def test_a_packet_comes_out_as_it_went_in(packet: FtpPacket) -> None:
-    again = parse(m.FileTransferProtocol(0, 1, 1, packet.payload()))
+    again = parse_packet(m.FileTransferProtocol(0, 1, 1, packet.payload()))
     assert again == dataclasses.replace(packet, size=len(packet.data))
 
 
 def test_answers_go_to_who_asked() -> None:
     vehicle = Vehicle()
-    [outgoing] = vehicle.server.receive(from_gcs(FtpPacket(1, Op.LIST, data=b"/").message(1, 0)), 0.0)
+    [outgoing] = vehicle.server.receive(from_gcs(FtpPacket(1, FtpOpcode.LIST, data=b"/").message(1, 0)), 0.0)
     message = outgoing.message
     assert isinstance(message, m.FileTransferProtocol)
     assert (message.target_system, message.target_component, outgoing.peer) == (255, 190, PEER)

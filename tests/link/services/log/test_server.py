@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from link.services.ftp.files import MemoryFolder
-from link.services.log.server import DATA_SIZE, MAX_CLIENTS, MAX_WISHES, LogServer
-from link.services.pacing import Pacer
+from link.services.log.server import DATA_SIZE, MAX_CLIENTS, MAX_REQUESTS, LogServer
+from link.services.pacing import BulkPacer
 from tests.link.ftp_vehicle import SlowFolder
 from tests.link.services_world import OTHER_PEER, PEER, from_gcs, messages
 
@@ -33,7 +33,7 @@ class Vehicle:
             SlowFolder(self.files) if self.slow else MemoryFolder(self.files),
             system=1,
             component=1,
-            pacer=Pacer(lambda peer: self.rate),
+            pacer=BulkPacer(lambda peer: self.rate),
             when=lambda name: 1_700_000_000,
             erase=lambda received, now: self.erasers.append(received.system),
         )
@@ -104,7 +104,7 @@ def test_wishes_and_clients_are_bounded() -> None:
             vehicle.server.receive(from_gcs(m.LogRequestData(1, 1, 0, offset, 1), peer=peer), 0.0)
     vehicle.rate = 1e6
     answers = [answer for step in range(200) for answer in messages(vehicle.server.tick(10.0 + step * 0.02))]
-    assert len(answers) <= MAX_CLIENTS * MAX_WISHES
+    assert len(answers) <= MAX_CLIENTS * MAX_REQUESTS
 
 
 def test_a_log_is_paced_by_the_link_and_stops_when_asked() -> None:

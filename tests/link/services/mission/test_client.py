@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.services.mission.client import TRIES, Job, MissionClient, MissionOutcome
+from link.services.mission.client import TRIES, MissionClient, MissionOperation, MissionOutcome
 from tests.link.mission_vehicle import (
     Vehicle,
     plain,
@@ -63,7 +63,7 @@ def test_a_refusal_is_told_with_its_reason() -> None:
     client = MissionClient(255, 190, target_system=1)
     client.upload([waypoint(command=22)], MissionType.MISSION, 100.0)
     outcome = ending(client, Pair(vehicle.server, client), within=5.0)
-    assert (outcome.job, outcome.done, outcome.result) == (Job.UPLOAD, False, MissionResult.UNSUPPORTED)
+    assert (outcome.job, outcome.done, outcome.result) == (MissionOperation.UPLOAD, False, MissionResult.UNSUPPORTED)
 
 
 def test_an_old_answer_said_again_ends_no_new_job() -> None:

@@ -8,10 +8,10 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.services.ftp.files import NotYetError
+from link.services.ftp.files import NotReadyError
 from link.services.ftp.protocol import FtpError
-from link.services.mission.commit import PATIENCE
-from link.services.mission.files import PlanFolder, write
+from link.services.mission.commit import WRITE_TIMEOUT
+from link.services.mission.files import PlanFolder, encode_plan
 from tests.link.mission_vehicle import FENCE_CIRCLE, Vehicle, plain, waypoint
 
 MISSION, FENCE, RALLY, ALL = MissionType.MISSION, MissionType.FENCE, MissionType.RALLY, MissionType.ALL
@@ -83,8 +83,8 @@ def test_a_disk_that_refuses_leaves_the_old_plan_and_its_id() -> None:
 def test_a_disk_that_does_not_answer_is_given_up() -> None:
     vehicle = Disk()
     vehicle.upload(NEW)
-    assert vehicle.tick(PATIENCE - 0.1) == []
-    assert result(vehicle.tick(PATIENCE)) == [(MissionResult.ERROR, MISSION)]
+    assert vehicle.tick(WRITE_TIMEOUT - 0.1) == []
+    assert result(vehicle.tick(WRITE_TIMEOUT)) == [(MissionResult.ERROR, MISSION)]
     assert vehicle.old
     assert vehicle.stayed == [(MISSION, 2, "the disk does not answer")]
     vehicle.upload(NEW)
@@ -190,13 +190,13 @@ def test_a_file_waits_as_well(problem: str | None, answer: FtpError | None) -> N
     vehicle = Disk()
     folder = PlanFolder(vehicle.server)
     for _ in range(2):
-        with pytest.raises(NotYetError):
-            folder.store("mission.waypoints", write(NEW))
+        with pytest.raises(NotReadyError):
+            folder.store("mission.waypoints", encode_plan(NEW))
     assert vehicle.old
     vehicle.end(problem)
-    assert folder.store("mission.waypoints", write(NEW)) is answer
+    assert folder.store("mission.waypoints", encode_plan(NEW)) is answer
     assert vehicle.old is (problem is not None)
-    with pytest.raises(NotYetError):
+    with pytest.raises(NotReadyError):
         folder.remove("mission.waypoints")
     vehicle.end(problem)
     assert folder.remove("mission.waypoints") is answer
@@ -205,39 +205,39 @@ def test_a_file_waits_as_well(problem: str | None, answer: FtpError | None) -> N
 def test_another_file_meanwhile_is_refused() -> None:
     vehicle = Disk()
     folder = PlanFolder(vehicle.server)
-    with pytest.raises(NotYetError):
-        folder.store("mission.waypoints", write(NEW))
-    assert folder.store("mission.waypoints", write(OLD)) is FtpError.FAIL
+    with pytest.raises(NotReadyError):
+        folder.store("mission.waypoints", encode_plan(NEW))
+    assert folder.store("mission.waypoints", encode_plan(OLD)) is FtpError.FAIL
     vehicle.end()
     assert plain(vehicle.plan) == plain(tuple(NEW))
-    assert folder.store("mission.waypoints", write(NEW)) is None  # who wrote first hears how that went
+    assert folder.store("mission.waypoints", encode_plan(NEW)) is None  # who wrote first hears how that went
 
 
 def test_a_file_that_may_not_be_put_in_force_any_more_when_it_is_written_is_refused() -> None:
     vehicle, driving = Disk(), False
     folder = PlanFolder(vehicle.server, lambda kind: "AUTO drives by it" if driving else None)
-    with pytest.raises(NotYetError):
-        folder.store("mission.waypoints", write(NEW))
+    with pytest.raises(NotReadyError):
+        folder.store("mission.waypoints", encode_plan(NEW))
     driving = True
     vehicle.end()
     assert vehicle.old
-    assert folder.store("mission.waypoints", write(NEW)) is FtpError.FAIL
+    assert folder.store("mission.waypoints", encode_plan(NEW)) is FtpError.FAIL
 
 
 def test_a_file_that_nobody_heard_of_again_is_written_anew_once_the_plan_is_another() -> None:
     vehicle = Disk()
     folder = PlanFolder(vehicle.server)
-    with pytest.raises(NotYetError):
-        folder.store("mission.waypoints", write(NEW))
+    with pytest.raises(NotReadyError):
+        folder.store("mission.waypoints", encode_plan(NEW))
     vehicle.end()
     assert plain(vehicle.plan) == plain(tuple(NEW))
     vehicle.upload(OLD)
     vehicle.end()
     assert vehicle.old
-    with pytest.raises(NotYetError):
-        folder.store("mission.waypoints", write(NEW))
+    with pytest.raises(NotReadyError):
+        folder.store("mission.waypoints", encode_plan(NEW))
     vehicle.end()
-    assert folder.store("mission.waypoints", write(NEW)) is None
+    assert folder.store("mission.waypoints", encode_plan(NEW)) is None
     assert plain(vehicle.plan) == plain(tuple(NEW))
 
 
@@ -246,6 +246,6 @@ def test_an_answer_that_comes_due_meanwhile_is_not_lost() -> None:
     vehicle.upload(NEW)
     assert vehicle.disk is not None
     vehicle.disk[0].done = True
-    with pytest.raises(NotYetError):
-        PlanFolder(vehicle.server).store("rally.waypoints", write([waypoint(command=5100)]))
+    with pytest.raises(NotReadyError):
+        PlanFolder(vehicle.server).store("rally.waypoints", encode_plan([waypoint(command=5100)]))
     assert result(vehicle.tick(0.1)) == [(MissionResult.ACCEPTED, MISSION)]

@@ -14,10 +14,10 @@ from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Peer
 from link.services.mission.download import MAX_CLIENTS
-from link.services.mission.files import read, write
-from link.services.mission.items import NOWHERE
+from link.services.mission.files import decode_plan, encode_plan
+from link.services.mission.items import UNSET_COORDINATE
 from link.services.mission.plans import plan_id
-from link.services.pacing import Pacer
+from link.services.pacing import BulkPacer
 from tests.link.mission_vehicle import (
     DO_JUMP,
     FENCE_CIRCLE,
@@ -76,7 +76,7 @@ def test_a_part_of_a_plan_is_told_without_more_questions(first: int, last: int, 
 
 
 def test_a_large_part_goes_no_faster_than_the_line() -> None:
-    vehicle = Vehicle(pacer=Pacer(lambda peer: 1000.0))
+    vehicle = Vehicle(pacer=BulkPacer(lambda peer: 1000.0))
     vehicle.upload([waypoint(number) for number in range(100)])
     vehicle.ask(m.MissionRequestPartialList(1, 1, 0, -1))
     told = [item.seq for cycle in range(100) for item in vehicle.tick(cycle * 0.02)]
@@ -167,7 +167,7 @@ def test_a_plan_has_the_same_id_after_the_way_through_a_file() -> None:
     items = [waypoint(0, z=0.1), waypoint(1, params=(0.3, math.nan, -1e-9, 5.0))]
     vehicle = Vehicle()
     vehicle.upload(items)
-    assert plan_id(read(write(vehicle.plan))) == vehicle.server.plan_id(MissionType.MISSION)
+    assert plan_id(decode_plan(encode_plan(vehicle.plan))) == vehicle.server.plan_id(MissionType.MISSION)
 
 
 # ---- downloading, clearing, choosing ----
@@ -248,7 +248,7 @@ def test_choosing_an_item_is_answered_to_all() -> None:
 
 def test_a_saved_plan_passes_the_same_rules() -> None:
     vehicle = Vehicle()
-    assert vehicle.server.load(MissionType.MISSION, [waypoint(x=NOWHERE)]) is MissionResult.INVALID_X
+    assert vehicle.server.load(MissionType.MISSION, [waypoint(x=UNSET_COORDINATE)]) is MissionResult.INVALID_X
     assert vehicle.server.load(MissionType.FENCE, [waypoint()] * 11) is MissionResult.NO_SPACE
     assert vehicle.plan == ()
     assert vehicle.changes == []

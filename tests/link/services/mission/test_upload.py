@@ -9,9 +9,9 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.services.mission.items import NOWHERE
-from link.services.mission.server import REMEMBER
-from link.services.mission.upload import ASK_AGAIN, GIVE_UP
+from link.services.mission.items import UNSET_COORDINATE
+from link.services.mission.server import REPEAT_WINDOW
+from link.services.mission.upload import REQUEST_TIMEOUT, UPLOAD_TIMEOUT
 from tests.link.mission_vehicle import (
     DO_JUMP,
     FENCE_CIRCLE,
@@ -76,11 +76,13 @@ def test_66_silence_is_asked_again_and_then_cancelled_and_the_old_plan_stays() -
         now = 10.0 + step * 0.02
         asked += [(now, message) for message in vehicle.tick(now)]
     *requests, (at, ack) = asked
-    assert [round(now - 10.0, 2) for now, _ in requests[:3]] == pytest.approx([ASK_AGAIN, 2 * ASK_AGAIN, 3 * ASK_AGAIN])
+    assert [round(now - 10.0, 2) for now, _ in requests[:3]] == pytest.approx(
+        [REQUEST_TIMEOUT, 2 * REQUEST_TIMEOUT, 3 * REQUEST_TIMEOUT]
+    )
     assert {type(message) for _, message in requests} == {m.MissionRequest, m.MissionRequestInt}
     assert {message.seq for _, message in requests} == {0}
     assert ack.type == MissionResult.CANCELLED
-    assert at == pytest.approx(10.0 + GIVE_UP, abs=0.03)
+    assert at == pytest.approx(10.0 + UPLOAD_TIMEOUT, abs=0.03)
     assert plain(vehicle.plan) == plain((waypoint(),))
     assert vehicle.give(waypoint(7), 0, 20.0) == []
 
@@ -89,13 +91,13 @@ def test_who_refuses_to_be_asked_in_floats_is_asked_in_integers_at_once_and_from
     """As MAVSDK does: its refusal is no wish to end."""
     vehicle = Vehicle()
     vehicle.ask(m.MissionCount(1, 1, 2))
-    [old] = vehicle.tick(ASK_AGAIN)
+    [old] = vehicle.tick(REQUEST_TIMEOUT)
     assert isinstance(old, m.MissionRequest)
     refusal = m.MissionAck(1, 1, MissionResult.UNSUPPORTED)
-    assert [type(each) for each in vehicle.ask(refusal, now=ASK_AGAIN)] == [m.MissionRequestInt]
-    assert vehicle.ask(refusal, now=ASK_AGAIN) == []
+    assert [type(each) for each in vehicle.ask(refusal, now=REQUEST_TIMEOUT)] == [m.MissionRequestInt]
+    assert vehicle.ask(refusal, now=REQUEST_TIMEOUT) == []
     for again in range(2, 6):
-        assert [type(each) for each in vehicle.tick(again * ASK_AGAIN)] == [m.MissionRequestInt]
+        assert [type(each) for each in vehicle.tick(again * REQUEST_TIMEOUT)] == [m.MissionRequestInt]
     vehicle.give(waypoint(0), 0)
     assert [ack.type for ack in vehicle.give(waypoint(1), 1)] == [MissionResult.ACCEPTED]
 
@@ -125,7 +127,7 @@ def test_67_the_last_item_said_again_is_acknowledged_again() -> None:
     vehicle.upload([waypoint(0), waypoint(1)])
     assert [ack.type for ack in vehicle.give(waypoint(1), 1, 1.0)] == [MissionResult.ACCEPTED]
     assert vehicle.give(waypoint(0), 0, 1.0) == []
-    assert vehicle.give(waypoint(1), 1, REMEMBER + 1.0) == []
+    assert vehicle.give(waypoint(1), 1, REPEAT_WINDOW + 1.0) == []
     assert len(vehicle.changes) == 1
 
 
@@ -194,7 +196,7 @@ def test_the_vehicle_may_refuse_to_be_changed(verdict: MissionResult) -> None:
         ({"frame": 2}, MissionResult.UNSUPPORTED_FRAME),
         ({"x": 900000001}, MissionResult.INVALID_X),
         ({"x": -900000001}, MissionResult.INVALID_X),
-        ({"x": NOWHERE}, MissionResult.INVALID_X),
+        ({"x": UNSET_COORDINATE}, MissionResult.INVALID_X),
         ({"x": 0, "y": 0}, MissionResult.INVALID_X),
         ({"y": 1800000001}, MissionResult.INVALID_Y),
         ({"params": (math.inf, 0.0, 0.0, 0.0)}, MissionResult.INVALID_PARAM1),

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dialects import messages as m
-from dialects.enums import ParamFault
+from dialects.enums import ParamErrorCode
 from link.core import Outgoing
 from link.services.param.client import TRIES, ParamClient, ParamOutcome
-from link.services.param.values import REAL32, from_wire, shortest, to_wire
+from link.services.param.values import REAL32, from_wire, shortest_float32, to_wire
 from tests.link.param_vehicle import Vehicle, big_table
 from tests.link.services_world import Pair, from_vehicle
 
@@ -67,10 +67,10 @@ def test_a_refusal_and_an_unknown_name_end_at_once() -> None:
     client = ParamClient(255, 190, target_system=1)
     client.set("MAN_TIMEOUT", 1.0, 100.0)
     refused = ending(client, Pair(vehicle.server, client))
-    assert (refused.done, refused.fault) == (False, ParamFault.PERMISSION_DENIED)
+    assert (refused.done, refused.fault) == (False, ParamErrorCode.PERMISSION_DENIED)
     client.read("NO_SUCH", 100.0)
     unknown = ending(client, Pair(vehicle.server, client))
-    assert (unknown.done, unknown.fault) == (False, ParamFault.DOES_NOT_EXIST)
+    assert (unknown.done, unknown.fault) == (False, ParamErrorCode.DOES_NOT_EXIST)
 
 
 def test_a_value_that_was_under_way_is_no_refusal() -> None:
@@ -95,7 +95,7 @@ def test_a_vehicle_that_answers_with_another_value_has_refused() -> None:
 def test_what_is_no_float32_is_refused_before_it_is_sent(value: float) -> None:
     client = ParamClient(255, 190, target_system=1)
     client.set("SPEED", value, 0.0)
-    assert [outcome.fault for outcome in client.outcomes()] == [ParamFault.VALUE_OUT_OF_RANGE]
+    assert [outcome.fault for outcome in client.outcomes()] == [ParamErrorCode.VALUE_OUT_OF_RANGE]
     assert client.messages_to_send() == []
 
 
@@ -104,7 +104,7 @@ def test_a_name_that_would_become_anothers_is_not_sent(name: str) -> None:
     client = ParamClient(255, 190, target_system=1)
     client.set(name, 1.0, 0.0)
     client.read(name, 0.0)
-    assert [outcome.fault for outcome in client.outcomes()] == [ParamFault.DOES_NOT_EXIST] * 2
+    assert [outcome.fault for outcome in client.outcomes()] == [ParamErrorCode.DOES_NOT_EXIST] * 2
     assert client.messages_to_send() == []
 
 
@@ -144,7 +144,7 @@ def test_whole_numbers_survive_both_ways_of_sending_them(kind: int, bytewise: bo
 
 @given(st.floats(width=32, allow_nan=False))
 def test_the_shortest_number_is_the_same_float32(value: float) -> None:
-    assert through_float32(shortest(value)) == value
+    assert through_float32(shortest_float32(value)) == value
 
 
 def through_float32(value: float) -> float:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pymavlink import mavftp
 
 from link.services.param.pack import pack
-from link.services.param.values import shortest
+from link.services.param.values import shortest_float32
 from tests.link.param_vehicle import TABLE, Line, Memory
 
 
@@ -27,10 +27,10 @@ def test_the_packed_file_reads_as_pymavlink_reads_it() -> None:
     values["MAN_DEADBAND"] = 7.25
     plain = unpack(pack(TABLE, values))
     assert [(name.decode(), kind) for name, _, kind in plain.params] == [(line.name, 4) for line in TABLE]
-    assert [shortest(value) for _, value, _ in plain.params] == [0.45, 7.25, 0.1, 0, 7]
+    assert [shortest_float32(value) for _, value, _ in plain.params] == [0.45, 7.25, 0.1, 0, 7]
     with_defaults = unpack(pack(TABLE, values, {"withdefaults": "1"}))
-    assert [shortest(value) for _, value, _ in with_defaults.defaults] == [line.default for line in TABLE]
-    assert [shortest(value) for _, value, _ in with_defaults.params] == [0.45, 7.25, 0.1, 0, 7]
+    assert [shortest_float32(value) for _, value, _ in with_defaults.defaults] == [line.default for line in TABLE]
+    assert [shortest_float32(value) for _, value, _ in with_defaults.params] == [0.45, 7.25, 0.1, 0, 7]
 
 
 @pytest.mark.parametrize(

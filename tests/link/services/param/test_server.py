@@ -7,9 +7,9 @@ import math
 import pytest
 
 from dialects import messages as m
-from dialects.enums import ParamFault
+from dialects.enums import ParamErrorCode
 from link.core import Outgoing
-from link.services.param.server import RUN_PERIOD, check
+from link.services.param.server import RUN_PERIOD, check_value
 from link.services.param.values import REAL32
 from tests.link.param_vehicle import TABLE, Vehicle, big_table, faults, values
 from tests.link.services_world import OTHER_PEER, PEER, from_gcs, messages
@@ -46,19 +46,19 @@ def test_bounds_themselves_are_allowed_though_float32_misses_them(value: float) 
 @pytest.mark.parametrize(
     ("name", "value", "kind", "fault"),
     [
-        ("MAN_DEADBAND", math.nan, REAL32, ParamFault.VALUE_OUT_OF_RANGE),
-        ("MAN_DEADBAND", math.inf, REAL32, ParamFault.VALUE_OUT_OF_RANGE),
-        ("MAN_DEADBAND", -math.inf, REAL32, ParamFault.VALUE_OUT_OF_RANGE),
-        ("MAN_DEADBAND", 20.01, REAL32, ParamFault.VALUE_OUT_OF_RANGE),
-        ("MAN_DEADBAND", -0.01, REAL32, ParamFault.VALUE_OUT_OF_RANGE),
-        ("INITIAL_MODE", 1.5, REAL32, ParamFault.VALUE_OUT_OF_RANGE),
-        ("MAN_DEADBAND", 4.0, 6, ParamFault.TYPE_MISMATCH),
-        ("MAN_DEADBAND", 4.0, 0, ParamFault.TYPE_MISMATCH),
-        ("VERSION", 8.0, REAL32, ParamFault.READ_ONLY),
+        ("MAN_DEADBAND", math.nan, REAL32, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        ("MAN_DEADBAND", math.inf, REAL32, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        ("MAN_DEADBAND", -math.inf, REAL32, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        ("MAN_DEADBAND", 20.01, REAL32, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        ("MAN_DEADBAND", -0.01, REAL32, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        ("INITIAL_MODE", 1.5, REAL32, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        ("MAN_DEADBAND", 4.0, 6, ParamErrorCode.TYPE_MISMATCH),
+        ("MAN_DEADBAND", 4.0, 0, ParamErrorCode.TYPE_MISMATCH),
+        ("VERSION", 8.0, REAL32, ParamErrorCode.READ_ONLY),
     ],
 )
 def test_what_is_wrong_is_answered_by_the_reason_and_then_the_old_value(
-    name: str, value: float, kind: int, fault: ParamFault
+    name: str, value: float, kind: int, fault: ParamErrorCode
 ) -> None:
     vehicle = Vehicle()
     before = dict(vehicle.values)
@@ -76,14 +76,14 @@ def test_a_name_that_does_not_exist_is_answered_by_an_error_that_names_it(name: 
     vehicle = Vehicle()
     [error] = vehicle.set(name, 1.0)
     assert isinstance(error, m.ParamError)
-    assert (error.error, error.param_index) == (ParamFault.DOES_NOT_EXIST, -1)
+    assert (error.error, error.param_index) == (ParamErrorCode.DOES_NOT_EXIST, -1)
     assert error._param_id_raw == name.encode("latin-1")[:16]
     assert (error.target_system, error.target_component) == (255, 190)
 
 
 def test_safety_settings_wait_until_it_is_disarmed() -> None:
     vehicle = Vehicle(armed=True)
-    assert faults(vehicle.set("MAN_TIMEOUT", 1.0)) == [ParamFault.PERMISSION_DENIED]
+    assert faults(vehicle.set("MAN_TIMEOUT", 1.0)) == [ParamErrorCode.PERMISSION_DENIED]
     assert vehicle.values["MAN_TIMEOUT"] == 0.45
     assert faults(vehicle.set("MAN_DEADBAND", 1.0)) == []
     vehicle.armed = False
@@ -92,7 +92,7 @@ def test_safety_settings_wait_until_it_is_disarmed() -> None:
 
 def test_only_who_is_in_control_may_set() -> None:
     vehicle = Vehicle(allowed=False)
-    assert faults(vehicle.set("MAN_DEADBAND", 1.0)) == [ParamFault.PERMISSION_DENIED]
+    assert faults(vehicle.set("MAN_DEADBAND", 1.0)) == [ParamErrorCode.PERMISSION_DENIED]
     assert vehicle.values["MAN_DEADBAND"] == 3.0
 
 
@@ -126,13 +126,13 @@ def test_reading_by_name_and_by_index(name: bytes, index: int) -> None:
 
 @pytest.mark.parametrize(("name", "index"), [(b"", -2), (b"", 5), (b"", 32767), (b"", -32768), (b"NO_SUCH", -1)])
 def test_what_cannot_be_read_is_answered_by_an_error(name: bytes, index: int) -> None:
-    assert faults(Vehicle().ask(m.ParamRequestRead(1, 1, name, index))) == [ParamFault.DOES_NOT_EXIST]
+    assert faults(Vehicle().ask(m.ParamRequestRead(1, 1, name, index))) == [ParamErrorCode.DOES_NOT_EXIST]
 
 
 def test_what_the_vehicle_changes_itself_is_told_to_all() -> None:
     vehicle = Vehicle()
     vehicle.values.set("MAN_DEADBAND", 9.0)
-    outgoing = vehicle.server.announce(["MAN_DEADBAND"])
+    outgoing = vehicle.server.broadcast(["MAN_DEADBAND"])
     assert values(messages(outgoing)) == [("MAN_DEADBAND", 9.0)]
     assert [each.peer for each in outgoing] == [None]
 
@@ -185,6 +185,6 @@ def test_floods_from_many_addresses_are_bounded() -> None:
 
 
 def test_check_says_why() -> None:
-    refusal = check(TABLE[0], 9.0)
+    refusal = check_value(TABLE[0], 9.0)
     assert refusal is not None
     assert refusal.reason == "9 is not in 0.2 to 2"

@@ -6,7 +6,7 @@ from dialects import messages as m
 from link.core import Outgoing
 from tests.vehicle.autonomy.mission.test_mission import finish, ready, start, upload, way
 from tests.vehicle.field import Field
-from vehicle.autonomy.mission.item_reached import GAP, TIMES, Reached
+from vehicle.autonomy.mission.item_reached import SEND_COUNT, SEND_PERIOD, ItemReachedSender
 
 
 def sequences(outgoing: list[Outgoing]) -> list[int]:
@@ -14,26 +14,26 @@ def sequences(outgoing: list[Outgoing]) -> list[int]:
 
 
 def test_it_is_said_at_once_and_a_few_times_more() -> None:
-    reached = Reached()
+    reached = ItemReachedSender()
     assert reached.tick([], 0.0) == []
     assert sequences(reached.tick([3], 1.0)) == [3]
     said = [step * 0.02 for step in range(51, 500) if reached.tick([], step * 0.02)]
-    assert len(said) == TIMES - 1
-    assert said[0] - 1.0 >= GAP
-    assert said[1] - said[0] >= GAP
+    assert len(said) == SEND_COUNT - 1
+    assert said[0] - 1.0 >= SEND_PERIOD
+    assert said[1] - said[0] >= SEND_PERIOD
 
 
 def test_only_the_newest_is_said_again() -> None:
-    reached = Reached()
+    reached = ItemReachedSender()
     reached.tick([3], 0.0)
-    assert sequences(reached.tick([4, 5], GAP)) == [4, 5]
-    assert sequences(reached.tick([], 2 * GAP)) == [5]
+    assert sequences(reached.tick([4, 5], SEND_PERIOD)) == [4, 5]
+    assert sequences(reached.tick([], 2 * SEND_PERIOD)) == [5]
 
 
 def test_what_is_forgotten_is_not_said_again() -> None:
-    reached = Reached()
+    reached = ItemReachedSender()
     reached.tick([3], 0.0)
-    reached.forget()
+    reached.reset()
     assert reached.tick([], 10.0) == []
 
 
@@ -49,7 +49,7 @@ def finished() -> Field:
 def test_a_finished_mission_says_so_again() -> None:
     field = finished()
     field.beat(3.0)
-    assert [each.seq for each in field.all(m.MissionItemReached)] == [0] * TIMES
+    assert [each.seq for each in field.all(m.MissionItemReached)] == [0] * SEND_COUNT
 
 
 def test_another_mission_hears_nothing_of_the_former_one() -> None:

@@ -12,7 +12,7 @@ from dialects.enums import Command, FenceItem, MissionResult, MissionType, Resul
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, said
 from tests.vehicle.field import GROUND, Field
-from vehicle.autonomy.mission.item_reached import TIMES
+from vehicle.autonomy.mission.item_reached import SEND_COUNT
 from vehicle.navigation.geo import Point
 from vehicle.navigation.guidance import Leg
 
@@ -43,7 +43,7 @@ def send(field: Field, *items: Item, kind: MissionType = MissionType.MISSION, sy
     if len(field.all(m.MissionAck)) > before:  # refused, or an empty one
         return
     for number, (command, place, params) in enumerate(items):
-        latitude, longitude = GROUND.globe(place) if place else (0.0, 0.0)
+        latitude, longitude = GROUND.to_global(place) if place else (0.0, 0.0)
         one, two, three, four = (*params, *(0.0,) * (4 - len(params)))
         x, y = round(latitude * 1e7), round(longitude * 1e7)
         frame = 6 if place else 2
@@ -81,12 +81,12 @@ def beside(field: Field, corners: list[Point], margin: float = 1.5) -> float:
     for place in field.track:
         if min(corner.distance(place) for corner in corners) < margin:
             continue
-        worst = max(worst, min(abs(leg.beside(place)[1]) for leg in legs if _along(leg, place)))
+        worst = max(worst, min(abs(leg.along_and_cross_track(place)[1]) for leg in legs if _along(leg, place)))
     return worst
 
 
 def _along(leg: Leg, place: Point) -> bool:
-    remaining, beside = leg.beside(place)
+    remaining, beside = leg.along_and_cross_track(place)
     return 0.0 <= remaining <= leg.start.distance(leg.end) and abs(beside) < 5.0
 
 
@@ -299,13 +299,13 @@ class TestProgress:
         field = ready(way(3, 0), do(Command.DO_JUMP, 0, 1), way(3, 3), way(40, 3))
         start(field)
         field.until(Point(3, 3), 60.0, 0.5)
-        assert [each.seq for each in field.all(m.MissionItemReached)].count(0) > TIMES  # reached twice
+        assert [each.seq for each in field.all(m.MissionItemReached)].count(0) > SEND_COUNT  # reached twice
         before = len(field.all(m.MissionItemReached))
         assert field.command(Command.DO_SET_MISSION_CURRENT, 0, anew) is Result.ACCEPTED
         field.until(Point(3, 0), 60.0, 0.4)
         field.until(Point(20, 3), 120.0, 1.0)
         reached = [each.seq for each in field.all(m.MissionItemReached)][before:]
-        assert (reached.count(0) > TIMES) == bool(again)
+        assert (reached.count(0) > SEND_COUNT) == bool(again)
 
     def test_an_item_can_be_chosen(self) -> None:
         field = ready(way(6, 0), way(0, 6))
@@ -360,7 +360,7 @@ class TestWhoMay:
         field.say(m.MissionCount(1, 1, 1, MissionType.MISSION))
         start(field)
         field.beat(2.0)
-        latitude, longitude = GROUND.globe(Point(1, 1))
+        latitude, longitude = GROUND.to_global(Point(1, 1))
         x, y = round(latitude * 1e7), round(longitude * 1e7)
         field.say(m.MissionItemInt(1, 1, 0, 6, Command.NAV_WAYPOINT, 0, 1, 0, 0, 0, 0, x, y, 0, MissionType.MISSION))
         assert field.newest(m.MissionAck).type == MissionResult.DENIED

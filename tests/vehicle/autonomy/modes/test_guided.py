@@ -11,7 +11,7 @@ from dialects.enums import Command, Failsafe, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, NEUTRAL, OTHER, Bench, said
 from tests.vehicle.field import GROUND, TWIST, Field
-from vehicle.navigation.geo import Point, wrap
+from vehicle.navigation.geo import Point, wrap_angle
 
 NAN = math.nan
 
@@ -30,7 +30,7 @@ class TestVelocity:
         before = field.yaw
         field.stream(2.0, 0.5, 0.5)
         assert field.speed == pytest.approx(0.5, abs=0.06)
-        assert wrap(field.yaw - before) == pytest.approx(1.0, abs=0.2)
+        assert wrap_angle(field.yaw - before) == pytest.approx(1.0, abs=0.2)
 
     @pytest.mark.parametrize("frame", [1, 8])
     def test_a_velocity_alone_with_every_other_bit_set_drives(self, frame: int) -> None:
@@ -80,7 +80,7 @@ class TestVelocity:
         for _ in range(80):
             field.say(m.SetPositionTargetLocalNed(0, 1, 1, frame, mask, 0, 0, 0, 0, 0.6, 0, 0, 0, 0, 0, 0))
             field.wait(0.06)
-        assert wrap(field.yaw - math.pi / 2) == pytest.approx(0.0, abs=0.1)
+        assert wrap_angle(field.yaw - math.pi / 2) == pytest.approx(0.0, abs=0.1)
         assert field.truth.east > 1.0
 
     def test_an_attitude_target_is_a_share_of_the_usual_speed(self) -> None:
@@ -117,7 +117,7 @@ class TestVelocity:
         for _ in range(60):
             field.say(m.SetAttitudeTarget(0, 1, 1, 1 | 2 | 4, q, 0, 0, 0, 0.5))
             field.wait(0.06)
-        assert wrap(field.yaw - math.pi / 2) == pytest.approx(0.0, abs=0.1)
+        assert wrap_angle(field.yaw - math.pi / 2) == pytest.approx(0.0, abs=0.1)
 
     def test_a_quaternion_of_zeros_is_none(self) -> None:
         field = Field()
@@ -134,7 +134,7 @@ class TestVelocity:
         field.stream(2.0, 1e30)
         assert field.speed == pytest.approx(1.5, abs=0.2)
         field.stream(1.0, 0.0, -1e30)
-        assert abs(field.rover._navigator._pilot._turn_trim) <= 0.5
+        assert abs(field.rover._navigator._controller._turn_trim) <= 0.5
         assert all(abs(value) <= 1 for value in field.throttles)
 
     def test_a_rover_without_any_sensor_drives_by_feed_forward(self) -> None:
@@ -188,7 +188,7 @@ class TestPlace:
         field.until(Point(5.0, 0.0), 30.0)
         assert field.mode is Mode.GUIDED
         target = field.newest(m.PositionTargetGlobalInt)
-        assert GROUND.point(target.lat_int / 1e7, target.lon_int / 1e7).distance(Point(5.0, 0.0)) < 0.05
+        assert GROUND.to_local(target.lat_int / 1e7, target.lon_int / 1e7).distance(Point(5.0, 0.0)) < 0.05
 
     def test_a_speed_for_the_way(self) -> None:
         field = Field()
@@ -207,7 +207,7 @@ class TestPlace:
         field.goto(-5.0, 0.0)
         assert field.command(Command.DO_SET_REVERSE, 1) is Result.ACCEPTED
         field.until(Point(-5.0, 0.0), 30.0)
-        assert abs(wrap(field.yaw)) < 0.3
+        assert abs(wrap_angle(field.yaw)) < 0.3
 
     def test_position_lost_holds(self) -> None:
         field = Field()

@@ -125,7 +125,7 @@ class TestRefusals:
         assert field.command(Command.DO_CHANGE_SPEED, 1, 99) is Result.ACCEPTED
         assert said(field, "cut to 1.5")
         assert field.command(Command.DO_CHANGE_SPEED, 1, -2) is Result.ACCEPTED
-        assert field.rover._navigator.cruise() == pytest.approx(0.8)
+        assert field.rover._navigator.cruise_speed() == pytest.approx(0.8)
 
     @pytest.mark.parametrize("command", [Command.DO_SET_REVERSE, Command.DO_PAUSE_CONTINUE, Command.DO_SET_HOME])
     def test_neither_yes_nor_no_is_denied(self, command: int) -> None:
