@@ -115,19 +115,6 @@ def boot_ms(seconds: float) -> int:
 MISSION_PAUSED = rover.MISSION_STATE_PAUSED
 """`mission_state` of MISSION_CURRENT"""
 
-ACKNOWLEDGED: frozenset[int] = frozenset(
-    message.id
-    for message in (
-        *(CommandLong, CommandInt, CommandAck, CommandCancel, SetMode, StatusText, Timesync, Ping),
-        *(ParamRequestList, ParamRequestRead, ParamSet, ParamValue, ParamError),
-        *(MissionRequestList, MissionRequestPartialList, MissionWritePartialList, MissionCount, MissionRequest),
-        *(MissionRequestInt, MissionItem, MissionItemInt, MissionAck, MissionClearAll, MissionSetCurrent),
-        *(FileTransferProtocol, LogRequestList, LogEntry, LogRequestData, LogData, LogErase, LogRequestEnd),
-        *(MissionItemReached, ComponentMetadata),
-    )
-)
-"""Messages that are repeated until answered, or said once. All others are state: only the newest counts."""
-
 
 def decode_text(message: StatusText) -> str:
     """The text as UTF-8 (the generated decoder knows only ASCII), with control characters shown and never obeyed.
@@ -141,13 +128,3 @@ def decode_text(message: StatusText) -> str:
 def printable(text: str) -> str:
     """`text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
     return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)
-
-
-def is_stop(message: Message) -> bool:
-    """Is this a command that only ever stops: disarm, safety switch to SAFE, flight termination?"""
-    if not isinstance(message, CommandLong | CommandInt):
-        return False
-    if message.command == rover.MAV_CMD_DO_FLIGHTTERMINATION:
-        return bool(message.param1 > 0.5)
-    stops = (rover.MAV_CMD_COMPONENT_ARM_DISARM, rover.MAV_CMD_DO_SET_SAFETY_SWITCH_STATE)
-    return message.command in stops and bool(message.param1 == 0)

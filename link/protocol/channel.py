@@ -2,7 +2,7 @@
 
 Rules: nothing without a right frame makes a peer; nobody is sent telemetry before they have shown a HEARTBEAT; a frame
 is never answered with more than was asked; every table has a cap. A repeated frame has no second effect, and of state
-messages (all but dialects.messages.ACKNOWLEDGED) one that was overtaken is dropped: the newest wins.
+messages (all but dialects.traits.ACKED) one that was overtaken is dropped: the newest wins.
 """
 
 from __future__ import annotations
@@ -11,19 +11,8 @@ from collections.abc import Hashable, Iterator
 from itertools import count
 
 from dialects import codec
-from dialects.messages import (
-    ACKNOWLEDGED,
-    MESSAGES,
-    CommandInt,
-    CommandLong,
-    Heartbeat,
-    ManualControl,
-    RadioStatus,
-    RcChannelsOverride,
-    RoverOperatorPresence,
-    SetMode,
-    is_stop,
-)
+from dialects.messages import MESSAGES, Heartbeat, RadioStatus
+from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
 from link.core import LinkReport, Outgoing, Peer, Received, SourceCount
 from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, FramerCounts, noise_hint, payload_of
@@ -42,8 +31,8 @@ MISMATCH_AFTER = 3
 """So many whole frames with a foreign checksum are another dialect; one may be an accident."""
 
 _RADIO_STATUS: int = RadioStatus.id
-_DEMANDS = frozenset(each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence))
-_COMMANDS = frozenset(each.id for each in (CommandLong, CommandInt, SetMode))
+_RATE_CLASS = {**dict.fromkeys(DEMANDS, "demand"), **dict.fromkeys(COMMANDS, "command")}
+"""Message id -> the token bucket that limits it; all others share one."""
 
 
 class Channel:
@@ -181,7 +170,7 @@ class Channel:
             self._duplicates += 1
             return True
         self._late += 1
-        return number not in ACKNOWLEDGED
+        return number not in ACKED
 
     def _decode(self, state: PeerState, frame: Frame, now: float) -> Received | None:
         number, system, component, sequence, raw = frame
@@ -189,7 +178,7 @@ class Channel:
             self._handle_radio_status(raw, now)
         if self._wanted is not None and number not in self._wanted:
             return None
-        kind = "demand" if number in _DEMANDS else "command" if number in _COMMANDS else "rest"
+        kind = _RATE_CLASS.get(number, "rest")
         room = state.buckets[kind].consume(now)
         if not room and kind != "command":
             self._rate_limited += 1
@@ -207,7 +196,8 @@ class Channel:
     def send(self, outgoing: Outgoing, payload: bytes | None = None) -> Iterator[tuple[bytes, Hashable, int]]:
         """The frames to put on the wire: bytes, address, packet sequence. Each peer has its own sequence, so that what
         one of them does not get is no loss to it. `payload` is the message's where it is encoded already, as for
-        another link. Raises codec.EncodeError."""
+        another link. Raises codec.EncodeError.
+        """
         message = outgoing.message
         number = type(message).id
         payload = codec.encode_payload(message) if payload is None else payload
@@ -240,7 +230,8 @@ class Channel:
 
     def expire_peers(self, now: float) -> None:
         """Drop peers that have been silent for PEER_SILENCE; the one the user named stays, and connections do, for a
-        new conversation."""
+        new conversation.
+        """
         for state in list(self._peers.values()):
             if state.silent or now - state.last_heard <= PEER_SILENCE:
                 continue

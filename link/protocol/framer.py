@@ -170,7 +170,8 @@ class Framer:
 
     def _slow(self, data: bytes, position: int, size: int, frames: list[Frame], border: int) -> tuple[int, int]:
         """Any case at `position`; returns where to go on, `position` itself where a frame's end has not come yet, and
-        where the last frame ended."""
+        where the last frame ended.
+        """
         found = self._frame_at(data, position, size)
         if found is _Missing.FRAME and position == border and self._unknown:
             found = self._unknown_at(data, position, size)

@@ -10,12 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from dialects import codec
-from dialects import messages as m
+from dialects.traits import SECRET, UNLOGGED
 from link.protocol.frame import Frame
-
-SETUP_SIGNING = 256
-NOT_LOGGED = frozenset(each.id for each in (m.FileTransferProtocol, m.LogData, m.LogEntry)) | {SETUP_SIGNING}
-"""Of our own messages."""
 
 
 class LogTap:
@@ -28,10 +24,10 @@ class LogTap:
 
     def record_received(self, frames: Sequence[Frame], now: float) -> None:
         """Frames that were found whole, of anybody."""
-        self._add(now, [raw for message_id, _, _, _, raw in frames if message_id != SETUP_SIGNING])
+        self._add(now, [raw for message_id, _, _, _, raw in frames if message_id not in SECRET])
 
     def record_sent(self, message_id: int, payload: bytes, now: float) -> None:
         """A message of ours."""
-        if message_id not in NOT_LOGGED:
+        if message_id not in UNLOGGED:
             self._add(now, (codec.frame(message_id, payload, self._sequence, *self._ids),))
             self._sequence = (self._sequence + 1) & 0xFF

@@ -12,14 +12,11 @@ from collections.abc import Hashable, Sequence
 from typing import NamedTuple
 
 from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V2, MAGIC_V2
-from dialects.messages import RadioStatus, SystemTime
+from dialects.messages import SystemTime
 from dialects.targets import TARGETS, target_of
+from dialects.traits import LOCAL
 from link.protocol.frame import Frame, payload_of
 from link.routing.routes import RecentFrames, RoutedPeer, RoutedSource, RouteTable, SourceId
-
-SETUP_SIGNING = 256
-NOT_FORWARDED = frozenset({SETUP_SIGNING, RadioStatus.id})
-"""Never forwarded: a key, and what concerns one radio only."""
 
 REDUNDANCY_WINDOW = 1.0
 """s in which the same frame over another link is the same frame: more than the slowest radio adds, and less than 256
@@ -30,7 +27,7 @@ MAX_TARGETS = 256
 """Targets of one source whose destinations are remembered."""
 
 _EVERYBODY: SourceId = (0, 0)
-_INSPECTED = NOT_FORWARDED | {SystemTime.id}
+_INSPECTED = LOCAL | {SystemTime.id}
 _NOT_FOR_ALL = _INSPECTED | TARGETS.keys()
 """Any other message goes to everybody, whatever is in it."""
 
@@ -162,7 +159,7 @@ class Router:
 
     def _is_link_local(self, source: RoutedSource, message_id: int, raw: bytes) -> bool:
         """Messages that are more than freight: two stay here, SYSTEM_TIME tells of a restart and goes on."""
-        if message_id in NOT_FORWARDED:
+        if message_id in LOCAL:
             return True
         boot_time = int.from_bytes(payload_of(raw)[8:12], "little")
         if boot_time < self._boot_times.get(source.key, 0):

@@ -16,7 +16,7 @@ class Backoff:
         self._next = first
 
     def next_delay(self) -> float:
-        """s until the next try."""
+        """S until the next try."""
         wait, self._next = self._next, min(self._longest, self._next * 2)
         return wait
 

@@ -1,5 +1,6 @@
 """A serial port: pyserial opens and configures it, the event loop reads and writes it. It never blocks, and a port
-that is missing or unplugged is waited for."""
+that is missing or unplugged is waited for.
+"""
 
 from __future__ import annotations
 

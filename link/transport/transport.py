@@ -1,5 +1,6 @@
 """What a link is: a wire (socket or port) with a channel (the conversation on it). To add a kind of wire: a module
-beside udp.py, a line in endpoint.SCHEMES and one in openers.OPENERS."""
+beside udp.py, a line in endpoint.SCHEMES and one in openers.OPENERS.
+"""
 
 from __future__ import annotations
 

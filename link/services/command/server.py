@@ -114,7 +114,8 @@ class CommandServer:
 
 def _comparable(param: float) -> float:
     """Every NaN as the same object, which tuples find equal: MAVSDK leaves NaN where it says nothing, and what is said
-    again must be known again."""
+    again must be known again.
+    """
     return math.nan if param != param else param
 
 
