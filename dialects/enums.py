@@ -293,12 +293,6 @@ class MissionResult(IntEnum):
     CANCELLED = rover.MAV_MISSION_OPERATION_CANCELLED
 
 
-def command_name(command: int) -> str:
-    """`MAV_CMD` name without its prefix, e.g. "COMPONENT_ARM_DISARM"; "command 65535" for an unknown one."""
-    entry = rover.enums["MAV_CMD"].get(command)
-    return entry.name.removeprefix("MAV_CMD_") if entry else f"command {command}"
-
-
 def result_name(result: int) -> str:
     """`MAV_RESULT` in words a driver reads, e.g. "denied"; "result 99" for an unknown one."""
     entry = rover.enums["MAV_RESULT"].get(result)

@@ -75,7 +75,6 @@ class LinkReport:
     peers: int = 0
     frames: int = 0
     bytes_received: int = 0
-    bytes_sent: int = 0
     crc_errors: int = 0
     resync_bytes: int = 0
     unknown: int = 0

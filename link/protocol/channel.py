@@ -68,7 +68,7 @@ class Channel:
         self._peers: dict[Hashable, PeerState] = {}
         self._conversations = count()
         self._past_counts = FramerCounts()
-        self._bytes_received = self._bytes_sent = 0
+        self._bytes_received = 0
         self._duplicates = self._late = self._rate_limited = self._refused_peers = 0
         self._own_id = False
         if target is not None:
@@ -205,7 +205,6 @@ class Channel:
             sequence = state.sequence
             state.sequence = (sequence + 1) & 0xFF
             data = codec.frame(number, payload, sequence, *self.ids)
-            self._bytes_sent += len(data)
             yield data, state.peer.address, sequence
 
     def _recipients(self, outgoing: Outgoing) -> list[PeerState]:
@@ -255,7 +254,6 @@ class Channel:
             peers=sum(1 for state in self._peers.values() if state.systems),
             frames=counts.frames,
             bytes_received=self._bytes_received,
-            bytes_sent=self._bytes_sent,
             crc_errors=counts.crc_errors,
             resync_bytes=counts.resync_bytes,
             unknown=counts.unknown,

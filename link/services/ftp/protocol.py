@@ -14,7 +14,6 @@ from dialects.messages import FileTransferProtocol
 
 MAX_DATA = 239
 """Bytes of data in one message."""
-MAX_OFFSET = 0xFFFF_FFFF
 _HEADER = struct.Struct("<HBBBBBxI")
 _PAYLOAD = 251
 SEQUENCE_MASK = 0xFFFF
