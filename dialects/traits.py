@@ -90,11 +90,6 @@ TRAITS: dict[type[m.Message], Trait] = {
 """Message -> its traits. A message that is not listed has STATE."""
 
 
-def traits_of(message: type[m.Message]) -> Trait:
-    """Return the traits of a message."""
-    return TRAITS.get(message, Trait.STATE)
-
-
 def ids_with(traits: Trait) -> frozenset[int]:
     """Return the ids of the listed messages that have all of `traits`."""
     return frozenset(message.id for message, each in TRAITS.items() if traits in each)

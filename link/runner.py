@@ -39,19 +39,19 @@ def open_links(
     """Open all endpoints, or none: raises EndpointError or LinkError. `wanted`: see Channel."""
     return [
         Link(
-            wire,
+            transport,
             Channel(
-                wire.endpoint.text,
+                transport.endpoint.text,
                 index,
                 system=system,
                 component=component,
-                stream=wire.stream,
+                stream=transport.stream,
                 wanted=wanted,
-                target=wire.fixed_address,
-                capacity=wire.capacity,
+                target=transport.fixed_address,
+                capacity=transport.capacity,
             ),
         )
-        for index, wire in enumerate(open_transports(endpoints))
+        for index, transport in enumerate(open_transports(endpoints))
     ]
 
 
@@ -73,9 +73,9 @@ class Runner:
         period: float,
         route: bool | None = None,
         broken: Callable[[Exception], None] | None = None,
-        tape: LogTap | None = None,
+        log_tap: LogTap | None = None,
     ) -> None:
-        """`tape` takes what all links hear, and what the core says, also where nobody listens."""
+        """`log_tap` takes what all links hear, and what the core says, also where nobody listens."""
         self._core = core
         self._broken = broken
         self._links = links
@@ -84,12 +84,12 @@ class Runner:
         self._sent = core.handle_sent if isinstance(core, SendListener) else None
         self._ended: asyncio.Future[None] | None = None
         self._report_due = 0.0
-        self._troubles = LinkEvents()
+        self._events = LinkEvents()
         self._tick_due = 0.0
         self._timer: asyncio.TimerHandle | None = None
-        self._tape = tape
+        self._log_tap = log_tap
         for link in links:
-            link.channel.log_tap = tape
+            link.channel.log_tap = log_tap
 
     async def run(self) -> None:
         """Run until stop() or until the core raises; that exception is raised here. Closes the links at the end."""
@@ -153,9 +153,9 @@ class Runner:
             self._forward(self._router.receive(index, pieces, now))
 
     def _forward(self, deliveries: Sequence[Delivery]) -> None:
-        for port, address, frames in deliveries:
+        for link, address, frames in deliveries:
             for frame in frames:
-                self._links[port].transport.send(frame, address)
+                self._links[link].transport.send(frame, address)
 
     def _hand_over(self, messages: list[Received], now: float) -> None:
         for received in messages:
@@ -185,7 +185,7 @@ class Runner:
             link.channel.expire_peers(now)
         reports = [self._report(link, now) for link in self._links]
         for report in reports:
-            if news := self._troubles.update(report):
+            if news := self._events.update(report):
                 level = logging.WARNING if news.severity <= Severity.ERROR else logging.INFO
                 log.log(level, "%s: %s", report.name, news.text)
         self._core.observe(reports, now)
@@ -208,8 +208,8 @@ class Runner:
                 link.transport.send(data, address)
                 if self._sent:
                     self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())
-        if self._tape:
-            self._tape.record_sent(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
+        if self._log_tap:
+            self._log_tap.record_sent(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
 
 
 def _router(links: Sequence[Link]) -> Router:

@@ -35,20 +35,20 @@ _NOT_FOR_ALL = _INSPECTED | TARGETS.keys()
 class Delivery(NamedTuple):
     """Frames to send to one address of one wire, in this order."""
 
-    port: int
+    link: int
     address: Hashable
     frames: list[bytes]
 
 
 class Router:
-    """What the table decides for each frame. `ports`: see RouteTable.
+    """What the table decides for each frame. `links`: see RouteTable.
 
     `own` are the ids of the host that routes beside its own work: what is for it alone ends here, and its own frames
     that come back are dropped.
     """
 
-    def __init__(self, ports: Sequence[tuple[bool, Hashable | None]], *, own: SourceId | None = None) -> None:
-        self.table = RouteTable(ports)
+    def __init__(self, links: Sequence[tuple[bool, Hashable | None]], *, own: SourceId | None = None) -> None:
+        self.table = RouteTable(links)
         self.duplicates = 0
         """Frames that redundant links brought again."""
         self.captured: list[bytes] | None = None
@@ -59,13 +59,13 @@ class Router:
         self._boot_times: dict[SourceId, int] = {}
         self._loaded: list[RoutedPeer] = []
 
-    def receive(self, port: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
+    def receive(self, link: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
         """Take what arrived on a wire; returns what to send where. `now` in s, monotonic."""
-        peers = self.table.peers_of(port)
+        peers = self.table.peers_of(link)
         for data, address in pieces:
             peer = peers.get(address)
             if peer is None:
-                self._receive_from_new_peer(port, data, address, now)
+                self._receive_from_new_peer(link, data, address, now)
                 continue
             peer.bytes_in += len(data)
             frames = peer.framer.feed(data, now)
@@ -88,14 +88,14 @@ class Router:
 
     # ---- the way of a frame ----
 
-    def _receive_from_new_peer(self, port: int, data: bytes, address: Hashable, now: float) -> None:
+    def _receive_from_new_peer(self, link: int, data: bytes, address: Hashable, now: float) -> None:
         """Noise makes no peer: on UDP only a verified frame does. A connection is one as it is."""
-        peer = self.table.new_peer(port, address, now)
+        peer = self.table.new_peer(link, address, now)
         if peer is None:
             return
         peer.bytes_in += len(data)
         frames = peer.framer.feed(data, now)
-        if self.table.is_stream(port) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
+        if self.table.is_stream(link) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
             self.table.add_peer(peer, now)
             self._forward(peer, frames, now)
         else:
@@ -187,7 +187,7 @@ class Router:
             frames, peer.waiting = peer.waiting, []
             peer.frames_out += len(frames)
             peer.bytes_out += sum(map(len, frames))
-            deliveries.append(Delivery(peer.port, peer.address, frames))
+            deliveries.append(Delivery(peer.link, peer.address, frames))
         self._loaded = []
         return deliveries
 

@@ -32,10 +32,12 @@ class UdpTransport:
         self._socket = sock
         self._loop: asyncio.AbstractEventLoop | None = None
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
-        """Hand arriving datagrams to `arrived` in batches; UDP knows no end of a connection."""
+    def start(
+        self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
+    ) -> None:
+        """Hand arriving datagrams to `on_receive` in batches; UDP knows no end of a connection."""
         self._loop = loop
-        loop.add_reader(self._socket, self._readable, arrived)
+        loop.add_reader(self._socket, self._readable, on_receive)
 
     def send(self, data: bytes, address: Hashable) -> None:
         """One datagram, now or never."""
@@ -57,7 +59,7 @@ class UdpTransport:
             self._loop.remove_reader(self._socket)
         self._socket.close()
 
-    def _readable(self, arrived: ReceiveCallback) -> None:
+    def _readable(self, on_receive: ReceiveCallback) -> None:
         batch: list[tuple[bytes, Hashable]] = []
         for _ in range(BATCH):
             try:
@@ -69,7 +71,7 @@ class UdpTransport:
                 break
             batch.append((data, self.fixed_address or address))
         if batch:
-            arrived(batch)
+            on_receive(batch)
 
 
 def open_udp(endpoint: Endpoint) -> UdpTransport:

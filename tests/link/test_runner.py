@@ -221,7 +221,7 @@ async def test_one_line_says_why_a_port_cannot_be_opened(ground: socket.socket) 
     wrong = {
         f"udpin:127.0.0.1:{port}": f"port {port} is in use",
         "udpout:no-such-host.invalid:14550": "host 'no-such-host.invalid' is not known",
-        "udpin:203.0.113.7:14550": "203.0.113.7 is no address of this machine",
+        "udpin:203.0.113.7:14550": "203.0.113.7 is not an address of this machine",
         f"udpout:{'x' * 70}.invalid:14550": "is not known",
     }
     for endpoint, told in wrong.items():

@@ -144,7 +144,7 @@ async def _drive(
     tape: LogTap | None,
 ) -> int:
     links = open_links(endpoints, system=system, component=COMPONENT, wanted=INBOUND_IDS)
-    runner = Runner(machine, links, period=PERIOD, tape=tape)
+    runner = Runner(machine, links, period=PERIOD, log_tap=tape)
     ending = Shutdown(machine, runner, notifier.stopping)
     cycles.shutdown = ending
     ending.install_handlers(asyncio.get_running_loop())

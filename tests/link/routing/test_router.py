@@ -48,7 +48,7 @@ class Rig:
     ) -> dict[tuple[int, Hashable], bytes]:
         where = address or {SERIAL: "tty", UDP: GCS, OTHER: "out"}[port]
         found = self.router.receive(port, [(data, where)], now)
-        return {(each.port, each.address): b"".join(each.frames) for each in found}
+        return {(each.link, each.address): b"".join(each.frames) for each in found}
 
 
 def command(target: int, component: int, sequence: int = 1) -> bytes:
@@ -350,4 +350,4 @@ def test_byte_soup_never_raises_and_nothing_comes_out_that_did_not_go_in(soup: l
                 assert any(raw in everything for everything in taken.values())
                 assert raw[0] in (0xFD, 0xFE)
     data = frame(BROADCAST, 9, 77, 7)  # a sender that no soup has
-    assert {each.port for each in router.receive(SERIAL, [(data + data, "tty")], 1e4) if data in each.frames} >= {OTHER}
+    assert {each.link for each in router.receive(SERIAL, [(data + data, "tty")], 1e4) if data in each.frames} >= {OTHER}

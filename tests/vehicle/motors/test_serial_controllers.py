@@ -394,7 +394,7 @@ def test_a_port_that_is_not_there_is_said_in_one_line(kind: str) -> None:
         open_motors(kind, {"port": "/dev/nowhere"})
     assert "\n" not in str(caught.value)
     for path in ("/tmp", "/dev/null"):
-        with pytest.raises(MotorError, match=f"{path} is no serial port"):
+        with pytest.raises(MotorError, match=f"{path} is not a serial port"):
             open_motors(kind, {"port": path})
 
 
