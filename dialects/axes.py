@@ -1,7 +1,8 @@
-"""What the axes of MANUAL_CONTROL mean to each kind of vehicle: Axes in -1..1 to and from the message.
+"""Axis conventions of MANUAL_CONTROL by kind of vehicle: converts Axes in -1..1 to and from the message.
 
-The message means three things in the field: our rover reads x and r as the specification says, ArduPilot Rover reads
-z and y (z = 0 is neutral), PX4 rovers read z and y with 500 as neutral. To add a kind, add a line to AXIS_MAPS.
+Three conventions are in use: our rover reads x and r as the specification says, ArduPilot Rover reads z and y (z = 0 is
+neutral), PX4 rovers read z and y with z = 500 as neutral. To add one, add a row to AXIS_MAPS.
+Definition: https://mavlink.io/en/messages/common.html#MANUAL_CONTROL.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ class Axes:
 
     @property
     def neutral(self) -> bool:
-        """True when nothing is asked."""
+        """True if both axes are 0."""
         return self.throttle == 0.0 and self.steering == 0.0
 
 
@@ -51,14 +52,15 @@ AXIS_MAPS: dict[int, AxisMap] = {
 
 
 def axis_map(autopilot: int) -> AxisMap:
-    """The axes of a vehicle; those of the specification for an autopilot we do not know."""
+    """Return the axes of a vehicle; for an unknown autopilot those of the specification."""
     return AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
 
 
 def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]) -> ManualControl:
-    """The message for a demand. Values are clamped here because ArduPilot does not (z = 32766 is full ahead there).
+    """Return the message for a demand.
 
-    Axes that mean nothing to the vehicle are sent as INT16_MAX, "invalid".
+    Values are clamped here because ArduPilot does not clamp them (z = 32766 is full ahead there). Axes that the vehicle
+    does not use are sent as INT16_MAX, "invalid".
     """
     message = ManualControl(target, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, 0)
     throttle = axis_map.throttle_neutral + round(_clamp(axes.throttle) * axis_map.throttle_span)
@@ -74,9 +76,9 @@ def _clamp(value: float) -> float:
 def parse_manual_control(
     message: ManualControl, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]
 ) -> tuple[float | None, float | None]:
-    """Throttle and steering in -1..1 of a received message; None for an axis that is invalid or out of range.
+    """Return throttle and steering of a message in -1..1; None for an axis that is invalid or out of range.
 
-    Out of range is refused and not clamped: a wild value must not become full speed.
+    Values out of range are rejected, not clamped: a wild value must not become full speed.
     """
     raw_throttle = getattr(message, axis_map.throttle)
     raw_steering = getattr(message, axis_map.steering)

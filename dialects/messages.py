@@ -1,6 +1,7 @@
-"""Every message we speak, under a readable name: pymavlink's generated classes, nothing wrapped around them.
+"""The messages that the programs use, under short names: pymavlink's generated classes, not wrapped.
 
-To speak another message, add one line here; its fields are those of the official definition (or of rover.xml).
+To use another message, add one line here; its fields are those of the official definition (or of rover.xml). A message
+that is not plain state also needs a row in traits.py.
 """
 
 from __future__ import annotations
@@ -108,23 +109,23 @@ UINT32_MASK = 0xFFFFFFFF
 
 
 def boot_ms(seconds: float) -> int:
-    """`time_boot_ms` for a time since boot in s; wraps after 49.7 days as the field does (pymavlink raises instead)."""
+    """Return `time_boot_ms` for s since boot; wraps after 49.7 days as the field does (pymavlink raises)."""
     return int(seconds * 1000) & UINT32_MASK
 
 
 MISSION_PAUSED = rover.MISSION_STATE_PAUSED
-"""`mission_state` of MISSION_CURRENT"""
+"""`mission_state` of MISSION_CURRENT."""
 
 
 def decode_text(message: StatusText) -> str:
-    """The text as UTF-8 (the generated decoder knows only ASCII), with control characters shown and never obeyed.
+    """Return the text as UTF-8 (the generated decoder knows only ASCII), with control characters replaced.
 
-    A vehicle's text goes to a terminal: an escape sequence inside it must not reach the screen as one.
+    The text goes to a terminal: an escape sequence in it must not reach the screen as one.
     """
     raw: bytes = message._text_raw
     return printable(raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
 
 
 def printable(text: str) -> str:
-    """`text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
+    """Return `text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
     return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)

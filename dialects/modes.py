@@ -1,4 +1,4 @@
-"""Modes and their numbers: ArduRover's custom_mode, so that MAVProxy and pymavlink name them right for any rover."""
+"""Modes by ArduRover's custom_mode numbers, which MAVProxy and pymavlink name correctly for any rover."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class Mode(IntEnum):
     """A drive mode; the value is ArduRover's custom_mode (ArduPilot Rover/mode.h)."""
 
     MANUAL = 0
-    """The driver's demand goes to the motors, open loop."""
+    """The operator's demand goes to the motors, open loop."""
     ACRO = 1
     STEERING = 3
     HOLD = 4
@@ -41,17 +41,17 @@ _PX4_MAIN = {
     7: "STABILIZED",
     8: "RATTITUDE",
 }
-"""PX4 keeps the main mode in bits 16-23 of custom_mode (MAVSDK px4_custom_mode.hpp)."""
+"""PX4's main mode, from bits 16-23 of custom_mode (MAVSDK px4_custom_mode.hpp)."""
 
 
 def base_mode(mode: Mode, *, armed: bool) -> ModeFlag:
-    """`base_mode` of HEARTBEAT for a mode."""
+    """Return `base_mode` of HEARTBEAT for a mode."""
     flags = ModeFlag.CUSTOM | _BASE.get(mode, ModeFlag(0))
     return flags | ModeFlag.ARMED if armed else flags
 
 
 def mode_name(custom_mode: int, autopilot: int = Autopilot.GENERIC) -> str:
-    """The name a driver reads for a HEARTBEAT's custom_mode; "mode 99" for an unknown number."""
+    """Return the name of a HEARTBEAT's custom_mode; "mode 99" for an unknown number."""
     if autopilot == Autopilot.PX4:
         main = (custom_mode >> 16) & 0xFF
         return _PX4_MAIN.get(main, f"mode {main}")
@@ -62,10 +62,10 @@ def mode_name(custom_mode: int, autopilot: int = Autopilot.GENERIC) -> str:
 
 
 def custom_mode(mode: Mode, autopilot: int = Autopilot.GENERIC) -> tuple[int, int]:
-    """Parameters 2 and 3 of DO_SET_MODE (main, sub) for a mode.
+    """Return parameters 2 and 3 of DO_SET_MODE (main mode, sub mode) for a mode.
 
-    PX4 has no HOLD of ArduRover's kind; its AUTO/LOITER (4, 3) is the one that stops a rover.
-    Raises ValueError where the autopilot has no such mode.
+    PX4 has no HOLD mode like ArduRover's; its AUTO/LOITER (4, 3) is the one that stops a rover.
+    Raises ValueError if the autopilot has no such mode.
     """
     if autopilot != Autopilot.PX4:
         return int(mode), 0
