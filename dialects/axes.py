@@ -1,4 +1,4 @@
-"""Axis conventions of MANUAL_CONTROL by kind of vehicle: converts Axes in -1..1 to and from the message.
+"""Axis conventions of MANUAL_CONTROL by autopilot: converts Axes in -1..1 to and from the message.
 
 Three conventions are in use: our rover reads x and r as the specification says, ArduPilot Rover reads z and y (z = 0 is
 neutral), PX4 rovers read z and y with z = 500 as neutral. To add one, add a row to AXIS_MAPS.
@@ -76,7 +76,7 @@ def _clamp(value: float) -> float:
 def parse_manual_control(
     message: ManualControl, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]
 ) -> tuple[float | None, float | None]:
-    """Return throttle and steering of a message in -1..1; None for an axis that is invalid or out of range.
+    """Return throttle and steering of a message in -1..1; None for an axis that is not valid.
 
     Values out of range are rejected, not clamped: a wild value must not become full speed.
     """

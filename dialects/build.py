@@ -91,7 +91,7 @@ def _extend(message: ElementTree.Element, fields: list[ElementTree.Element], sou
 
 
 def drop_texts(definitions: Sequence[Path]) -> None:
-    """Remove the documentation texts in `definitions`, which are rewritten: mavgen would copy them into the module."""
+    """Remove the documentation texts in `definitions`, which mavgen would copy into the module."""
     for path in definitions:
         tree = ElementTree.parse(path)
         for name in TEXTS:
@@ -101,7 +101,7 @@ def drop_texts(definitions: Sequence[Path]) -> None:
 
 
 def strip_unused(code: str) -> str:
-    """Return mavgen's module without its enum tables (except the names of NAMED) and two methods of each message.
+    """Return mavgen's module without enum tables (except names of NAMED) and two methods of each message.
 
     The methods build and send a message through mavgen's MAVLink class. With them and the documentation texts, each
     process that imports the module takes 1.6 MiB more.
@@ -182,7 +182,10 @@ def _decoder(message: Any) -> Iterator[str]:
 
 
 def _slices(fields: list[Any]) -> Iterator[tuple[str, str]]:
-    """Yield where each field lies in the unpacked tuple: a char array is one item, other arrays one item an element."""
+    """Yield where each field lies in the unpacked tuple.
+
+    A char array is one item there, another array has one item per element.
+    """
     at = 0
     for field in fields:
         if field.type == "char":

@@ -1,4 +1,4 @@
-"""Reads the private messages and enums of rover.xml, for the documentation; the codec comes from the same file."""
+"""Reads the private messages and enums of rover.xml for the documentation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks that dialects/rover.py was generated from the definitions beside it, which a `git pull` may change.
+"""Checks that dialects/rover.py was generated from the definitions beside it.
 
 Imports no other module of the project: dialects/build.py runs this file by its path, before the project is installed.
 """
@@ -15,7 +15,7 @@ REMEDY = "run pip install -e . to generate it"
 
 
 def line(folder: Path = HERE) -> str:
-    """Return the last line of a generated module: a digest of its inputs in `folder` and of pymavlink's version."""
+    """Return the last line of a generated module: a digest of its inputs and of pymavlink's version."""
     digest = hashlib.sha256(version("pymavlink").encode())
     for name in INPUTS:
         digest.update(hashlib.sha256((folder / name).read_bytes()).digest())
