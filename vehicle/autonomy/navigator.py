@@ -30,7 +30,7 @@ from vehicle.navigation.rally import ReturnPoints
 from vehicle.navigation.speed_control import STATIONARY, DesiredMotion, SpeedTurnController
 from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
-from vehicle.safety.hazards import HazardInputs, HazardMonitor
+from vehicle.safety.failsafe_inputs import MotionInputs
 from vehicle.safety.state_machine import Safety
 
 DEFAULT_SPEED = -2.0
@@ -91,7 +91,6 @@ class Navigator:
         self._estimator = Estimator(aside)
         self._readings = NO_READINGS
         self._controller = SpeedTurnController(params, kind)
-        self._hazards = HazardMonitor(params)
         self._trail = Trail()
         self._behaviours: dict[Mode, AutonomousMode] = {
             Mode.AUTO: self.mission,
@@ -186,20 +185,19 @@ class Navigator:
         self.paused = False
         self.guided.set_target(target, self.estimate, now)
 
-    def find_hazards(self, safety: Safety, throttles: Sequence[float], now: float) -> dict[Failsafe, float]:
-        """What is wrong, since when. What has put a mode away still counts, though the mode is gone."""
+    def build_failsafe_inputs(self, safety: Safety, throttles: Sequence[float]) -> MotionInputs:
+        """Return what the failsafes need to know; a condition that has changed the mode stays relevant after it."""
         guided = safety.mode is Mode.GUIDED and safety.autonomy_confirmed
         placed = MODES[safety.mode].requirement is ModeRequirement.POSITION or (guided and self.guided.goal is not None)
         latched = safety.failsafes.latched
-        look = HazardInputs(
+        return MotionInputs(
             readings=self._readings,
             estimate=self.estimate,
             throttles=throttles,
             needs_position=placed or bool(latched and latched & Failsafe.POSITION),
-            guided_lost=self.guided.expires_at() if guided or (latched and latched & Failsafe.GUIDED_LOSS) else None,
-            outside=self.fence_avoidance.breach_distance > 0.0,
+            setpoint_expires=self.guided.expires_at() if guided or (latched and latched & Failsafe.GUIDED_LOSS) else None,
+            outside_fence=self.fence_avoidance.breach_distance > 0.0,
         )
-        return self._hazards.update(look, now)
 
     def step(self, safety: Safety, now: float) -> None:
         """What the mode wants at this moment."""

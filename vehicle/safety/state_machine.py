@@ -14,7 +14,8 @@ from vehicle.modes import MODES, initial_mode
 from vehicle.params import Params
 from vehicle.safety.arming import ArmingFacts, find_problems
 from vehicle.safety.battery import BatteryMonitor
-from vehicle.safety.failsafe import RULES, Failsafes
+from vehicle.safety.failsafe import RULES
+from vehicle.safety.failsafe_state import Failsafes
 from vehicle.safety.pi_monitor import PiMonitor
 from vehicle.safety.states import TRANSITIONS, SafetyEvent, SafetyState
 from vehicle.statustext import StatusTextQueue
