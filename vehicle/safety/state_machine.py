@@ -168,7 +168,10 @@ class Safety:
             self.failsafes.acknowledge()
         if mode is not self.mode:
             self.mode = mode
-            self._control.reset() if MODES[mode].moves else self._control.require_neutral()
+            if MODES[mode].moves:
+                self._control.reset()
+            else:
+                self._control.require_neutral()
             self._texts.send(Severity.INFO, f"Mode {mode.name}", now)
         return None
 
