@@ -8,12 +8,21 @@ from dialects.enums import Autopilot, ModeFlag
 
 
 class Mode(IntEnum):
-    """A drive mode; the value is ArduRover's custom_mode (ArduPilot Rover/mode.h)."""
+    """A drive mode: ArduRover's custom_mode (ArduPilot Rover/mode.h), and its flag in base_mode of HEARTBEAT."""
 
-    MANUAL = 0
+    flag: ModeFlag
+
+    def __new__(cls, number: int, flag: int = 0) -> Mode:
+        """Make a member of a row below."""
+        member = int.__new__(cls, number)
+        member._value_ = number
+        member.flag = ModeFlag(flag)
+        return member
+
+    MANUAL = 0, ModeFlag.MANUAL
     """The operator's demand goes to the motors, open loop."""
-    ACRO = 1
-    STEERING = 3
+    ACRO = 1, ModeFlag.MANUAL
+    STEERING = 3, ModeFlag.MANUAL
     HOLD = 4
     """Motors neutral."""
     LOITER = 5
@@ -21,15 +30,12 @@ class Mode(IntEnum):
     SIMPLE = 7
     DOCK = 8
     CIRCLE = 9
-    AUTO = 10
-    RTL = 11
-    SMART_RTL = 12
-    GUIDED = 15
+    AUTO = 10, ModeFlag.AUTO
+    RTL = 11, ModeFlag.AUTO
+    SMART_RTL = 12, ModeFlag.AUTO
+    GUIDED = 15, ModeFlag.GUIDED
     INITIALISING = 16
 
-
-_BASE = {Mode.GUIDED: ModeFlag.GUIDED, Mode.AUTO: ModeFlag.AUTO, Mode.RTL: ModeFlag.AUTO, Mode.SMART_RTL: ModeFlag.AUTO,
-         Mode.MANUAL: ModeFlag.MANUAL, Mode.ACRO: ModeFlag.MANUAL, Mode.STEERING: ModeFlag.MANUAL}  # fmt: skip
 
 _PX4_MAIN = {
     1: "MANUAL",
@@ -46,7 +52,7 @@ _PX4_MAIN = {
 
 def base_mode(mode: Mode, *, armed: bool) -> ModeFlag:
     """Return `base_mode` of HEARTBEAT for a mode."""
-    flags = ModeFlag.CUSTOM | _BASE.get(mode, ModeFlag(0))
+    flags = ModeFlag.CUSTOM | mode.flag
     return flags | ModeFlag.ARMED if armed else flags
 
 

@@ -240,9 +240,9 @@ class Rover:
     def _cycle(self, now: float) -> None:
         """What fails, what follows, and what self-driving wants then."""
         driving = self._drive.driven_wheels
-        hazards = self._navigator.find_hazards(self._safety, driving, now)
+        inputs = self._navigator.build_failsafe_inputs(self._safety, driving)
         moves = MODES[self._safety.mode].autonomous and any(driving)
-        self._monitor.update(now, self._drive.rejected_cycles, hazards, driving=moves)
+        self._monitor.update(now, self._drive.rejected_cycles, inputs, driving=moves)
         self._navigator.step(self._safety, now)
         if self._navigator.end_reason is not None:
             self._safety.finish_autonomy(self._navigator.end_reason, now)
