@@ -85,7 +85,8 @@ class FileWriter:
 
     def write(self, name: str, make: Callable[[], bytes]) -> PendingWrite:
         """Have a file written. Returns at once; `make` gives its bytes, in the thread, unless a newer wish for the same
-        file comes before its turn."""
+        file comes before its turn.
+        """
         wish = PendingWrite()
         with self._lock:
             _, wishes = self._newest.get(name, (make, []))
