@@ -46,14 +46,14 @@ SIMULATED_ACCESSORIES = (
 """Accessories of a simulation that was told of none: so that there are some to try."""
 
 
-def build_params(settings: RunSettings, keeper: ParamStore | None) -> Params:
+def build_params(settings: RunSettings, store: ParamStore) -> Params:
     """Defaults, a known car's, what was kept, the file of settings, this run: the later wins. Raises ParamError."""
     usual = {} if settings.simulation else profile_params(settings.motors["driver"])
-    given, kept = {**settings.pinned, **settings.params}, keeper.values if keeper else {}
+    given, kept = {**settings.pinned, **settings.params}, store.values
     params, left_out = merge_params(given, kept=kept, usual=usual, pinned=settings.pinned.keys(), run=settings.params)
     for problem in left_out:
         log.warning("a kept parameter is not used: %s", problem)
-    params.damage = keeper.damage if keeper else None
+    params.damage = store.damage
     if params.damage:
         consequence = "all parameters that were set have their defaults, and nobody can arm until one is set"
         log.warning("%s: %s: %s", settings.state, params.damage, consequence)

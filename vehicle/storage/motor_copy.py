@@ -41,11 +41,11 @@ def settings_copy(parts: Mapping[str, Any], config: Path | None) -> Iterator[Non
         yield
         return
     path = _path(config)
-    scribe = FileWriter(path.parent)
-    scribe.write(path.name, lambda: json.dumps(dict(parts), default=str).encode())
-    scribe.close()  # no wheel turns yet: there is time to wait for the disk
-    if scribe.problem:
-        log.warning("after a kill safe-stop will have to go by %s alone: %s: %s", config, path, scribe.problem)
+    writer = FileWriter(path.parent)
+    writer.write(path.name, lambda: json.dumps(dict(parts), default=str).encode())
+    writer.close()  # no wheel turns yet: there is time to wait for the disk
+    if writer.problem:
+        log.warning("after a kill safe-stop will have to go by %s alone: %s: %s", config, path, writer.problem)
     yield
     with contextlib.suppress(OSError):
         path.unlink()
