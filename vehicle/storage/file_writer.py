@@ -1,8 +1,8 @@
 """FileWriter: saves files in a folder, each completely or not at all, from a thread; the control loop never waits.
 
-A new file is written beside the old one, synced to the disk, and renamed over the old one in one step: after a power cut
-either the old or the new file exists. A file that is damaged all the same is renamed to `NAME.damaged`, and reported until
-a good one is written.
+A new file is written beside the old one, synced to the disk, and renamed over the old one in one step: after a power
+cut either the old or the new file exists. A file that is damaged all the same is renamed to `NAME.damaged`, and
+reported until a good one is written.
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ def test_folders_that_cannot_be_written_are_found_before_the_vehicle_starts(tmp_
     (tmp_path / "taken").touch()
     text = f'{FREE}{QUIET}[motors]\ndriver = "simulated"\n'
     code, lines = all_checked(tmp_path, text, "--state", str(tmp_path / "taken"))
-    told = "FOLDER/taken is no folder; remove it, or name another folder as"
+    told = "FOLDER/taken is not a folder; remove it, or set another folder with"
     assert code == 1
     assert lines[2:4] == [f"FAIL  state: {told} state or --state", f"FAIL  log.tlog: {told} log.tlog"]
     code, lines = checked(tmp_path, f'{text}[log]\ntlog = "{tmp_path}/taken/logs"\n')
