@@ -22,7 +22,8 @@ from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty, recorded
 from tests.waits import Waits
 from vehicle.control_loop import ControlLoop
-from vehicle.motors import MotorError, Motors, MotorSettingsError, arming_check, open_motors, safe_stop
+from vehicle.motors import MotorError, Motors, MotorSettingsError, arming_check
+from vehicle.motors.drivers import open_motors, safe_stop
 from vehicle.motors.roboclaw import RoboClawMotors, RoboClawSettings
 from vehicle.motors.sabertooth import SabertoothMotors, SabertoothSettings
 from vehicle.motors.serial_controller import tenths
@@ -175,7 +176,7 @@ class Driving:
 
     PROGRAM = """
 import json, sys, threading
-from vehicle.motors import open_motors
+from vehicle.motors.drivers import open_motors
 motors = open_motors(sys.argv[1], json.loads(sys.argv[2]))
 motors.enable()
 while True:
