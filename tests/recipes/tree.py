@@ -1,4 +1,4 @@
-"""A copy of the source tree in which a test follows a recipe of CONTRIBUTING.md, counts the files and runs the result."""
+"""A copy of the source tree, in which a test follows a recipe of CONTRIBUTING.md and runs the result."""
 
 from __future__ import annotations
 
