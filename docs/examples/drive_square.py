@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from pymavlink import mavutil
+from pymavlink.dialects.v20 import common as mavlink
 
 GUIDED = 15
 ONLY_POSITION = 0xDF8
@@ -19,9 +21,10 @@ def main() -> None:
     parser.add_argument("endpoint", nargs="?", default="udpin:127.0.0.1:14550")
     parser.add_argument("--side", type=float, default=3.0, help="length of a side, m")
     options = parser.parse_args()
-    vehicle = mavutil.mavlink_connection(options.endpoint, source_system=255, source_component=190, autoreconnect=True)
+    connect: Any = mavutil.mavlink_connection
+    vehicle = connect(options.endpoint, source_system=255, source_component=190, autoreconnect=True)
     vehicle.wait_heartbeat()
-    vehicle.mav.heartbeat_send(mavutil.mavlink.MAV_TYPE_GCS, mavutil.mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+    vehicle.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
     vehicle.set_mode(GUIDED)
     vehicle.arducopter_arm()
     vehicle.motors_armed_wait()
@@ -32,12 +35,12 @@ def main() -> None:
     vehicle.arducopter_disarm()
 
 
-def drive_to(vehicle: mavutil.mavfile, north: float, east: float) -> None:
+def drive_to(vehicle: Any, north: float, east: float) -> None:
     """Send the target until the vehicle is near it; m from the origin."""
     while True:
-        vehicle.mav.heartbeat_send(mavutil.mavlink.MAV_TYPE_GCS, mavutil.mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+        vehicle.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
         vehicle.mav.set_position_target_local_ned_send(
-            0, 1, 1, mavutil.mavlink.MAV_FRAME_LOCAL_NED, ONLY_POSITION, north, east, 0, 0, 0, 0, 0, 0, 0, 0, 0
+            0, 1, 1, mavlink.MAV_FRAME_LOCAL_NED, ONLY_POSITION, north, east, 0, 0, 0, 0, 0, 0, 0, 0, 0
         )
         place = vehicle.recv_match(type="LOCAL_POSITION_NED", blocking=True, timeout=1.0)
         if place and abs(place.x - north) < NEAR and abs(place.y - east) < NEAR:
