@@ -209,6 +209,7 @@ def test_a_hiccup_needs_the_key_let_go_once() -> None:
     drive.until(lambda: drive.power > 0.5, within=2.0)
 
 
+@pytest.mark.slow
 def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
     drive = Drive(loss=0.10, delay=0.010, seed=5)
     drive.get_going()
@@ -220,6 +221,7 @@ def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
 
 @settings(max_examples=15)
 @given(st.integers(0, 10_000))
+@pytest.mark.slow
 def test_thirty_percent_loss_never_moves_late(seed: int) -> None:
     drive = Drive(loss=0.30, delay=0.010, seed=seed)
     drive.until(lambda: drive.station.snapshot(drive.world.now, 0).vehicle is not None)

@@ -164,6 +164,7 @@ HOLDS = 9
 
 
 @pytest.mark.parametrize(("loss", "keeps_driving"), [(0.10, True), (0.30, False)])
+@pytest.mark.slow
 def test_a_lossy_minute(rig: Build, loss: float, keeps_driving: bool) -> None:
     """One minute of holding and letting go. Motion follows the keys or ends; it never comes late."""
     world = rig(loss=loss, delay=0.010)

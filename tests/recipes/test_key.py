@@ -1,0 +1,27 @@
+"""Recipe: a key for an existing action, in one file."""
+
+from __future__ import annotations
+
+from tests.recipes.tree import Tree
+
+PRESS_IT = """
+import asyncio
+from groundstation.intents import SetMode
+from tests.groundstation.ui.pilots import console
+
+async def main():
+    async with console(size=(140, 45)) as screen:
+        await screen.press("h")
+        assert screen.station.of(SetMode) == [SetMode(mode="HOLD")], screen.station.of(SetMode)
+        await screen.press("question_mark")
+        print(screen.text)
+
+asyncio.run(main())
+"""
+
+
+def test_a_key(tree: Tree) -> None:
+    tree.replace("groundstation/input/keymap.py", '"2": "vehicle.hold"', '"2": "vehicle.hold", "h": "vehicle.hold"')
+    assert len(tree.touched) == 1
+    help_screen = tree.run_script(PRESS_IT)
+    assert "2 h" in " ".join(next(line for line in help_screen.splitlines() if "the vehicle stands" in line).split())
