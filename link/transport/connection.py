@@ -33,6 +33,8 @@ class Connection:
         self._ended = ended
         self._outlet = StreamWriter(sock.fileno(), self.queue, sock.send, self._failed)
         self._loop = asyncio.get_running_loop()
+        self.last_received = self._loop.time()
+        """When the last bytes came, or else when the connection was opened; time of the event loop."""
         self._loop.add_reader(sock, self._readable)
 
     def send(self, data: bytes) -> None:
@@ -54,6 +56,7 @@ class Connection:
             self._failed(error)
             return
         if data:
+            self.last_received = self._loop.time()
             self._arrived([(data, self.address)])
         else:
             self._end("closed by the other end")
