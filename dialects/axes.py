@@ -41,11 +41,15 @@ class AxisMap:
     steering: str
     throttle_neutral: int = 0
     throttle_span: int = FULL_DEFLECTION
+    reverse_flips_steering: bool = False
+    """In reverse, steering to the right turns the nose left, as with a steering wheel. ArduRover does so with every frame,
+    skid steering included (Rover/mode.cpp, get_pilot_desired_steering_and_throttle).
+    `Axes.steering` always means the nose, so that the sign changes with the throttle."""
 
 
 AXIS_MAPS: dict[int, AxisMap] = {
     Autopilot.GENERIC: AxisMap(throttle="x", steering="r"),
-    Autopilot.ARDUPILOT: AxisMap(throttle="z", steering="y"),
+    Autopilot.ARDUPILOT: AxisMap(throttle="z", steering="y", reverse_flips_steering=True),
     Autopilot.PX4: AxisMap(throttle="z", steering="y", throttle_neutral=500, throttle_span=500),
 }
 """MAV_AUTOPILOT of the vehicle's HEARTBEAT -> its axes."""
@@ -63,9 +67,10 @@ def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[
     does not use are sent as INT16_MAX, "invalid".
     """
     message = ManualControl(target, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, 0)
-    throttle = axis_map.throttle_neutral + round(_clamp(axes.throttle) * axis_map.throttle_span)
-    setattr(message, axis_map.throttle, throttle)
-    setattr(message, axis_map.steering, round(_clamp(axes.steering) * FULL_DEFLECTION))
+    throttle = round(_clamp(axes.throttle) * axis_map.throttle_span)
+    steering = round(_clamp(axes.steering) * FULL_DEFLECTION)
+    setattr(message, axis_map.throttle, axis_map.throttle_neutral + throttle)
+    setattr(message, axis_map.steering, -steering if axis_map.reverse_flips_steering and throttle < 0 else steering)
     return message
 
 
@@ -84,4 +89,6 @@ def parse_manual_control(
     raw_steering = getattr(message, axis_map.steering)
     throttle = (raw_throttle - axis_map.throttle_neutral) / axis_map.throttle_span
     steering = raw_steering / FULL_DEFLECTION
+    if axis_map.reverse_flips_steering and throttle < 0:
+        steering = -steering
     return (throttle if abs(throttle) <= 1.0 else None, steering if abs(steering) <= 1.0 else None)

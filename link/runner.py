@@ -88,6 +88,8 @@ class Runner:
         self._tick_due = 0.0
         self._timer: asyncio.TimerHandle | None = None
         self._log_tap = log_tap
+        self._not_encoded: set[int] = set()
+        """Ids of messages whose encoding has failed and was logged: a message may be asked for 100 times a second."""
         for link in links:
             link.channel.log_tap = log_tap
 
@@ -198,8 +200,14 @@ class Runner:
         for outgoing in self._core.messages_to_send():
             try:
                 self._send(outgoing)
-            except EncodeError:
-                log.exception("a message of ours could not be encoded and was not sent")
+            except EncodeError as error:
+                self._log_not_encoded(outgoing.message, error)
+
+    def _log_not_encoded(self, message: Message, error: EncodeError) -> None:
+        number = type(message).id
+        if number not in self._not_encoded:
+            self._not_encoded.add(number)
+            log.error("a message could not be encoded and was not sent: %s", error)
 
     def _send(self, outgoing: Outgoing) -> None:
         payload = encode_payload(outgoing.message)

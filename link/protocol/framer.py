@@ -56,6 +56,12 @@ class _Doubt(NamedTuple):
     end: int
     message_id: int
     known: bool
+    noise: int = 0
+    """`resync_bytes` before the first byte of it: what to go back to where it was a whole frame of an unknown id."""
+    crc_errors: int = 0
+    """Frames inside an unknown one that failed the checksum: they count only where the outer one was none."""
+    refused: int = 0
+    """Inside an unknown one, as `FramerCounts.refused`."""
 
 
 class Framer:
@@ -118,7 +124,7 @@ class Framer:
     def _skip_first_byte(self) -> None:
         self._buffer = self._buffer[1:]
         self._at_border = False
-        self._doubt = None
+        self._drop_doubt()
         self.counts.resync_bytes += 1
 
     def _take(self, now: float) -> list[Frame]:
@@ -231,7 +237,7 @@ class Framer:
     def _foreign(self, start: int, end: int, flags: int, message_id: int) -> _Missing:
         """Handle unknown incompatibility flags (the frame must be dropped), or an id outside the dialect."""
         if flags > INCOMPAT_SIGNED:
-            self.counts.refused += 1
+            self._refuse(start)
         else:
             self._suspect(start, _Doubt(end, message_id, known=False))
         return _Missing.FRAME
@@ -240,11 +246,15 @@ class Framer:
         if size - start < HEADER_V1 + CRC_SIZE:
             return _Missing.BYTES
         length, sequence, system, component, message_id = data[start + 1 : start + HEADER_V1]
-        if BASE_SIZE.get(message_id) != length:
-            self.counts.refused += message_id in BASE_SIZE
-            return _Missing.FRAME
         crc_at = start + HEADER_V1 + length
         end = crc_at + CRC_SIZE
+        size_in_dialect = BASE_SIZE.get(message_id)
+        if size_in_dialect is None:
+            self._suspect(start, _Doubt(end, message_id, known=False))
+            return _Missing.FRAME
+        if size_in_dialect != length:
+            self._refuse(start)
+            return _Missing.FRAME
         if end > size:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + CRC_EXTRA[message_id]) != data[crc_at] | data[crc_at + 1] << 8:
@@ -252,24 +262,47 @@ class Framer:
         return (message_id, system, component, sequence, data[start:end])
 
     def _bad_crc(self, start: int, end: int, message_id: int) -> _Missing:
+        if (outer := self._unknown_around(start)) is not None:
+            self._doubt = outer._replace(crc_errors=outer.crc_errors + 1)
+            return _Missing.FRAME
         self.counts.crc_errors += 1
         self._suspect(start, _Doubt(end, message_id, known=True))
         return _Missing.FRAME
+
+    def _refuse(self, start: int) -> None:
+        if (outer := self._unknown_around(start)) is not None:
+            self._doubt = outer._replace(refused=outer.refused + 1)
+        else:
+            self.counts.refused += 1
+
+    def _unknown_around(self, start: int) -> _Doubt | None:
+        """Return the frame of an unknown id that `start` lies inside of, if it may still prove whole."""
+        outer = self._doubt
+        return outer if outer is not None and not outer.known and start < outer.end else None
 
     def _suspect(self, start: int, doubt: _Doubt) -> None:
         """Remember a failed frame, unless it lies inside an earlier one that may still prove complete."""
         if self._doubt is not None and self._doubt.end <= start:
             self._settle(start)
         if self._doubt is None:
-            self._doubt = doubt
+            self._doubt = doubt._replace(noise=self.counts.resync_bytes)
+
+    def _drop_doubt(self) -> None:
+        """Count what was found inside a frame that was none."""
+        doubt, self._doubt = self._doubt, None
+        if doubt is not None:
+            self.counts.crc_errors += doubt.crc_errors
+            self.counts.refused += doubt.refused
 
     def _settle(self, position: int) -> None:
         """Count the failed frame as foreign if it ends at `position`, where a frame starts or the data ends."""
         doubt = self._doubt
-        self._doubt = None
         if doubt is None or doubt.end != position:
+            self._drop_doubt()
             return
+        self._doubt = None
         if not doubt.known:
             self.counts.unknown += 1
+            self.counts.resync_bytes = doubt.noise
         elif doubt.message_id in self.counts.mismatches or len(self.counts.mismatches) < MAX_MISMATCHES:
             self.counts.mismatches[doubt.message_id] = self.counts.mismatches.get(doubt.message_id, 0) + 1

@@ -21,6 +21,9 @@ from link.routing.routes import RecentFrames, RoutedPeer, RoutedSource, RouteTab
 REDUNDANCY_WINDOW = 1.0
 """s in which the same frame over another link is the same frame: more than the slowest radio adds, and less than 256
 frames of one sender take, unless it sends more of them than redundant links carry."""
+MAX_RECENT_UNTRACKED = 512
+"""Frames of untracked sources that are remembered for REDUNDANCY_WINDOW: without them, one frame with an unknown id
+circles for ever in a ring of bridges, because it teaches no route and has no entry to compare it with."""
 MAX_TRACKED_SOURCES = 256
 """Systems and components whose frames are compared between redundant links."""
 MAX_TARGETS = 256
@@ -56,6 +59,8 @@ class Router:
         self._own = own
         self._recent: dict[SourceId, RecentFrames] = {}
         """One for all peers of a source, so that they can be compared."""
+        self._untracked: dict[bytes, float] = {}
+        """Frames of sources without `recent`, without their signatures -> when each arrived first; the oldest first."""
         self._boot_times: dict[SourceId, int] = {}
         self._loaded: list[RoutedPeer] = []
 
@@ -126,6 +131,8 @@ class Router:
                 if before is not None and before[1] is not peer and self._is_redundant(before, raw, now):
                     continue
                 recent[sequence] = (now, peer, raw)
+            elif self._is_untracked_copy(raw, now):
+                continue
             target = _EVERYBODY
             if message_id in _NOT_FOR_ALL:
                 if message_id in _INSPECTED and self._is_link_local(source, message_id, raw):
@@ -156,6 +163,19 @@ class Router:
         again = now - before[0] < REDUNDANCY_WINDOW and _same(before[2], raw)
         self.duplicates += again
         return again
+
+    def _is_untracked_copy(self, raw: bytes, now: float) -> bool:
+        """Return whether this frame of an untracked source went on less than REDUNDANCY_WINDOW ago, on any link."""
+        key = _without_signature(raw)
+        at = self._untracked.get(key)
+        if at is not None and now - at < REDUNDANCY_WINDOW:
+            self.duplicates += 1
+            return True
+        self._untracked.pop(key, None)
+        if len(self._untracked) >= MAX_RECENT_UNTRACKED:
+            del self._untracked[next(iter(self._untracked))]
+        self._untracked[key] = now
+        return False
 
     def _is_link_local(self, source: RoutedSource, message_id: int, raw: bytes) -> bool:
         """Messages that are more than freight: two stay here, SYSTEM_TIME tells of a restart and goes on."""
@@ -194,7 +214,8 @@ class Router:
 
 def _same(one: bytes, other: bytes) -> bool:
     """Are two frames the same but for their signatures, which differ from link to link?"""
-    if one == other:
-        return True
-    end = HEADER_V2 + one[1] + CRC_SIZE
-    return one[0] == MAGIC_V2 and one[:end] == other[:end]
+    return one == other or _without_signature(one) == _without_signature(other)
+
+
+def _without_signature(raw: bytes) -> bytes:
+    return raw[: HEADER_V2 + raw[1] + CRC_SIZE] if raw[0] == MAGIC_V2 else raw

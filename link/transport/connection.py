@@ -37,6 +37,8 @@ class Connection:
         self._on_end = on_end
         self._writer = StreamWriter(sock.fileno(), self.queue, sock.send, self._failed)
         self._loop = asyncio.get_running_loop()
+        self.last_received = self._loop.time()
+        """When the last bytes came, or else when the connection was opened; time of the event loop."""
         self._loop.add_reader(sock, self._readable)
 
     def send(self, data: bytes) -> None:
@@ -58,6 +60,7 @@ class Connection:
             self._failed(error)
             return
         if data:
+            self.last_received = self._loop.time()
             self._on_receive([(data, self.address)])
         else:
             self._end("closed by the other end")

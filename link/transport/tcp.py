@@ -17,7 +17,9 @@ from link.transport.connection import Connection
 from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
 
 MAX_CONNECTIONS = 16
-"""To one `tcpin`; more are closed at once."""
+"""To one `tcpin`. When it is full, the connection that has been silent longest makes room, or else the new one is closed."""
+EVICT_AFTER = 10.0
+"""s of silence after which a connection makes room: a ground station sends a HEARTBEAT each second."""
 CONNECT_TIMEOUT = 5.0
 """s, then the next try."""
 
@@ -73,11 +75,20 @@ class TcpServerTransport:
             self.problem = f"{self.endpoint.text}: {error.strerror}"
             return
         self.problem = None
-        if len(self._connections) >= MAX_CONNECTIONS:
+        if len(self._connections) >= MAX_CONNECTIONS and not self._evict():
             sock.close()
             return
         self._connections[address] = Connection(sock, address, self._on_receive, self._ended)
         self._on_receive([(b"", address)])  # mavutil and MAVSDK wait for a HEARTBEAT before they say theirs
+
+    def _evict(self) -> bool:
+        """Close the connection that has been silent longest; False if each was heard within EVICT_AFTER."""
+        silent = min(self._connections.values(), key=lambda each: each.last_received)
+        if self._loop is None or self._loop.time() - silent.last_received < EVICT_AFTER:
+            return False
+        silent.close()
+        self._ended(silent, "silent")
+        return True
 
     def _ended(self, connection: Connection, why: str) -> None:
         del self._connections[connection.address]
