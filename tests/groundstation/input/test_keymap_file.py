@@ -62,8 +62,8 @@ def test_every_punctuation_name_is_textuals() -> None:
         ("speed = 1", ["unknown entry 'speed'", "base, keys"]),
         ("keys = 1", ["'keys' must be a table"]),
         ("[keys", ["mine.toml"]),
-        (f"base = {'9' * 5000}", ["mine.toml", "a number of thousands of digits"]),
-        (f"base = {'[' * 3000}{']' * 3000}", ["mine.toml", "too deep to be meant"]),
+        (f"base = {'9' * 5000}", ["mine.toml", "a number with thousands of digits"]),
+        (f"base = {'[' * 3000}{']' * 3000}", ["mine.toml", "nested too deep"]),
     ],
 )
 def test_mistakes_are_told_in_one_line_with_the_choices(tmp_path: Path, text: str, words: list[str]) -> None:
