@@ -260,8 +260,8 @@ def test_a_file_that_goes_while_it_is_fetched_is_a_failure_and_not_silence(
 
 
 def test_a_checksum_of_a_file_that_is_cut_meanwhile_is_a_failure(folder: DiskFolder, tmp_path: Path) -> None:
-    def cut(name: str, offset: int, size: int, take: Callable[[bytes], None]) -> bool:
-        take(b"")
+    def cut(name: str, offset: int, size: int, receive: Callable[[bytes], None]) -> bool:
+        receive(b"")
         return True
 
     folder.fetch = cut  # type: ignore[method-assign]
