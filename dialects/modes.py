@@ -29,7 +29,8 @@ class Mode(IntEnum):
 
 
 _BASE = {Mode.GUIDED: ModeFlag.GUIDED, Mode.AUTO: ModeFlag.AUTO, Mode.RTL: ModeFlag.AUTO, Mode.SMART_RTL: ModeFlag.AUTO,
-         Mode.MANUAL: ModeFlag.MANUAL, Mode.ACRO: ModeFlag.MANUAL, Mode.STEERING: ModeFlag.MANUAL}  # fmt: skip
+         Mode.MANUAL: ModeFlag.MANUAL, Mode.ACRO: ModeFlag.MANUAL, Mode.STEERING: ModeFlag.MANUAL,
+         Mode.SIMPLE: ModeFlag.MANUAL}  # fmt: skip
 
 _PX4_MAIN = {
     1: "MANUAL",
@@ -43,6 +44,14 @@ _PX4_MAIN = {
 }
 """PX4 keeps the main mode in bits 16-23 of custom_mode (MAVSDK px4_custom_mode.hpp)."""
 
+_PX4_DRIVABLE = frozenset({"MANUAL", "ALTCTL", "POSCTL", "ACRO", "STABILIZED"})
+
+DRIVABLE_MODES = _PX4_DRIVABLE | {mode.name for mode, flags in _BASE.items() if flags & ModeFlag.MANUAL}
+"""Names (`mode_name`) of the modes in which the driver's demand moves a rover, of ArduRover and PX4."""
+
+STANDING_MODES = frozenset({Mode.HOLD.name, Mode.INITIALISING.name})
+"""Names of the modes in which nothing moves a rover. Every mode in neither set is autonomous."""
+
 
 def base_mode(mode: Mode, *, armed: bool) -> ModeFlag:
     """`base_mode` of HEARTBEAT for a mode."""
@@ -51,7 +60,7 @@ def base_mode(mode: Mode, *, armed: bool) -> ModeFlag:
 
 
 def mode_name(custom_mode: int, autopilot: int = Autopilot.GENERIC) -> str:
-    """The name a driver reads for a HEARTBEAT's custom_mode; "mode 99" for an unknown number."""
+    """Return the name of a HEARTBEAT's custom_mode; "mode 99" for an unknown number."""
     if autopilot == Autopilot.PX4:
         main = (custom_mode >> 16) & 0xFF
         return _PX4_MAIN.get(main, f"mode {main}")

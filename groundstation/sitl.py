@@ -1,4 +1,4 @@
-"""The simulated rover as a child process: started on request, watched, and ended with us. It shares no code with us."""
+"""Runs the simulated rover (`vehicle --sim`) as a child process that ends with this one. Imports nothing of it."""
 
 from __future__ import annotations
 
@@ -17,41 +17,41 @@ PR_SET_PDEATHSIG = 1
 """prctl(2): the kernel sends a signal when the parent dies, even by kill -9."""
 
 END_TIMEOUT = 1.0
-"""s for the simulator to stop its motors and end, before it is killed."""
+"""s for the simulator to stop its motors and exit before it is killed."""
 
-KEPT = 4000
-"""Bytes of its output that are looked at: the last words, with a traceback."""
+TAIL_SIZE = 4000
+"""Bytes of its output that are read: the last lines, with a traceback."""
 
 
 def free_port() -> int:
-    """A UDP port of the loopback that nobody uses now. Should somebody take it first, the link says so."""
+    """Return a free UDP port of the loopback. If another program takes it first, opening the link fails."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 
 
 class Simulator:
-    """One `vehicle --sim`. What it prints is kept; the last line is the reason when it ends."""
+    """One `vehicle --sim`. Its output is kept; the last line is the reason when it exits."""
 
     def __init__(self, host: str, port: int) -> None:
-        """Start it, sending to an address of this machine. Raises OSError."""
-        self._output = tempfile.TemporaryFile()  # noqa: SIM115  # it has no name: nothing is left behind, come what may
+        """Start the simulator, sending to an address of this machine. Raises OSError."""
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115  # it has no name, so nothing is left behind even after a kill
         self._process: subprocess.Popen[bytes] = start_module(
             "vehicle",
             ["--sim", f"udpout:{host}:{port}"],
             output=self._output,
-            new_session=True,  # Ctrl-C in the terminal is for the screen
+            new_session=True,  # Ctrl-C in the terminal is for the screen only
             prepare=_die_with_parent(),
         )
 
     @property
     def running(self) -> bool:
-        """It has not ended."""
+        """The process has not exited."""
         return self._process.poll() is None
 
     @property
     def state(self) -> str:
-        """For the screen: "running", or how it ended."""
+        """Status for the screen: "running", or how the process ended."""
         code = self._process.poll()
         if code is None:
             return "running"
@@ -61,12 +61,12 @@ class Simulator:
 
     @property
     def output_tail(self) -> str:
-        """The end of what it printed."""
+        """The end of its output."""
         size = os.fstat(self._output.fileno()).st_size
-        return os.pread(self._output.fileno(), KEPT, max(0, size - KEPT)).decode("utf-8", "replace")
+        return os.pread(self._output.fileno(), TAIL_SIZE, max(0, size - TAIL_SIZE)).decode("utf-8", "replace")
 
     def close(self) -> None:
-        """End it."""
+        """Stop the simulator."""
         if self.running:
             self._process.terminate()
             end_process(self._process, END_TIMEOUT)
@@ -74,10 +74,10 @@ class Simulator:
 
 
 def _die_with_parent() -> Callable[[], None] | None:
-    """What the child does first: ask the kernel to be terminated with us. Only Linux has it."""
+    """Return a function for the child that makes the kernel terminate it when we die; None except on Linux."""
     if not sys.platform.startswith("linux"):
         return None
-    prctl = ctypes.CDLL(None).prctl  # looked up before the fork: after it, as little as possible may run
+    prctl = ctypes.CDLL(None).prctl  # looked up before the fork: as little as possible may run after it
 
     def prepare() -> None:
         prctl(PR_SET_PDEATHSIG, signal.SIGTERM)

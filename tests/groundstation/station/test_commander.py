@@ -137,7 +137,7 @@ def test_acknowledged_but_not_armed_is_told() -> None:
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm())
     cockpit.run(4.0)
-    assert cockpit.view.refusal == "the vehicle acknowledged arming, but its heartbeat says disarmed"
+    assert cockpit.view.refusal == "arming acknowledged, but the heartbeat reports disarmed"
 
 
 def test_disarm_is_asked_again_while_the_heartbeat_says_armed() -> None:
@@ -157,7 +157,7 @@ def test_disarm_that_never_becomes_true_is_told() -> None:
     cockpit.vehicle._obey = lambda message, source: None  # type: ignore[method-assign]
     cockpit.do(Disarm())
     cockpit.run(8.0)
-    assert cockpit.view.refusal == "disarm: Rover 1 still says armed"
+    assert cockpit.view.refusal == "disarm: Rover 1 still reports armed"
 
 
 def test_disarm_during_arming_ends_the_arming() -> None:
@@ -257,7 +257,7 @@ def test_arming_is_refused_here_while_the_emergency_stop_is_on() -> None:
     cockpit.do(Arm())
     cockpit.run(1.0)
     assert len(cockpit.vehicle.commands(ARM)) == before
-    assert cockpit.view.refusal == "arm: the emergency stop is on, clear it first"
+    assert cockpit.view.refusal == "arm: emergency stop active, clear it first"
 
 
 @pytest.mark.parametrize("answer", [Result.ACCEPTED, Result.UNSUPPORTED])
