@@ -9,15 +9,19 @@ import socket
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from groundstation.processes import end_process, start_module
+from link.endpoint import Endpoint
 
 PR_SET_PDEATHSIG = 1
 """prctl(2): the kernel sends a signal when the parent dies, even by kill -9."""
 
 END_TIMEOUT = 1.0
 """s for the simulator to stop its motors and exit before it is killed."""
+
+WILDCARD_HOSTS = ("0.0.0.0", "::")
+"""Hosts that mean "all addresses of this machine"; nothing can be sent to them."""
 
 TAIL_SIZE = 4000
 """Bytes of its output that are read: the last lines, with a traceback."""
@@ -71,6 +75,45 @@ class Simulator:
             self._process.terminate()
             end_process(self._process, END_TIMEOUT)
         self._output.close()
+
+
+class SimulatorControl:
+    """Starts at most one simulator at a time and reports once when it exits."""
+
+    def __init__(self) -> None:
+        self._simulator: Simulator | None = None
+        self._exit_reported = False
+
+    def start(self, endpoints: Sequence[Endpoint]) -> str | None:
+        """Start a simulator that sends to the first endpoint that listens. Returns an error text, or None."""
+        if self._simulator is not None and self._simulator.running:
+            return None
+        endpoint = next((each for each in endpoints if each.scheme == "udpin"), None)
+        if endpoint is None:
+            return "the simulator needs a link that listens, e.g. udpin:127.0.0.1:14550"
+        try:
+            host = "127.0.0.1" if endpoint.host in WILDCARD_HOSTS else endpoint.host
+            self._simulator, self._exit_reported = Simulator(host, endpoint.port), False
+        except OSError as error:
+            return f"simulator did not start: {error.strerror}"
+        return None
+
+    @property
+    def state(self) -> str | None:
+        """Status for the screen; None if no simulator was started."""
+        return None if self._simulator is None else self._simulator.state
+
+    def pop_exit(self) -> tuple[str, str] | None:
+        """Return how the simulator exited and the end of its output, once; None while it runs."""
+        if self._simulator is None or self._simulator.running or self._exit_reported:
+            return None
+        self._exit_reported = True
+        return f"simulator {self._simulator.state}", self._simulator.output_tail
+
+    def close(self) -> None:
+        """Stop the simulator, if one was started."""
+        if self._simulator is not None:
+            self._simulator.close()
 
 
 def _die_with_parent() -> Callable[[], None] | None:

@@ -29,7 +29,7 @@ from groundstation.ipc import (
     decode_from_screen,
     encode,
 )
-from groundstation.sitl import Simulator, free_port
+from groundstation.sitl import SimulatorControl, free_port
 from groundstation.snapshot import LogLine, OperatorView, Snapshot
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import COMPONENT, Station
@@ -50,9 +50,6 @@ SNAPSHOT_PERIOD = 0.1
 END_WITHIN = 1.0
 """s for the final neutral frames (0.25 s are needed); then the process exits in any case."""
 
-WILDCARD_HOSTS = ("0.0.0.0", "::")
-"""Hosts that mean "all addresses of this machine"; nothing can be sent to them."""
-
 LOG_SIZE = 1 << 20
 LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 
@@ -66,8 +63,7 @@ class StationProcess:
         self._pipe = pipe
         self._core = CrashNeutral(station)
         self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash)
-        self._simulator: Simulator | None = None
-        self._simulator_state: str | None = None
+        self._simulator = SimulatorControl()
         self._last_snapshot = Snapshot()
         self._broken = self._ending = False
 
@@ -84,23 +80,14 @@ class StationProcess:
         finally:
             show.cancel()
             loop.remove_reader(self._pipe)
-            if self._simulator is not None:
-                self._simulator.close()
+            self._simulator.close()
         return 1 if self._broken else 0
 
     def start_simulator(self, now: float) -> None:
         """Start a simulator that sends to the first of our links that listens on this machine."""
-        endpoint = next((link.endpoint for link in self._links if link.endpoint.scheme == "udpin"), None)
-        if self._simulator is not None and self._simulator.running:
-            return
-        if endpoint is None:
-            self._log_warning(now, "the simulator needs a link that listens, e.g. udpin:127.0.0.1:14550")
-            return
-        try:
-            host = "127.0.0.1" if endpoint.host in WILDCARD_HOSTS else endpoint.host
-            self._simulator = Simulator(host, endpoint.port)
-        except OSError as error:
-            self._log_warning(now, f"simulator did not start: {error.strerror}")
+        error = self._simulator.start([link.endpoint for link in self._links])
+        if error is not None:
+            self._log_warning(now, error)
 
     # ---- the pipe ----
 
@@ -169,14 +156,12 @@ class StationProcess:
             log.debug("the screen has exited")  # _read_pipe sees the end of the pipe
 
     def _watch_simulator(self, now: float) -> None:
-        if self._simulator is None:
-            return
-        state = self._simulator.state
-        if not self._simulator.running and self._simulator_state != state:
-            self._log_warning(now, f"simulator {state}")
-            log.error("output of the simulator:\n%s", self._simulator.output_tail)
-        self._simulator_state = state
-        self._station.set_simulator_state(state)
+        exited = self._simulator.pop_exit()
+        if exited is not None:
+            text, output = exited
+            self._log_warning(now, text)
+            log.error("output of the simulator:\n%s", output)
+        self._station.set_simulator_state(self._simulator.state)
 
     def _log_warning(self, now: float, text: str) -> None:
         log.warning(text)

@@ -121,7 +121,7 @@ class Station:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._intents.handle(intent, now)
 
-    def set_simulator_state(self, state: str) -> None:
+    def set_simulator_state(self, state: str | None) -> None:
         """Record the state of the simulator, for the next snapshot."""
         self._simulator_state = state
 
