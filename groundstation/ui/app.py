@@ -16,8 +16,8 @@ from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 
-from groundstation.input.keymap import KeyEvent, Keymap, OperatorAction
-from groundstation.intents import AnyIntent, RenewLease
+from groundstation.input.keymap import KeyEvent, Keymap
+from groundstation.intents import AnyIntent, OperatorAction, RenewLease
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import THEME
 from groundstation.ui.exit import exit_on_signals

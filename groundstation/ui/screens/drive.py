@@ -10,8 +10,8 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 from textual.widgets import Static
 
-from groundstation.input.keymap import CONFIRM_KEY, Keymap, OperatorAction
-from groundstation.intents import AnyIntent, StartSimulator
+from groundstation.input.keymap import CONFIRM_KEY, Keymap
+from groundstation.intents import AnyIntent, OperatorAction, StartSimulator
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.alerts import AlertContext, active_alerts
 from groundstation.ui.colours import BLUE, GREEN

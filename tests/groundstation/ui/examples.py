@@ -117,7 +117,7 @@ RATES: Sequence[tuple[str, float, int, bool]] = (
 def snapshot(**changes: Any) -> Snapshot:
     """All of it."""
     picture = Snapshot(
-        number=1, uptime=60.0, endpoints=("udpin:127.0.0.1:14550",), vehicle=vehicle(), vehicles=(1,), operator=helm(),
+        number=1, uptime=60.0, endpoints=("udpin:127.0.0.1:14550",), vehicle=vehicle(), operator=helm(),
         links=(LinkView(name="udpin:127.0.0.1:14550", loss=0.003, round_trip=0.012, rate=55.0),), texts=TEXTS,
         messages=tuple(MessageRate(name=name, rate=rate, count=count, sent=sent) for name, rate, count, sent in RATES),
     )  # fmt: skip
@@ -128,5 +128,5 @@ def waiting(**changes: Any) -> Snapshot:
     """No vehicle yet."""
     text = "waiting for a vehicle on udpin:127.0.0.1:14550"
     return snapshot(
-        vehicle=None, vehicles=(), operator=OperatorView(gate_reason="no vehicle"), texts=(), waiting=text, **changes
+        vehicle=None, operator=OperatorView(gate_reason="no vehicle"), texts=(), waiting=text, **changes
     )

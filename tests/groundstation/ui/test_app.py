@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from groundstation.input.keymap import ACTIONS
 from groundstation.intents import (
+    ACTIONS,
     Arm,
     ClearEmergencyStop,
     Disarm,
