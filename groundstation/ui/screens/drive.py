@@ -16,8 +16,8 @@ from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.alerts import AlertContext, active_alerts
 from groundstation.ui.colours import BLUE, GREEN
 from groundstation.ui.key_gate import GateClosure
+from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.keynames import format_key
-from groundstation.ui.terminal import KeyRepeat
 from groundstation.ui.widgets.alert import AlertLine
 from groundstation.ui.widgets.chart import Chart, Series
 from groundstation.ui.widgets.footer import KeyFooter

@@ -91,8 +91,8 @@ def vehicle(**changes: Any) -> VehicleView:
 def helm(**changes: Any) -> OperatorView:
     """A driver who holds `o`."""
     view = OperatorView(
-        style="hold", reports_releases=True, stop_bound=0.0, held=("o",), throttle=0.6, steering=0.25, throttle_limit=0.6,
-        steering_limit=0.6, gate_open=True, sending=True, rate=20.0,
+        style="hold", reports_releases=True, stop_bound=0.0, held=("o",), throttle=0.6, steering=0.25,
+        throttle_limit=0.6, steering_limit=0.6, gate_open=True, sending=True, rate=20.0,
     )  # fmt: skip
     return msgspec.structs.replace(view, **changes)
 
