@@ -32,6 +32,8 @@ class ModeSpec:
     """A ground station may ask for it."""
     standard: int = 0
     """MAV_STANDARD_MODE that it fits."""
+    leads_home: bool = False
+    """The mode returns from a fence breach, so that it may be chosen outside the fence."""
 
     @property
     def moves(self) -> bool:
@@ -47,8 +49,8 @@ MODES: dict[Mode, ModeSpec] = {
         ModeSpec(Mode.HOLD),
         ModeSpec(Mode.LOITER, autonomous=True, requirement=ModeRequirement.POSITION),
         ModeSpec(Mode.AUTO, autonomous=True, requirement=ModeRequirement.POSITION, standard=6),
-        ModeSpec(Mode.RTL, autonomous=True, requirement=ModeRequirement.POSITION, standard=5),
-        ModeSpec(Mode.SMART_RTL, autonomous=True, requirement=ModeRequirement.POSITION),
+        ModeSpec(Mode.RTL, autonomous=True, requirement=ModeRequirement.POSITION, standard=5, leads_home=True),
+        ModeSpec(Mode.SMART_RTL, autonomous=True, requirement=ModeRequirement.POSITION, leads_home=True),
         ModeSpec(Mode.GUIDED, autonomous=True),
         ModeSpec(Mode.INITIALISING, selectable=False),
     )

@@ -13,7 +13,6 @@ from vehicle.autonomy.navigator import Navigator
 from vehicle.commands.actuator_test import ActuatorTest
 from vehicle.commands.buttons import Buttons
 from vehicle.commands.dispatch import COMPONENT, Dispatcher, Stores
-from vehicle.commands.params import ParamStoreLike
 from vehicle.commands.reboot import RebootRequest
 from vehicle.drive.control import Control
 from vehicle.drive.demand import Demand
@@ -29,7 +28,8 @@ from vehicle.safety.state_machine import Safety
 from vehicle.safety.states import SafetyState
 from vehicle.statustext import StatusTextQueue
 from vehicle.storage.logbook import LogRecorder
-from vehicle.storage.plan_keeping import PlanStoreLike
+from vehicle.storage.param_store import ParamStore
+from vehicle.storage.plan_store import PlanStore
 from vehicle.telemetry import build_status as status
 from vehicle.telemetry.bandwidth import Bandwidth
 from vehicle.telemetry.host import HostInfo
@@ -47,8 +47,8 @@ class Rover:
         params: Params,
         *,
         now: float,
-        keeper: ParamStoreLike | None = None,
-        plan_keeper: PlanStoreLike | None = None,
+        param_store: ParamStore | None = None,
+        plan_store: PlanStore | None = None,
         recording: LogRecorder | None = None,
         host: HostInfo | None = None,
         told: Callable[[Severity, str], None] = lambda severity, text: None,
@@ -56,7 +56,7 @@ class Rover:
     ) -> None:
         """`now` is the monotonic time of boot.
 
-        `keeper` remembers parameters that are set, `plan_keeper` plans; without them they end with the program.
+        `param_store` saves parameters that are set, `plan_store` plans; without them they end with the program.
         `recording` writes logs. `host` is told of as it is. `told` hears what the driver reads. `rack` holds relays
         and servos.
         """
@@ -101,7 +101,7 @@ class Rover:
             bandwidth=self._bandwidth,
             links=self._links,
             trials=self._actuator_test,
-            keepers=Stores(keeper, plan_keeper, recording),
+            stores=Stores(param_store, plan_store, recording),
             rack=self._rack,
             look=self._build_view,
         )
@@ -240,9 +240,9 @@ class Rover:
     def _cycle(self, now: float) -> None:
         """What fails, what follows, and what self-driving wants then."""
         driving = self._drive.driven_wheels
-        hazards = self._navigator.find_hazards(self._safety, driving, now)
+        inputs = self._navigator.build_failsafe_inputs(self._safety, driving)
         moves = MODES[self._safety.mode].autonomous and any(driving)
-        self._monitor.update(now, self._drive.rejected_cycles, hazards, driving=moves)
+        self._monitor.update(now, self._drive.rejected_cycles, inputs, driving=moves)
         self._navigator.step(self._safety, now)
         if self._navigator.end_reason is not None:
             self._safety.finish_autonomy(self._navigator.end_reason, now)

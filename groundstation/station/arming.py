@@ -15,7 +15,7 @@ from enum import Enum, auto
 from dialects.enums import Autopilot, Command, ModeFlag, Result
 from dialects.modes import Mode, custom_mode
 from groundstation.vehicles.vehicle_state import VehicleState
-from link.services.command.server import CommandClient, CommandOutcome
+from link.services.command.client import CommandClient, CommandOutcome
 
 NEUTRAL_FIRST = 0.12
 """s of neutral demands before the commands: three frames. ArduPilot refuses to arm with the throttle off neutral."""

@@ -11,7 +11,7 @@ from groundstation.station.emergency import DANGEROUS, EmergencyLock
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Outgoing, Received
-from link.services.command.server import CommandClient, CommandOutcome
+from link.services.command.client import CommandClient, CommandOutcome
 
 REASON_WITHIN = 1.0
 """s between a refusal and the vehicle's text that says why; either may come first."""

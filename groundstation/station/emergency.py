@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from dialects.enums import Command
 from groundstation.vehicles.vehicle_state import VehicleState
-from link.services.command.server import CommandClient, CommandOutcome
+from link.services.command.client import CommandClient, CommandOutcome
 
 SAFE, DANGEROUS = 0, 1
 """SAFETY_SWITCH_STATE: motors off and locked; motors may run."""

@@ -9,7 +9,7 @@ UNASKED --no ROVER_DRIVE_STATUS comes--> ASKED --accepted, or it comes--> TELLIN
 from __future__ import annotations
 
 from dialects.enums import Autopilot, Result
-from link.services.command.server import CommandOutcome
+from link.services.command.client import CommandOutcome
 
 FOREIGN_AUTOPILOTS = frozenset({Autopilot.ARDUPILOT, Autopilot.PX4})
 """They say in each HEARTBEAT that they are not ours."""

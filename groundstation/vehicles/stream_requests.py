@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from dialects import messages as m
 from dialects.enums import DataStream, Result
 from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS
-from link.services.command.server import CommandOutcome
+from link.services.command.client import CommandOutcome
 
 IDENTIFY_TIMEOUT = 3.0
 """s that a vehicle of no known kind gets to send by itself."""

@@ -61,6 +61,6 @@ class StatusLogger:
         """Say what has changed."""
         for link in status.links:
             why = link.problem and link.problem.removeprefix(f"{link.endpoint}: ")
-            if news := self._links.update(link.endpoint, why):
-                level = logging.WARNING if news.severity <= Severity.ERROR else logging.INFO
-                log.log(level, "%s: %s", link.endpoint, news.text)
+            if event := self._links.update(link.endpoint, why):
+                level = logging.WARNING if event.severity <= Severity.ERROR else logging.INFO
+                log.log(level, "%s: %s", link.endpoint, event.text)

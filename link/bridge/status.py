@@ -67,28 +67,29 @@ class BridgeStatus:
 class StatusMeter:
     """Makes rates of two readings."""
 
-    def __init__(self, wires: Sequence[Transport], router: Router) -> None:
-        self._wires = wires
+    def __init__(self, transports: Sequence[Transport], router: Router) -> None:
+        self._transports = transports
         self._router = router
-        self._ports = router.table.transport_reports()
+        self._reports = router.table.transport_reports()
         self._received: dict[tuple[int, int, int, Hashable], int] = {}
         self._at: float | None = None
 
     def read(self, now: float, recorder_problem: str | None = None) -> BridgeStatus:
         """The status, with the rates since the last reading."""
         period = now - self._at if self._at is not None and now > self._at else 1.0
-        ports, before = self._router.table.transport_reports(), self._ports
+        reports, before = self._router.table.transport_reports(), self._reports
         routes = self._router.table.route_reports(now)
         status = BridgeStatus(
             links=tuple(
-                _link(wire, port, past, period) for wire, port, past in zip(self._wires, ports, before, strict=True)
+                _link(transport, report, past, period)
+                for transport, report, past in zip(self._transports, reports, before, strict=True)
             ),
             routes=tuple(self._route(route, period) for route in routes),
             duplicates=self._router.duplicates,
             refused_peers=self._router.table.refused_peers,
             recorder_problem=recorder_problem,
         )
-        self._at, self._ports = now, ports
+        self._at, self._reports = now, reports
         self._received = {_key(route): route.received for route in routes}
         return status
 
@@ -96,7 +97,7 @@ class StatusMeter:
         return RouteStatus(
             system=route.system,
             component=route.component,
-            endpoint=self._wires[route.port].endpoint.text,
+            endpoint=self._transports[route.link].endpoint.text,
             address=address_text(route.address),
             silence=round(route.silence, 3),
             frames_per_s=round((route.received - self._received.get(_key(route), 0)) / period, 1),
@@ -112,25 +113,25 @@ def address_text(address: Hashable) -> str:
 
 
 def _key(route: RouteReport) -> tuple[int, int, int, Hashable]:
-    return route.system, route.component, route.port, route.address
+    return route.system, route.component, route.link, route.address
 
 
-def _link(wire: Transport, port: TransportReport, past: TransportReport, period: float) -> LinkStatus:
-    name = wire.endpoint.text
-    hint = noise_hint(name, port.bytes_in, port.frames_in) if wire.capacity is not None else None
-    received, lost = port.received - past.received, port.lost - past.lost
+def _link(transport: Transport, report: TransportReport, past: TransportReport, period: float) -> LinkStatus:
+    name = transport.endpoint.text
+    hint = noise_hint(name, report.bytes_in, report.frames_in) if transport.capacity is not None else None
+    received, lost = report.received - past.received, report.lost - past.lost
     return LinkStatus(
         endpoint=name,
-        problem=wire.problem or hint,
-        peers=port.peers,
-        frames_in_per_s=round((port.frames_in - past.frames_in) / period, 1),
-        bytes_in_per_s=round((port.bytes_in - past.bytes_in) / period, 1),
-        frames_out_per_s=round((port.frames_out - past.frames_out) / period, 1),
-        bytes_out_per_s=round((port.bytes_out - past.bytes_out) / period, 1),
+        problem=transport.problem or hint,
+        peers=report.peers,
+        frames_in_per_s=round((report.frames_in - past.frames_in) / period, 1),
+        bytes_in_per_s=round((report.bytes_in - past.bytes_in) / period, 1),
+        frames_out_per_s=round((report.frames_out - past.frames_out) / period, 1),
+        bytes_out_per_s=round((report.bytes_out - past.bytes_out) / period, 1),
         loss=round(max(0, lost) / (received + lost), 4) if received > 0 and lost > 0 else 0.0,
-        lost=port.lost,
-        crc_errors=port.crc_errors,
-        noise_bytes=port.noise_bytes,
-        unknown=port.unknown,
-        dropped=wire.dropped,
+        lost=report.lost,
+        crc_errors=report.crc_errors,
+        noise_bytes=report.noise_bytes,
+        unknown=report.unknown,
+        dropped=transport.dropped,
     )

@@ -12,25 +12,25 @@ from collections.abc import Hashable, Sequence
 from typing import NamedTuple
 
 from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V2, MAGIC_V2
-from dialects.messages import RadioStatus, SystemTime
+from dialects.messages import SystemTime
 from dialects.targets import TARGETS, target_of
+from dialects.traits import LOCAL
 from link.protocol.frame import Frame, payload_of
 from link.routing.routes import RecentFrames, RoutedPeer, RoutedSource, RouteTable, SourceId
-
-SETUP_SIGNING = 256
-NOT_FORWARDED = frozenset({SETUP_SIGNING, RadioStatus.id})
-"""Never forwarded: a key, and what concerns one radio only."""
 
 REDUNDANCY_WINDOW = 1.0
 """s in which the same frame over another link is the same frame: more than the slowest radio adds, and less than 256
 frames of one sender take, unless it sends more of them than redundant links carry."""
+MAX_RECENT_UNTRACKED = 512
+"""Frames of untracked sources that are remembered for REDUNDANCY_WINDOW: without them, one frame with an unknown id
+circles for ever in a ring of bridges, because it teaches no route and has no entry to compare it with."""
 MAX_TRACKED_SOURCES = 256
 """Systems and components whose frames are compared between redundant links."""
 MAX_TARGETS = 256
 """Targets of one source whose destinations are remembered."""
 
 _EVERYBODY: SourceId = (0, 0)
-_INSPECTED = NOT_FORWARDED | {SystemTime.id}
+_INSPECTED = LOCAL | {SystemTime.id}
 _NOT_FOR_ALL = _INSPECTED | TARGETS.keys()
 """Any other message goes to everybody, whatever is in it."""
 
@@ -38,20 +38,20 @@ _NOT_FOR_ALL = _INSPECTED | TARGETS.keys()
 class Delivery(NamedTuple):
     """Frames to send to one address of one wire, in this order."""
 
-    port: int
+    link: int
     address: Hashable
     frames: list[bytes]
 
 
 class Router:
-    """What the table decides for each frame. `ports`: see RouteTable.
+    """What the table decides for each frame. `links`: see RouteTable.
 
     `own` are the ids of the host that routes beside its own work: what is for it alone ends here, and its own frames
     that come back are dropped.
     """
 
-    def __init__(self, ports: Sequence[tuple[bool, Hashable | None]], *, own: SourceId | None = None) -> None:
-        self.table = RouteTable(ports)
+    def __init__(self, links: Sequence[tuple[bool, Hashable | None]], *, own: SourceId | None = None) -> None:
+        self.table = RouteTable(links)
         self.duplicates = 0
         """Frames that redundant links brought again."""
         self.captured: list[bytes] | None = None
@@ -59,16 +59,18 @@ class Router:
         self._own = own
         self._recent: dict[SourceId, RecentFrames] = {}
         """One for all peers of a source, so that they can be compared."""
+        self._untracked: dict[bytes, float] = {}
+        """Frames of sources without `recent`, without their signatures -> when each arrived first; the oldest first."""
         self._boot_times: dict[SourceId, int] = {}
         self._loaded: list[RoutedPeer] = []
 
-    def receive(self, port: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
+    def receive(self, link: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
         """Take what arrived on a wire; returns what to send where. `now` in s, monotonic."""
-        peers = self.table.peers_of(port)
+        peers = self.table.peers_of(link)
         for data, address in pieces:
             peer = peers.get(address)
             if peer is None:
-                self._receive_from_new_peer(port, data, address, now)
+                self._receive_from_new_peer(link, data, address, now)
                 continue
             peer.bytes_in += len(data)
             frames = peer.framer.feed(data, now)
@@ -91,14 +93,14 @@ class Router:
 
     # ---- the way of a frame ----
 
-    def _receive_from_new_peer(self, port: int, data: bytes, address: Hashable, now: float) -> None:
+    def _receive_from_new_peer(self, link: int, data: bytes, address: Hashable, now: float) -> None:
         """Noise makes no peer: on UDP only a verified frame does. A connection is one as it is."""
-        peer = self.table.new_peer(port, address, now)
+        peer = self.table.new_peer(link, address, now)
         if peer is None:
             return
         peer.bytes_in += len(data)
         frames = peer.framer.feed(data, now)
-        if self.table.is_stream(port) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
+        if self.table.is_stream(link) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
             self.table.add_peer(peer, now)
             self._forward(peer, frames, now)
         else:
@@ -129,6 +131,8 @@ class Router:
                 if before is not None and before[1] is not peer and self._is_redundant(before, raw, now):
                     continue
                 recent[sequence] = (now, peer, raw)
+            elif self._is_untracked_copy(raw, now):
+                continue
             target = _EVERYBODY
             if message_id in _NOT_FOR_ALL:
                 if message_id in _INSPECTED and self._is_link_local(source, message_id, raw):
@@ -160,9 +164,22 @@ class Router:
         self.duplicates += again
         return again
 
+    def _is_untracked_copy(self, raw: bytes, now: float) -> bool:
+        """Return whether this frame of an untracked source went on less than REDUNDANCY_WINDOW ago, on any link."""
+        key = _without_signature(raw)
+        at = self._untracked.get(key)
+        if at is not None and now - at < REDUNDANCY_WINDOW:
+            self.duplicates += 1
+            return True
+        self._untracked.pop(key, None)
+        if len(self._untracked) >= MAX_RECENT_UNTRACKED:
+            del self._untracked[next(iter(self._untracked))]
+        self._untracked[key] = now
+        return False
+
     def _is_link_local(self, source: RoutedSource, message_id: int, raw: bytes) -> bool:
         """Messages that are more than freight: two stay here, SYSTEM_TIME tells of a restart and goes on."""
-        if message_id in NOT_FORWARDED:
+        if message_id in LOCAL:
             return True
         boot_time = int.from_bytes(payload_of(raw)[8:12], "little")
         if boot_time < self._boot_times.get(source.key, 0):
@@ -190,14 +207,15 @@ class Router:
             frames, peer.waiting = peer.waiting, []
             peer.frames_out += len(frames)
             peer.bytes_out += sum(map(len, frames))
-            deliveries.append(Delivery(peer.port, peer.address, frames))
+            deliveries.append(Delivery(peer.link, peer.address, frames))
         self._loaded = []
         return deliveries
 
 
 def _same(one: bytes, other: bytes) -> bool:
     """Are two frames the same but for their signatures, which differ from link to link?"""
-    if one == other:
-        return True
-    end = HEADER_V2 + one[1] + CRC_SIZE
-    return one[0] == MAGIC_V2 and one[:end] == other[:end]
+    return one == other or _without_signature(one) == _without_signature(other)
+
+
+def _without_signature(raw: bytes) -> bytes:
+    return raw[: HEADER_V2 + raw[1] + CRC_SIZE] if raw[0] == MAGIC_V2 else raw

@@ -62,11 +62,11 @@ class RoutedPeer:
     """One address on one wire: to the router each is a link of its own."""
 
     __slots__ = (
-        "address", "bytes_in", "bytes_out", "fixed", "framer", "frames_out", "heard", "port", "sources", "waiting",
+        "address", "bytes_in", "bytes_out", "fixed", "framer", "frames_out", "heard", "link", "sources", "waiting",
     )  # fmt: skip
 
-    def __init__(self, port: int, address: Hashable, now: float, *, stream: bool, fixed: bool = False) -> None:
-        self.port = port
+    def __init__(self, link: int, address: Hashable, now: float, *, stream: bool, fixed: bool = False) -> None:
+        self.link = link
         self.address = address
         self.fixed = fixed
         """The user named it: it is sent to before it has spoken, and is never forgotten."""
@@ -77,51 +77,66 @@ class RoutedPeer:
         """Frames to send to it now."""
         self.bytes_in = self.frames_out = self.bytes_out = 0
 
+    def report(self) -> TransportReport:
+        """Return what this peer has carried."""
+        counts = self.framer.counts
+        return TransportReport(
+            frames_in=counts.frames + counts.unknown,
+            bytes_in=self.bytes_in,
+            frames_out=self.frames_out,
+            bytes_out=self.bytes_out,
+            received=sum(each.received for each in self.sources.values()),
+            lost=sum(each.lost for each in self.sources.values()),
+            crc_errors=counts.crc_errors,
+            noise_bytes=counts.resync_bytes,
+            unknown=counts.unknown,
+        )
+
     def has_system(self, system: int) -> bool:
         """Was any component of the system heard here?"""
         return any(each == system for each, _ in self.sources)
 
 
 class RouteTable:
-    """Peers and sources of all wires. `ports` are the wires by number: (is it a stream, the address that is fixed)."""
+    """Peers and sources of all wires. `links` are the wires by number: (is it a stream, the address that is fixed)."""
 
-    def __init__(self, ports: Sequence[tuple[bool, Hashable | None]]) -> None:
+    def __init__(self, links: Sequence[tuple[bool, Hashable | None]]) -> None:
         self.refused_peers = 0
         self.epoch = 0
         """Changes with every entry that comes or goes: what was derived from the table is then worth nothing."""
-        self._streams = [stream for stream, _ in ports]
-        self._peers: list[dict[Hashable, RoutedPeer]] = [{} for _ in ports]
-        self._past = [TransportReport() for _ in ports]
+        self._streams = [stream for stream, _ in links]
+        self._peers: list[dict[Hashable, RoutedPeer]] = [{} for _ in links]
+        self._past = [TransportReport() for _ in links]
         """What peers carried that are gone."""
-        for port, (stream, fixed) in enumerate(ports):
+        for link, (stream, fixed) in enumerate(links):
             if fixed is not None:
-                self._peers[port][fixed] = RoutedPeer(port, fixed, 0.0, stream=stream, fixed=True)
+                self._peers[link][fixed] = RoutedPeer(link, fixed, 0.0, stream=stream, fixed=True)
 
-    def peers_of(self, port: int) -> dict[Hashable, RoutedPeer]:
+    def peers_of(self, link: int) -> dict[Hashable, RoutedPeer]:
         """The peers of one wire by address, for reading."""
-        return self._peers[port]
+        return self._peers[link]
 
-    def is_stream(self, port: int) -> bool:
+    def is_stream(self, link: int) -> bool:
         """Does this wire know no datagrams?"""
-        return self._streams[port]
+        return self._streams[link]
 
     def all_peers(self) -> Iterator[RoutedPeer]:
         """All peers of all wires."""
         for peers in self._peers:
             yield from peers.values()
 
-    def new_peer(self, port: int, address: Hashable, now: float) -> RoutedPeer | None:
+    def new_peer(self, link: int, address: Hashable, now: float) -> RoutedPeer | None:
         """Somebody who is not in the table yet; None when the wire is full. admit() takes him in."""
-        peers = self._peers[port]
-        if len(peers) < MAX_PEERS or self._most_silent(port, now):
-            return RoutedPeer(port, address, now, stream=self._streams[port])
+        peers = self._peers[link]
+        if len(peers) < MAX_PEERS or self._most_silent(link, now):
+            return RoutedPeer(link, address, now, stream=self._streams[link])
         self.refused_peers += 1
         return None
 
     def add_peer(self, peer: RoutedPeer, now: float) -> None:
         """Give a stranger a place, if need be that of the peer who has been silent longest."""
-        peers = self._peers[peer.port]
-        leaving = self._most_silent(peer.port, now) if len(peers) >= MAX_PEERS else None
+        peers = self._peers[peer.link]
+        leaving = self._most_silent(peer.link, now) if len(peers) >= MAX_PEERS else None
         if leaving:
             self.remove_peer(leaving)
         peers[peer.address] = peer
@@ -129,7 +144,7 @@ class RouteTable:
 
     def reject_peer(self, peer: RoutedPeer) -> None:
         """Count what a stranger has sent, who was not let in."""
-        self._past[peer.port].add(peer)
+        self._past[peer.link].add(peer.report())
 
     def add_source(self, peer: RoutedPeer, source: RoutedSource) -> bool:
         """Enter a source; False when this peer has too many."""
@@ -146,25 +161,25 @@ class RouteTable:
                 del peer.sources[source.key]
         self.epoch += 1
 
-    def handle_disconnect(self, port: int, address: Hashable) -> None:
+    def handle_disconnect(self, link: int, address: Hashable) -> None:
         """The connection to `address` has ended."""
-        peer = self._peers[port].get(address)
+        peer = self._peers[link].get(address)
         if peer is None:
             return
         self.remove_peer(peer)
         if peer.fixed:
-            self._peers[port][address] = RoutedPeer(port, address, peer.heard, stream=self._streams[port], fixed=True)
+            self._peers[link][address] = RoutedPeer(link, address, peer.heard, stream=self._streams[link], fixed=True)
 
     def remove_peer(self, peer: RoutedPeer) -> None:
         """Take a peer out; what it carried still counts."""
-        del self._peers[peer.port][peer.address]
-        self._past[peer.port].add(peer)
+        del self._peers[peer.link][peer.address]
+        self._past[peer.link].add(peer.report())
         self.epoch += 1
 
     def expire(self, now: float) -> None:
         """Forget who is silent."""
         for peer in list(self.all_peers()):
-            if not peer.fixed and not self._streams[peer.port] and now - peer.heard > PEER_SILENCE:
+            if not peer.fixed and not self._streams[peer.link] and now - peer.heard > PEER_SILENCE:
                 self.remove_peer(peer)
                 continue
             for key in [key for key, source in peer.sources.items() if now - source.heard > ROUTE_SILENCE]:
@@ -190,22 +205,22 @@ class RouteTable:
             report = past.copy()
             report.peers = sum(1 for peer in peers.values() if peer.sources)
             for peer in peers.values():
-                report.add(peer)
+                report.add(peer.report())
             reports.append(report)
         return reports
 
     def route_reports(self, now: float) -> list[RouteReport]:
         """Every system and component, where it was heard."""
         found = [
-            RouteReport(*key, peer.port, peer.address, now - source.heard, source.received, source.lost)
+            RouteReport(*key, peer.link, peer.address, now - source.heard, source.received, source.lost)
             for peer in self.all_peers()
             for key, source in peer.sources.items()
         ]
-        return sorted(found, key=lambda route: (route.system, route.component, route.port))
+        return sorted(found, key=lambda route: (route.system, route.component, route.link))
 
-    def _most_silent(self, port: int, now: float) -> RoutedPeer | None:
+    def _most_silent(self, link: int, now: float) -> RoutedPeer | None:
         """Who must make room: nobody on a stream, whose connections end by themselves."""
-        if self._streams[port]:
+        if self._streams[link]:
             return None
-        silent = [peer for peer in self._peers[port].values() if not peer.fixed and now - peer.heard > PEER_SILENCE / 3]
+        silent = [peer for peer in self._peers[link].values() if not peer.fixed and now - peer.heard > PEER_SILENCE / 3]
         return min(silent, key=lambda peer: peer.heard, default=None)

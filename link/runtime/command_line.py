@@ -29,7 +29,8 @@ class CommandLineParser(argparse.ArgumentParser):
 
     def reject_empty(self, words: Sequence[str]) -> list[str]:
         """The words, none of which is empty: that is most often a variable of a script that nobody has set, and as the
-        name of a folder it would mean that nothing is kept."""
+        name of a folder it would mean that nothing is kept.
+        """
         for before, word in pairwise(["", *words]):
             option, given, value = word.partition("=")
             if not word:

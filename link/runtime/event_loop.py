@@ -41,7 +41,7 @@ class TimedEventLoop(asyncio.SelectorEventLoop):
 
     @property
     def idle_time(self) -> float:
-        """s so far."""
+        """S so far."""
         return self._waits.waited
 
 

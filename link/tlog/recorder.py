@@ -42,7 +42,7 @@ class LogFile(Protocol):
 
 
 def unix_offset() -> int:
-    """us from the monotonic clock to Unix time."""
+    """Us from the monotonic clock to Unix time."""
     return time.time_ns() // 1000 - time.monotonic_ns() // 1000
 
 
@@ -73,7 +73,8 @@ class RawFile:
 
 class Recorder:
     """Takes frames with their times (monotonic, s); each file's times are Unix time as known when it was begun, and go
-    on evenly from there, whatever somebody does to the clock."""
+    on evenly from there, whatever somebody does to the clock.
+    """
 
     def __init__(self, *, offset: Callable[[], int] = unix_offset) -> None:
         self.lost = 0

@@ -11,12 +11,15 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from dialects.codec import CRC_EXTRA, MAGIC_V1, MAGIC_V2
+from dialects.traits import SECRET
 from link.protocol.frame import read_header
 from link.protocol.framer import Framer
 
 STAMP = 8
 _STAMP = struct.Struct(">Q")
-_MAGIC_V2, _SETUP_SIGNING = bytes([MAGIC_V2]), (256).to_bytes(3, "little")
+_MAGIC_V2 = bytes([MAGIC_V2])
+_SECRET = frozenset(number.to_bytes(3, "little") for number in SECRET)
+"""Ids as they stand in a MAVLink 2 header."""
 _LEAST = STAMP + 8  # and the shortest frame
 _DAY = 86_400_000_000
 
@@ -31,7 +34,7 @@ class Record(NamedTuple):
 
 def encode_record(microseconds: int, raw: bytes) -> bytes:
     """The bytes of one record; none for SETUP_SIGNING, because its key belongs into no file."""
-    if raw[:1] == _MAGIC_V2 and raw[7:10] == _SETUP_SIGNING:
+    if raw[:1] == _MAGIC_V2 and raw[7:10] in _SECRET:
         return b""
     return _STAMP.pack(microseconds) + raw
 

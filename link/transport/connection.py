@@ -20,29 +20,35 @@ DEAD_AFTER = 10
 
 
 class Connection:
-    """One open connection. `ended` hears why it ended; whoever calls close() knows it already."""
+    """One open connection. `on_end` hears why it ended; whoever calls close() knows it already."""
 
     def __init__(
-        self, sock: socket.socket, address: Hashable, arrived: ReceiveCallback, ended: Callable[[Connection, str], None]
+        self,
+        sock: socket.socket,
+        address: Hashable,
+        on_receive: ReceiveCallback,
+        on_end: Callable[[Connection, str], None],
     ) -> None:
         _prepare(sock)
         self.address = address
         self.queue = TransmitQueue(BULK)
         self._socket = sock
-        self._arrived = arrived
-        self._ended = ended
-        self._outlet = StreamWriter(sock.fileno(), self.queue, sock.send, self._failed)
+        self._on_receive = on_receive
+        self._on_end = on_end
+        self._writer = StreamWriter(sock.fileno(), self.queue, sock.send, self._failed)
         self._loop = asyncio.get_running_loop()
+        self.last_received = self._loop.time()
+        """When the last bytes came, or else when the connection was opened; time of the event loop."""
         self._loop.add_reader(sock, self._readable)
 
     def send(self, data: bytes) -> None:
         """One frame, now or soon."""
-        self._outlet.send(data)
+        self._writer.send(data)
 
     def close(self) -> None:
         """Hand over what is taken at once, and end it."""
-        self._ended = lambda *_: None
-        self._outlet.flush_and_close()
+        self._on_end = lambda *_: None
+        self._writer.flush_and_close()
         self._release()
 
     def _readable(self) -> None:
@@ -54,7 +60,8 @@ class Connection:
             self._failed(error)
             return
         if data:
-            self._arrived([(data, self.address)])
+            self.last_received = self._loop.time()
+            self._on_receive([(data, self.address)])
         else:
             self._end("closed by the other end")
 
@@ -62,9 +69,9 @@ class Connection:
         self._end(error.strerror or str(error))
 
     def _end(self, why: str) -> None:
-        self._outlet.close()
+        self._writer.close()
         self._release()
-        self._ended(self, why)
+        self._on_end(self, why)
 
     def _release(self) -> None:
         if self._socket.fileno() >= 0:

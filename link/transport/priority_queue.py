@@ -9,30 +9,10 @@ from __future__ import annotations
 from collections import deque
 
 from dialects import codec
-from dialects.messages import (
-    CommandAck,
-    CommandInt,
-    CommandLong,
-    Heartbeat,
-    ManualControl,
-    RcChannelsOverride,
-    RoverOperatorPresence,
-    SetAttitudeTarget,
-    SetMode,
-    SetPositionTargetGlobalInt,
-    SetPositionTargetLocalNed,
-    is_stop,
-)
 from dialects.targets import target_of
+from dialects.traits import COMMANDS, NEWEST_ONLY, URGENT, is_stop
 from link.protocol.frame import read_header
 
-SETPOINTS = (SetPositionTargetLocalNed, SetPositionTargetGlobalInt, SetAttitudeTarget)
-NEWEST_ONLY = frozenset(
-    each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence, Heartbeat, *SETPOINTS)
-)
-"""State that control depends on: a newer frame of the same sender and target replaces the one that waits."""
-URGENT = NEWEST_ONLY | {each.id for each in (CommandLong, CommandInt, CommandAck, SetMode)}
-"""Frames that overtake all others."""
 STALE = 0.5
 """s after which a waiting frame is worth less than none: about the vehicle's own patience with a demand (0.45 s)."""
 MAX_URGENT = 64
@@ -143,7 +123,7 @@ class TransmitQueue:
 def _stops(data: bytes) -> bool:
     """Is this a frame of a command that only ever stops?"""
     header = read_header(data)
-    if header is None or header.message_id not in (CommandLong.id, CommandInt.id):
+    if header is None or header.message_id not in COMMANDS:
         return False
     start = codec.HEADER_V2 if data[0] == codec.MAGIC_V2 else codec.HEADER_V1
     return is_stop(codec.decode(header.message_id, data[start : start + data[1]]))
@@ -158,7 +138,7 @@ class TransmitPacer:
         """When the wire will have sent what it was given."""
 
     def delay(self, size: int, in_driver: int, now: float) -> float:
-        """s until a frame of `size` bytes may go; `in_driver` bytes are there by its own word (0: it does not know)."""
+        """S until a frame of `size` bytes may go; `in_driver` bytes are there by its own word (0: it does not know)."""
         ahead = max(self._free_at - now, in_driver / self._capacity)
         return max(0.0, min(ahead + size / self._capacity - MAX_DRIVER_BACKLOG, ahead - MIN_DRIVER_BACKLOG))
 

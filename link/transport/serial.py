@@ -1,5 +1,6 @@
 """A serial port: pyserial opens and configures it, the event loop reads and writes it. It never blocks, and a port
-that is missing or unplugged is waited for."""
+that is missing or unplugged is waited for.
+"""
 
 from __future__ import annotations
 
@@ -41,22 +42,24 @@ class SerialTransport:
         self.capacity: float | None = endpoint.baud / BITS_PER_BYTE
         self._queue = TransmitQueue(max(BULK_LEAST, int(endpoint.baud / BITS_PER_BYTE * BULK_WAIT)))
         self._port = port
-        self._outlet: StreamWriter | None = None
+        self._writer: StreamWriter | None = None
         self._backoff = Backoff()
         self._timer: asyncio.TimerHandle | None = None
         self._closed = False
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._arrived: ReceiveCallback = lambda _: None
-        self._gone: DisconnectCallback = lambda _: None
+        self._on_receive: ReceiveCallback = lambda _: None
+        self._on_disconnect: DisconnectCallback = lambda _: None
 
     @property
     def dropped(self) -> int:
         """Frames that the port had no room for."""
         return self._queue.dropped
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
+    def start(
+        self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
+    ) -> None:
         """Hand over what arrives, and wait for the port where it is missing."""
-        self._loop, self._arrived, self._gone = loop, arrived, gone
+        self._loop, self._on_receive, self._on_disconnect = loop, on_receive, on_disconnect
         if self._port:
             self._use(loop, self._port)
         else:
@@ -64,22 +67,22 @@ class SerialTransport:
 
     def send(self, data: bytes, address: Hashable) -> None:
         """One frame into the queue; into nothing while the port is away, because it would be old when it returns."""
-        if self._outlet:
-            self._outlet.send(data)
+        if self._writer:
+            self._writer.send(data)
 
     def close(self) -> None:
         """Hand the last frames to the driver and free the port."""
         self._closed = True
         if self._timer:
             self._timer.cancel()
-        if self._outlet:
-            self._outlet.flush_and_close()
+        if self._writer:
+            self._writer.flush_and_close()
         self._release()
 
     def _use(self, loop: asyncio.AbstractEventLoop, port: serial.Serial) -> None:
         self._port, self.problem = port, None
         descriptor = port.fileno()
-        self._outlet = StreamWriter(
+        self._writer = StreamWriter(
             descriptor,
             self._queue,
             lambda data: os.write(descriptor, data),
@@ -101,23 +104,23 @@ class SerialTransport:
             self._lose("hung up")
             return
         self._backoff.reset()
-        self._arrived([(data, self.endpoint.text)])
+        self._on_receive([(data, self.endpoint.text)])
 
     def _lose(self, why: str) -> None:
         """Unplugged, or broken: what waits is old by the time it returns, and half a frame is no frame."""
         if self._closed or self._port is None or self._loop is None:
             return
         self.problem = f"{self.endpoint.text}: lost the port ({why}); waiting for it"
-        if self._outlet:
-            self._outlet.close()
+        if self._writer:
+            self._writer.close()
         with contextlib.suppress(termios.error, OSError):
             termios.tcflush(self._port.fileno(), termios.TCIOFLUSH)  # or close() may wait 30 s for bytes to leave
         self._release()
-        self._gone(self.endpoint.text)
+        self._on_disconnect(self.endpoint.text)
         self._try_later(self._loop)
 
     def _release(self) -> None:
-        port, self._port, self._outlet = self._port, None, None
+        port, self._port, self._writer = self._port, None, None
         if port is None:
             return
         if self._loop:
@@ -154,7 +157,7 @@ def _open(endpoint: Endpoint) -> serial.Serial | None:
     """The port, configured; None when there is none. Raises LinkError."""
     try:
         if not stat.S_ISCHR(os.stat(endpoint.path).st_mode):
-            raise LinkError(f"{endpoint.text}: {endpoint.path} is no serial port but a file or folder")
+            raise LinkError(f"{endpoint.text}: {endpoint.path} is not a serial port but a file or directory")
         port = serial.Serial(endpoint.path, endpoint.baud, timeout=0, exclusive=True)
         try:
             _configure(port)

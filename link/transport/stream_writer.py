@@ -13,7 +13,8 @@ MAX_JOINED = 4096
 
 class StreamWriter:
     """The sending half of a stream. `write` puts bytes on it and returns how many it took, `failed` hears its OSError,
-    `in_driver` tells how many bytes wait behind it."""
+    `in_driver` tells how many bytes wait behind it.
+    """
 
     def __init__(
         self,

@@ -17,7 +17,9 @@ from link.transport.connection import Connection
 from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
 
 MAX_CONNECTIONS = 16
-"""To one `tcpin`; more are closed at once."""
+"""To one `tcpin`. When it is full, the connection that has been silent longest makes room, or else the new one is closed."""
+EVICT_AFTER = 10.0
+"""s of silence after which a connection makes room: a ground station sends a HEARTBEAT each second."""
 CONNECT_TIMEOUT = 5.0
 """s, then the next try."""
 
@@ -35,17 +37,19 @@ class TcpServerTransport:
         self._connections: dict[Hashable, Connection] = {}
         self._dropped = 0
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._arrived: ReceiveCallback = lambda _: None
-        self._gone: DisconnectCallback = lambda _: None
+        self._on_receive: ReceiveCallback = lambda _: None
+        self._on_disconnect: DisconnectCallback = lambda _: None
 
     @property
     def dropped(self) -> int:
         """Frames that no connection had room for."""
         return self._dropped + sum(each.queue.dropped for each in self._connections.values())
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
+    def start(
+        self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
+    ) -> None:
         """Take connections."""
-        self._loop, self._arrived, self._gone = loop, arrived, gone
+        self._loop, self._on_receive, self._on_disconnect = loop, on_receive, on_disconnect
         loop.add_reader(self._socket, self._accept)
 
     def send(self, data: bytes, address: Hashable) -> None:
@@ -71,16 +75,25 @@ class TcpServerTransport:
             self.problem = f"{self.endpoint.text}: {error.strerror}"
             return
         self.problem = None
-        if len(self._connections) >= MAX_CONNECTIONS:
+        if len(self._connections) >= MAX_CONNECTIONS and not self._evict():
             sock.close()
             return
-        self._connections[address] = Connection(sock, address, self._arrived, self._ended)
-        self._arrived([(b"", address)])  # mavutil and MAVSDK wait for a HEARTBEAT before they say theirs
+        self._connections[address] = Connection(sock, address, self._on_receive, self._ended)
+        self._on_receive([(b"", address)])  # mavutil and MAVSDK wait for a HEARTBEAT before they say theirs
+
+    def _evict(self) -> bool:
+        """Close the connection that has been silent longest; False if each was heard within EVICT_AFTER."""
+        silent = min(self._connections.values(), key=lambda each: each.last_received)
+        if self._loop is None or self._loop.time() - silent.last_received < EVICT_AFTER:
+            return False
+        silent.close()
+        self._ended(silent, "silent")
+        return True
 
     def _ended(self, connection: Connection, why: str) -> None:
         del self._connections[connection.address]
         self._dropped += connection.queue.dropped
-        self._gone(connection.address)
+        self._on_disconnect(connection.address)
 
 
 class TcpClientTransport:
@@ -100,18 +113,20 @@ class TcpClientTransport:
         self._backoff = Backoff()
         self._dropped = 0
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._arrived: ReceiveCallback = lambda _: None
-        self._gone: DisconnectCallback = lambda _: None
+        self._on_receive: ReceiveCallback = lambda _: None
+        self._on_disconnect: DisconnectCallback = lambda _: None
 
     @property
     def dropped(self) -> int:
         """Frames that the connection had no room for."""
         return self._dropped + (self._connection.queue.dropped if self._connection else 0)
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
+    def start(
+        self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
+    ) -> None:
         """Begin to connect."""
         self._loop = loop
-        self._arrived, self._gone = arrived, gone
+        self._on_receive, self._on_disconnect = on_receive, on_disconnect
         self._connect(loop)
 
     def send(self, data: bytes, address: Hashable) -> None:
@@ -151,7 +166,7 @@ class TcpClientTransport:
         loop.remove_writer(sock)
         self.problem = None
         self._backoff.reset()
-        self._connection = Connection(sock, self.fixed_address, self._arrived, self._ended)
+        self._connection = Connection(sock, self.fixed_address, self._on_receive, self._ended)
 
     def _refused(self, loop: asyncio.AbstractEventLoop, why: str) -> None:
         self._give_up_trying()
@@ -160,7 +175,7 @@ class TcpClientTransport:
     def _ended(self, connection: Connection, why: str) -> None:
         self._dropped += connection.queue.dropped
         self._connection = None
-        self._gone(connection.address)
+        self._on_disconnect(connection.address)
         if self._loop:
             self._again(self._loop, f"connection lost ({why})")
 

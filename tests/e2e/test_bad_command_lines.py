@@ -102,6 +102,8 @@ ENDPOINTS = [
     ("carrier:pigeon", ["'carrier:pigeon'", "udpin:HOST:PORT", "serial:PATH:BAUD"]),
     ("udpn:127.0.0.1:14550", ["did you mean udpin:?"]),
     ("14550", ["'14550'"]),
+    ("127.0.0.1:14550", ["did you mean udpin:127.0.0.1:14550?"]),
+    ("udpout:0.0.0.0:14550", ["0.0.0.0 is not an address to send to"]),
     ("udpin:127.0.0.1", ["'udpin:127.0.0.1'", "udpin:HOST:PORT"]),
     ("udpin:127.0.0.1:0", ["port '0'", "1 to 65535"]),
     ("tcpout:127.0.0.1:99999", ["port '99999'", "1 to 65535"]),
@@ -112,8 +114,8 @@ ENDPOINTS = [
 ]
 """Words that are no endpoint -> what the line must name."""
 ABSENT = [
-    ("serial:/dev/null:57600", ["/dev/null is no serial port"]),
-    ("serial:/tmp:57600", ["/tmp is no serial port"]),
+    ("serial:/dev/null:57600", ["/dev/null is not a serial port"]),
+    ("serial:/tmp:57600", ["/tmp is not a serial port"]),
     ("udpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
     ("tcpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
     ("udpin:192.0.2.1:14550", ["192.0.2.1"]),

@@ -14,6 +14,8 @@ from tests.link.services_world import from_gcs, messages
 GENERAL = b'{"version": 1}'
 LOG = bytes(range(256)) * 40
 SECRET = b"root:x:0:0"
+MAX_OFFSET = 0xFFFF_FFFF
+"""Largest offset that a packet can hold."""
 
 
 @dataclass

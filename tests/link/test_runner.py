@@ -13,8 +13,10 @@ import pytest
 
 from dialects.messages import Heartbeat, ManualControl, Message
 from link.core import LinkReport, Outgoing, Received
+from link.endpoint import parse_endpoint
 from link.runner import Runner, open_links
 from link.transport.transport import LinkError
+from link.transport.udp import RECEIVE_BUFFER, open_udp
 from tests.link.frames import demand, heartbeat
 from tests.link.ports import Cable
 from tests.ports import free_port
@@ -221,7 +223,7 @@ async def test_one_line_says_why_a_port_cannot_be_opened(ground: socket.socket) 
     wrong = {
         f"udpin:127.0.0.1:{port}": f"port {port} is in use",
         "udpout:no-such-host.invalid:14550": "host 'no-such-host.invalid' is not known",
-        "udpin:203.0.113.7:14550": "203.0.113.7 is no address of this machine",
+        "udpin:203.0.113.7:14550": "203.0.113.7 is not an address of this machine",
         f"udpout:{'x' * 70}.invalid:14550": "is not known",
     }
     for endpoint, told in wrong.items():
@@ -237,3 +239,26 @@ async def test_a_failed_endpoint_leaves_none_open() -> None:
         open_links([f"udpin:127.0.0.1:{port}", "udpin:203.0.113.7:14550"], system=1, component=1)
     for link in open_links([f"udpin:127.0.0.1:{port}"], system=1, component=1):
         link.close()
+
+
+async def test_a_message_that_cannot_be_encoded_is_logged_once(caplog: pytest.LogCaptureFixture) -> None:
+    def wrong_then_right(core: Recorder) -> bool:
+        core.outbox += [Outgoing(Heartbeat(10, 0, 0, -1, 3, 3)), Outgoing(Heartbeat(10, 0, 0, 0, 3, 3))]
+        return len(core.numbers) > 5
+
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
+        ground.bind(("127.0.0.1", 0))
+        await run(f"udpout:127.0.0.1:{ground.getsockname()[1]}", wrong_then_right)
+    logged = [each for each in caplog.records if "could not be encoded" in each.message]
+    assert len(logged) == 1
+    assert "HEARTBEAT" in logged[0].message
+    assert logged[0].exc_info is None  # one line, no traceback
+
+
+async def test_a_flood_finds_a_larger_buffer_than_the_default() -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as usual:
+        default = usual.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+    most = 2 * int(Path("/proc/sys/net/core/rmem_max").read_text())
+    with contextlib.closing(open_udp(parse_endpoint(f"udpin:127.0.0.1:{free_port()}"))) as transport:
+        granted = transport._socket.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+    assert granted == min(2 * RECEIVE_BUFFER, most) >= default

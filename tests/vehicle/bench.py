@@ -21,7 +21,7 @@ from vehicle.readings import ComputerReadings, Readings
 from vehicle.rover import Rover
 from vehicle.safety.states import SafetyState
 from vehicle.storage.logbook import LogRecorder
-from vehicle.storage.plan_keeping import PlanStoreLike
+from vehicle.storage.plan_store import PlanStore
 
 M = TypeVar("M", bound=m.Message)
 
@@ -47,7 +47,7 @@ class Bench:
     A ground station that knows our dialect listens from the beginning: `station`, from where DRIVER speaks.
     """
 
-    plans: PlanStoreLike | None = None
+    plans: PlanStore | None = None
     """What keeps its plans; a class of its own may have one."""
 
     recording: LogRecorder | None = None
@@ -60,7 +60,7 @@ class Bench:
         self.now = now
         self.rack = AccessorySet(self.outputs)
         self.rack.open()
-        self.rover = Rover(Params(params), now=now, plan_keeper=self.plans, recording=self.recording, rack=self.rack)
+        self.rover = Rover(Params(params), now=now, plan_store=self.plans, recording=self.recording, rack=self.rack)
         self.readings = Readings()
         self.sent: list[m.Message] = []
         self.peers: list[Peer | None] = []

@@ -95,7 +95,8 @@ class AccessoryOutput:
 
     def start_repeat(self, away: int | None, times: int, period: float, now: float) -> None:
         """Go away and come back so many times: a servo from its trim to `away`, a relay, where `away` is None, to the
-        other state and back."""
+        other state and back.
+        """
         if away is None:
             rest = self._repeat.rest if self._repeat else self.target
             away = int(not rest)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from vehicle.accessories.settings import COMMON, Kind, build_spec
+from vehicle.accessories.drivers import Kind
+from vehicle.accessories.settings import COMMON, build_spec
 from vehicle.hardware.error_text import format_error
 
 

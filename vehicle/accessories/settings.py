@@ -8,9 +8,11 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from link.runtime.toml_errors import explain_error
-from vehicle.accessories import DRIVERS, LARGEST_RELAY, LARGEST_SERVO, OFF, Accessory
+from vehicle.accessories import LARGEST_RELAY, LARGEST_SERVO, OFF, Accessory
+from vehicle.accessories.drivers import DRIVERS, Kind
 from vehicle.accessories.output import AccessorySpec, PulseRange, Until
-from vehicle.motors import MotorError, MotorSettingsError, UnknownDriverError, load_driver_class
+from vehicle.motors import MotorError, MotorSettingsError, UnknownDriverError
+from vehicle.motors.drivers import load_driver_class
 from vehicle.motors.settings import NoSettings, convert
 
 Width = Annotated[int, msgspec.Meta(ge=500, le=2500, description="microseconds")]
@@ -63,7 +65,6 @@ class Accessories(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     servos: tuple[dict[str, Any], ...] = ()
 
 
-Kind = Literal["relay", "servo"]
 COMMON: dict[Kind, type[RelaySettings] | type[ServoSettings]] = {"relay": RelaySettings, "servo": ServoSettings}
 
 

@@ -7,16 +7,20 @@ the last gate (vehicle/drive/gate.py) lets a demand of its own through only whil
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 from dialects.enums import Command, DriveType, Failsafe
 from dialects.modes import Mode
 from link.services.mission.items import MissionItem
 from vehicle.autonomy.mission.executor import MissionExecutor
+from vehicle.autonomy.mode import AutonomousMode, ModeContext, ModeFinished
 from vehicle.autonomy.modes.guided import GuidedMode
-from vehicle.autonomy.modes.homing import LoiterMode, ModeFinished, RtlMode, SmartRtlMode, Trail
+from vehicle.autonomy.modes.loiter import LoiterMode
+from vehicle.autonomy.modes.rtl import RtlMode
+from vehicle.autonomy.modes.smart_rtl import SmartRtlMode
 from vehicle.autonomy.setpoints import Target, VelocityTarget
+from vehicle.autonomy.trail import Trail
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import shape_demand
 from vehicle.drive.mixer import FOUR_WHEELS, MIXERS
@@ -30,11 +34,18 @@ from vehicle.navigation.rally import ReturnPoints
 from vehicle.navigation.speed_control import STATIONARY, DesiredMotion, SpeedTurnController
 from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
-from vehicle.safety.hazards import HazardInputs, HazardMonitor
+from vehicle.safety.failsafe_inputs import MotionInputs
 from vehicle.safety.state_machine import Safety
 
+MODE_CLASSES: dict[Mode, Callable[[ModeContext], AutonomousMode]] = {
+    Mode.LOITER: LoiterMode,
+    Mode.RTL: RtlMode,
+    Mode.SMART_RTL: SmartRtlMode,
+}
+"""The autonomous modes besides AUTO and GUIDED, which also take commands. To add a mode, write its class and a row here
+and in vehicle/modes.py; a number that ArduRover has not assigned also needs a row in dialects/modes.py."""
 DEFAULT_SPEED = -2.0
-"""Speed of DO_CHANGE_SPEED that means the usual one."""
+"""Speed of DO_CHANGE_SPEED that selects WP_SPEED."""
 
 
 class PlanIds(NamedTuple):
@@ -43,23 +54,6 @@ class PlanIds(NamedTuple):
     mission: int = 0
     fence: int = 0
     rally: int = 0
-
-
-class AutonomousMode(Protocol):
-    """One mode that drives by itself."""
-
-    @property
-    def goal(self) -> Point | None:
-        """Where it goes."""
-
-    def unready(self, estimate: Estimate) -> str | None:
-        """Why it cannot begin, besides what its line in OFFERED needs."""
-
-    def begin(self, estimate: Estimate, now: float) -> None:
-        """It was chosen, or everything was armed or stopped."""
-
-    def step(self, estimate: Estimate, speed: float, now: float) -> DesiredMotion | ModeFinished | None:
-        """What it wants now; None where nothing that counts is asked of it."""
 
 
 class Navigator:
@@ -91,15 +85,10 @@ class Navigator:
         self._estimator = Estimator(aside)
         self._readings = NO_READINGS
         self._controller = SpeedTurnController(params, kind)
-        self._hazards = HazardMonitor(params)
         self._trail = Trail()
-        self._behaviours: dict[Mode, AutonomousMode] = {
-            Mode.AUTO: self.mission,
-            Mode.GUIDED: self.guided,
-            Mode.LOITER: LoiterMode(params, self.guide),
-            Mode.RTL: RtlMode(params, self.guide, self.return_points.nearest),
-            Mode.SMART_RTL: SmartRtlMode(params, self.guide, self._trail),
-        }
+        context = ModeContext(params, self.guide, self.return_points.nearest, self._trail)
+        self._modes: dict[Mode, AutonomousMode] = {mode: build(context) for mode, build in MODE_CLASSES.items()}
+        self._modes |= {Mode.AUTO: self.mission, Mode.GUIDED: self.guided}
         self._mode_generation = -1
 
     @property
@@ -130,8 +119,8 @@ class Navigator:
 
     def goal(self, mode: Mode) -> Point | None:
         """Where a mode drives to."""
-        behaviour = self._behaviours.get(mode)
-        return behaviour.goal if behaviour else None
+        active = self._modes.get(mode)
+        return active.goal if active else None
 
     def velocity_target(self, mode: Mode) -> VelocityTarget | None:
         """The velocity that somebody asks for in GUIDED, while it counts."""
@@ -155,9 +144,9 @@ class Navigator:
             point = origin.to_local(self.home.latitude, self.home.longitude)
             self.home = self.home._replace(north=point.north, east=point.east)
         self.guide.reset()
-        behaviour = self._behaviours.get(safety.mode)
-        if behaviour:
-            behaviour.begin(self.estimate, now)
+        active = self._modes.get(safety.mode)
+        if active:
+            active.begin(self.estimate, now)
         self.fence_avoidance.update(self.estimate, now)
 
     def has_sensor_for(self, need: ModeRequirement) -> bool:
@@ -175,38 +164,39 @@ class Navigator:
             return "there is no gyro"
         if need is ModeRequirement.POSITION and not estimate.good:
             return "position is not known"
-        behaviour = self._behaviours.get(mode)
-        if behaviour is None:
+        active = self._modes.get(mode)
+        if active is None:
             return None
-        homeward = mode in (Mode.RTL, Mode.SMART_RTL)
-        return self.fence_avoidance.block_reason(homeward=homeward) or behaviour.unready(estimate)
+        homeward = MODES[mode].leads_home
+        return self.fence_avoidance.block_reason(homeward=homeward) or active.unready(estimate)
 
     def set_target(self, target: Target, now: float) -> None:
         """A setpoint for GUIDED."""
         self.paused = False
         self.guided.set_target(target, self.estimate, now)
 
-    def find_hazards(self, safety: Safety, throttles: Sequence[float], now: float) -> dict[Failsafe, float]:
-        """What is wrong, since when. What has put a mode away still counts, though the mode is gone."""
+    def build_failsafe_inputs(self, safety: Safety, throttles: Sequence[float]) -> MotionInputs:
+        """Return what the failsafes need to know; a condition that has changed the mode stays relevant after it."""
         guided = safety.mode is Mode.GUIDED and safety.autonomy_confirmed
         placed = MODES[safety.mode].requirement is ModeRequirement.POSITION or (guided and self.guided.goal is not None)
         latched = safety.failsafes.latched
-        look = HazardInputs(
+        return MotionInputs(
             readings=self._readings,
             estimate=self.estimate,
             throttles=throttles,
             needs_position=placed or bool(latched and latched & Failsafe.POSITION),
-            guided_lost=self.guided.expires_at() if guided or (latched and latched & Failsafe.GUIDED_LOSS) else None,
-            outside=self.fence_avoidance.breach_distance > 0.0,
+            setpoint_expires=self.guided.expires_at()
+            if guided or (latched and latched & Failsafe.GUIDED_LOSS)
+            else None,
+            outside_fence=self.fence_avoidance.breach_distance > 0.0,
         )
-        return self._hazards.update(look, now)
 
     def step(self, safety: Safety, now: float) -> None:
         """What the mode wants at this moment."""
         self.restart_mode(safety, now)
-        behaviour = self._behaviours.get(safety.mode)
+        active = self._modes.get(safety.mode)
         self._record_trail(safety)
-        self.desired_motion = self._motion(behaviour, now) if behaviour and safety.autonomy_confirmed else None
+        self.desired_motion = self._motion(active, now) if active and safety.autonomy_confirmed else None
         if self.desired_motion is None:
             self.demand = None
             self.fence_avoidance.reset()
@@ -244,14 +234,14 @@ class Navigator:
         if not safety.armed:
             self.speed_override = None
             self._trail.clear()
-        behaviour = self._behaviours.get(safety.mode)
-        if behaviour:
-            behaviour.begin(self.estimate, now)
+        active = self._modes.get(safety.mode)
+        if active:
+            active.begin(self.estimate, now)
 
-    def _motion(self, behaviour: AutonomousMode, now: float) -> DesiredMotion | None:
+    def _motion(self, active: AutonomousMode, now: float) -> DesiredMotion | None:
         if self.paused:
             return STATIONARY
-        wanted = behaviour.step(self.estimate, self.cruise_speed(), now)
+        wanted = active.step(self.estimate, self.cruise_speed(), now)
         if isinstance(wanted, ModeFinished):
             self.end_reason = self.end_reason or wanted.reason  # a last item may have said why by itself
             return None

@@ -22,7 +22,8 @@ from vehicle.config.conflicts import find_motor_conflicts
 from vehicle.config.effective_params import EffectiveParams, load_effective_params
 from vehicle.drive.mixer import MIXERS
 from vehicle.hardware.error_text import format_error
-from vehicle.motors import MotorError, arming_check, open_motors
+from vehicle.motors import MotorError, arming_check
+from vehicle.motors.drivers import open_motors
 from vehicle.params import Params
 from vehicle.runtime.lock import MotorLock
 from vehicle.sensors.encoders import Encoders

@@ -15,7 +15,7 @@ from vehicle.drive.gate import MOTOR_TEST_THROTTLE_MAX as LARGEST
 from vehicle.drive.gate import MOTOR_TEST_TIME_MAX as LONGEST
 from vehicle.drive.mixer import MIXERS
 from vehicle.drive.output_scaling import build_output_scaling, scale_outputs
-from vehicle.motors import open_motors
+from vehicle.motors.drivers import open_motors
 from vehicle.params import Params
 from vehicle.runtime.lock import MotorLock
 

@@ -12,7 +12,7 @@ from typing import Any
 from link.endpoint import EndpointError, endpoint_help, parse_endpoint
 from link.runtime.command_line import CommandLineParser
 from vehicle.cli import subcommands
-from vehicle.motors import DRIVERS
+from vehicle.motors.drivers import DRIVERS
 from vehicle.params import PARAMETERS, ParamError, Params
 
 GROUND_STATION = "udpout:127.0.0.1:14550"
@@ -43,13 +43,18 @@ endpoints:
 {endpoints}
 
 motor drivers (--motors):
-  {drivers}, or your own as MODULE:CLASS
+{drivers}
+  MODULE:CLASS   a driver of your own
 
 exit codes: 0 asked to stop (SIGTERM, Ctrl-C, SIGHUP), 1 a fault, also a link that cannot be had, 2 a mistake on the
 command line or in the file, 80 to 82 a ground station asked for a restart of this program, of the computer, or to shut
 it down (REBOOT_ENABLE, docs/pi.md).
 Whatever ends it, the motors are neutral and without power first.
 """
+
+
+def _driver_lines() -> str:
+    return "\n".join(f"  {name:<14} {entry.title}" for name, entry in DRIVERS.items())
 
 
 class _Version(argparse.Action):
@@ -70,7 +75,7 @@ def build_parser() -> CommandLineParser:
         prog="vehicle",
         usage=USAGE.removeprefix("usage: ").rstrip(),
         description="The rover daemon: obeys one ground station over MAVLink and drives the motors, safely.",
-        epilog=EXAMPLES.format(endpoints=endpoint_help(), drivers=", ".join(DRIVERS), verbs=subcommands.help_lines()),
+        epilog=EXAMPLES.format(endpoints=endpoint_help(), drivers=_driver_lines(), verbs=subcommands.help_lines()),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
@@ -91,7 +96,7 @@ def find_unknown_option(words: Sequence[str]) -> str | None:
 
 
 def join_home_option(words: list[str]) -> list[str]:
-    """argparse takes a southern latitude after --home for an option; joined by "=" it does not."""
+    """Argparse takes a southern latitude after --home for an option; joined by "=" it does not."""
     if "--home" not in words[:-1]:
         return words
     at = words.index("--home")

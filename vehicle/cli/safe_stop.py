@@ -54,7 +54,7 @@ def _make_safe(accessories: Any) -> None:
 
 
 def _stop(motors: Mapping[str, Any]) -> None:
-    from vehicle.motors import safe_stop
+    from vehicle.motors.drivers import safe_stop
 
     driver = str(motors["driver"])
     problems = safe_stop(driver, {key: value for key, value in motors.items() if key != "driver"})

@@ -21,7 +21,7 @@ from vehicle.commands.files import FileServices
 from vehicle.commands.guided import GuidedCommands
 from vehicle.commands.mission import MissionService
 from vehicle.commands.origin import OriginCommands
-from vehicle.commands.params import ParamService, ParamStoreLike
+from vehicle.commands.params import ParamService
 from vehicle.commands.preflight import PreflightCommands
 from vehicle.commands.reboot import RebootRequest
 from vehicle.commands.requests import MessageRequests
@@ -31,7 +31,8 @@ from vehicle.params import Params
 from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
 from vehicle.storage.logbook import Logbook, LogRecorder
-from vehicle.storage.plan_keeping import PlanStoreLike
+from vehicle.storage.param_store import ParamStore
+from vehicle.storage.plan_store import PlanStore
 from vehicle.telemetry.bandwidth import Bandwidth
 from vehicle.telemetry.link_status import LinkStatusReporter
 from vehicle.telemetry.telemetry import Telemetry
@@ -44,8 +45,8 @@ COMPONENT = 1
 class Stores(NamedTuple):
     """What outlives the program; without them it ends with it."""
 
-    params: ParamStoreLike | None = None
-    plans: PlanStoreLike | None = None
+    params: ParamStore | None = None
+    plans: PlanStore | None = None
     logs: LogRecorder | None = None
 
 
@@ -65,7 +66,7 @@ class Dispatcher:
         bandwidth: Bandwidth,
         links: LinkStatusReporter,
         trials: ActuatorTest,
-        keepers: Stores,
+        stores: Stores,
         rack: AccessorySet,
         look: Callable[[float], TelemetryView],
     ) -> None:
@@ -76,7 +77,7 @@ class Dispatcher:
         self._ids = (control.system, COMPONENT)
         pacer = bandwidth.pacer
         self._params = ParamService(
-            params, control, texts, ids=self._ids, pacer=pacer, armed=lambda: safety.armed, keeper=keepers.params
+            params, control, texts, ids=self._ids, pacer=pacer, armed=lambda: safety.armed, store=stores.params
         )
         self._commands = ArmingCommands(safety, control, texts)
         self._orders = GuidedCommands(params, safety, control, navigator, texts)
@@ -84,9 +85,9 @@ class Dispatcher:
         motors = drive.mixer.servos
         self._accessories = AccessoryCommands(rack, safety, control, texts, motors)
         self._plans = MissionService(
-            safety, control, navigator, texts, motors, self._accessories, pacer=pacer, keeper=keepers.plans
+            safety, control, navigator, texts, motors, self._accessories, pacer=pacer, store=stores.plans
         )
-        self.logbook = Logbook(params, control, texts, lambda: safety.armed, keepers.logs)
+        self.logbook = Logbook(params, control, texts, lambda: safety.armed, stores.logs)
         self._services = FileServices(
             params, control, self.logbook, missions=self._plans.folder(), ids=self._ids, pacer=pacer
         )

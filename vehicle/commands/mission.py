@@ -25,7 +25,7 @@ from vehicle.drive.control import Control
 from vehicle.navigation.fence import find_ineffective_items
 from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
-from vehicle.storage.plan_keeping import NullPlanStore, PlanStoreLike
+from vehicle.storage.plan_store import PlanStore
 from vehicle.telemetry.build_navigation import mission_state
 
 REMIND_PERIOD = 30.0
@@ -47,12 +47,12 @@ class MissionService:
         accessories: AccessoryCommands,
         *,
         pacer: BulkPacer,
-        keeper: PlanStoreLike | None = None,
+        store: PlanStore | None = None,
     ) -> None:
         """`servos` are the outputs that motors are at; `accessories` do what a mission says of them; `pacer` says how
         fast plans are told.
 
-        Without a `keeper` they end with the program.
+        Without a `store` they end with the program.
         """
         self._safety = safety
         self._control = control
@@ -60,7 +60,7 @@ class MissionService:
         self._navigator = navigator
         self._texts = texts
         self._accessories = accessories
-        self._store = keeper or NullPlanStore()
+        self._store = store or PlanStore()
         self._damage: dict[MissionType, str] = {}
         self._remind_due = -math.inf
         self._outbox: list[Outgoing] = []
@@ -86,7 +86,7 @@ class MissionService:
     @property
     def is_volatile(self) -> bool:
         """Plans end with the program."""
-        return isinstance(self._store, NullPlanStore)
+        return self._store.is_volatile
 
     @property
     def problem(self) -> str | None:
@@ -178,10 +178,10 @@ class MissionService:
     # What was kept
 
     def _restore(self) -> None:
-        keeper = self._store
+        store = self._store
         for kind in self._rules:
-            damage = keeper.damage.get(kind)
-            if damage is None and self._server.load(kind, keeper.plans.get(kind, ())) is not MissionResult.ACCEPTED:
+            damage = store.damage.get(kind)
+            if damage is None and self._server.load(kind, store.plans.get(kind, ())) is not MissionResult.ACCEPTED:
                 damage = f"saved {kind.name.lower()} is not one for this version"
             if damage is not None:
                 self._damage[kind] = damage

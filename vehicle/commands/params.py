@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from typing import Protocol
 
 from dialects.enums import Severity
 from link.core import Outgoing, Received
@@ -14,40 +13,10 @@ from link.transport.backoff import Backoff
 from vehicle.drive.control import Control
 from vehicle.params import ParamError, Params
 from vehicle.statustext import StatusTextQueue
+from vehicle.storage.param_store import ParamStore
 
 SAVE_RETRY_TIMES = (2.0, 60.0)
 """s until what could not be saved is tried again: at first, and at most."""
-
-
-class ParamStoreLike(Protocol):
-    """Remembers values for the next start."""
-
-    @property
-    def problem(self) -> str | None:
-        """Why values are not kept, one line."""
-
-    @property
-    def idle(self) -> bool:
-        """What was to be remembered is, or cannot be."""
-
-    def set(self, name: str, value: float) -> None:
-        """Remember it, soon. Never blocks and never raises."""
-
-    def save(self) -> None:
-        """Write once more what is remembered."""
-
-
-class NullParamStore:
-    """Values end with the program, as in the simulator."""
-
-    problem: str | None = None
-    idle = True
-
-    def set(self, name: str, value: float) -> None:
-        """Forget it."""
-
-    def save(self) -> None:
-        """Nothing."""
 
 
 class ParamService:
@@ -62,12 +31,12 @@ class ParamService:
         ids: tuple[int, int],
         pacer: BulkPacer,
         armed: Callable[[], bool],
-        keeper: ParamStoreLike | None = None,
+        store: ParamStore | None = None,
     ) -> None:
         self._params = params
         self._control = control
         self._texts = texts
-        self._store = keeper or NullParamStore()
+        self._store = store or ParamStore()
         self._backoff = Backoff(*SAVE_RETRY_TIMES)
         self._retry_due: float | None = None
         """When what could not be saved is tried again; None while all is saved."""
@@ -98,18 +67,18 @@ class ParamService:
         """About once a second: are values kept? Else they are tried again, ever less often: a disk gets room again."""
         if problem := self._store.problem:
             text = f"Parameters are not saved: {problem}; trying again"
-            self._texts.send_once(f"keeper {problem}", Severity.WARNING, text, now)
+            self._texts.send_once(f"param store {problem}", Severity.WARNING, text, now)
             self._retry(now)
         elif self._retry_due is not None:
             self._retry_due = None
             self._backoff.reset()
-            self._texts.reset_once("keeper ")
+            self._texts.reset_once("param store ")
             self._texts.send(Severity.NOTICE, "Parameters are saved now", now)
 
     @property
     def is_volatile(self) -> bool:
         """What is set ends with the program."""
-        return isinstance(self._store, NullParamStore)
+        return self._store.is_volatile
 
     @property
     def damage(self) -> str | None:

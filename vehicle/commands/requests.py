@@ -21,8 +21,8 @@ from vehicle.telemetry.telemetry import Telemetry
 from vehicle.telemetry.view import TelemetryView
 
 MICROSECONDS = 1e6
-MAX_INTERVAL = 3600.0
-"""s: longest interval that SET_MESSAGE_INTERVAL may ask for."""
+MAX_INTERVAL = 2147.0
+"""s: longest interval that SET_MESSAGE_INTERVAL may ask for; MESSAGE_INTERVAL has an int32 of us for it."""
 
 
 class MessageRequests:

@@ -17,8 +17,9 @@ from link.runtime.toml_file import TomlError, find_unsupported, parse_toml, read
 from vehicle.accessories import settings as accessory_settings
 from vehicle.accessories.settings import Accessories
 from vehicle.config.conflicts import find_conflicts
-from vehicle.motors import DRIVERS, PROFILE_PARAMS, PROFILES, MotorError, UnknownDriverError, settings_type
-from vehicle.motors.settings import RETIRED, CommonMotorSettings, NoSettings
+from vehicle.motors import MotorError, UnknownDriverError
+from vehicle.motors.drivers import DRIVERS, profile_params, profile_settings, settings_type
+from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import PARAMETERS, ParamError, Params
 from vehicle.sensors.suite import SensorSettings
 
@@ -124,9 +125,6 @@ def _endpoint_problems(endpoints: list[str]) -> list[str]:
 def _motor_problems(table: Mapping[str, Any]) -> list[str]:
     if not isinstance(table.get("driver"), str):
         return [f"motors.driver: missing; add it, one of {', '.join(DRIVERS)}, or your own as module:Class"]
-    retired = [f"motors.{key}: {words}" for key, words in RETIRED.items() if key in table]
-    if retired:
-        return retired
     name = table["driver"]
     try:
         kind = settings_type(name)
@@ -134,7 +132,7 @@ def _motor_problems(table: Mapping[str, Any]) -> list[str]:
         return [f"motors.driver: {error}"]
     except MotorError:  # its library is missing: no mistake in the file, and said when the driver is opened
         return []
-    settings = {**PROFILES.get(name, {}), **{key: value for key, value in table.items() if key != "driver"}}
+    settings = {**profile_settings(name), **{key: value for key, value in table.items() if key != "driver"}}
     beside = {key: value for key, value in settings.items() if key in CommonMotorSettings.__struct_fields__}
     own = {key: value for key, value in settings.items() if key not in beside}
     return _problem(beside, CommonMotorSettings) + _problem(
@@ -170,7 +168,7 @@ def _param_problem(name: str, value: Any) -> str | None:
 def _contradictions(table: Mapping[str, Any]) -> list[str]:
     if "system" in table.get("identity", {}) and "MAV_SYSID" in table.get("params", {}):
         return ["params.MAV_SYSID: identity.system says the same thing; keep one of them"]
-    usual = PROFILE_PARAMS.get(table.get("motors", {}).get("driver", ""), {})
+    usual = profile_params(table.get("motors", {}).get("driver", ""))
     try:
         Params({**usual, **table.get("params", {})})
     except ParamError as error:

@@ -18,7 +18,8 @@ from link.endpoint import parse_endpoint
 from vehicle.accessories.output import AccessorySpec
 from vehicle.accessories.settings import Accessories, build_spec, iter_tables
 from vehicle.drive.mixer import MIXERS
-from vehicle.motors import PROFILES, MotorError, settings_type
+from vehicle.motors import MotorError
+from vehicle.motors.drivers import profile_settings, settings_type
 from vehicle.motors.settings import CommonMotorSettings, pin_name, port_name
 from vehicle.sensors.suite import SensorSettings
 
@@ -65,7 +66,7 @@ def _taken(table: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
 
 def _motors(table: Mapping[str, Any]) -> dict[str, Any]:
     driver = table["driver"]
-    settings = {**PROFILES.get(driver, {}), **{key: value for key, value in table.items() if key != "driver"}}
+    settings = {**profile_settings(driver), **{key: value for key, value in table.items() if key != "driver"}}
     around = msgspec.convert({"safety": settings.pop("safety", None)}, CommonMotorSettings)
     try:
         kind = settings_type(driver)

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.config.config import Config
-from vehicle.motors import PROFILE_PARAMS
+from vehicle.motors.drivers import profile_params
 from vehicle.params import Params, merge_params
+from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.motor_copy import default_state_folder
 from vehicle.storage.param_store import ParamStore
 
@@ -34,8 +35,8 @@ class EffectiveParams:
 def load_effective_params(config: Config, folder: str | None = None) -> EffectiveParams:
     """As vehicle/runtime/factory.py does it: defaults, a known car's, kept ones, the file's. `folder` wins over the file's."""
     where = state_folder_of(folder or config.state)
-    store = ParamStore(where)
-    usual = PROFILE_PARAMS.get(config.motors.get("driver", ""), {})
+    store = ParamStore(FileWriter(where))
+    usual = profile_params(config.motors.get("driver", ""))
     params, left_out = merge_params(config.params, kept=store.values, usual=usual)
     count = len(store.values.keys() - config.params.keys()) - len(left_out)
     damage = store.damage and f"{store.damage}; start the vehicle and set one from a ground station, which ends this"

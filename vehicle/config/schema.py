@@ -8,13 +8,14 @@ from typing import Any
 
 import msgspec
 
-from vehicle.accessories import DRIVERS as ACCESSORIES
+from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
 from vehicle.accessories.settings import COMMON
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
 from vehicle.config.docstrings import field_docs
 from vehicle.config.template import parameter_help
-from vehicle.motors import DRIVERS, PROFILES, MotorError, settings_type
+from vehicle.motors import MotorError
+from vehicle.motors.drivers import DRIVERS, profile_settings, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import TABLE, Parameter
 
@@ -23,7 +24,7 @@ def build_schema() -> str:
     """The JSON schema."""
     kinds = {name: kind for name in DRIVERS if (kind := _settings(name)) is not None}
     accessories = {
-        (kind, name): settings_type_of(kind, name) or NoSettings for kind in COMMON for name in ACCESSORIES[kind]
+        (kind, name): settings_type_of(kind, name) or NoSettings for kind in COMMON for name in ACCESSORY_DRIVERS[kind]
     }
     structs = [Config, CommonMotorSettings, *COMMON.values(), *dict.fromkeys([*kinds.values(), *accessories.values()])]
     _, parts = msgspec.json.schema_components(structs, ref_template="#/$defs/{name}")
@@ -86,7 +87,7 @@ _OWN_DRIVER: dict[str, Any] = {
 
 
 def _driver_schema(name: str, own: Mapping[str, Any], around: Mapping[str, Any]) -> dict[str, Any]:
-    known = PROFILES.get(name, {})
+    known = profile_settings(name)
     return {
         "type": "object",
         "title": name,

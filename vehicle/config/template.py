@@ -9,12 +9,14 @@ from typing import Any
 
 import msgspec
 
-from vehicle.accessories import DRIVERS as ACCESSORY_DRIVERS
-from vehicle.accessories.settings import COMMON, Accessories, Kind
+from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
+from vehicle.accessories.drivers import FIRST_NUMBER, Kind
+from vehicle.accessories.settings import COMMON, Accessories
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
 from vehicle.config.docstrings import field_docs, first_paragraph
-from vehicle.motors import DRIVERS, PROFILE_PARAMS, PROFILES, MotorError, settings_type
+from vehicle.motors import MotorError
+from vehicle.motors.drivers import DRIVERS, DriverEntry, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import TABLE, Parameter
 from vehicle.sensors.suite import SensorSettings
@@ -25,17 +27,6 @@ SIMULATED: dict[str, Any] = {"driver": "simulated"}
 LISTENING = ["udpin:0.0.0.0:14550"]
 """The two things that the sample sets, so that it runs as it is: 14550 is the port that ground stations know."""
 
-EXAMPLES: dict[str, dict[str, Any]] = {
-    "gpio": {"bridges": [
-        {"wiring": "two-inputs", "forward": 5, "backward": 6}, {"wiring": "phase-enable", "enable": 13, "phase": 16}]},
-    "pca9685": {"channels": [{"channel": 0}, {"channel": 1}]},
-    "sysfs-pwm": {"outputs": [
-        {"drives": "bridge", "device": "fe20c000.pwm", "channel": 0, "direction": 5},
-        {"drives": "servo", "device": "fe20c000.pwm", "channel": 1}]},
-    "roboclaw": {"port": "/dev/serial0"},
-    "sabertooth": {"port": "/dev/serial0"},
-}  # fmt: skip
-"""Driver -> what has no default."""
 AROUND: dict[str, Any] = {
     "safety": {"estop_pin": 17, "enable_pin": 22, "heartbeat_pin": 27},
 }
@@ -43,10 +34,6 @@ SENSORS: dict[str, Any] = {
     "battery": {"kind": "ina219"},
     "gps": {},
     "encoders": {"wheels": [{"a": 23, "b": 24}, {"a": 25, "b": 26}]},
-}
-ACCESSORIES: dict[Kind, dict[str, dict[str, Any]]] = {
-    "relay": {"gpio": {"number": 0, "pin": 16}},
-    "servo": {"pca9685": {"number": 9, "channel": 0, "address": 0x41}},
 }
 TOP: dict[str, Any] = {
     "state": "/var/lib/mavhelm",
@@ -76,11 +63,16 @@ def build_template() -> str:
         "\n[identity]\n" + _body(config.identity, "identity"),
         f"\n[motors]\n# One of {', '.join(DRIVERS)}; or your own as module:Class.\n"
         "# docs/pi.md has the wiring of each.\n" + 'driver = "simulated"\n',
-        *(_driver(name) for name in DRIVERS if name != "simulated"),
+        *(_driver(name, entry) for name, entry in DRIVERS.items() if name != "simulated"),
         "\n# ---- for any driver\n" + _body(around, "motors"),
         "\n[sensors]\n" + _body(sensors, "sensors"),
         f"\n[accessories]\n{_comment(first_paragraph(Accessories.__doc__))}# docs/pi.md has their wiring.\n",
-        *(_accessory(kind, name) for kind, drivers in ACCESSORIES.items() for name in drivers),
+        *(
+            _accessory(kind, name, entry)
+            for kind, drivers in ACCESSORY_DRIVERS.items()
+            for name, entry in drivers.items()
+            if name != "simulated"
+        ),
         "\n[params]\n# A parameter that is set here is set here only: ground stations can read it and not change it.\n",
         *(_parameter(parameter) for parameter in TABLE),
         "\n[log]\n" + _body(config.log, "log"),
@@ -88,25 +80,28 @@ def build_template() -> str:
     return "".join(parts)
 
 
-def _driver(name: str) -> str:
-    if name in PROFILES:
-        usual = ", ".join(f"{key} = {value:g}" for key, value in PROFILE_PARAMS.get(name, {}).items())
-        also = f"# Unless you set them, its parameters are {usual}.\n" if usual else ""
-        return f'\n# ---- {name}: a known car, with its settings\n{also}#driver = "{name}"\n'
+def _driver(name: str, entry: DriverEntry) -> str:
+    """Return the commented settings of one motor driver."""
+    heading = f"\n# ---- {name}: {entry.title}\n"
+    if entry.profile:
+        params = ", ".join(f"{key} = {value:g}" for key, value in entry.params.items())
+        note = f"# Unless you set them, its parameters are {params}.\n" if params else ""
+        return f'{heading}{note}#driver = "{name}"\n'
     try:
         kind = settings_type(name) or NoSettings
-    except MotorError as error:  # its library is missing here
-        return f'\n# ---- {name}: {error}\n#driver = "{name}"\n'
-    settings: msgspec.Struct = msgspec.convert(EXAMPLES[name], kind)
-    return f'\n# ---- {name}: {first_paragraph(kind.__doc__)}\n#driver = "{name}"\n{_body(settings, "motors")}'
+    except MotorError as error:  # its library is not installed
+        return f'{heading}# {error}\n#driver = "{name}"\n'
+    settings: msgspec.Struct = msgspec.convert(entry.example, kind)
+    return f'{heading}#driver = "{name}"\n{_body(settings, "motors")}'
 
 
-def _accessory(kind: Kind, name: str) -> str:
-    """A table for one, with every key."""
-    kinds = (COMMON[kind], settings_type_of(kind, name) or NoSettings)
-    also = f"One of {', '.join(ACCESSORY_DRIVERS[kind])}; or your own as module:Class."
-    head = f'\n#[[accessories.{kind}s]]\n{_comment(also)}#driver = "{name}"\n'
-    return head + "".join(_plain(ACCESSORIES[kind][name], each) for each in kinds)
+def _accessory(kind: Kind, name: str, entry: DriverEntry) -> str:
+    """Return the commented table of one accessory driver, with every key."""
+    structs = (COMMON[kind], settings_type_of(kind, name) or NoSettings)
+    known = f"{name}: {entry.title}. One of {', '.join(ACCESSORY_DRIVERS[kind])}; or your own as module:Class."
+    header = f'\n#[[accessories.{kind}s]]\n{_comment(known)}#driver = "{name}"\n'
+    example = {"number": FIRST_NUMBER[kind], **entry.example}
+    return header + "".join(_plain(example, each) for each in structs)
 
 
 def _plain(example: Mapping[str, Any], kind: Any) -> str:

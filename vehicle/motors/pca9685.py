@@ -107,7 +107,8 @@ class Pca9685Motors:
 
     def _set_idle(self) -> None:
         """What `idle` says, on every channel that gives pulses; one that gives none is left so. A board that was set up
-        otherwise, as before its `frequency` was changed, would make another width of neutral: its pulses end."""
+        otherwise, as before its `frequency` was changed, would make another width of neutral: its pulses end.
+        """
         neutral = self._settings.idle == "neutral" and self._board.ready
         for channel in self._settings.channels:
             if neutral and self._board.has_pulse(channel.channel):

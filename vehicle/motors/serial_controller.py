@@ -14,7 +14,7 @@ TIMEOUT_RESEND_PERIOD = 1.0
 
 
 def tenths(timeout: float) -> int:
-    """s as the controllers count them, rounded down."""
+    """S as the controllers count them, rounded down."""
     return int(timeout * 10 + 1e-9)
 
 

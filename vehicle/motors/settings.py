@@ -105,19 +105,11 @@ class NoSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Of a driver that has none of its own."""
 
 
-RETIRED = {
-    "shape": "is parameters now; in [params], for each motor: MOT1_REVERSED = 1, MOT1_MIN and MOT1_MAX in %",
-    "limits": "is parameters now; in [params]: MOT1_MAX and MOT2_MAX in % for driving, MOT_PIVOT_MAX for turning",
-}
-"""Keys of older files -> what to write instead. vehicle/config/config.py refuses them; here they are passed over, because
-safe-stop must stop the motors with any file."""
-
-
 def split_table(table: Mapping[str, Any]) -> tuple[CommonMotorSettings, dict[str, Any]]:
     """What goes around the driver, and the rest, which is its own. Raises MotorSettingsError."""
     names = CommonMotorSettings.__struct_fields__
     around = convert({key: value for key, value in table.items() if key in names}, CommonMotorSettings)
-    return around, {key: value for key, value in table.items() if key not in names and key not in RETIRED}
+    return around, {key: value for key, value in table.items() if key not in names}
 
 
 def convert(table: Mapping[str, Any], kind: type[T]) -> T:

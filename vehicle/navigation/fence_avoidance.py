@@ -91,9 +91,12 @@ class FenceAvoidance:
         if not self.is_limiting:
             self._stands_since = None
             return wanted
-        stands = fastest < self._params["ATC_STOP_SPEED"]
-        self._stands_since = None if not stands else now if self._stands_since is None else self._stands_since
-        return wanted._replace(speed=0.0 if stands else math.copysign(fastest, wanted.speed))
+        if fastest >= self._params["ATC_STOP_SPEED"]:
+            self._stands_since = None
+            return wanted._replace(speed=math.copysign(fastest, wanted.speed))
+        if self._stands_since is None:
+            self._stands_since = now
+        return wanted._replace(speed=0.0)
 
     def reset(self) -> None:
         """Nothing drives by itself."""

@@ -33,8 +33,10 @@ from vehicle.runtime.host_info import HostMonitor, read_uid
 from vehicle.runtime.lock import lock_state_folder
 from vehicle.runtime.shutdown import CycleObserver, Shutdown
 from vehicle.runtime.systemd import Notifier
+from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.param_store import ParamStore
 from vehicle.storage.plan_store import PlanStore
+from vehicle.storage.store import Store
 from vehicle.telemetry.host import HostInfo
 
 log = logging.getLogger(__name__)
@@ -92,21 +94,23 @@ def _journal(severity: Severity, text: str) -> None:
     log.log(LEVELS[severity], "%s", text)
 
 
+def _store(settings: RunSettings) -> Store | None:
+    """Return a store in the state folder, None if nothing is saved in this run."""
+    return None if settings.state is None else FileWriter(settings.state)
+
+
 async def _serve(settings: RunSettings) -> int:
     loop = running_loop()
     now, host = loop.time(), HostInfo(uid=read_uid())
     with contextlib.ExitStack() as opened:
         if settings.state is not None:
             opened.enter_context(lock_state_folder(settings.state))
-        keeper = None if settings.state is None else ParamStore(settings.state)
-        params = build_params(settings, keeper)
-        if keeper is not None:
-            opened.callback(keeper.close)
-        plans = None if settings.state is None else PlanStore(settings.state)
-        if plans is not None:
-            opened.callback(plans.close)
-            for damage in plans.damage.values():
-                log.warning("%s: %s", settings.state, damage)
+        param_store, plan_store = ParamStore(_store(settings)), PlanStore(_store(settings))
+        opened.callback(param_store.close)
+        opened.callback(plan_store.close)
+        params = build_params(settings, param_store)
+        for damage in plan_store.damage.values():
+            log.warning("%s: %s", settings.state, damage)
         notifier = Notifier()
         opened.callback(notifier.close)
         system = int(params["MAV_SYSID"])
@@ -115,8 +119,8 @@ async def _serve(settings: RunSettings) -> int:
         rover = Rover(
             params,
             now=now,
-            keeper=keeper,
-            plan_keeper=plans,
+            param_store=param_store,
+            plan_store=plan_store,
             recording=recorder,
             host=host,
             told=_journal,
@@ -144,7 +148,7 @@ async def _drive(
     tape: LogTap | None,
 ) -> int:
     links = open_links(endpoints, system=system, component=COMPONENT, wanted=INBOUND_IDS)
-    runner = Runner(machine, links, period=PERIOD, tape=tape)
+    runner = Runner(machine, links, period=PERIOD, log_tap=tape)
     ending = Shutdown(machine, runner, notifier.stopping)
     cycles.shutdown = ending
     ending.install_handlers(asyncio.get_running_loop())

@@ -20,7 +20,8 @@ from vehicle.config.conflicts import find_conflicts, find_motor_conflicts
 from vehicle.config.run_settings import RunSettings, SettingsError, Simulation
 from vehicle.control_loop import ControlLoop
 from vehicle.drive.mixer import MIXERS
-from vehicle.motors import PROFILE_PARAMS, Motors, arming_check, estop_reader, open_motors
+from vehicle.motors import Motors, arming_check, estop_reader
+from vehicle.motors.drivers import open_motors, profile_params
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params, merge_params
@@ -45,14 +46,14 @@ SIMULATED_ACCESSORIES = (
 """Accessories of a simulation that was told of none: so that there are some to try."""
 
 
-def build_params(settings: RunSettings, keeper: ParamStore | None) -> Params:
+def build_params(settings: RunSettings, store: ParamStore) -> Params:
     """Defaults, a known car's, what was kept, the file of settings, this run: the later wins. Raises ParamError."""
-    usual = {} if settings.simulation else PROFILE_PARAMS.get(settings.motors["driver"], {})
-    given, kept = {**settings.pinned, **settings.params}, keeper.values if keeper else {}
+    usual = {} if settings.simulation else profile_params(settings.motors["driver"])
+    given, kept = {**settings.pinned, **settings.params}, store.values
     params, left_out = merge_params(given, kept=kept, usual=usual, pinned=settings.pinned.keys(), run=settings.params)
     for problem in left_out:
         log.warning("a kept parameter is not used: %s", problem)
-    params.damage = keeper.damage if keeper else None
+    params.damage = store.damage
     if params.damage:
         consequence = "all parameters that were set have their defaults, and nobody can arm until one is set"
         log.warning("%s: %s: %s", settings.state, params.damage, consequence)
@@ -90,7 +91,8 @@ def build_control_loop(
     rack: AccessorySet,
 ) -> ControlLoop:
     """The rover in its body, with its accessories open; what must be closed after the motors is in `opened`. Raises
-    MotorError, SettingsError."""
+    MotorError, SettingsError.
+    """
     if settings.simulation is None:
         motors, sensors = _body(settings, opened)
     else:

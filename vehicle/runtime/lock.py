@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.config.run_settings import SettingsError
-from vehicle.motors import DRIVERS, MotorError
+from vehicle.motors import MotorError
+from vehicle.motors.drivers import DRIVERS
 from vehicle.motors.settings import port_name
 
 SIMULATED = "simulated"
@@ -64,7 +65,7 @@ def _name(motors: Mapping[str, Any]) -> str | None:
         return None
     port = port_name(str(motors["port"])) if "port" in motors else ""
     # Hashed: the kernel takes 107 bytes, and a name in /dev/serial/by-id has 60 and more.
-    return f"\0mavhelm motors {hashlib.sha256(f'{DRIVERS[driver]} {port}'.encode()).hexdigest()}"
+    return f"\0mavhelm motors {hashlib.sha256(f'{DRIVERS[driver].path} {port}'.encode()).hexdigest()}"
 
 
 @contextlib.contextmanager

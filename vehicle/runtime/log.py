@@ -22,7 +22,8 @@ DRAIN = 1.0
 
 class _Brief(logging.Formatter):
     """For a person and for the journal: one line, never a traceback, and nothing that a terminal would obey: some words
-    come from afar."""
+    come from afar.
+    """
 
     SEVERITIES: ClassVar = {
         logging.DEBUG: journald.DEBUG,

@@ -72,7 +72,8 @@ class Shutdown:
 
 class CycleObserver:
     """What follows from a completed control cycle: the watchdog is fed, the host is looked at, and a wish to leave is
-    heard."""
+    heard.
+    """
 
     def __init__(self, rover: Rover, notifier: Notifier, meter: HostMonitor) -> None:
         self.shutdown: Shutdown | None = None

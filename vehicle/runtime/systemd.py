@@ -63,7 +63,7 @@ def _connected(address: str) -> socket.socket | None:
 
 
 def _watchdog(environment: Mapping[str, str]) -> float:
-    """s of the watchdog's time; infinite where there is none, or where it is meant for another process."""
+    """S of the watchdog's time; infinite where there is none, or where it is meant for another process."""
     microseconds = environment.get("WATCHDOG_USEC", "")
     meant = environment.get("WATCHDOG_PID", str(os.getpid())) == str(os.getpid())
     return int(microseconds) / 1e6 if meant and microseconds.isascii() and microseconds.isdigit() else math.inf

@@ -6,17 +6,16 @@ vehicle/drive/drive.py turns a Clearance into motor values.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from dialects.enums import Failsafe, Severity
+from dialects.enums import Severity
 from dialects.modes import Mode
 from vehicle.drive.control import Control
 from vehicle.drive.demand import Demand
 from vehicle.drive.gate import Clearance, MotorTest
 from vehicle.modes import MODES
 from vehicle.params import Params
-from vehicle.safety.failsafe import RULES, FailsafeAction, TriggeredStep
-from vehicle.safety.failsafe_inputs import FailsafeInputs, active_conditions
+from vehicle.safety.failsafe import RULES, FailsafeAction
+from vehicle.safety.failsafe_inputs import FailsafeInputs, MotionInputs
+from vehicle.safety.failsafe_state import TriggeredStep
 from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
 
@@ -43,7 +42,7 @@ class SafetyMonitor:
             self._safety.handle_loop_overrun(gap, now)
         return gap > LATE_CYCLE_TIME
 
-    def update(self, now: float, refused: int, hazards: Mapping[Failsafe, float], *, driving: bool) -> None:
+    def update(self, now: float, refused: int, motion: MotionInputs, *, driving: bool) -> None:
         """One cycle: find what fails, do what follows.
 
         `refused`: cycles in a row with values that are not numbers; `driving`: it moves by itself.
@@ -52,7 +51,7 @@ class SafetyMonitor:
         self._cycle = now
         safety.boot_done()
         self._control.expire_stale_demand(now)
-        self._update_failsafes(hazards, now)
+        self._update_failsafes(motion, now)
         if refused >= BAD_CYCLES_MAX and safety.armed and safety.mode is not Mode.HOLD:
             self._texts.send(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
             safety.hold()
@@ -86,28 +85,28 @@ class SafetyMonitor:
             motor_test=trial,
         )
 
-    def _update_failsafes(self, hazards: Mapping[Failsafe, float], now: float) -> None:
+    def _update_failsafes(self, motion: MotionInputs, now: float) -> None:
         armed, failsafes = self._safety.armed, self._safety.failsafes
         before = failsafes.active
-        taken = failsafes.update(active_conditions(self._scene(hazards), now) if armed else {}, now)
+        taken = failsafes.check(self._failsafe_inputs(motion), now, armed=armed)
         if before and armed:
             for cause in before & ~failsafes.active:
                 self._texts.send(Severity.NOTICE, f"Failsafe over: {RULES[cause].label}", now)
         for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
             self._apply(step, now)
 
-    def _scene(self, hazards: Mapping[Failsafe, float]) -> FailsafeInputs:
+    def _failsafe_inputs(self, motion: MotionInputs) -> FailsafeInputs:
         safety = self._safety
         return FailsafeInputs(
             params=self._params,
             control=self._control,
             battery=safety.battery,
             computer=safety.computer,
-            driven=MODES[safety.mode].manual,
+            motion=motion,
+            manual=MODES[safety.mode].manual,
+            mission_running=safety.mode is Mode.AUTO,
             latched=safety.failsafes.latched,
             armed_at=safety.armed_at,
-            hazards=hazards,
-            alone=safety.mode is Mode.AUTO,
         )
 
     def _apply(self, step: TriggeredStep, now: float) -> None:

@@ -14,7 +14,8 @@ from vehicle.modes import MODES, initial_mode
 from vehicle.params import Params
 from vehicle.safety.arming import ArmingFacts, find_problems
 from vehicle.safety.battery import BatteryMonitor
-from vehicle.safety.failsafe import RULES, Failsafes
+from vehicle.safety.failsafe import RULES
+from vehicle.safety.failsafe_state import Failsafes
 from vehicle.safety.pi_monitor import PiMonitor
 from vehicle.safety.states import TRANSITIONS, SafetyEvent, SafetyState
 from vehicle.statustext import StatusTextQueue
@@ -167,7 +168,10 @@ class Safety:
             self.failsafes.acknowledge()
         if mode is not self.mode:
             self.mode = mode
-            self._control.reset() if MODES[mode].moves else self._control.require_neutral()
+            if MODES[mode].moves:
+                self._control.reset()
+            else:
+                self._control.require_neutral()
             self._texts.send(Severity.INFO, f"Mode {mode.name}", now)
         return None
 

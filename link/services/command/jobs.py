@@ -17,14 +17,12 @@ once the work has begun, and a Result where it is refused. The server does the r
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from dialects.enums import Result
 from dialects.messages import CommandAck
 from link.core import Outgoing, Received
-
-if TYPE_CHECKING:
-    from link.services.command.server import CommandRequest
+from link.services.command.request import CommandRequest
 
 PROGRESS_PERIOD = 0.5
 """s between two words of the progress: the client waits longer than its usual patience after each."""

@@ -41,7 +41,8 @@ class NotReadyError(Exception):
 
 class Folder(Protocol):
     """A provider of files. It is called inside the control loop and must not wait for a disk: all but `writable` may
-    raise NotYetError."""
+    raise NotYetError.
+    """
 
     def entries(self) -> Sequence[Entry]:
         """The files, in an order that stays."""

@@ -124,12 +124,10 @@ class FtpHandlers:
         return self._begin_writing(question, place, bytearray(), now)
 
     def _open_to_write(self, question: FtpRequest, now: float) -> FtpReply:
-        place = self._writable(question)
-        if isinstance(place, FtpError):
-            return place
-        content = place.folder.open(place.name, {})
-        if content is None:
-            return FtpError.NOT_FOUND
+        found = self._existing(question)
+        if isinstance(found, FtpError):
+            return found
+        place, content = found
         data = content.read(0, content.size)
         return None if data is None else self._begin_writing(question, place, bytearray(data), now)
 
@@ -145,12 +143,10 @@ class FtpHandlers:
         return session.write(request.offset, request.data) or b""
 
     def _truncate(self, question: FtpRequest, now: float) -> FtpReply:
-        place = self._writable(question)
-        if isinstance(place, FtpError):
-            return place
-        content = place.folder.open(place.name, {})
-        if content is None:
-            return FtpError.NOT_FOUND
+        found = self._existing(question)
+        if isinstance(found, FtpError):
+            return found
+        place, content = found
         data = content.read(0, min(question.request.offset, content.size))
         return None if data is None else place.folder.store(place.name, data) or b""
 
@@ -170,6 +166,14 @@ class FtpHandlers:
         if place is None or not place.name or place.query:
             return FtpError.NOT_FOUND
         return place if place.folder.writable(place.name) and question.allowed else FtpError.PROTECTED
+
+    def _existing(self, question: FtpRequest) -> tuple[Location, Content] | FtpError:
+        """Return the file that the client may write, and what it holds."""
+        place = self._writable(question)
+        if isinstance(place, FtpError):
+            return place
+        content = place.folder.open(place.name, {})
+        return FtpError.NOT_FOUND if content is None else (place, content)
 
 
 def _line(entry: Entry) -> bytes:

@@ -14,7 +14,6 @@ from dialects.messages import FileTransferProtocol
 
 MAX_DATA = 239
 """Bytes of data in one message."""
-MAX_OFFSET = 0xFFFF_FFFF
 _HEADER = struct.Struct("<HBBBBBxI")
 _PAYLOAD = 251
 SEQUENCE_MASK = 0xFFFF
@@ -96,5 +95,6 @@ def parse_packet(message: FileTransferProtocol) -> FtpPacket:
 
 def crc32(data: bytes, start: int = 0) -> int:
     """MAVLink's CRC32 of `data`, going on from `start`: the common polynomial, but begun with 0 and not inverted at the
-    end (mavlink.io/en/crc.html), which PX4 uses for metadata files too."""
+    end (mavlink.io/en/crc.html), which PX4 uses for metadata files too.
+    """
     return zlib.crc32(data, start ^ 0xFFFF_FFFF) ^ 0xFFFF_FFFF

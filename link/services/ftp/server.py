@@ -76,7 +76,8 @@ class FtpServer:
 
     def _said_again(self, client: FtpClientId, request: FtpPacket, now: float) -> list[Outgoing]:
         """The stored answer to the same question. To be the same, all of it must be: a client that starts anew begins
-        with the same sequence numbers. And a file that it opened must be open still."""
+        with the same sequence numbers. And a file that it opened must be open still.
+        """
         before = self._answered.get(client)
         if before is None or before[0] != request:
             return []
@@ -101,7 +102,8 @@ class FtpServer:
 
     def _begin_burst(self, client: FtpClientId, request: FtpPacket, now: float) -> FtpError | None:
         """Asked again, it begins anew from where it is asked for: a client that lost something repeats its question
-        with the same sequence and another offset."""
+        with the same sequence and another offset.
+        """
         session = self._sessions.get(client, request.session, now)
         if session is None or session.data is not None:
             return FtpError.INVALID_SESSION

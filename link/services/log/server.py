@@ -59,7 +59,8 @@ class _LogClient:
 
 class LogServer:
     """Answers for one system and component. `when` gives a log's Unix time in s, 0 where it is not known; `erase` is
-    handed every wish to erase all logs."""
+    handed every wish to erase all logs.
+    """
 
     def __init__(
         self,

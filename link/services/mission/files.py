@@ -88,7 +88,8 @@ class PlanFolder:
         refused: Callable[[MissionType, str], None] = lambda kind, why: None,
     ) -> None:
         """`in_use` says why a plan may not be changed now, or None; `refused` is told why a file was not
-        taken: MAVLink FTP has no words for that, and some clients do not look."""
+        taken: MAVLink FTP has no words for that, and some clients do not look.
+        """
         self._server = server
         self._in_use = in_use
         self._refused = refused
@@ -132,7 +133,8 @@ class PlanFolder:
 
     def _said_before(self, kind: MissionType, data: bytes) -> PlanChange | None:
         """The change that this file has begun already. Not where it came to its end unheard and the plan is another one
-        by now: that is to be made again."""
+        by now: that is to be made again.
+        """
         before, change = self._changes.get(kind, (b"", None))
         if change is None or before != data:
             return None

@@ -107,7 +107,8 @@ class MissionServer:
         self, plans: Mapping[MissionType, Sequence[MissionItem]], allowed: Callable[[MissionType], bool]
     ) -> PlanChange | None:
         """Change plans in another way than by upload, e.g. as files: how that goes. None where it breaks the rules, of
-        which the planner is told, or where somebody is changing one of them."""
+        which the planner is told, or where somebody is changing one of them.
+        """
         for kind, items in plans.items():
             verdict = self._rules[kind].validate(items)
             if verdict is not MissionResult.ACCEPTED:
@@ -180,7 +181,8 @@ class MissionServer:
 
     def _is_saving(self, kind: MissionType, message: _Begin, sender: Sender) -> bool:
         """A sender whose last change is not kept yet waits: it says this again. An answer to the change would look like
-        one to this, so there is none any more, unless this asks for the same."""
+        one to this, so there is none any more, unless this asks for the same.
+        """
         change = self._changes.pending(kind)
         if change is None or change.sender != sender:
             return False

@@ -100,7 +100,8 @@ class PlanUpload:
 
     def repeat_request(self, now: float) -> list[Outgoing]:
         """The question once more when its answer is late, each second time as the older MISSION_REQUEST: some scripts
-        wait for nothing else."""
+        wait for nothing else.
+        """
         if now - self._asked < REQUEST_TIMEOUT:
             return []
         self._as_int = self._only_int or not self._as_int

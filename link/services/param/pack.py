@@ -14,7 +14,6 @@ from collections.abc import Mapping, Sequence
 from link.services.param.server import ParamDefinition, ParamValues
 from link.services.param.values import same_float32
 
-PATH = "@PARAM/param.pck"
 MAGIC, MAGIC_DEFAULTS = 0x671B, 0x671C
 FLOAT = 4
 """ArduPilot's AP_PARAM_FLOAT: all our parameters are."""

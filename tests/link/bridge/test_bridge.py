@@ -286,10 +286,10 @@ def test_it_records_what_passes_and_the_file_is_whole_after_a_signal(
     [
         ((), "a bridge has two ends or more"),
         (("udpin:127.0.0.1:14999",), "a bridge has two ends or more"),
-        (("udpin:127.0.0.1:14999", "udpin:127.0.0.1:14999"), "is named twice"),
+        (("udpin:127.0.0.1:14999", "udpin:127.0.0.1:14999"), "is given twice"),
         (("udpin:127.0.0.1:14999", "serial:ttyAMA0:57600"), "write serial:/dev/ttyAMA0:57600"),
         (("udpin:127.0.0.1:0", "serial:/dev/ttyX:57600", "--json", "--quiet"), "port '0'"),
-        (("serial:/dev/null:57600", "udpout:127.0.0.1:14999"), "/dev/null is no serial port"),
+        (("serial:/dev/null:57600", "udpout:127.0.0.1:14999"), "/dev/null is not a serial port"),
         (("udpout:127.0.0.1:1", "udpout:127.0.0.1:2", "--tlog", "/dev/null/x"), "--tlog /dev/null/x: there is a file"),
         (
             ("udpout:127.0.0.1:1", "udpout:127.0.0.1:2", "--tlog", "/dev/null"),
@@ -324,7 +324,7 @@ def test_frames_are_joined_whole_and_in_order() -> None:
 def test_the_document_names_every_endpoint_and_option_and_the_right_numbers() -> None:
     text = (Path(__file__).parents[3] / "docs/bridge.md").read_text()
     for scheme in SCHEMES.values():
-        assert f"`{scheme.form}`" in text
+        assert f"`{scheme.syntax}`" in text
     help_text = subprocess.run(
         [sys.executable, "-m", "link.bridge", "--help"], capture_output=True, text=True, timeout=60, check=True
     ).stdout

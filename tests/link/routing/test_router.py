@@ -21,7 +21,7 @@ from dialects.messages import (
     SystemTime,
 )
 from dialects.targets import TARGETS, target_of
-from link.routing.router import MAX_TRACKED_SOURCES, REDUNDANCY_WINDOW, Router
+from link.routing.router import MAX_RECENT_UNTRACKED, MAX_TRACKED_SOURCES, REDUNDANCY_WINDOW, Router
 from link.routing.routes import MAX_PEERS, MAX_SOURCES, PEER_SILENCE, ROUTE_SILENCE
 from tests.link.frames import demand, frame, heartbeat, version_1
 
@@ -48,7 +48,7 @@ class Rig:
     ) -> dict[tuple[int, Hashable], bytes]:
         where = address or {SERIAL: "tty", UDP: GCS, OTHER: "out"}[port]
         found = self.router.receive(port, [(data, where)], now)
-        return {(each.port, each.address): b"".join(each.frames) for each in found}
+        return {(each.link, each.address): b"".join(each.frames) for each in found}
 
 
 def command(target: int, component: int, sequence: int = 1) -> bytes:
@@ -232,6 +232,49 @@ def test_redundant_signatures_differ_and_the_frame_is_the_same() -> None:
     assert rig.send(OTHER, _signed(9, b"b" * 13)) == {}
 
 
+def circling(data: bytes, rounds: int, wires: int) -> int:
+    """Transmissions of one frame in a ring of two bridges that `wires` cables join; it enters at a third port."""
+    bridges = [Router([(False, f"cable {n}") for n in range(wires)] + [(False, None)]) for _ in range(2)]
+    for bridge in bridges:
+        bridge.receive(wires, [(heartbeat(0), GCS)], 1.0)
+        for wire in range(wires):
+            bridge.receive(wire, [(heartbeat(0, 3 + wire, 1), f"cable {wire}")], 1.0)
+    waiting = [(0, wires, data)]
+    sent = 0
+    for step in range(rounds):
+        if sent > 1000:
+            break  # it multiplies
+        arrived, waiting = waiting, []
+        for number, port, raw in arrived:
+            address = GCS if port == wires else f"cable {port}"
+            for delivery in bridges[number].receive(port, [(raw, address)], 1.0 + step / 1000):
+                sent += len(delivery.frames)
+                waiting += [(1 - number, delivery.link, each) for each in delivery.frames if delivery.link != wires]
+    return sent
+
+
+@pytest.mark.parametrize("wires", [2, 3])
+def test_a_frame_with_an_unknown_id_passes_a_ring_of_bridges_once(wires: int) -> None:
+    """Its sender was never heard with a known message, so that no table knows the frame when it comes back."""
+    data = unknown(5, system=77)
+    assert circling(data, rounds=3, wires=wires) > 0  # it is forwarded at all
+    assert circling(data, rounds=50, wires=wires) == circling(data, rounds=100, wires=wires) <= 4 * wires
+
+
+def test_the_memory_of_untracked_frames_is_bounded_and_ends_in_time() -> None:
+    rig = Rig()
+    for number in range(MAX_RECENT_UNTRACKED + 50):
+        message_id = 45000 + number // 250
+        assert rig.send(OTHER, unknown(number % 250, message_id, system=77), now=1.0)
+    assert not rig.send(
+        OTHER,
+        unknown((MAX_RECENT_UNTRACKED + 49) % 250, 45000 + (MAX_RECENT_UNTRACKED + 49) // 250, system=77),
+        now=1.5,
+    )
+    assert rig.send(OTHER, unknown(7, 45999, system=77), now=2.0)
+    assert rig.send(OTHER, unknown(7, 45999, system=77), now=2.0 + REDUNDANCY_WINDOW)
+
+
 def test_the_same_number_long_after_is_another_frame() -> None:
     rig = Rig()
     data = frame(BROADCAST, 9, 1, 1)
@@ -350,4 +393,4 @@ def test_byte_soup_never_raises_and_nothing_comes_out_that_did_not_go_in(soup: l
                 assert any(raw in everything for everything in taken.values())
                 assert raw[0] in (0xFD, 0xFE)
     data = frame(BROADCAST, 9, 77, 7)  # a sender that no soup has
-    assert {each.port for each in router.receive(SERIAL, [(data + data, "tty")], 1e4) if data in each.frames} >= {OTHER}
+    assert {each.link for each in router.receive(SERIAL, [(data + data, "tty")], 1e4) if data in each.frames} >= {OTHER}

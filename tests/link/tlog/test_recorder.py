@@ -12,9 +12,9 @@ import pytest
 
 from dialects import codec
 from dialects import messages as m
-from dialects.messages import MESSAGES
+from dialects.messages import SetupSigning
 from link.protocol.frame import Frame
-from link.protocol.log_tap import SETUP_SIGNING, LogTap
+from link.protocol.log_tap import LogTap
 from link.runtime.worker import Worker
 from link.tlog.recorder import MAX_BATCH, PENDING, PERIOD, SLOW, RawFile, Recorder
 from link.tlog.tlog import Record, read_records
@@ -253,9 +253,9 @@ def framed(raw: bytes) -> Frame:
 
 def test_keys_are_never_recorded() -> None:
     taped = Taped()
-    kind: Any = MESSAGES[SETUP_SIGNING]
+    kind: Any = SetupSigning
     setup = kind(1, 1, b"k" * 32, 1)
-    key = codec.frame(SETUP_SIGNING, codec.encode_payload(setup), 7, 255, 190)
+    key = codec.frame(SetupSigning.id, codec.encode_payload(setup), 7, 255, 190)
     taped.tape.record_received([framed(demand(1)), framed(key), framed(demand(2))], 1.0)
     taped.say(setup)
     assert taped.frames == [demand(1), demand(2)]

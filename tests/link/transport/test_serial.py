@@ -71,9 +71,9 @@ async def test_bytes_go_both_ways(cable: Cable) -> None:
 @pytest.mark.parametrize(
     ("path", "told"),
     [
-        ("/tmp", "no serial port but a file or folder"),
-        ("/etc/hostname", "no serial port but a file or folder"),
-        ("/dev/null", "/dev/null is no serial port"),
+        ("/tmp", "not a serial port but a file or directory"),
+        ("/etc/hostname", "not a serial port but a file or directory"),
+        ("/dev/null", "/dev/null is not a serial port"),
     ],
 )
 def test_what_can_never_be_a_port_is_refused_in_one_line(path: str, told: str) -> None:

@@ -14,6 +14,7 @@ from link.core import Outgoing
 from link.endpoint import parse_endpoint
 from link.protocol.channel import Channel
 from link.protocol.framer import Framer
+from link.transport import tcp
 from link.transport.tcp import MAX_CONNECTIONS, TcpClientTransport, TcpServerTransport, open_tcpin, open_tcpout
 from link.transport.transport import LinkError
 from tests.link.frames import demand, frame, heartbeat
@@ -111,6 +112,37 @@ async def test_the_crowd_is_closed_at_once(server: TcpServerTransport, port: int
     for sock in crowd:
         sock.close()
     server.close()
+
+
+async def test_silent_connections_make_room_the_most_silent_first(
+    server: TcpServerTransport, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Sixteen laptops that left the WLAN without a word must not close the port for everybody."""
+    heard = Heard(server)
+    crowd = [connected(port) for _ in range(MAX_CONNECTIONS)]
+    await until(lambda: len(heard.data) == MAX_CONNECTIONS)
+    for sock in crowd[1:]:
+        sock.sendall(heartbeat(0))
+    await until(lambda: len(said(heard)) == MAX_CONNECTIONS - 1)
+    refused = connected(port)
+    await until(lambda: is_closed(refused))  # all were heard a moment ago
+    monkeypatch.setattr(tcp, "EVICT_AFTER", 0.0)
+    newcomer = connected(port)
+    newcomer.sendall(heartbeat(7))
+    await until(lambda: (heartbeat(7), newcomer.getsockname()) in heard.data)
+    await until(lambda: is_closed(crowd[0]))
+    assert not any(is_closed(sock) for sock in crowd[1:])
+    assert heard.gone == [crowd[0].getsockname()]
+    for sock in (*crowd, refused, newcomer):
+        sock.close()
+    server.close()
+
+
+def is_closed(sock: socket.socket) -> bool:
+    try:
+        return sock.recv(1) == b""
+    except BlockingIOError:
+        return False
 
 
 async def test_it_connects_when_somebody_listens_and_again_when_he_returns(port: int) -> None:

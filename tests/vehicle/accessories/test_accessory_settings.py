@@ -15,7 +15,7 @@ from link.runtime.command_line import USAGE_ERROR
 from tests.vehicle.accessories.across_processes import NAME
 from tests.vehicle.motors.across_processes import FiledPca9685
 from tests.vehicle.words import said_by
-from vehicle.accessories import DRIVERS
+from vehicle.accessories.drivers import DRIVERS
 from vehicle.accessories.output import PulseRange
 from vehicle.accessories.settings import COMMON, build_specs, settings_type
 from vehicle.config.config import ConfigError, parse_config

@@ -14,7 +14,7 @@ from dialects.enums import Command, Failsafe, ModeFlag, Result, SystemState
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, EVERYTHING, NEUTRAL, OTHER, Bench, said
 from tests.vehicle.field import GROUND, Field
-from vehicle.autonomy.modes.homing import TRAIL_MAX, Trail
+from vehicle.autonomy.trail import TRAIL_MAX, Trail
 from vehicle.navigation.geo import Point, wrap_angle
 
 START = Point(0.0, 0.0)

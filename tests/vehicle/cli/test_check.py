@@ -135,7 +135,7 @@ def test_folders_that_cannot_be_written_are_found_before_the_vehicle_starts(tmp_
     (tmp_path / "taken").touch()
     text = f'{FREE}{QUIET}[motors]\ndriver = "simulated"\n'
     code, lines = all_checked(tmp_path, text, "--state", str(tmp_path / "taken"))
-    told = "FOLDER/taken is no folder; remove it, or name another folder as"
+    told = "FOLDER/taken is not a folder; remove it, or set another folder with"
     assert code == 1
     assert lines[2:4] == [f"FAIL  state: {told} state or --state", f"FAIL  log.tlog: {told} log.tlog"]
     code, lines = checked(tmp_path, f'{text}[log]\ntlog = "{tmp_path}/taken/logs"\n')
@@ -225,12 +225,3 @@ def test_kept_parameters_that_are_damaged_are_a_fault(tmp_path: Path) -> None:
     damaged = "parameter file damaged; start the vehicle and set one from a ground station, which ends this"
     assert lines[1] == f"FAIL  parameters: 0 from the file, 0 kept in FOLDER: {damaged}"
     assert all_checked(tmp_path, text, "--state", "/nowhere")[1][1].endswith("0 kept in /nowhere")
-
-
-def test_an_older_file_learns_where_its_settings_went(tmp_path: Path) -> None:
-    code, lines = checked(tmp_path, '[motors]\ndriver = "simulated"\nshape = [{reversed = true}, {}]\n')
-    assert code == 2
-    assert lines == [
-        "FAIL  settings: FILE: motors.shape: is parameters now; in [params], for each motor: MOT1_REVERSED = 1, "
-        "MOT1_MIN and MOT1_MAX in %"
-    ]

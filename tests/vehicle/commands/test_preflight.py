@@ -21,6 +21,7 @@ from vehicle.navigation.geo import Point
 from vehicle.params import Params, merge_params
 from vehicle.rover import Rover
 from vehicle.runtime.shutdown import Shutdown
+from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.param_store import ParamStore
 
 REBOOT, STORAGE = Command.PREFLIGHT_REBOOT_SHUTDOWN, Command.PREFLIGHT_STORAGE
@@ -188,12 +189,13 @@ def test_a_signal_that_came_first_decides_the_code() -> None:
     assert ended == ["motors", "links"]
 
 
-class Kept:
+class MemoryStore(ParamStore):
+    is_volatile = False
     problem: str | None = None
+    idle = True
 
     def __init__(self) -> None:
-        self.values: dict[str, float] = {}
-        self.idle = True
+        super().__init__()
         self.saved = 0
 
     def set(self, name: str, value: float) -> None:
@@ -241,14 +243,14 @@ class TestStorage:
         assert bench.command(STORAGE, 4) is Result.ACCEPTED
 
     def test_reset_reaches_what_is_kept_and_leaves_what_the_file_pins(self) -> None:
-        keeper, params = Kept(), Params(pinned=["WP_SPEED"])
+        store, params = MemoryStore(), Params(pinned=["WP_SPEED"])
         params.set("WP_SPEED", 2)
         params.set("MAN_DEADBAND", 10)
         bench = Bench()
-        bench.rover = Rover(params, now=bench.now, keeper=keeper)
+        bench.rover = Rover(params, now=bench.now, param_store=store)
         bench.wait(0.1)
         assert bench.command(STORAGE, 2) is Result.ACCEPTED
-        assert keeper.values == {"MAN_DEADBAND": 3.0}
+        assert store.values == {"MAN_DEADBAND": 3.0}
         assert params["WP_SPEED"] == 2
 
     def test_reset_goes_back_to_what_is_usual_for_this_car(self) -> None:
@@ -263,44 +265,44 @@ class TestStorage:
 
     def test_reset_leaves_what_this_run_was_given_and_keeps_its_default(self) -> None:
         """FS_LOOP_TIMEOUT of a simulation, which runs on a desktop."""
-        keeper, given = Kept(), {"FS_LOOP_TIMEOUT": 1.0, "WP_SPEED": 2.0}
-        keeper.values = {"WP_SPEED": 1.5}
-        params, _ = merge_params(given, kept=keeper.values, usual={}, run=given)
+        store, given = MemoryStore(), {"FS_LOOP_TIMEOUT": 1.0, "WP_SPEED": 2.0}
+        store.values = {"WP_SPEED": 1.5}
+        params, _ = merge_params(given, kept=store.values, usual={}, run=given)
         bench = Bench()
-        bench.rover = Rover(params, now=bench.now, keeper=keeper)
+        bench.rover = Rover(params, now=bench.now, param_store=store)
         bench.wait(0.1)
         params.set("FS_LOOP_TIMEOUT", 0.5)
         params.set("MAN_DEADBAND", 10)
         assert bench.command(STORAGE, 2) is Result.ACCEPTED
         assert (params["FS_LOOP_TIMEOUT"], params["WP_SPEED"], params["MAN_DEADBAND"]) == (1.0, 2.0, 3.0)
-        assert keeper.values == {"FS_LOOP_TIMEOUT": 0.2, "WP_SPEED": 0.8, "MAN_DEADBAND": 3.0}
+        assert store.values == {"FS_LOOP_TIMEOUT": 0.2, "WP_SPEED": 0.8, "MAN_DEADBAND": 3.0}
         assert said(bench, "Parameters: 2 back to their defaults")
 
     def test_what_is_set_is_kept_already(self) -> None:
-        keeper = Kept()
+        store = MemoryStore()
         bench = Bench()
         assert bench.command(STORAGE, 1) is Result.FAILED
         assert said(bench, "PREFLIGHT_STORAGE refused: nothing is kept in this run")
-        bench.rover = Rover(Params(), now=bench.now, keeper=keeper)
+        bench.rover = Rover(Params(), now=bench.now, param_store=store)
         bench.wait(0.1)
         assert bench.command(STORAGE, 1, NAN) is Result.ACCEPTED
         assert bench.command(STORAGE, 0) is Result.ACCEPTED
-        assert keeper.saved == 1
-        keeper.problem = "No space left on device"
+        assert store.saved == 1
+        store.problem = "No space left on device"
         assert bench.command(STORAGE, 1) is Result.FAILED
-        assert keeper.saved == 2  # tried again
+        assert store.saved == 2  # tried again
         assert said(bench, "PREFLIGHT_STORAGE refused: No space left on device")
 
     def test_a_damaged_file_is_not_made_good_by_saving_nothing(self, tmp_path: Path) -> None:
         (tmp_path / "parameters").write_text("SPEED_MAX = 2.5")
-        store, params, bench = ParamStore(tmp_path), Params(), Bench()
+        store, params, bench = ParamStore(FileWriter(tmp_path)), Params(), Bench()
         params.damage = store.damage
-        bench.rover = Rover(params, now=bench.now, keeper=store)
+        bench.rover = Rover(params, now=bench.now, param_store=store)
         bench.wait(0.1)
         assert bench.command(STORAGE, 1) is Result.FAILED
         assert said(bench, "PREFLIGHT_STORAGE refused: parameter file damaged; set one to go on")
         store.close()
-        assert ParamStore(tmp_path).damage == "parameter file damaged"
+        assert ParamStore(FileWriter(tmp_path)).damage == "parameter file damaged"
 
     @pytest.mark.parametrize("wish", [(3,), (5,), (-2,), (math.inf,), (0.5,), (0, 3), (0, 4), (2, 7), (0, 0, 100)])
     def test_what_is_not_offered_is_denied(self, wish: tuple[float, ...]) -> None:

@@ -93,10 +93,9 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         (ROBOCLAW + "baud = 3", "motors.baud: must be at least 2400"),
         (ROBOCLAW + 'baud = "fast"', 'motors.baud: must be a whole number, not text in "quotes"'),
         (ROBOCLAW + "safty = {}", "motors.safty: unknown key; did you mean safety?"),
-        (ROBOCLAW + "shape = [{}, {reversed = true}]", "motors.shape: is parameters now; in [params], for each motor: "
-         "MOT1_REVERSED = 1, MOT1_MIN and MOT1_MAX in %"),
+        (ROBOCLAW + "shape = [{}, {reversed = true}]", "motors.shape: unknown key; there are "),
         (ROBOCLAW + "safety = {estop_pin = 40}", "motors.safety.estop_pin: must be at most 27"),
-        (ROBOCLAW + "[motors.limits]\ndriving = 0.6", "motors.limits: is parameters now; in [params]: MOT1_MAX and "),
+        (ROBOCLAW + "[motors.limits]\ndriving = 0.6", "motors.limits: unknown key; there are "),
         (GPIO + 'wiring = "two-input"', "motors.bridges[0].wiring: 'two-input' is not known; did you mean two-inputs?"),
         (GPIO + "forward = 1", "motors.bridges[0].wiring: missing; add it, one of two-inputs, phase-enable"),
         (GPIO + 'wiring = "two-inputs"\nfoward = 1', "motors.bridges[0].foward: unknown key; did you mean forward?"),

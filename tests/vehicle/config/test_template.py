@@ -16,7 +16,7 @@ from tests.vehicle.words import said_by
 from vehicle.config.config import Config, LogSettings, parse_config
 from vehicle.config.schema import build_schema
 from vehicle.config.template import LISTENING, SIMULATED, build_template
-from vehicle.motors import DRIVERS, PROFILES, settings_type
+from vehicle.motors.drivers import DRIVERS, settings_type
 from vehicle.motors.settings import CommonMotorSettings, SafetyPinSettings
 from vehicle.params import TABLE, Params
 from vehicle.sensors.suite import SensorSettings
@@ -74,7 +74,7 @@ def test_every_driver_is_in_it_with_every_key_at_its_default(name: str) -> None:
     assert table.pop("driver") == name
     kind = settings_type(name)
     assert kind is not None
-    if name in PROFILES:
+    if DRIVERS[name].profile:
         return
     fields = msgspec.structs.fields(kind)
     assert set(table) == {field.name for field in fields}

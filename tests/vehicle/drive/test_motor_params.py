@@ -17,7 +17,7 @@ from tests.vehicle.bench import AHEAD, CYCLE, EVERYTHING, NEUTRAL, Bench, said
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
 from vehicle.drive.gate import Clearance, Outputs
-from vehicle.motors import PROFILE_PARAMS
+from vehicle.motors.drivers import profile_params
 from vehicle.params import ORDERED_PAIRS, PARAMETERS, Params, merge_params
 from vehicle.rover import Rover
 
@@ -154,7 +154,7 @@ def test_values_that_do_not_fit_each_other_are_refused_over_the_link() -> None:
 
 def test_a_reset_goes_back_to_the_cars_own_and_not_to_full_power() -> None:
     bench = Bench()
-    params, _ = merge_params({}, kept={"MOT1_MAX": 100.0, "MOT1_MIN": 70.0}, usual=PROFILE_PARAMS["article-car"])
+    params, _ = merge_params({}, kept={"MOT1_MAX": 100.0, "MOT1_MIN": 70.0}, usual=profile_params("article-car"))
     assert params["MOT1_MAX"] == 100.0
     bench.rover = Rover(params, now=bench.now)
     bench.wait(CYCLE)

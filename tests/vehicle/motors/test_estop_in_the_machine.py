@@ -14,7 +14,8 @@ from link.core import Received
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, OTHER, Bench, said
 from vehicle.control_loop import MOTOR_RETRY_TIME, ControlLoop
 from vehicle.drive.gate import Outputs
-from vehicle.motors import MotorError, estop_reader, open_motors
+from vehicle.motors import MotorError, estop_reader
+from vehicle.motors.drivers import open_motors
 from vehicle.motors.safety_pins import PRESSED, GuardedMotors, SafetyPins
 from vehicle.motors.settings import SafetyPinSettings
 from vehicle.motors.simulated import SimulatedMotors

@@ -11,7 +11,8 @@ import pytest
 from gpiozero import Device
 
 import vehicle.motors.pins  # noqa: F401 - before lgpio: see test_it_leaves_nothing_in_the_working_directory
-from vehicle.motors import Motors, open_motors
+from vehicle.motors import Motors
+from vehicle.motors.drivers import open_motors
 
 lgpio = pytest.importorskip("lgpio")
 OUTPUT = 1 << 1

@@ -6,7 +6,8 @@ import pytest
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
 from tests.vehicle.motors.fake_pca9685 import ADDRESS, FakePca9685
-from vehicle.motors import MotorError, MotorSettingsError, open_motors, safe_stop
+from vehicle.motors import MotorError, MotorSettingsError
+from vehicle.motors.drivers import open_motors, safe_stop
 from vehicle.motors.pca9685 import Pca9685Channel, Pca9685Motors, Pca9685Settings
 from vehicle.motors.pulses import Pulse
 

@@ -22,7 +22,8 @@ from tests.vehicle.motors.controllers import RoboClaw, Sabertooth
 from tests.vehicle.motors.pty_controller import OnPty, recorded
 from tests.waits import Waits
 from vehicle.control_loop import ControlLoop
-from vehicle.motors import MotorError, Motors, MotorSettingsError, arming_check, open_motors, safe_stop
+from vehicle.motors import MotorError, Motors, MotorSettingsError, arming_check
+from vehicle.motors.drivers import open_motors, safe_stop
 from vehicle.motors.roboclaw import RoboClawMotors, RoboClawSettings
 from vehicle.motors.sabertooth import SabertoothMotors, SabertoothSettings
 from vehicle.motors.serial_controller import tenths
@@ -175,7 +176,7 @@ class Driving:
 
     PROGRAM = """
 import json, sys, threading
-from vehicle.motors import open_motors
+from vehicle.motors.drivers import open_motors
 motors = open_motors(sys.argv[1], json.loads(sys.argv[2]))
 motors.enable()
 while True:
@@ -394,7 +395,7 @@ def test_a_port_that_is_not_there_is_said_in_one_line(kind: str) -> None:
         open_motors(kind, {"port": "/dev/nowhere"})
     assert "\n" not in str(caught.value)
     for path in ("/tmp", "/dev/null"):
-        with pytest.raises(MotorError, match=f"{path} is no serial port"):
+        with pytest.raises(MotorError, match=f"{path} is not a serial port"):
             open_motors(kind, {"port": path})
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -15,9 +16,11 @@ from vehicle.drive.gate import Outputs
 from vehicle.params import Params
 from vehicle.readings import ComputerReadings, Readings
 from vehicle.safety import states
-from vehicle.safety.failsafe import RULES, FailsafeAction, Failsafes
+from vehicle.safety.failsafe import RULES, FailsafeAction
+from vehicle.safety.failsafe_state import Failsafes
 
 ZERO = Outputs((0.0, 0.0), enabled=False)
+SAFETY = Path(__file__).parents[3] / "docs" / "safety.md"
 
 
 class TestBattery:
@@ -102,7 +105,7 @@ class TestComputer:
         self.pi(bench, temperature, weak=weak)
         bench.wait(1.0, AHEAD)
         assert bench.throttles == (0.5, 0.5)
-        assert said(bench, "Failsafe: Pi too hot or its supply too weak: half speed")
+        assert said(bench, "Failsafe: Pi under-voltage or too hot: half speed")
         assert bench.newest(m.RoverFailsafeStatus).active == Failsafe.OVERHEAT
         assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.SPEED
         assert not bench.newest(m.RoverDriveStatus).limits & DriveLimit.BATTERY
@@ -119,7 +122,7 @@ class TestComputer:
         self.pi(bench)
         bench.wait(6.0, AHEAD)
         assert bench.throttles == (1.0, 1.0)
-        assert said(bench, "Failsafe over: Pi too hot")
+        assert said(bench, "Failsafe over: Pi under-voltage or too hot")
 
     def test_a_supply_that_comes_and_goes_is_one_trouble_and_ends_in_hold(self) -> None:
         bench = Bench()
@@ -304,6 +307,11 @@ class TestTable:
         assert failsafes.active == 0
         assert failsafes.latched == Failsafe.GCS_LOSS
         assert [step.action for step in failsafes.update({Failsafe.GCS_LOSS: 2.0}, 2.0)] == [FailsafeAction.HOLD]
+
+    def test_the_table_of_the_documentation_has_every_rule(self) -> None:
+        documented = SAFETY.read_text(encoding="utf-8")
+        for rule in RULES.values():
+            assert f"| {rule.label} | {rule.help} |" in documented
 
     def test_no_rule_starts_a_motion_and_every_rule_has_words(self) -> None:
         for rule in RULES.values():

@@ -16,7 +16,7 @@ from dialects.enums import Command
 from link.services.mission.items import Items, MissionItem
 from vehicle.autonomy.mission.nav_items import ConditionYaw, NavDelay, NavLoiterTurns, NavTask, NavWaypoint
 from vehicle.autonomy.mission.rules import ACCESSORY_COMMANDS
-from vehicle.autonomy.modes.homing import ModeFinished
+from vehicle.autonomy.mode import ModeFinished
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point
 from vehicle.navigation.guidance import STOP_RADIUS, Leg, PathFollower

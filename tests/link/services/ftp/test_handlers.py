@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dialects import messages as m
-from link.services.ftp.protocol import MAX_OFFSET, FtpError, FtpOpcode, FtpPacket, parse_packet
-from tests.link.ftp_vehicle import LOG, Vehicle, error
+from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
+from tests.link.ftp_vehicle import LOG, MAX_OFFSET, Vehicle, error
 from tests.link.services_world import PEER, from_gcs
 
 # ---- bad questions ----
