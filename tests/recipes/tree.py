@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.ports import free_port
+
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("dialects", "link", "vehicle", "groundstation", "tests")
 RUN_TIMEOUT = 60.0
@@ -20,6 +22,8 @@ class Tree:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.touched: set[str] = set()
+        self.port = free_port()
+        """A port for the programs of the copy."""
         for package in PACKAGES:  # with byte code, so that programs start as fast as in the original
             shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("mutation", "benchmarks"))
 
