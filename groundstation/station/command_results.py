@@ -5,7 +5,7 @@ from __future__ import annotations
 from dialects.enums import Command, Result, Severity, result_name
 from groundstation.station.emergency import DANGEROUS
 from groundstation.vehicles.message_log import MessageLog
-from link.services.command.server import CommandOutcome
+from link.services.command.client import CommandOutcome
 
 REASON_WITHIN = 1.0
 """s between a refusal and the vehicle's STATUSTEXT that explains it; either may arrive first."""

@@ -127,6 +127,4 @@ def snapshot(**changes: Any) -> Snapshot:
 def waiting(**changes: Any) -> Snapshot:
     """No vehicle yet."""
     text = "waiting for a vehicle on udpin:127.0.0.1:14550"
-    return snapshot(
-        vehicle=None, operator=OperatorView(gate_reason="no vehicle"), texts=(), waiting=text, **changes
-    )
+    return snapshot(vehicle=None, operator=OperatorView(gate_reason="no vehicle"), texts=(), waiting=text, **changes)
