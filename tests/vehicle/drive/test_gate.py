@@ -129,8 +129,9 @@ def test_a_smallest_output_is_a_step_at_zero_and_falls_in_time() -> None:
     gate = Gate(1)
     for step in range(21):
         wheel = 1.0 - step / 20
-        outputs = gate.filter((wheel,), (0.5 + wheel / 2 if wheel else 0.0,), Permit.RAMP_DOWN if step else Permit.DRIVE,
-                             FALL_TIME, step * 0.02)  # fmt: skip
+        motor = 0.5 + wheel / 2 if wheel else 0.0
+        permit = Permit.RAMP_DOWN if step else Permit.DRIVE
+        outputs = gate.filter((wheel,), (motor,), permit, FALL_TIME, step * 0.02)
         assert outputs.enabled == (step < 20)
     assert gate.refused == 0
 

@@ -9,9 +9,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result, Sensor
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import Item, finish, upload
 from tests.vehicle.bench import AHEAD, NEUTRAL, said
 from tests.vehicle.field import GROUND, Field
+from tests.vehicle.missions import Item, finish, upload
 from vehicle.navigation.geo import Point
 
 NAN = math.nan

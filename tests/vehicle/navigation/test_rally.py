@@ -6,9 +6,9 @@ import pytest
 
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import Item, do, finish, start, upload, way
 from tests.vehicle.bench import AHEAD, NEUTRAL, said
 from tests.vehicle.field import Field
+from tests.vehicle.missions import Item, do, finish, start, upload, way
 from vehicle.navigation.geo import Point
 
 HOME = Point(0, 0)

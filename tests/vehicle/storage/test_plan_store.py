@@ -21,10 +21,10 @@ from link.services.mission.commit import NullPlanWrite, PendingPlanWrite
 from link.services.mission.items import Items, MissionItem
 from link.services.mission.plans import plan_id
 from tests.link.mission_vehicle import plain
-from tests.vehicle.autonomy.mission.test_mission import Item, do, send, upload, way
 from tests.vehicle.bench import said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, running
+from tests.vehicle.missions import Item, do, send, upload, way
 from vehicle.storage.plan_store import PlanStore
 
 FORCE = 21196

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dialects import messages as m
 from link.core import Outgoing
-from tests.vehicle.autonomy.mission.test_mission import finish, ready, start, upload, way
 from tests.vehicle.field import Field
+from tests.vehicle.missions import finish, ready, start, upload, way
 from vehicle.autonomy.mission.item_reached import SEND_COUNT, SEND_PERIOD, ItemReachedSender
 
 

@@ -1,4 +1,4 @@
-"""What stops the rover is open to everybody and acts before its answer is out."""
+"""The state machine: stop commands of any station act before their answer is sent; motor faults; shutdown."""
 
 from __future__ import annotations
 
@@ -100,3 +100,46 @@ def test_59_termination_that_is_not_meant_fails_with_a_text(wish: float) -> None
     assert bench.command(TERMINATE, wish) is Result.FAILED
     assert bench.turning
     assert said(bench, "termination refused")
+
+
+class TestMotorDriver:
+    def test_zero_disarmed_and_no_arming_until_it_works_again(self) -> None:
+        bench = Bench()
+        bench.drive()
+        bench.rover.motor_failed("no answer on /dev/ttyAMA0", bench.now)
+        assert bench.rover.outputs == ZERO
+        assert bench.rover.state is states.SafetyState.FAULT
+        bench.wait(1.2)
+        assert bench.newest(m.RoverFailsafeStatus).active == Failsafe.MOTOR_DRIVER
+        assert said(bench, "Motor driver failed: no answer on")
+        assert bench.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.FAILED
+        bench.rover.motor_repaired(bench.now)
+        assert bench.arm() is Result.ACCEPTED
+
+    def test_an_emergency_stop_does_not_wash_it_away(self) -> None:
+        bench = Bench()
+        bench.rover.motor_failed("broken", bench.now)
+        bench.command(Command.DO_SET_SAFETY_SWITCH_STATE, 0)
+        assert bench.command(Command.DO_SET_SAFETY_SWITCH_STATE, 1) is Result.ACCEPTED
+        assert bench.rover.state is states.SafetyState.FAULT
+        assert bench.arm() is Result.FAILED
+
+
+class TestShutdown:
+    def test_neutral_first_and_one_last_word(self) -> None:
+        bench = Bench()
+        bench.drive()
+        bench.rover.shutdown(bench.now)
+        assert bench.rover.outputs == ZERO
+        last = bench.rover.messages_to_send()
+        assert [each.message.system_status for each in last] == [SystemState.POWEROFF]  # type: ignore[attr-defined]
+        bench.wait(1.0, AHEAD)
+        bench.rover.shutdown(bench.now)
+        assert bench.rover.messages_to_send() == []
+        assert bench.rover.outputs == ZERO
+
+
+def test_arming_reports_the_ground_station_and_the_mode() -> None:
+    bench = Bench()
+    bench.drive()
+    assert said(bench, f"Armed by GCS {DRIVER}, mode MANUAL")

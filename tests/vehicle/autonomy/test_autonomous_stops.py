@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from dialects.axes import Axes
 from dialects.enums import Command, Result
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import upload, way
 from tests.vehicle.bench import CYCLE, DRIVER, NEUTRAL, OTHER
 from tests.vehicle.field import Field
+from tests.vehicle.missions import upload, way
 from vehicle.modes import MODES
 from vehicle.navigation.geo import Point
 from vehicle.safety.failsafe import FailsafeAction

@@ -9,9 +9,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result, Sensor
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import upload
 from tests.vehicle.bench import AHEAD, EVERYTHING, NEUTRAL, Bench, said
 from tests.vehicle.field import Field
+from tests.vehicle.missions import upload
 from vehicle.navigation.estimator import GPS_LOST
 from vehicle.navigation.geo import Point
 

@@ -1,77 +1,24 @@
-"""AUTO in a simulated field with noisy sensors: the way along the lines, what items do, who may start and change it."""
+"""AUTO in a simulated field with noisy sensors: following lines, DO items, progress, who may start and change it."""
 
 from __future__ import annotations
 
 import math
-from itertools import groupby, pairwise
+from itertools import pairwise
 
 import pytest
 
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result
 from dialects.modes import Mode
-from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, said
+from tests.vehicle.bench import AHEAD, NEUTRAL, OTHER, said
 from tests.vehicle.field import GROUND, Field
+from tests.vehicle.missions import do, finish, passed, ready, start, upload, way
 from vehicle.autonomy.mission.item_reached import SEND_COUNT
 from vehicle.navigation.geo import Point
 from vehicle.navigation.guidance import Leg
 
-Item = tuple[int, Point | None, tuple[float, ...]]
 NAN = math.nan
 NAV_TAKEOFF = 22
-
-
-def way(north: float, east: float, hold: float = 0.0) -> Item:
-    return Command.NAV_WAYPOINT, Point(north, east), (hold,)
-
-
-def do(command: int, *params: float) -> Item:
-    return command, None, params
-
-
-def upload(field: Field, *items: Item, kind: MissionType = MissionType.MISSION, system: int = DRIVER) -> int:
-    """As a ground station does it; the verdict."""
-    before = len(field.all(m.MissionAck))
-    send(field, *items, kind=kind, system=system)
-    return int(field.all(m.MissionAck)[before].type)
-
-
-def send(field: Field, *items: Item, kind: MissionType = MissionType.MISSION, system: int = DRIVER) -> None:
-    """Without an eye for the answer."""
-    before = len(field.all(m.MissionAck))
-    field.say(m.MissionCount(1, 1, len(items), kind), system)
-    if len(field.all(m.MissionAck)) > before:  # refused, or an empty one
-        return
-    for number, (command, place, params) in enumerate(items):
-        latitude, longitude = GROUND.to_global(place) if place else (0.0, 0.0)
-        one, two, three, four = (*params, *(0.0,) * (4 - len(params)))
-        x, y = round(latitude * 1e7), round(longitude * 1e7)
-        frame = 6 if place else 2
-        field.say(m.MissionItemInt(1, 1, number, frame, command, 0, 1, one, two, three, four, x, y, 0, kind), system)
-
-
-def ready(*items: Item, **params: float) -> Field:
-    field = Field(**params)  # type: ignore[arg-type]
-    assert upload(field, *items) == MissionResult.ACCEPTED
-    assert field.arm() is Result.ACCEPTED
-    return field
-
-
-def passed(field: Field) -> list[int]:
-    """Items in the order in which they were reached; each is said several times."""
-    return [index for index, _ in groupby(each.seq for each in field.all(m.MissionItemReached))]
-
-
-def start(field: Field) -> None:
-    assert field.command(Command.MISSION_START) is Result.ACCEPTED, field.texts
-
-
-def finish(field: Field, within: float) -> None:
-    end = field.now + within
-    while field.mode is not Mode.HOLD:
-        assert field.now < end, f"at {field.truth}; {field.texts}"
-        field.heartbeat()
-        field.wait(0.5)
 
 
 def beside(field: Field, corners: list[Point], margin: float = 1.5) -> float:
@@ -119,15 +66,6 @@ class TestItems:
         finish(field, 60.0)
         assert passed(field) == [0, 1, 2, 3, 4, 5]
 
-    def test_a_waypoint_with_a_hold_time_is_stood_at(self) -> None:
-        field = ready(way(5, 0, 4.0), way(5, 5))
-        start(field)
-        field.until(Point(5, 0), 20.0, 0.5)
-        field.beat(2.0)
-        assert field.stands_for(2.0)
-        finish(field, 40.0)
-        assert field.truth.distance(Point(5, 5)) < 0.7
-
     def test_delay_then_condition_then_speed(self) -> None:
         field = ready(
             do(Command.NAV_DELAY, 3.0), do(Command.CONDITION_DISTANCE, 8.0), do(Command.DO_CHANGE_SPEED, 1, 0.3, -1),
@@ -148,22 +86,6 @@ class TestItems:
         field.beat(3.0)
         assert field.speed == pytest.approx(0.3, abs=0.1)
 
-    def test_turns_around_a_point(self) -> None:
-        field = ready((Command.NAV_LOITER_TURNS, Point(6, 0), (1.5, 0, 2.0)))
-        field.track.clear()
-        start(field)
-        finish(field, 120.0)
-        near = [place.distance(Point(6, 0)) for place in field.track[len(field.track) // 2 :]]
-        assert min(near) > 1.2
-        assert max(near) < 2.8
-
-    def test_yaw_and_reverse(self) -> None:
-        field = ready(do(Command.CONDITION_YAW, 180.0), do(Command.DO_SET_REVERSE, 1), way(6, 0))
-        start(field)
-        finish(field, 60.0)
-        assert abs(abs(math.remainder(field.yaw, math.tau)) - math.pi) < 0.3
-        assert field.truth.distance(Point(6, 0)) < 0.7
-
     def test_home_is_an_item_and_the_last_one(self) -> None:
         field = ready(way(6, 3), do(Command.NAV_RETURN_TO_LAUNCH), way(50, 50))
         start(field)
@@ -183,15 +105,6 @@ class TestItems:
         start(field)
         finish(field, 120.0)
         assert passed(field) == [0, 1, 0, 1, 0, 1, 3]
-
-    def test_loiter_for_a_time_is_to_stand_there(self) -> None:
-        field = ready((Command.NAV_LOITER_TIME, Point(4, 0), (5.0,)), way(8, 0))
-        start(field)
-        field.until(Point(4, 0), 30.0, 0.4)
-        field.beat(1.5)
-        assert field.stands_for(2.0)
-        finish(field, 40.0)
-        assert field.truth.distance(Point(8, 0)) < 0.7
 
     def test_what_moves_accessories_is_told_and_passed_over(self) -> None:
         field = ready(do(Command.DO_SET_SERVO, 5, 1500), do(Command.DO_SET_RELAY, 0, 1), way(5, 0))
@@ -238,13 +151,6 @@ class TestItems:
         start(field)
         finish(field, 60.0)
         assert said(field, "AUTO: the configuration file sets FENCE_ENABLE 0: HOLD")
-
-    def test_unlimited_means_until_somebody_ends_it(self) -> None:
-        field = ready((Command.NAV_LOITER_UNLIM, Point(3, 0), ()), way(30, 0))
-        start(field)
-        field.beat(60.0)
-        assert field.mode is Mode.AUTO
-        assert field.truth.distance(Point(3, 0)) < 0.7
 
 
 class TestProgress:
@@ -368,58 +274,6 @@ class TestWhoMay:
         field.beat(1.0)
         assert field.turning
         assert field.rover._navigator.goal(Mode.AUTO) == pytest.approx(Point(30, 0), abs=0.5)
-
-    @pytest.mark.parametrize(
-        ("item", "verdict"),
-        [
-            (do(NAV_TAKEOFF), MissionResult.UNSUPPORTED),
-            (do(Command.DO_SET_SERVO, 1, 1500), MissionResult.INVALID_PARAM1),  # a motor
-            (do(Command.DO_SET_SERVO, 5.5, 1500), MissionResult.INVALID_PARAM1),
-            (do(Command.DO_SET_SERVO, 17, 1500), MissionResult.INVALID_PARAM1),
-            (do(Command.DO_SET_SERVO, NAN, 1500), MissionResult.INVALID_PARAM1),
-            (do(Command.DO_SET_SERVO, 5, 1e6), MissionResult.INVALID_PARAM2),
-            (do(Command.DO_SET_RELAY, 0, 2), MissionResult.INVALID_PARAM2),
-            (do(Command.DO_SET_RELAY, -1, 1), MissionResult.INVALID_PARAM1),
-            (do(Command.DO_SET_RELAY, 0.5, 1), MissionResult.INVALID_PARAM1),
-            (do(Command.DO_REPEAT_SERVO, 3, 1500, 2, 1), MissionResult.INVALID_PARAM1),  # a motor
-            (do(Command.DO_REPEAT_SERVO, 9, 1500, 0, 1), MissionResult.INVALID_PARAM3),
-            (do(Command.DO_REPEAT_SERVO, 9, 1500, 2, -1), MissionResult.INVALID_PARAM4),
-            (do(Command.DO_REPEAT_RELAY, 16, 2, 1), MissionResult.INVALID_PARAM1),
-            (do(Command.DO_REPEAT_RELAY, 0, NAN, 1), MissionResult.INVALID_PARAM2),
-            (do(Command.DO_REPEAT_RELAY, 0, 2, NAN), MissionResult.INVALID_PARAM3),
-            (do(Command.DO_JUMP, 7, 1), MissionResult.INVALID_PARAM1),
-            (do(Command.NAV_DELAY, -1), MissionResult.INVALID_PARAM1),
-            (do(Command.DO_CHANGE_SPEED, 1, NAN), MissionResult.INVALID_PARAM2),
-            ((Command.NAV_WAYPOINT, None, ()), MissionResult.UNSUPPORTED_FRAME),
-        ],
-    )
-    def test_what_it_cannot_do_is_refused_when_it_is_uploaded(self, item: Item, verdict: MissionResult) -> None:
-        field = ready(way(5, 0))
-        assert upload(field, way(1, 1), item) == verdict
-        field.say(m.MissionRequestList(1, 1, MissionType.MISSION))
-        assert field.newest(m.MissionCount).count == 1  # the old one stays
-
-    @pytest.mark.parametrize(
-        ("item", "why"),
-        [
-            (do(NAV_TAKEOFF), "item 1, command 22 not offered"),
-            ((Command.NAV_WAYPOINT, None, ()), "item 1, frame 2 not offered"),
-            (do(Command.NAV_DELAY, -1), "item 1, invalid param1"),
-            (do(Command.DO_JUMP, 7, 1), "its items do not fit together"),
-        ],
-    )
-    def test_the_driver_reads_which_item_was_refused(self, item: Item, why: str) -> None:
-        field = Field()
-        field.heartbeat()
-        upload(field, way(1, 1), item)
-        field.wait(0.1)
-        assert said(field, f"Mission refused: {why}")
-
-    @pytest.mark.parametrize(
-        ("params", "result"), [((1, 1500), Result.DENIED), ((5, 1500), Result.DENIED), ((NAN, 1500), Result.DENIED)]
-    )
-    def test_a_motor_is_nobodys_servo(self, params: tuple[float, ...], result: Result) -> None:
-        assert Field().command(Command.DO_SET_SERVO, *params) is result
 
     def test_arming_in_auto_moves_nothing_until_it_is_started(self) -> None:
         field = ready(way(30, 0))
