@@ -23,14 +23,14 @@ def do(command: int, *params: float) -> Item:
 
 
 def upload(field: Field, *items: Item, kind: MissionType = MissionType.MISSION, system: int = DRIVER) -> int:
-    """As a ground station does it; the verdict."""
+    """Upload as a ground station does; return the result of MISSION_ACK."""
     before = len(field.all(m.MissionAck))
     send(field, *items, kind=kind, system=system)
     return int(field.all(m.MissionAck)[before].type)
 
 
 def send(field: Field, *items: Item, kind: MissionType = MissionType.MISSION, system: int = DRIVER) -> None:
-    """Without an eye for the answer."""
+    """Upload without checking the answer."""
     before = len(field.all(m.MissionAck))
     field.say(m.MissionCount(1, 1, len(items), kind), system)
     if len(field.all(m.MissionAck)) > before:  # refused, or an empty one
@@ -51,7 +51,7 @@ def ready(*items: Item, **params: float) -> Field:
 
 
 def passed(field: Field) -> list[int]:
-    """Items in the order in which they were reached; each is said several times."""
+    """Return the items in the order in which they were reached; each message is repeated."""
     return [index for index, _ in groupby(each.seq for each in field.all(m.MissionItemReached))]
 
 

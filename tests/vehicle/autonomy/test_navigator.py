@@ -26,7 +26,7 @@ class TestAcro:
         rate = 90 * (0.5 - 0.03) / 0.97
         assert math.degrees(wrap_angle(field.yaw - before)) / 2 == pytest.approx(rate, abs=4)
 
-    def test_without_steering_it_keeps_straight_where_manual_would_not(self) -> None:
+    def test_acro_keeps_straight_without_steering(self) -> None:
         field = Field()
         field.begin(Mode.ACRO)
         field.wait(0.2, NEUTRAL)
@@ -34,7 +34,7 @@ class TestAcro:
         assert abs(wrap_angle(field.yaw)) < 0.1
         assert field.truth.north > 3.0
 
-    def test_it_is_driven_by_the_driver_so_his_silence_stops_it(self) -> None:
+    def test_acro_stops_when_the_demands_stop(self) -> None:
         field = Field()
         field.begin(Mode.ACRO)
         field.wait(0.5, AHEAD)
@@ -67,7 +67,7 @@ class TestHome:
         assert field.command_int(Command.DO_SET_HOME, 0, x=500000000, y=80000000, frame=1) is Result.UNSUPPORTED_FRAME
 
     @pytest.mark.parametrize("mode", [Mode.RTL, Mode.LOITER])
-    def test_arming_in_it_moves_nothing_until_it_is_chosen_again(self, mode: Mode) -> None:
+    def test_arming_in_an_autonomous_mode_moves_nothing_until_it_is_chosen_again(self, mode: Mode) -> None:
         field = away()
         field.set_mode(mode)
         field.command(Command.COMPONENT_ARM_DISARM, 0)
@@ -79,13 +79,13 @@ class TestHome:
 
 class TestModes:
     @pytest.mark.parametrize(("pair", "mode"), [((4, 3), Mode.HOLD), ((4, 5), Mode.RTL), ((6, 0), Mode.GUIDED)])
-    def test_the_pairs_of_px4(self, pair: tuple[int, int], mode: Mode) -> None:
+    def test_px4_mode_pairs_are_accepted(self, pair: tuple[int, int], mode: Mode) -> None:
         field = away()
         assert field.command(Command.DO_SET_MODE, 1, *pair) is Result.ACCEPTED
         field.wait(0.1)
         assert field.mode is mode
 
-    def test_the_standard_modes(self) -> None:
+    def test_standard_modes_are_accepted(self) -> None:
         field = away()
         assert field.command(Command.DO_SET_STANDARD_MODE, 5) is Result.ACCEPTED
         field.wait(0.1)
@@ -93,7 +93,7 @@ class TestModes:
         assert field.mode is Mode.RTL
         assert field.command(Command.DO_SET_STANDARD_MODE, 2) is Result.FAILED
 
-    def test_the_menu_changes_with_the_sensors_and_says_so(self) -> None:
+    def test_the_available_modes_follow_the_sensors_and_the_sequence_number_changes(self) -> None:
         bench = Bench()
         bench.wait(4.0)
         before = bench.newest(m.AvailableModesMonitor).seq
@@ -108,7 +108,7 @@ class TestModes:
         bench.command(Command.REQUEST_MESSAGE, m.AvailableModes.id, 0)
         assert [each.custom_mode for each in bench.all(m.AvailableModes) if each.properties & 2] == [Mode.INITIALISING]
 
-    def test_the_owner_gone_holds_whatever_drives(self) -> None:
+    def test_a_lost_owner_holds_an_autonomous_mode(self) -> None:
         field = away()
         field.set_mode(Mode.RTL)
         field.wait(4.0)
@@ -119,7 +119,7 @@ class TestModes:
 
 
 class TestStops:
-    def test_a_hold_of_anybody_ends_what_drives_by_itself(self) -> None:
+    def test_hold_from_any_station_ends_an_autonomous_mode(self) -> None:
         field = away()
         field.set_mode(Mode.RTL)
         field.beat(3.0)
@@ -132,7 +132,7 @@ class TestStops:
         ("command", "first"),
         [(Command.DO_SET_SAFETY_SWITCH_STATE, 0), (Command.COMPONENT_ARM_DISARM, 0), (Command.DO_FLIGHTTERMINATION, 1)],
     )
-    def test_the_stop_set_ends_it_in_the_same_cycle(self, command: int, first: int) -> None:
+    def test_stop_commands_end_an_autonomous_mode_in_the_same_cycle(self, command: int, first: int) -> None:
         field = away()
         field.set_mode(Mode.RTL)
         field.beat(3.0)

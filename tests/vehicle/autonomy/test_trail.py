@@ -6,7 +6,7 @@ from vehicle.autonomy.trail import TRAIL_MAX, Trail
 from vehicle.navigation.geo import Point
 
 
-def test_a_loop_is_no_part_of_the_trail_and_a_long_one_gets_coarser() -> None:
+def test_loops_are_removed_and_a_long_trail_gets_coarser() -> None:
     trail = Trail()
     for north, east in ((0, 0), (5, 0), (5, 5), (0.2, 5), (0.3, 0.3), (-4, 0)):
         trail.add(Point(north, east))

@@ -34,7 +34,7 @@ def test_no_edge_is_nearer_than_the_one_ahead(area: FenceArea, place: Point, cou
 
 
 @given(st.builds(FenceArea, st.tuples(PLACES), st.floats(0.5, 40.0), st.booleans()), PLACES, st.floats(-7.0, 7.0))
-def test_the_edge_ahead_is_one(area: FenceArea, place: Point, course: float) -> None:
+def test_the_edge_ahead_lies_on_the_boundary(area: FenceArea, place: Point, course: float) -> None:
     ahead = area.distance_ahead(place, course)
     assume(ahead < math.inf)
     assert area.distance_to_edge(place.offset(course, ahead)) == pytest.approx(0.0, abs=1e-3)

@@ -1,4 +1,4 @@
-"""What drives by itself stops before the fence: the geometry, and a rover in a simulated field."""
+"""Autonomous modes stop before the fence, in a simulated field."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def fenced(items: list[Item], **params: float) -> Field:
 
 
 @pytest.mark.parametrize("items", SHAPES.values(), ids=SHAPES.keys())
-def test_a_velocity_toward_the_fence_ends_before_it(items: list[Item]) -> None:
+def test_a_velocity_toward_the_fence_stops_before_it(items: list[Item]) -> None:
     field = fenced(items)
     field.begin(Mode.GUIDED)
     field.stream(3.0, 0.8)
@@ -46,7 +46,7 @@ def test_a_velocity_toward_the_fence_ends_before_it(items: list[Item]) -> None:
     assert not field.newest(m.RoverDriveStatus).limits & DriveLimit.FENCE
 
 
-def test_backwards_it_stops_as_well() -> None:
+def test_fence_avoidance_stops_backward_motion() -> None:
     field = fenced([(FenceItem.CIRCLE_INCLUSION, Point(0, 0), (5,))])
     field.begin(Mode.GUIDED)
     field.stream(14.0, -0.8)
@@ -54,7 +54,7 @@ def test_backwards_it_stops_as_well() -> None:
 
 
 @pytest.mark.parametrize("params", [{"AVOID_ENABLE": 0}, {"FENCE_ACTION": 0}])
-def test_where_it_is_turned_off_it_drives_on(params: dict[str, float]) -> None:
+def test_fence_avoidance_can_be_disabled(params: dict[str, float]) -> None:
     field = fenced([(FenceItem.CIRCLE_INCLUSION, Point(0, 0), (5,))], **params)
     field.begin(Mode.GUIDED)
     field.stream(12.0, 0.8)
@@ -63,14 +63,14 @@ def test_where_it_is_turned_off_it_drives_on(params: dict[str, float]) -> None:
 
 
 @pytest.mark.parametrize(("margin", "north"), [(0, 5.0), (2, 3.0)])
-def test_the_margin_is_a_setting(margin: float, north: float) -> None:
+def test_the_margin_is_a_parameter(margin: float, north: float) -> None:
     field = fenced([(FenceItem.CIRCLE_INCLUSION, Point(0, 0), (5,))], FENCE_MARGIN=margin)
     field.begin(Mode.GUIDED)
     field.stream(12.0, 0.8)
     assert field.truth.north == pytest.approx(north, abs=0.6)
 
 
-def test_a_driver_is_not_held_back() -> None:
+def test_manual_mode_is_not_limited_by_fence_avoidance() -> None:
     field = fenced([(FenceItem.CIRCLE_INCLUSION, Point(0, 0), (5,))])
     field.arm()
     field.wait(0.2, NEUTRAL)
@@ -83,7 +83,7 @@ def test_a_driver_is_not_held_back() -> None:
     ("place", "why"),
     [(Point(8, 0), "outside the fence"), (Point(5.5, 0), "closer to the fence than FENCE_MARGIN")],
 )
-def test_no_place_there_is_driven_to(place: Point, why: str) -> None:
+def test_places_outside_the_fence_are_rejected(place: Point, why: str) -> None:
     field = fenced(SHAPES["inclusion circle"])
     field.begin(Mode.GUIDED)
     assert field.reposition(place) is Result.FAILED
@@ -97,7 +97,7 @@ def test_no_place_there_is_driven_to(place: Point, why: str) -> None:
     assert field.reposition(Point(4, 0)) is Result.ACCEPTED
 
 
-def test_a_mission_ends_before_an_item_that_lies_beyond() -> None:
+def test_a_mission_ends_before_an_item_outside_the_fence() -> None:
     field = ready(way(3, 0), way(3, 3), way(20, 0), FENCE_ENABLE=1, FENCE_TYPE=2, FENCE_RADIUS=8)
     start(field)
     finish(field, 60.0)
@@ -111,7 +111,7 @@ def test_a_mission_ends_before_an_item_that_lies_beyond() -> None:
     assert field.mode is Mode.HOLD
 
 
-def test_a_way_through_a_forbidden_area_ends_before_it() -> None:
+def test_a_leg_through_an_exclusion_area_stops_before_it() -> None:
     field = fenced(SHAPES["exclusion circle"])
     assert upload(field, way(20, 0)) == MissionResult.ACCEPTED
     field.arm()
@@ -121,7 +121,7 @@ def test_a_way_through_a_forbidden_area_ends_before_it() -> None:
     assert field.truth.north == pytest.approx(EDGE - 1.0, abs=0.6)
 
 
-def test_beyond_the_fence_the_way_home_is_free() -> None:
+def test_outside_the_fence_the_way_home_is_not_limited() -> None:
     field = fenced([(FenceItem.CIRCLE_INCLUSION, Point(0, 0), (5,))], FENCE_ACTION=1)
     field.arm()
     field.wait(0.2, NEUTRAL)

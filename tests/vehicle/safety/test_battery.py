@@ -40,7 +40,7 @@ class TestBattery:
         bench.wait(11.0, AHEAD)
         assert bench.throttles == (0.5, 0.5)
 
-    def test_a_sag_of_a_moment_is_nothing(self) -> None:
+    def test_a_short_voltage_sag_is_ignored(self) -> None:
         bench = Bench()
         bench.drive()
         for _ in range(5):
@@ -62,7 +62,7 @@ class TestBattery:
         bench.wait(9.8, NEUTRAL)
         assert not bench.armed
 
-    def test_who_arms_by_force_gets_the_whole_countdown(self) -> None:
+    def test_arming_by_force_gets_the_full_delay(self) -> None:
         bench = Bench()
         self.drained(bench, 9.0)
         bench.wait(60.0)

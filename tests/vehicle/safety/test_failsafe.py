@@ -17,7 +17,7 @@ from vehicle.safety.failsafe import RULES, FailsafeAction
 
 
 def beats(bench: Bench, seconds: float) -> None:
-    """The driver's ground station lives but sends no demand."""
+    """Send heartbeats of the ground station in control, but no demand."""
     for _ in range(round(seconds)):
         bench.heartbeat()
         bench.wait(1.0)
@@ -39,7 +39,7 @@ class TestManualLoss:
         assert ended <= 0.9
         assert said(bench, "manual control lost: stopping")
 
-    def test_a_demand_just_too_late_is_too_late_also_before_the_cycle_that_would_see_it(self) -> None:
+    def test_a_demand_just_after_the_timeout_is_stale_before_the_next_cycle_runs(self) -> None:
         bench = Bench()
         bench.drive()
         bench.stick(AHEAD)
@@ -49,7 +49,7 @@ class TestManualLoss:
         bench.wait(0.6, AHEAD)
         assert not bench.turning
 
-    def test_it_falls_without_rising_again(self) -> None:
+    def test_the_outputs_fall_without_rising_again(self) -> None:
         bench = Bench()
         bench.drive()
         bench.wait(0.44)
@@ -60,7 +60,7 @@ class TestManualLoss:
         assert seen == sorted(seen, reverse=True)
         assert not bench.rover.outputs.enabled
 
-    def test_with_the_link_back_nothing_moves_before_a_neutral(self) -> None:
+    def test_after_the_link_returns_neutral_comes_first(self) -> None:
         bench = Bench()
         bench.drive()
         bench.wait(1.0)
@@ -87,7 +87,7 @@ class TestManualLoss:
         assert not bench.armed
         assert said(bench, "Disarmed: manual control lost")
 
-    def test_a_bystander_who_holds_it_does_not_end_the_countdown(self) -> None:
+    def test_hold_from_another_station_does_not_end_the_countdown(self) -> None:
         bench = Bench(FS_DISARM_T=10)
         bench.drive()
         bench.wait(3.0)
@@ -95,7 +95,7 @@ class TestManualLoss:
         beats(bench, 8)
         assert not bench.armed
 
-    def test_after_hold_the_driver_has_to_choose_a_mode(self) -> None:
+    def test_after_hold_the_operator_has_to_choose_a_mode(self) -> None:
         bench = Bench()
         bench.drive()
         bench.wait(2.2)
@@ -111,7 +111,7 @@ class TestManualLoss:
         assert bench.turning
         assert bench.newest(m.Heartbeat).system_status == SystemState.ACTIVE
 
-    def test_the_countdown_is_told(self) -> None:
+    def test_the_countdown_is_reported(self) -> None:
         bench = Bench()
         bench.drive()
         bench.wait(0.5)
@@ -125,7 +125,7 @@ class TestManualLoss:
         assert told.latched == Failsafe.MANUAL_LOSS
         assert told.will_disarm
 
-    def test_a_driver_at_rest_may_lose_two_frames_and_still_drive_on(self) -> None:
+    def test_an_idle_operator_may_lose_two_frames(self) -> None:
         bench = Bench()
         bench.drive()
         bench.wait(1.0, NEUTRAL)
@@ -135,21 +135,21 @@ class TestManualLoss:
         assert bench.turning
         assert bench.texts == []
 
-    def test_a_driver_at_rest_who_is_gone_ends_in_hold(self) -> None:
+    def test_an_idle_operator_who_disappears_causes_hold(self) -> None:
         bench = Bench()
         bench.drive()
         bench.wait(1.0, NEUTRAL)
         bench.wait(2.2)
         assert bench.mode is Mode.HOLD
 
-    def test_armed_without_any_demand_yet_is_no_loss(self) -> None:
+    def test_armed_without_any_demand_does_not_trigger_manual_loss(self) -> None:
         bench = Bench()
         bench.arm()
         beats(bench, 20)
         assert bench.armed
         assert bench.mode is Mode.MANUAL
 
-    def test_20_hz_with_eight_frames_lost_in_a_row_drives_on(self) -> None:
+    def test_20_hz_with_eight_lost_frames_keeps_driving(self) -> None:
         bench = Bench()
         bench.drive()
         bench.stick(AHEAD)
@@ -168,7 +168,7 @@ class TestManualLoss:
 
 
 class TestGroundStationLoss:
-    def test_hold_then_disarm_and_free(self) -> None:
+    def test_gcs_loss_holds_then_disarms_and_releases_control(self) -> None:
         bench = Bench(FS_DISARM_T=300)
         bench.drive()
         silent = bench.now
@@ -183,7 +183,7 @@ class TestGroundStationLoss:
         assert not bench.armed
         assert bench.newest(m.ControlStatus).gcs_main == 0
 
-    def test_any_message_of_the_owner_is_life(self) -> None:
+    def test_any_message_of_the_owner_prevents_the_gcs_failsafe(self) -> None:
         bench = Bench()
         bench.arm()
         for _ in range(4):
@@ -191,7 +191,7 @@ class TestGroundStationLoss:
             bench.say(m.Timesync(tc1=0, ts1=1))
         assert not said(bench, "ground station lost")
 
-    def test_messages_of_others_are_not(self) -> None:
+    def test_messages_of_others_do_not_prevent_the_gcs_failsafe(self) -> None:
         bench = Bench()
         bench.arm()
         for _ in range(6):
@@ -200,13 +200,13 @@ class TestGroundStationLoss:
             bench.heartbeat(introduced=False)
         assert said(bench, "ground station lost: HOLD")
 
-    def test_it_can_be_turned_off(self) -> None:
+    def test_the_gcs_failsafe_can_be_disabled(self) -> None:
         bench = Bench(FS_GCS_ENABLE=0)
         bench.arm()
         bench.wait(10.0)
         assert bench.mode is Mode.MANUAL
 
-    def test_heartbeat_back_clears_and_the_mode_stays(self) -> None:
+    def test_a_returning_heartbeat_clears_the_failsafe_and_the_mode_stays(self) -> None:
         bench = Bench()
         bench.arm()
         bench.wait(6.0)
@@ -248,8 +248,8 @@ class TestSensors:
         assert bench.newest(m.RoverFailsafeStatus).latched & Failsafe.BLOCKED
 
     @pytest.mark.parametrize("change", [{"wheel_speeds": (0.0, 0.0)}, {"roll": -0.9}])
-    def test_a_moment_of_it_is_nothing_to_tell(self, change: dict[str, Any]) -> None:
-        """Each start, each change of direction stands for a moment, and a stone tilts."""
+    def test_a_short_tilt_or_standstill_is_not_reported(self, change: dict[str, Any]) -> None:
+        """Each start and each change of direction includes a short standstill, and a stone tilts the rover."""
         bench = Bench()
         bench.readings = EVERYTHING
         bench.drive()
@@ -265,7 +265,7 @@ class TestSensors:
         assert not said(bench, "Failsafe")
         assert {beat.system_status for beat in bench.all(m.Heartbeat)[-4:]} == {SystemState.ACTIVE}
 
-    def test_both_can_be_turned_off(self) -> None:
+    def test_tilt_and_blocked_can_be_disabled(self) -> None:
         bench = Bench(FS_CRASH_CHECK=0, CRASH_ANGLE=0)
         bench.readings = replace(EVERYTHING, roll=2.0, wheel_speeds=(0.0, 0.0))
         bench.drive()
@@ -279,7 +279,7 @@ class TestRules:
         for rule in RULES.values():
             assert f"| {rule.label} | {rule.help} |" in documented
 
-    def test_no_rule_starts_a_motion_and_every_rule_has_words(self) -> None:
+    def test_every_rule_has_a_label_and_steps(self) -> None:
         for rule in RULES.values():
             assert rule.label
             assert rule.steps

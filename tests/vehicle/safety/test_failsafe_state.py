@@ -9,7 +9,7 @@ from vehicle.safety.failsafe import FailsafeAction
 from vehicle.safety.failsafe_state import Failsafes
 
 
-def test_worst_wins() -> None:
+def test_the_worst_action_wins() -> None:
     failsafes = Failsafes(Params())
     failsafes.update({Failsafe.BATTERY_LOW: 0.0}, 0.0)
     assert failsafes.lasting_action(0.0) is FailsafeAction.LIMIT
@@ -25,7 +25,7 @@ def test_each_step_is_taken_once() -> None:
     assert taken == [FailsafeAction.NEUTRAL, FailsafeAction.HOLD, FailsafeAction.DISARM]
 
 
-def test_a_condition_that_returns_begins_anew() -> None:
+def test_a_condition_that_returns_restarts_its_steps() -> None:
     failsafes = Failsafes(Params())
     failsafes.update({Failsafe.GCS_LOSS: 0.0}, 0.0)
     failsafes.update({}, 1.0)

@@ -11,7 +11,7 @@ ZERO = Outputs((0.0, 0.0), enabled=False)
 
 
 class TestLoop:
-    def test_a_late_cycle_is_a_cycle_of_zero(self) -> None:
+    def test_a_late_cycle_zeroes_the_outputs(self) -> None:
         bench = Bench()
         bench.drive()
         bench.freeze(0.15)
@@ -24,7 +24,7 @@ class TestLoop:
         assert bench.turning
 
     @pytest.mark.parametrize("first", ["tick", "demand"])
-    def test_a_loop_that_stood_still_disarms(self, first: str) -> None:
+    def test_a_stalled_control_loop_disarms(self, first: str) -> None:
         """Also when a demand that waited in the socket comes before the first cycle."""
         bench = Bench()
         bench.drive()
@@ -35,7 +35,7 @@ class TestLoop:
         bench.wait(0.1)
         assert said(bench, "Disarmed: control loop was 0.25 s late")
 
-    def test_the_limit_is_a_parameter(self) -> None:
+    def test_the_loop_timeout_is_a_parameter(self) -> None:
         bench = Bench(FS_LOOP_TIMEOUT=1.0)
         bench.drive()
         bench.freeze(0.9)
@@ -45,7 +45,7 @@ class TestLoop:
 
 
 class TestIdle:
-    def test_nobody_drives_for_long_and_the_rover_disarms(self) -> None:
+    def test_an_idle_rover_disarms_after_disarm_delay(self) -> None:
         bench = Bench(DISARM_DELAY=20)
         bench.drive()
         bench.wait(15.0, NEUTRAL, period=0.2)

@@ -17,7 +17,7 @@ class TestComputer:
         bench.wait(0.04, AHEAD if bench.turning else None)
 
     @pytest.mark.parametrize(("temperature", "weak"), [(86.0, False), (50.0, True)])
-    def test_half_speed_and_then_hold_and_then_half_speed_by_choice(self, temperature: float, weak: bool) -> None:
+    def test_half_speed_then_hold_then_half_speed_after_choosing_manual(self, temperature: float, weak: bool) -> None:
         bench = Bench()
         bench.drive()
         self.pi(bench, temperature, weak=weak)
@@ -42,7 +42,7 @@ class TestComputer:
         assert bench.throttles == (1.0, 1.0)
         assert said(bench, "Failsafe cleared: Pi under-voltage or too hot")
 
-    def test_a_supply_that_comes_and_goes_is_one_trouble_and_ends_in_hold(self) -> None:
+    def test_an_intermittent_under_voltage_is_one_condition_and_ends_in_hold(self) -> None:
         bench = Bench()
         bench.drive()
         for cycle in range(12):
@@ -51,7 +51,7 @@ class TestComputer:
         assert bench.mode is Mode.HOLD
         assert sum("half speed" in text for text in bench.texts) <= 1
 
-    def test_a_dip_of_a_moment_slows_down_for_a_moment(self) -> None:
+    def test_a_short_under_voltage_limits_the_speed_briefly(self) -> None:
         bench = Bench()
         bench.drive()
         self.pi(bench, weak=True)
@@ -63,7 +63,7 @@ class TestComputer:
         bench.wait(20.0, AHEAD)
         assert bench.mode is Mode.MANUAL
 
-    def test_what_nobody_knows_any_more_is_not_over(self) -> None:
+    def test_a_missing_reading_does_not_clear_the_condition(self) -> None:
         bench = Bench()
         bench.drive()
         self.pi(bench, weak=True)
@@ -72,7 +72,7 @@ class TestComputer:
         assert bench.mode is Mode.HOLD
 
     @pytest.mark.parametrize(("act", "throttle", "mode"), [(0, 1.0, Mode.MANUAL), (1, 0.5, Mode.MANUAL)])
-    def test_what_follows_is_a_parameter(self, act: float, throttle: float, mode: Mode) -> None:
+    def test_the_action_is_a_parameter(self, act: float, throttle: float, mode: Mode) -> None:
         bench = Bench(FS_PI_ACT=act)
         bench.drive()
         self.pi(bench, 100.0, weak=True)
@@ -83,14 +83,14 @@ class TestComputer:
         assert (bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL) == bool(act)
 
     @pytest.mark.parametrize(("limit", "throttle"), [(0, 1.0), (95, 1.0), (85, 0.5)])
-    def test_so_is_the_temperature(self, limit: float, throttle: float) -> None:
+    def test_the_temperature_limit_is_a_parameter(self, limit: float, throttle: float) -> None:
         bench = Bench(FS_PI_TEMP=limit)
         bench.drive()
         self.pi(bench, 90.0)
         bench.wait(2.0, AHEAD)
         assert bench.throttles == (throttle, throttle)
 
-    def test_nobody_arms_meanwhile_but_by_force_and_then_gets_the_whole_time(self) -> None:
+    def test_arming_takes_force_meanwhile_and_gets_the_full_delay(self) -> None:
         bench = Bench()
         self.pi(bench, 91.0, weak=True)
         bench.wait(60.0)
@@ -104,14 +104,14 @@ class TestComputer:
         bench.wait(1.5, AHEAD)
         assert bench.mode is Mode.HOLD
 
-    def test_a_supply_that_is_well_again_allows_arming_at_once(self) -> None:
+    def test_a_recovered_supply_allows_arming_at_once(self) -> None:
         bench = Bench(FS_PI_ACT=2)
         self.pi(bench, weak=True)
         assert bench.arm() is Result.FAILED
         self.pi(bench)
         assert bench.arm() is Result.ACCEPTED
 
-    def test_who_does_not_want_it_arms(self) -> None:
+    def test_arming_ignores_the_pi_if_the_failsafe_is_disabled(self) -> None:
         bench = Bench(FS_PI_ACT=0)
         self.pi(bench, weak=True)
         assert bench.arm() is Result.ACCEPTED

@@ -58,7 +58,7 @@ def test_ten_minutes_stay_within_half_a_metre_of_the_lines(seed: int) -> None:
 
 
 class TestItems:
-    def test_items_that_are_done_beside_the_drive_count_as_reached(self) -> None:
+    def test_do_items_count_as_reached(self) -> None:
         """Else a client that counts by them goes back and forth between them and MISSION_CURRENT."""
         speed = do(Command.DO_CHANGE_SPEED, 1, 0.7)
         field = ready(way(3, 0), speed, way(6, 0), do(Command.CONDITION_DISTANCE, 1.0), speed, way(9, 0))
@@ -78,7 +78,7 @@ class TestItems:
         field.until(Point(17, 0), 40.0, 1.0)
         assert field.speed == pytest.approx(0.3, abs=0.1)
 
-    def test_a_condition_of_time_holds_up_what_stands_behind_it(self) -> None:
+    def test_condition_delay_delays_the_items_behind_it(self) -> None:
         field = ready(do(Command.CONDITION_DELAY, 6.0), do(Command.DO_CHANGE_SPEED, 1, 0.3, -1), way(20, 0))
         start(field)
         field.beat(5.0)
@@ -86,27 +86,27 @@ class TestItems:
         field.beat(3.0)
         assert field.speed == pytest.approx(0.3, abs=0.1)
 
-    def test_home_is_an_item_and_the_last_one(self) -> None:
+    def test_return_to_launch_is_the_last_item(self) -> None:
         field = ready(way(6, 3), do(Command.NAV_RETURN_TO_LAUNCH), way(50, 50))
         start(field)
         field.until(Point(6, 3), 40.0)
         finish(field, 60.0)
         assert field.truth.distance(Point(0, 0)) < 0.8
 
-    def test_70_jumps_in_a_circle_end_the_mission(self) -> None:
+    def test_70_an_endless_loop_of_do_jump_ends_the_mission(self) -> None:
         field = ready(do(Command.DO_JUMP, 1, -1), do(Command.DO_JUMP, 0, -1))
         start(field)
         field.wait(0.5)
         assert field.mode is Mode.HOLD
         assert said(field, "endless loop of DO_JUMP")
 
-    def test_a_jump_is_made_as_often_as_it_says(self) -> None:
+    def test_do_jump_repeats_as_often_as_its_parameter(self) -> None:
         field = ready(way(4, 0), way(4, 4), do(Command.DO_JUMP, 0, 2), way(0, 4))
         start(field)
         finish(field, 120.0)
         assert passed(field) == [0, 1, 0, 1, 0, 1, 3]
 
-    def test_what_moves_accessories_is_told_and_passed_over(self) -> None:
+    def test_items_for_missing_accessories_are_reported_and_skipped(self) -> None:
         field = ready(do(Command.DO_SET_SERVO, 5, 1500), do(Command.DO_SET_RELAY, 0, 1), way(5, 0))
         field.wait(0.2)
         words = (
@@ -119,7 +119,7 @@ class TestItems:
         assert said(field, "Mission: passed over DO_SET_SERVO 5: there is no servo 5")
         assert said(field, "Mission: passed over DO_SET_RELAY 0: there is no relay 0")
 
-    def test_the_usual_speed_comes_back(self) -> None:
+    def test_a_mission_can_restore_the_default_speed(self) -> None:
         field = ready(
             do(Command.DO_CHANGE_SPEED, 1, 0.3, -1), way(4, 0), do(Command.DO_CHANGE_SPEED, 1, -2, -1), way(20, 0)
         )
@@ -129,14 +129,14 @@ class TestItems:
         field.until(Point(12, 0), 40.0, 1.0)
         assert field.speed == pytest.approx(0.8, abs=0.1)
 
-    def test_a_mission_may_turn_the_fence_on(self) -> None:
+    def test_a_mission_can_enable_the_fence(self) -> None:
         field = ready(do(Command.DO_FENCE_ENABLE, 1), way(5, 0), way(30, 0), FENCE_TYPE=2, FENCE_RADIUS=8)
         start(field)
         finish(field, 60.0)
         assert said(field, "outside the fence: HOLD")
         assert field.truth.north < 10.0
 
-    def test_it_ends_where_the_file_of_settings_has_no_fence(self) -> None:
+    def test_a_mission_ends_if_the_configuration_file_disables_the_fence(self) -> None:
         field = ready(way(2, 0), do(Command.DO_FENCE_ENABLE, 1), way(20, 0))
         field.rover._params.pinned = frozenset({"FENCE_ENABLE"})
         start(field)
@@ -145,7 +145,7 @@ class TestItems:
         assert 1.0 < field.truth.north < 5.0
         assert field.rover._params["FENCE_ENABLE"] == 0
 
-    def test_why_the_last_item_is_not_done_is_told(self) -> None:
+    def test_the_reason_for_the_end_at_the_last_item_is_reported(self) -> None:
         field = ready(way(2, 0), do(Command.DO_FENCE_ENABLE, 1))
         field.rover._params.pinned = frozenset({"FENCE_ENABLE"})
         start(field)
@@ -154,7 +154,7 @@ class TestItems:
 
 
 class TestProgress:
-    def test_hold_and_auto_goes_on_where_it_was_and_a_complete_one_begins_anew(self) -> None:
+    def test_auto_resumes_after_hold_and_a_completed_mission_restarts(self) -> None:
         field = ready(way(6, 0), way(6, 6), way(12, 6))
         start(field)
         field.until(Point(6, 3), 60.0)
@@ -170,7 +170,7 @@ class TestProgress:
         assert field.newest(m.MissionCurrent).seq == 0
         assert field.turning
 
-    def test_the_ids_of_all_plans_are_told_at_once_and_again_and_again(self) -> None:
+    def test_the_plan_ids_are_sent_at_once_and_periodically(self) -> None:
         field = Field()
         field.wait(1.1)
         told = field.newest(m.MissionCurrent)
@@ -189,7 +189,7 @@ class TestProgress:
         assert len(field.all(m.MissionCurrent)) - before == 5
         assert field.newest(m.MissionCurrent).mission_id == mission
 
-    def test_the_item_that_is_chosen_by_command_is_told_to_all(self) -> None:
+    def test_an_item_chosen_by_command_is_reported_to_all(self) -> None:
         field = ready(way(6, 0), way(6, 6))
         field.wait(1.1)
         for index, seq in ((1, 1), (1, 1), (-1, 1), (0, 0)):
@@ -201,7 +201,7 @@ class TestProgress:
         assert field.command(Command.DO_SET_MISSION_CURRENT, 1, 2) is Result.DENIED
 
     @pytest.mark.parametrize(("anew", "again"), [(0, 0), (1, 1)])
-    def test_jumps_made_are_forgotten_only_where_somebody_says_so(self, anew: float, again: int) -> None:
+    def test_jump_counters_are_reset_only_on_request(self, anew: float, again: int) -> None:
         field = ready(way(3, 0), do(Command.DO_JUMP, 0, 1), way(3, 3), way(40, 3))
         start(field)
         field.until(Point(3, 3), 60.0, 0.5)
@@ -250,7 +250,7 @@ class TestWhoMay:
             assert field.command(Command.MISSION_START, wrong) is Result.DENIED
         assert field.stands_for(1.0)
 
-    def test_69_nobody_changes_the_mission_that_is_driven_nor_anothers(self) -> None:
+    def test_69_the_running_mission_and_another_operators_mission_cannot_be_changed(self) -> None:
         field = ready(way(30, 0))
         assert upload(field, way(1, 1), system=OTHER) == MissionResult.DENIED
         start(field)
@@ -261,7 +261,7 @@ class TestWhoMay:
         field.beat(1.0)
         assert field.turning
 
-    def test_69_an_upload_that_ends_when_auto_has_begun_changes_nothing(self) -> None:
+    def test_69_an_upload_completed_after_auto_has_begun_is_rejected(self) -> None:
         field = ready(way(30, 0))
         field.say(m.MissionCount(1, 1, 1, MissionType.MISSION))
         start(field)
@@ -289,7 +289,7 @@ class TestWhoMay:
         field.beat(2.0)
         assert field.turning
 
-    def test_the_drivers_stick_moves_nothing_in_auto(self) -> None:
+    def test_manual_control_moves_nothing_in_auto(self) -> None:
         field = ready(way(30, 0))
         start(field)
         field.beat(3.0)
@@ -299,7 +299,7 @@ class TestWhoMay:
         assert not field.turning
 
     @pytest.mark.parametrize(("setting", "mode"), [(1, Mode.HOLD), (2, Mode.AUTO)])
-    def test_without_its_ground_station_it_holds_or_goes_on_as_it_is_set(self, setting: int, mode: Mode) -> None:
+    def test_auto_holds_or_continues_without_a_ground_station(self, setting: int, mode: Mode) -> None:
         field = ready(way(60, 0), FS_GCS_ENABLE=setting)
         start(field)
         field.wait(8.0)

@@ -10,7 +10,7 @@ from tests.vehicle.missions import do, finish, ready, start, way
 from vehicle.navigation.geo import Point
 
 
-def test_a_waypoint_with_a_hold_time_is_stood_at() -> None:
+def test_the_rover_stands_at_a_waypoint_with_a_hold_time() -> None:
     field = ready(way(5, 0, 4.0), way(5, 5))
     start(field)
     field.until(Point(5, 0), 20.0, 0.5)
@@ -30,7 +30,7 @@ def test_turns_around_a_point() -> None:
     assert max(near) < 2.8
 
 
-def test_yaw_and_reverse() -> None:
+def test_condition_yaw_and_set_reverse() -> None:
     field = ready(do(Command.CONDITION_YAW, 180.0), do(Command.DO_SET_REVERSE, 1), way(6, 0))
     start(field)
     finish(field, 60.0)
@@ -38,7 +38,7 @@ def test_yaw_and_reverse() -> None:
     assert field.truth.distance(Point(6, 0)) < 0.7
 
 
-def test_loiter_for_a_time_is_to_stand_there() -> None:
+def test_loiter_time_stands_at_the_place() -> None:
     field = ready((Command.NAV_LOITER_TIME, Point(4, 0), (5.0,)), way(8, 0))
     start(field)
     field.until(Point(4, 0), 30.0, 0.4)
@@ -48,7 +48,7 @@ def test_loiter_for_a_time_is_to_stand_there() -> None:
     assert field.truth.distance(Point(8, 0)) < 0.7
 
 
-def test_unlimited_means_until_somebody_ends_it() -> None:
+def test_loiter_unlimited_stays_until_the_mode_changes() -> None:
     field = ready((Command.NAV_LOITER_UNLIM, Point(3, 0), ()), way(30, 0))
     start(field)
     field.beat(60.0)

@@ -40,7 +40,7 @@ NAV_TAKEOFF = 22
         ((Command.NAV_WAYPOINT, None, ()), MissionResult.UNSUPPORTED_FRAME),
     ],
 )
-def test_what_it_cannot_do_is_refused_when_it_is_uploaded(item: Item, verdict: MissionResult) -> None:
+def test_unsupported_items_are_rejected_at_the_upload(item: Item, verdict: MissionResult) -> None:
     field = ready(way(5, 0))
     assert upload(field, way(1, 1), item) == verdict
     field.say(m.MissionRequestList(1, 1, MissionType.MISSION))
@@ -56,7 +56,7 @@ def test_what_it_cannot_do_is_refused_when_it_is_uploaded(item: Item, verdict: M
         (do(Command.DO_JUMP, 7, 1), "its items do not fit together"),
     ],
 )
-def test_the_driver_reads_which_item_was_refused(item: Item, why: str) -> None:
+def test_the_rejected_item_is_reported(item: Item, why: str) -> None:
     field = Field()
     field.heartbeat()
     upload(field, way(1, 1), item)
@@ -67,5 +67,5 @@ def test_the_driver_reads_which_item_was_refused(item: Item, why: str) -> None:
 @pytest.mark.parametrize(
     ("params", "result"), [((1, 1500), Result.DENIED), ((5, 1500), Result.DENIED), ((NAN, 1500), Result.DENIED)]
 )
-def test_a_motor_is_nobodys_servo(params: tuple[float, ...], result: Result) -> None:
+def test_do_set_servo_for_a_motor_is_denied(params: tuple[float, ...], result: Result) -> None:
     assert Field().command(Command.DO_SET_SERVO, *params) is result
