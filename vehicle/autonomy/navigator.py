@@ -188,10 +188,8 @@ class Navigator:
             readings=self._readings,
             estimate=self.estimate,
             throttles=throttles,
-            needs_position=placed or bool(latched and latched & Failsafe.POSITION),
-            setpoint_expires=self.guided.expires_at()
-            if guided or (latched and latched & Failsafe.GUIDED_LOSS)
-            else None,
+            needs_position=placed or bool(latched & Failsafe.POSITION),
+            setpoint_expires=self.guided.expires_at() if guided or latched & Failsafe.GUIDED_LOSS else None,
             outside_fence=self.fence_avoidance.breach_distance > 0.0,
         )
 

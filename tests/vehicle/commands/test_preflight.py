@@ -11,10 +11,10 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionType, Result
 from link.tlog.tlog import encode_record, read_records
-from tests.vehicle.autonomy.mission.test_mission import send, way
 from tests.vehicle.bench import AHEAD, DRIVER, OTHER, Bench, said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, drive, running
+from tests.vehicle.missions import send, way
 from tests.vehicle.storage.test_plan_store import SlowDisk, field_with
 from vehicle.commands.reboot import RebootRequest
 from vehicle.navigation.geo import Point
