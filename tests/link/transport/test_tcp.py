@@ -205,7 +205,7 @@ async def test_it_does_not_talk_to_itself() -> None:
     wire._refused = lambda loop, why: refused.append(why)  # type: ignore[method-assign]
     refused: list[str] = []
     wire._connected(asyncio.get_running_loop(), own)
-    assert refused == ["nobody listens"]
+    assert refused == ["no listener"]
     own.close()
 
 
