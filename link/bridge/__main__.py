@@ -35,7 +35,7 @@ examples:
 endpoints (two or more):
 {endpoints}
 
-exit codes: 0 options to stop (SIGTERM, Ctrl-C, SIGHUP), 2 a mistake on the command line.
+exit codes: 0 stopped by a signal (SIGTERM, Ctrl-C, SIGHUP), 2 usage error.
 """
 
 SWITCH_INTERVAL = 0.0005
