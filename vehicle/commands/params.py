@@ -50,7 +50,7 @@ class ParamService:
             allowed=lambda received: control.denial_reason(received.system) is None,
             armed=armed,
             changed=self._handle_change,
-            say=lambda text, now: texts.send(Severity.WARNING, text, now),
+            send_text=lambda text, now: texts.send(Severity.WARNING, text, now),
         )
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:

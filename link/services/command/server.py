@@ -1,9 +1,9 @@
-"""The command protocol, both halves: COMMAND_LONG and COMMAND_INT, answered by COMMAND_ACK, never by silence.
+"""Server half of the command protocol: COMMAND_LONG and COMMAND_INT, each answered with COMMAND_ACK.
 
-Rules (mavlink.io/en/services/command.html): the client repeats with a rising `confirmation` until acknowledged; the
-server acknowledges every command meant for it, UNSUPPORTED when it does not know it. A command for somebody else is
-never acknowledged. What takes time: jobs.py. Repeats are run: a handler does no more at the second time, or
-knows a repeat itself, as vehicle/commands/actuator_test.py.
+Rules (https://mavlink.io/en/services/command.html): every command for this component is acknowledged, with UNSUPPORTED
+if there is no handler; a command for another component never is. Repeats are run: a second run of a handler changes
+nothing, or the handler detects the repeat itself, as vehicle/commands/actuator_test.py does. Long-running commands:
+jobs.py.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 RunCommand = Callable[[CommandRequest, float], Result | CommandJob]
-"""Runs a command at a time: its result, or where it takes a while a job of jobs.py."""
+"""Runs a command; returns its result, or a CommandJob if it takes a while."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +36,11 @@ class CommandHandler:
 
     run: RunCommand
     broadcast: bool = False
-    """Obeyed and acknowledged when sent to system 0. Only for what can do no harm: stops and questions."""
+    """Run and acknowledged when sent to system 0. Only for what can do no harm: stops and queries."""
 
 
 class CommandServer:
-    """Answers commands for one system and component from a table."""
+    """Answers the commands to one system and component from a table of handlers."""
 
     def __init__(self, handlers: Mapping[int, CommandHandler], *, system: int, component: int) -> None:
         self._handlers = handlers
@@ -50,11 +50,11 @@ class CommandServer:
 
     @property
     def commands(self) -> frozenset[int]:
-        """What has a handler."""
+        """The commands that have a handler."""
         return frozenset(self._handlers)
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Run or cancel a command; returns the acknowledgement, or nothing where it was not for us."""
+        """Run or cancel a command; return the acknowledgement, or nothing if the command is not for us."""
         message = received.message
         if not isinstance(message, CommandLong | CommandInt | CommandCancel) or not self._for_us(message):
             return []
@@ -63,7 +63,7 @@ class CommandServer:
         return [self._run(parse_command(message, received), now)]
 
     def tick(self, now: float) -> list[Outgoing]:
-        """News of the commands under way."""
+        """Run the long-running commands; return their progress and results."""
         return self._jobs.tick(now)
 
     def _for_us(self, message: CommandLong | CommandInt | CommandCancel) -> bool:
