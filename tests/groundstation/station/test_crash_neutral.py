@@ -127,7 +127,7 @@ def test_an_exception_anywhere_ends_with_neutral(place: str, tmp_path: Path) -> 
         assert not moving or max(moving) < neutral[-5]
         (line,) = [line for line in log_file.read_text().splitlines() if "CRITICAL" in line]
         assert "station crashed (ZeroDivisionError: a bug" in line
-        assert "neutral sent, exiting" in line
+        assert "sending neutral, then exiting" in line
 
 
 @pytest.mark.e2e
