@@ -27,7 +27,7 @@ class Mode(IntEnum):
     """Motors neutral."""
     LOITER = 5
     FOLLOW = 6
-    SIMPLE = 7
+    SIMPLE = 7, ModeFlag.MANUAL
     DOCK = 8
     CIRCLE = 9
     AUTO = 10, ModeFlag.AUTO
@@ -48,6 +48,14 @@ _PX4_MAIN = {
     8: "RATTITUDE",
 }
 """PX4's main mode, from bits 16-23 of custom_mode (MAVSDK px4_custom_mode.hpp)."""
+
+_PX4_DRIVABLE = frozenset({"MANUAL", "ALTCTL", "POSCTL", "ACRO", "STABILIZED"})
+
+DRIVABLE_MODES = _PX4_DRIVABLE | {mode.name for mode in Mode if mode.flag & ModeFlag.MANUAL}
+"""Names (`mode_name`) of the modes in which the driver's demand moves a rover, of ArduRover and PX4."""
+
+STANDING_MODES = frozenset({Mode.HOLD.name, Mode.INITIALISING.name})
+"""Names of the modes in which nothing moves a rover. Every mode in neither set is autonomous."""
 
 
 def base_mode(mode: Mode, *, armed: bool) -> ModeFlag:

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from groundstation.input.keymap import CONFIRM_KEY, Keymap, OperatorAction
+from groundstation.input.keymap import CONFIRM_KEY, Keymap
+from groundstation.intents import OperatorAction
 from groundstation.snapshot import Snapshot
 from groundstation.ui.key_gate import GateClosure
 from groundstation.ui.keynames import format_key, main_key

@@ -16,16 +16,17 @@ from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 
-from groundstation.input.keymap import KeyEvent, Keymap, OperatorAction
-from groundstation.intents import AnyIntent, RenewLease
+from groundstation.input.keymap import KeyEvent, Keymap
+from groundstation.intents import AnyIntent, OperatorAction, RenewLease
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import THEME
 from groundstation.ui.exit import exit_on_signals
 from groundstation.ui.key_gate import GateClosure, GateLevel, KeyGate, StationConnection
+from groundstation.ui.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.palette import ActionProvider
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.help import HelpScreen
-from groundstation.ui.terminal import PING, ConsoleDriver, KeyRepeat, KeyUp, TerminalClosed
+from groundstation.ui.terminal import PING, ConsoleDriver, TerminalClosed
 from groundstation.ui.tty_output import TerminalFile, redirect_output
 from groundstation.ui.tty_ping import PERIOD
 

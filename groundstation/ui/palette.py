@@ -7,8 +7,7 @@ from typing import Protocol, cast
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from groundstation.input.keymap import ACTIONS, OperatorAction
-from groundstation.intents import DriveKeyDown
+from groundstation.intents import ACTIONS, DriveKeyDown, OperatorAction
 
 
 class ActionChooser(Protocol):

@@ -1,4 +1,4 @@
-"""One open TCP connection: a stream both ways that never blocks, and notices when the other end is gone."""
+"""One open TCP connection: never blocks, and detects a dead peer by keepalive."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from link.transport.stream_writer import StreamWriter
 from link.transport.transport import ReceiveCallback
 
 BULK = 65536
-"""Bytes of telemetry that may wait for one connection, then the oldest is dropped."""
+"""Bytes of telemetry that may wait for one connection; then the oldest is dropped."""
 SEND_BUFFER = 32768
-"""Bytes that the kernel keeps, where nothing can overtake; its own default grows to megabytes."""
+"""Bytes that the kernel buffers, where nothing can overtake; its own default grows to megabytes."""
 READ = 65536
 DEAD_AFTER = 10
-"""s without an acknowledgement after which the other end counts as gone; twice the vehicle's patience with its GCS."""
+"""s without an acknowledgement after which the other end counts as gone; twice the vehicle's GCS timeout."""
 
 
 class Connection:
-    """One open connection. `on_end` hears why it ended; whoever calls close() knows it already."""
+    """One open connection. `on_end` gets the reason when it ends, but not after close()."""
 
     def __init__(
         self,
@@ -42,11 +42,11 @@ class Connection:
         self._loop.add_reader(sock, self._readable)
 
     def send(self, data: bytes) -> None:
-        """One frame, now or soon."""
+        """Send one frame, now or soon."""
         self._writer.send(data)
 
     def close(self) -> None:
-        """Hand over what is taken at once, and end it."""
+        """Send what the socket accepts at once, and end the connection."""
         self._on_end = lambda *_: None
         self._writer.flush_and_close()
         self._release()

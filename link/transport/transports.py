@@ -20,8 +20,7 @@ def open_transports(endpoints: Sequence[str]) -> list[Transport]:
     """Open all endpoints, or none. Raises EndpointError or LinkError."""
     transports: list[Transport] = []
     try:
-        for endpoint in parse_endpoints(endpoints):
-            transports.append(load_factory(SCHEMES[endpoint.scheme])(endpoint))
+        transports.extend(load_factory(SCHEMES[each.scheme])(each) for each in parse_endpoints(endpoints))
     except LinkError:
         for transport in transports:
             transport.close()

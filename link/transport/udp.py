@@ -1,4 +1,4 @@
-"""UDP: datagrams in, datagrams out. Never blocks; what the network will not take now is dropped, the newest wins."""
+"""UDP transport. Never blocks: a datagram that the socket does not accept now is dropped."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from link.transport.address import bind_error_text, resolve
 from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
 
 BATCH = 64
-"""Datagrams read before the loop gets its turn again: a flood must not starve the control loop (about 1 ms)."""
+"""Datagrams read in one turn of the event loop: a flood must not starve the control loop (about 1 ms)."""
 BUFFER = 65536
 """Bytes of the largest datagram."""
 RECEIVE_BUFFER = 1 << 20
@@ -20,9 +20,9 @@ stop commands among them. Linux grants at most net.core.rmem_max."""
 
 
 class UdpTransport:
-    """One UDP socket: `udpin` waits on an address, `udpout` speaks to one first and hears only that one.
+    """A UDP socket: `udpin` listens on an address, `udpout` sends to one first and receives only from it.
 
-    The name of that one is looked up at the start and never again: UDP knows no end after which it could be.
+    The destination's host name is looked up once at the start: UDP has no disconnect after which to look it up again.
     """
 
     def __init__(self, endpoint: Endpoint, sock: socket.socket) -> None:
@@ -38,19 +38,19 @@ class UdpTransport:
     def start(
         self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
     ) -> None:
-        """Hand arriving datagrams to `on_receive` in batches; UDP knows no end of a connection."""
+        """Pass arriving datagrams to `on_receive` in batches. UDP never calls `on_disconnect`."""
         self._loop = loop
         loop.add_reader(self._socket, self._readable, on_receive)
 
     def send(self, data: bytes, address: Hashable) -> None:
-        """One datagram, now or never."""
+        """Send one datagram, or drop it."""
         try:
             if self.fixed_address is not None:
                 self._socket.send(data)
             else:
                 self._socket.sendto(data, address)  # type: ignore[call-overload]
         except (BlockingIOError, ConnectionRefusedError):
-            self.dropped += 1  # full, or nobody listens yet: as if the network had lost it
+            self.dropped += 1  # the buffer is full, or no program listens yet: as if the network had lost it
         except OSError as error:
             self.problem = f"{self.endpoint.text}: {error.strerror}"
         else:
@@ -78,7 +78,7 @@ class UdpTransport:
 
 
 def open_udp(endpoint: Endpoint) -> UdpTransport:
-    """Open the socket. Raises LinkError with one line that says what is wrong and what to do."""
+    """Open the socket. Raises LinkError."""
     address, family = resolve(endpoint, socket.SOCK_DGRAM)
     sock = socket.socket(family, socket.SOCK_DGRAM)
     sock.setblocking(False)

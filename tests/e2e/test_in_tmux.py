@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import pty
 import re
 import select
 import shlex
 import shutil
+import struct
 import subprocess
 import sys
+import termios
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.groundstation.ui.wheel import modes, notch
 from tests.ports import free_port
 
 pytestmark = [
@@ -27,6 +32,7 @@ pytestmark = [
     ),
 ]
 
+FOLDER = Path(__file__).parents[2]
 PATIENCE = 60.0
 """s for every wait: the machine is shared."""
 PAUSE = 0.04
@@ -120,3 +126,55 @@ def test_waiting_offers_the_simulator(tmux: Callable[..., Tmux]) -> None:
     assert str(port) in waiting
     terminal.press("F5")
     terminal.until(lambda screen: "DISARMED" in screen, PATIENCE)
+
+
+class AttachedTmux:
+    """A tmux with its default settings, attached to a terminal that this test plays."""
+
+    def __init__(self, folder: Path, report: Path, *options: str) -> None:
+        program = shlex.join([sys.executable, "-m", "tests.groundstation.ui.programs", str(report), *options])
+        master, self._slave = pty.openpty()
+        fcntl.ioctl(self._slave, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
+        command = ["tmux", "-S", str(folder / "tmux"), "-f", "/dev/null", "new-session", program]
+        self._client = subprocess.Popen(
+            command, cwd=FOLDER, env={**os.environ, "TERM": "xterm-256color"}, start_new_session=True,
+            stdin=self._slave, stdout=self._slave, stderr=self._slave,
+        )  # fmt: skip
+        self._master, self.drawn = master, b""
+
+    def until(self, condition: Callable[[], bool]) -> None:
+        """Read what tmux draws until the condition holds."""
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, self.drawn[-2000:]
+            if select.select([self._master], [], [], PAUSE)[0]:
+                self.drawn += os.read(self._master, 1 << 16)
+
+    def type(self, data: bytes) -> None:
+        """Send bytes as the terminal does."""
+        os.write(self._master, data)
+
+    def end(self, folder: Path) -> None:
+        """End tmux and give the terminal back."""
+        subprocess.run(["tmux", "-S", str(folder / "tmux"), "kill-server"], capture_output=True, timeout=60)
+        os.close(self._slave)
+        os.close(self._master)
+        self._client.wait(PATIENCE)
+
+
+@pytest.mark.parametrize("protected", [False, True], ids=["without protection", "with protection"])
+def test_the_mouse_wheel_through_tmux(tmp_path: Path, protected: bool) -> None:
+    """In tmux with the default `mouse off` the terminal turns the wheel into arrow keys, and tmux passes them on."""
+    report = tmp_path / "report"
+    terminal = AttachedTmux(tmp_path, report, *([] if protected else ["--stock-mouse"]))
+    try:
+        terminal.until(lambda: b"MANUAL" in terminal.drawn and bool(modes(terminal.drawn).get(1049)))
+        if protected:
+            terminal.until(lambda: bool(modes(terminal.drawn).get(1000)))
+        for _ in range(10):
+            terminal.type(notch(terminal.drawn))
+        terminal.type(b"-")  # a key that neither drives nor stops, behind the wheel
+        terminal.until(lambda: "ScaleLimits" in report.read_text())
+        assert ("DriveKeyDown" in report.read_text()) is not protected
+    finally:
+        terminal.end(tmp_path)

@@ -67,7 +67,7 @@ async def test_a_bug_in_the_station_is_told_on_the_screen(monkeypatch: pytest.Mo
             await until(lambda: app.drive.snapshot.number > 0)
             station.send(SetStyle(style=ORDER + "tick"))
             await until(lambda: not station.alive)
-            await until(lambda: "the station broke (ZeroDivisionError" in text(app))
+            await until(lambda: "station crashed (ZeroDivisionError" in text(app))
             await pilot.pause()
     finally:
         assert station.close() == 1

@@ -149,7 +149,7 @@ def test_unplugged_and_back_with_the_key_held_all_along(rig: Rig) -> None:
     stopped = time.monotonic()
     rig.cable.plug()
     start = len(rig.station.screen)
-    rig.station.hold("i", lambda: b"is back" in rig.station.screen[start:])
+    rig.station.hold("i", lambda: b"link back after" in rig.station.screen[start:])
     hold(rig, 3.0)
     assert not rig.vehicle.moved_since(stopped)
     drive_on(rig.station, rig.vehicle)

@@ -1,7 +1,8 @@
-"""Drives by itself: the estimate, the modes that need no driver, and what of them goes to the motors as a demand.
+"""Autonomous driving: feeds the estimator, runs the mode, and turns its motion into a demand.
 
-What it may do is not decided here: vehicle/safety/state_machine.py says which mode it is and whether it was begun after arming, and
-the last gate (vehicle/drive/gate.py) lets a demand of its own through only while it is as fresh as the control cycle.
+The navigator does not decide whether the rover may move: vehicle/safety/state_machine.py knows the mode and whether it
+was requested after arming, and the last gate (vehicle/drive/gate.py) passes an autonomous demand only while it is as
+fresh as the control cycle.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ DEFAULT_SPEED = -2.0
 
 
 class PlanIds(NamedTuple):
-    """The ids of the plans in force, 0 for an empty one (link/services/mission/plans.py)."""
+    """The ids of the plans in use, 0 for an empty plan (link/services/mission/plans.py)."""
 
     mission: int = 0
     fence: int = 0
@@ -57,21 +58,21 @@ class PlanIds(NamedTuple):
 
 
 class Navigator:
-    """`sense` and then `step` each cycle; `step` also when a setpoint came."""
+    """Call `sense` and then `step` in each cycle; call `step` also after a setpoint."""
 
     def __init__(self, params: Params, kind: DriveType) -> None:
         self.home: Home | None = None
         self.origin_altitude: float | None = None
-        """m above the sea of local heights' zero; None: home's, as long as nobody says another."""
+        """m above sea level of the local origin; None for the altitude of home, unless a command set it."""
         self.demand: Demand | None = None
-        """What the mode wants now; None where it wants nothing, or drives not by itself."""
+        """The demand of the mode; None if the mode is not autonomous or requests nothing."""
         self.end_reason: str | None = None
-        """Why the mode has nothing more to do."""
+        """Why the mode has finished, or None."""
         self.desired_motion: DesiredMotion | None = None
-        """What the mode wants, before it is a demand."""
+        """The motion that the mode requests, before the controllers."""
         self.paused = False
         self.speed_override: float | None = None
-        """m/s that somebody asked for instead of WP_SPEED."""
+        """m/s that a command or a mission requests instead of WP_SPEED."""
         self.guide = PathFollower(params, kind)
         self.guided = GuidedMode(params, self.guide)
         self.fence_avoidance = FenceAvoidance(params, self._home_point)
@@ -93,42 +94,42 @@ class Navigator:
 
     @property
     def estimate(self) -> Estimate:
-        """Where it is."""
+        """The position estimate."""
         return self._estimator.estimate
 
     @property
     def altitude(self) -> float | None:
-        """m above the sea, where a sensor says it."""
+        """Altitude in m above sea level; None if no sensor measures it."""
         altitude = self._readings.altitude
         return altitude if altitude is not None and math.isfinite(altitude) else None
 
     @property
     def turn_rate(self) -> float | None:
-        """rad/s as the gyro says it, its bias included; None without a gyro."""
+        """Turn rate of the gyro in rad/s, its bias included; None without a gyro."""
         return valid_yaw_rate(self._readings)
 
     def set_gyro_bias(self, bias: float) -> bool:
-        """It was measured, rad/s; False where it is none."""
+        """Set the gyro bias in rad/s; return False if the value cannot be a bias."""
         return self._estimator.set_gyro_bias(bias)
 
     def cruise_speed(self) -> float:
-        """m/s to drive at."""
+        """Return the m/s to drive at."""
         return min(
             self._params["WP_SPEED"] if self.speed_override is None else self.speed_override, self._params["SPEED_MAX"]
         )
 
     def goal(self, mode: Mode) -> Point | None:
-        """Where a mode drives to."""
+        """Return the place that a mode drives to, or None."""
         active = self._modes.get(mode)
         return active.goal if active else None
 
     def velocity_target(self, mode: Mode) -> VelocityTarget | None:
-        """The velocity that somebody asks for in GUIDED, while it counts."""
+        """Return the velocity setpoint of GUIDED while it is valid, or None."""
         target = self.guided.target if mode is Mode.GUIDED and self.desired_motion is not None else None
         return target if isinstance(target, VelocityTarget) else None
 
     def sense(self, readings: Readings, now: float) -> None:
-        """Take the readings of this cycle; the first place on the globe is home."""
+        """Update the estimate with the readings of this cycle; the first global position becomes home."""
         self._readings = readings
         estimate = self._estimator.update(readings, now)
         if self.home is None and estimate.lat_lon is not None:
@@ -136,7 +137,7 @@ class Navigator:
         self.fence_avoidance.update(estimate, now)
 
     def set_origin(self, origin: Origin, altitude: float | None, safety: Safety, now: float) -> None:
-        """Count metres from another place on the globe. Only while disarmed: then no way is kept but the mode's."""
+        """Move the origin of local coordinates. Only while disarmed: the modes begin anew."""
         self.restart_mode(safety, now)
         self.origin_altitude = altitude
         self._estimator.set_origin(origin)
@@ -150,7 +151,7 @@ class Navigator:
         self.fence_avoidance.update(self.estimate, now)
 
     def has_sensor_for(self, need: ModeRequirement) -> bool:
-        """There is a sensor for it, whether or not it is well at this moment: menus should not flicker."""
+        """Return True if the vehicle has the sensor. A short failure does not count: menus should not flicker."""
         has = {
             ModeRequirement.GYRO: self._readings.yaw_rate is not None,
             ModeRequirement.POSITION: self.estimate.origin is not None,
@@ -158,7 +159,7 @@ class Navigator:
         return has.get(need, True)
 
     def unready_reason(self, mode: Mode) -> str | None:
-        """Why a mode cannot be chosen now, or None."""
+        """Return why a mode cannot be chosen now, or None."""
         need, estimate = MODES[mode].requirement, self.estimate
         if need is ModeRequirement.GYRO and estimate.yaw_rate is None:
             return "there is no gyro"
@@ -171,12 +172,15 @@ class Navigator:
         return self.fence_avoidance.block_reason(homeward=homeward) or active.unready(estimate)
 
     def set_target(self, target: Target, now: float) -> None:
-        """A setpoint for GUIDED."""
+        """Set the target of GUIDED; a pause ends."""
         self.paused = False
         self.guided.set_target(target, self.estimate, now)
 
     def build_failsafe_inputs(self, safety: Safety, throttles: Sequence[float]) -> MotionInputs:
-        """Return what the failsafes need to know; a condition that has changed the mode stays relevant after it."""
+        """Return the inputs of the failsafes.
+
+        A condition that has changed the mode stays relevant in the mode that follows.
+        """
         guided = safety.mode is Mode.GUIDED and safety.autonomy_confirmed
         placed = MODES[safety.mode].requirement is ModeRequirement.POSITION or (guided and self.guided.goal is not None)
         latched = safety.failsafes.latched
@@ -192,7 +196,7 @@ class Navigator:
         )
 
     def step(self, safety: Safety, now: float) -> None:
-        """What the mode wants at this moment."""
+        """Update the demand of the mode."""
         self.restart_mode(safety, now)
         active = self._modes.get(safety.mode)
         self._record_trail(safety)
@@ -203,12 +207,12 @@ class Navigator:
             return
         self.desired_motion = self.fence_avoidance.limit_speed(self.desired_motion, now)
         if self.fence_avoidance.is_stuck(now) and self.velocity_target(safety.mode) is None:
-            self.end_reason = "the fence is in the way"
+            self.end_reason = "blocked by the fence"
         throttle, steering = self._controller.step(self.desired_motion, self.estimate, now)
         self.demand = Demand(throttle, steering, now, 0, 0, direct=True)
 
     def acro_demand(self, demand: Demand | None, now: float) -> Demand | None:
-        """ACRO: the driver's steering is a turn rate, which the gyro holds; throttle stays as it is in MANUAL."""
+        """Return the demand of ACRO: steering is a turn rate, held by the gyro; throttle is as in MANUAL."""
         if demand is None:
             return None
         throttle, steering, sideways = shape_demand(demand, self._params)
@@ -220,11 +224,11 @@ class Navigator:
         return demand._replace(throttle=throttle, steering=steering, sideways=sideways, direct=True)
 
     def reset_controller(self) -> None:
-        """The motors may not follow: ramps and integrals begin anew."""
+        """Reset the controllers' ramps and integrals: the motors may not follow them."""
         self._controller.reset()
 
     def restart_mode(self, safety: Safety, now: float) -> None:
-        """After a choice, an arming or an end nothing of before goes on; what was asked later does."""
+        """Begin the mode anew after a mode choice, an arming or a stop; later requests are kept."""
         if safety.mode_generation == self._mode_generation:
             return
         self._mode_generation = safety.mode_generation
@@ -243,7 +247,7 @@ class Navigator:
             return STATIONARY
         wanted = active.step(self.estimate, self.cruise_speed(), now)
         if isinstance(wanted, ModeFinished):
-            self.end_reason = self.end_reason or wanted.reason  # a last item may have said why by itself
+            self.end_reason = self.end_reason or wanted.reason  # the last item may have set a reason itself
             return None
         return wanted
 
@@ -252,7 +256,7 @@ class Navigator:
             self._trail.add(self.estimate.place)
 
     def _run_do_item(self, item: MissionItem) -> None:
-        """What a DO item of a mission says; its values have passed the rules of vehicle/autonomy/mission/rules.py."""
+        """Run a DO item of a mission; its values have passed vehicle/autonomy/mission/rules.py."""
         first, second = item.params[:2]
         if item.command == Command.DO_CHANGE_SPEED:
             if second >= 0.0:

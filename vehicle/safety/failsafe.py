@@ -1,4 +1,4 @@
-"""Failsafes: a table of conditions, each with the actions that follow and their delays. The worst action wins.
+"""Failsafe rules: a table of conditions and the actions that follow. The worst action wins.
 
 To add a failsafe, write its condition function and its row in RULES, and a test. A condition that ground stations shall
 see under a name of its own also needs a bit: ROVER_FAILSAFE in dialects/rover.xml and Failsafe in dialects/enums.py.
@@ -188,7 +188,7 @@ RULES: dict[Failsafe, FailsafeRule] = {
         "ground station lost", _gcs_lost, (_HOLD, FailsafeStep(60, FailsafeAction.DISARM)),
         help="no message at all from the ground station in control for FS_GCS_TIMEOUT 5 s"),
     Failsafe.OPERATOR: FailsafeRule(
-        "no sign of the operator", _operator_inactive, _DEMAND_LOST,
+        "no operator input", _operator_inactive, _DEMAND_LOST,
         help="demands continue, but no key or stick event for OPR_TIMEOUT 10 s"),
     Failsafe.BATTERY_LOW: FailsafeRule(
         "battery low", _battery_low,
@@ -205,7 +205,7 @@ RULES: dict[Failsafe, FailsafeRule] = {
         "position lost", _position_lost, (_STOP, FailsafeStep(1, FailsafeAction.HOLD)), timed_while_disarmed=True,
         help="the mode depends on the position, and no fix for 3 s or an error above 5 m"),
     Failsafe.FENCE: FailsafeRule(
-        "beyond the fence", _fence_breached,
+        "outside the fence", _fence_breached,
         (FailsafeStep(0, FailsafeAction.WARN),
          FailsafeStep(0, FailsafeAction.RTL, only_if="FENCE_ACTION", value=1),
          FailsafeStep(0, FailsafeAction.HOLD, only_if="FENCE_ACTION", value=2)), timed_while_disarmed=True,

@@ -1,4 +1,4 @@
-"""The facts that the failsafe conditions of vehicle/safety/failsafe.py are evaluated on, collected once a cycle."""
+"""The facts that the failsafe conditions evaluate, collected once a cycle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which failsafe conditions hold, and how far their steps (vehicle/safety/failsafe.py, RULES) have come."""
+"""Which failsafe conditions hold, and which steps of vehicle/safety/failsafe.py were taken."""
 
 from __future__ import annotations
 
@@ -43,7 +43,10 @@ class Failsafes:
         self._done: dict[Failsafe, tuple[FailsafeStep, ...]] = {}
 
     def check(self, inputs: FailsafeInputs, now: float, *, armed: bool) -> list[TriggeredStep]:
-        """Evaluate the conditions of RULES; return the steps reached since the last call. Disarmed, none is reached."""
+        """Evaluate the conditions of RULES and return the steps reached since the last call.
+
+        Disarmed, no step is reached.
+        """
         found = {
             cause: rule.condition(inputs, now) for cause, rule in RULES.items() if armed or rule.timed_while_disarmed
         }
@@ -51,9 +54,9 @@ class Failsafes:
         return self.update(self._began if armed else {}, now)
 
     def update(self, conditions: Mapping[Failsafe, float], now: float) -> list[TriggeredStep]:
-        """Set the conditions that hold, each with the time when it began; return the steps reached since the last call.
+        """Set the conditions that hold and return the steps reached since the last call.
 
-        The earliest time given while a condition lasts counts.
+        `conditions` has the time when each began; the earliest time given while a condition lasts counts.
         """
         if not conditions and not self._since:  # nearly always
             return []
@@ -64,7 +67,7 @@ class Failsafes:
         return taken
 
     def lasting_action(self, now: float) -> FailsafeAction:
-        """Return the worst action up to NEUTRAL that holds now. HOLD and DISARM are kept by the mode and the state."""
+        """Return the worst action up to NEUTRAL that holds now; mode and state keep HOLD and DISARM."""
         if not self._since:  # nearly always
             return FailsafeAction.WARN
         lasting = [self._lasting(cause, now) for cause in self._since]

@@ -78,7 +78,7 @@ class DiskFolder(ReadOnlyFolder):
         self._worker.close(CLOSE_TIMEOUT)
 
     def fetch(self, name: str, offset: int, size: int, receive: Callable[[bytes], None]) -> bool:
-        """Queue a read; `receive` gets the bytes in the thread, none on an error. Returns False if the queue is full."""
+        """Queue a read; the thread calls `receive`, without bytes on an error. Returns False if the queue is full."""
         return self._worker.submit(lambda: receive(self._read(name, offset, size)))
 
     def _serves(self, name: str) -> bool:

@@ -10,14 +10,14 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 from textual.widgets import Static
 
-from groundstation.input.keymap import CONFIRM_KEY, Keymap, OperatorAction
-from groundstation.intents import AnyIntent, StartSimulator
+from groundstation.input.keymap import CONFIRM_KEY, Keymap
+from groundstation.intents import AnyIntent, OperatorAction, StartSimulator
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.alerts import AlertContext, active_alerts
 from groundstation.ui.colours import BLUE, GREEN
 from groundstation.ui.key_gate import GateClosure
+from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.keynames import format_key
-from groundstation.ui.terminal import KeyRepeat
 from groundstation.ui.widgets.alert import AlertLine
 from groundstation.ui.widgets.chart import Chart, Series
 from groundstation.ui.widgets.footer import KeyFooter

@@ -11,7 +11,8 @@ from textual.content import Content
 from textual.screen import Screen
 from textual.widgets import Static
 
-from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, Keymap
+from groundstation.input.keymap import CONFIRM_KEY, Keymap
+from groundstation.intents import ACTIONS
 from groundstation.ui.colours import BLUE, DIM, RED, YELLOW
 from groundstation.ui.keynames import format_key
 

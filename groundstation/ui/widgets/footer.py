@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from textual.strip import Strip
 
-from groundstation.input.keymap import ACTIONS, Keymap
+from groundstation.input.keymap import Keymap
+from groundstation.intents import ACTIONS
 from groundstation.ui.colours import DIM, PANEL, RED, TEXT, YELLOW, style
 from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip

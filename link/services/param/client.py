@@ -70,14 +70,27 @@ class _Asked:
 
 
 class ParamClient:
-    """Talks to one vehicle. `bytewise`: it puts whole numbers into the float's bytes (PX4, and MAVSDK's servers)."""
+    """Talks to one vehicle. `bytewise`: it puts whole numbers into the float's bytes (PX4, and MAVSDK's servers).
+
+    A read or set is sent up to `tries` times, `repeat_after` s apart.
+    """
 
     def __init__(
-        self, system: int, component: int, *, target_system: int, target_component: int = 1, bytewise: bool = False
+        self,
+        system: int,
+        component: int,
+        *,
+        target_system: int,
+        target_component: int = 1,
+        bytewise: bool = False,
+        repeat_after: float = REPEAT_AFTER,
+        tries: int = TRIES,
     ) -> None:
         self._own_system = system
         self._target = (target_system, target_component)
         self._bytewise = bytewise
+        self._repeat_after = repeat_after
+        self._max_tries = tries
         self.params: dict[str, Param] = {}
         """All that is known, by name."""
         self.total: int | None = None
@@ -131,7 +144,7 @@ class ParamClient:
         """Repeat what is overdue, fill holes, give up what was asked enough."""
         for name, asked in list(self._asked.items()):
             if now >= asked.due:
-                if asked.sent >= TRIES:
+                if asked.sent >= self._max_tries:
                     self._finish(name)
                 else:
                     self._ask(name, asked, now)
@@ -213,4 +226,4 @@ class ParamClient:
             value = to_wire(asked.wanted, kind, bytewise=self._bytewise)
             self._outbox.append(Outgoing(m.ParamSet(*self._target, encoded, value, kind)))
         asked.sent += 1
-        asked.due = now + REPEAT_AFTER
+        asked.due = now + self._repeat_after

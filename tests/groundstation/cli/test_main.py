@@ -54,6 +54,8 @@ def in_terminal(
         (["--keys", "emacs"], "unknown key map 'emacs': choose standard, teleop"),
         (["--keys", "/nowhere/keys.toml"], "No such file"),
         (["udpin:127.0.0.1:14999"], "is not a terminal"),
+        (["drive"], "'drive' is not an endpoint such as udpin:127.0.0.1:14550 (groundstation --help lists them)"),
+        (["help"], "groundstation --help"),
     ],
 )
 def test_mistakes_are_one_line(capsys: pytest.CaptureFixture[str], arguments: list[str], words: str) -> None:
@@ -64,6 +66,10 @@ def test_mistakes_are_one_line(capsys: pytest.CaptureFixture[str], arguments: li
     ("arguments", "words"),
     [
         (["--fly"], "unrecognized arguments: --fly"),
+        (["--stil"], "unrecognized arguments: --stil: did you mean --sitl?"),
+        (["--master", "udp:127.0.0.1:14550"], "--master: write the endpoint without an option, e.g. udpin:"),
+        (["--master=udp:127.0.0.1:14550"], "write the endpoint without an option, e.g. udpin:"),
+        (["--baud", "57600"], "write serial:PATH:BAUD"),
         (["--style", "wild"], "invalid choice: 'wild'"),
         (["--speed", "2"], "'2' is not a number from 0.1 to 1.0"),
         (["--speed", "nan"], "'nan' is not a number from 0.1 to 1.0"),

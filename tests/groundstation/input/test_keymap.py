@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, KEYMAPS, KeyEvent, Keymap
+from groundstation.input.keymap import CONFIRM_KEY, KEYMAPS, KeyEvent, Keymap
 from groundstation.intents import (
+    ACTIONS,
     AnyIntent,
     Disarm,
     DriveKeyDown,

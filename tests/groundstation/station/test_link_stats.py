@@ -81,3 +81,9 @@ def test_problems_in_words(changes: dict[str, Any], words: str) -> None:
     problem = book.build_views(None)[0].problem
     assert problem is not None
     assert words in problem
+
+
+def test_a_radio_that_is_full_makes_less_of_the_capacity() -> None:
+    book = LinkStats()
+    book.update([LinkReport("serial:/dev/ttyUSB0:57600", 0, capacity=5760.0, headroom=0.5)], None, 100.0)
+    assert (book.capacity(0), book.capacity(1)) == (2880.0, None)

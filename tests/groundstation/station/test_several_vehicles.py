@@ -98,7 +98,7 @@ def convoy(request: pytest.FixtureRequest) -> Convoy:
     """Both heard, the first one armed and driven."""
     convoy = Convoy(radio=request.param)
     convoy.run(2.0)
-    assert convoy.snapshot.vehicles == (1, 2)
+    assert convoy.station.fleet.system_ids == (1, 2)
     assert convoy.view.system == 1
     convoy.do(Arm())
     convoy.run(1.5)
@@ -180,13 +180,13 @@ def test_a_vehicle_that_is_silent_does_not_take_the_selection_along(convoy: Conv
     convoy.do(SelectVehicle(system=9))
     convoy.run(0.1)
     assert convoy.view.system == 1
-    assert "there is no vehicle 9" in [line.text for line in convoy.snapshot.texts]
+    assert "no vehicle with system id 9" in [line.text for line in convoy.snapshot.texts]
 
 
 def test_alone_there_is_no_next_one() -> None:
     station = Station(["memory"])
     station.handle_intent(SelectNextVehicle(), 1.0)
-    assert [line.text for line in station.snapshot(1.0, 1.0).texts] == ["there is no other vehicle"]
+    assert [line.text for line in station.snapshot(1.0, 1.0).texts] == ["no other vehicle"]
 
 
 def test_answers_of_one_vehicle_are_not_those_of_the_other(convoy: Convoy) -> None:

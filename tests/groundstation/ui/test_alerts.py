@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from groundstation.input.keymap import ACTIONS
+from groundstation.intents import ACTIONS
 from groundstation.snapshot import LinkView, Snapshot
 from groundstation.ui.alerts import LIMITS, AlertContext, AlertLevel, active_alerts
 from groundstation.ui.key_gate import GateClosure
@@ -50,7 +50,7 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     (snapshot(links=(PROBLEM,)), {}, AlertLevel.WARNING, "udp: messages arrive with another"),
     (snapshot(operator=helm(style="latch")), {}, AlertLevel.WARNING, "drives on by itself: k or SPACE stops"),
     (
-        snapshot(operator=helm(gate_open=False, gate_reason="the screen was frozen")),
+        snapshot(operator=helm(gate_open=False, gate_reason="screen was frozen")),
         {},
         AlertLevel.WARNING,
         "was frozen",

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from groundstation.input.keymap import ACTIONS
 from groundstation.intents import (
+    ACTIONS,
     Arm,
     ClearEmergencyStop,
     Disarm,
@@ -21,8 +21,8 @@ from groundstation.intents import (
 )
 from groundstation.snapshot import LinkView
 from groundstation.ui.key_gate import GateLevel
+from groundstation.ui.key_parser import KeyEventParser
 from groundstation.ui.screens.help import HelpScreen
-from groundstation.ui.terminal import KeyEventParser
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until

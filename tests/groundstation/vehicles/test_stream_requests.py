@@ -6,7 +6,6 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, DataStream, Result
-from groundstation.station.link_stats import LinkStats
 from groundstation.vehicles.stream_requests import (
     CAPACITY_SHARE,
     FRAME,
@@ -15,7 +14,6 @@ from groundstation.vehicles.stream_requests import (
     StreamRequests,
     stream_rate,
 )
-from link.core import LinkReport
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 
@@ -127,29 +125,6 @@ def test_it_is_asked_again_when_it_was_lost_and_is_back() -> None:
     assert vehicle.rates[m.Attitude.id] == 10.0
 
 
-def test_nobody_is_asked_while_lost() -> None:
-    vehicle = FakeArduPilot()
-    vehicle.silent_on.add(INTERVAL)
-    cockpit = Cockpit(vehicle)
-    cockpit.run(1.0)
-    cockpit.world.cut()
-    cockpit.run(3.0)
-    assert not cockpit.view.alive
-    lost = cockpit.now
-    cockpit.run(10.0)
-    asked = (m.RequestDataStream, m.ParamRequestRead, m.CommandLong)
-    assert [message for at, message in cockpit.world.near.sent if at > lost and isinstance(message, asked)] == []
-
-
-def test_nobody_is_asked_while_the_screen_is_frozen() -> None:
-    vehicle = FakeArduPilot()
-    vehicle.silent_on.add(INTERVAL)
-    cockpit = Cockpit(vehicle)
-    cockpit.leasing = False
-    cockpit.run(5.0)
-    assert len(vehicle.all(m.RequestDataStream)) == 0
-
-
 def test_a_clock_that_starts_anew_is_a_reboot() -> None:
     requests = StreamRequests((1, 1), 0.0)
     while requests.next_message(Autopilot.ARDUPILOT, 1.0) is not None:
@@ -178,17 +153,3 @@ def test_a_slow_link_gets_less_and_a_usual_one_everything() -> None:
     assert stream_rate(m.Attitude.id, 5760.0) == 10.0
     assert stream_rate(m.Attitude.id, None) == 10.0
     assert stream_rate(m.GpsRawInt.id, 1.0) == 0.1
-
-
-def test_the_capacity_is_that_of_the_vehicles_link() -> None:
-    vehicle = FakeArduPilot()
-    cockpit = Cockpit(vehicle)
-    cockpit.world.near.channel._capacity = 960.0
-    cockpit.run(2.0)
-    assert asked(vehicle)[m.Attitude.id] == pytest.approx(10 * CAPACITY_SHARE * 960 / LOAD, rel=0.01)
-
-
-def test_a_radio_that_is_full_makes_less_of_the_capacity() -> None:
-    book = LinkStats()
-    book.update([LinkReport("serial:/dev/ttyUSB0:57600", 0, capacity=5760.0, headroom=0.5)], None, 100.0)
-    assert (book.capacity(0), book.capacity(1)) == (2880.0, None)

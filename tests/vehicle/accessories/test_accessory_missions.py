@@ -84,7 +84,7 @@ def test_what_stands_before_a_place_that_is_refused_does_not_act() -> None:
     field.until(Point(2, 0), 30.0, 1.0)
     finish(field, 30.0)
     field.wait(0.5)
-    assert said(field, "AUTO: item 2: it lies beyond the fence: HOLD")
+    assert said(field, "AUTO: item 2: outside the fence: HOLD")
     assert field.relays[0] == 0
 
 
@@ -92,7 +92,7 @@ def test_jumps_in_a_circle_wear_no_relay_out() -> None:
     field = ready(do(Command.DO_REPEAT_RELAY, 0, 1, 1), do(Command.DO_JUMP, 0, -1))
     start(field)
     field.wait(0.5)
-    assert said(field, "jumps go in a circle")
+    assert said(field, "endless loop of DO_JUMP")
     assert field.relays[0] == 0
     assert not field.all(m.MissionItemReached)
 

@@ -122,7 +122,7 @@ class TestHoming:
         field.command(Command.COMPONENT_ARM_DISARM, 0)
         field.arm()
         assert field.mode is mode
-        assert said(field, f"Stands until {mode.name} is chosen again")
+        assert said(field, f"Choose {mode.name} again to start")
         assert field.stands_for(3.0)
 
     def test_a_loop_is_no_part_of_the_trail_and_a_long_one_gets_coarser(self) -> None:

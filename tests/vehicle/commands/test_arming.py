@@ -68,7 +68,7 @@ class TestArming:
         bench.readings = Readings()
         bench.wait(5.5)
         assert bench.arm() is Result.FAILED
-        assert said(bench, "PreArm: battery sensor is silent")
+        assert said(bench, "PreArm: no data from the battery sensor")
 
     def test_a_stick_that_is_held_blocks(self) -> None:
         bench = Bench()

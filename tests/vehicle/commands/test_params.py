@@ -225,7 +225,7 @@ def test_no_command_puts_in_force_what_the_file_denies(fence: int) -> None:
     bench, _ = bench_with(params)
     bench.heartbeat()
     assert bench.command(Command.DO_FENCE_ENABLE, 1 - fence) is Result.FAILED
-    assert said(bench, f"DO_FENCE_ENABLE refused: the file of settings has FENCE_ENABLE {fence}")
+    assert said(bench, f"DO_FENCE_ENABLE refused: the configuration file sets FENCE_ENABLE {fence}")
     assert bench.command(Command.DO_FENCE_ENABLE, fence) is Result.ACCEPTED
     assert params["FENCE_ENABLE"] == fence
 
@@ -236,7 +236,7 @@ def test_64_after_damage_nobody_arms_until_somebody_sees_to_it() -> None:
     bench, memory = bench_with(params)
     assert bench.arm() is Result.FAILED
     bench.wait(0.1)
-    assert said(bench, "PreArm: parameter file damaged, defaults in force; set one to go on")
+    assert said(bench, "PreArm: parameter file damaged, using defaults; set one to continue")
     assert bench.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.FAILED  # not even by force
     set_(bench, "MAN_TIMEOUT", 9.0)
     assert bench.arm() is Result.FAILED

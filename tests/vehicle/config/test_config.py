@@ -71,9 +71,9 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
             "zebra: unknown key; there are endpoints, state, identity, motors, accessories, sensors, params, log",
         ),
         ("a =", "Invalid value (at end of document)"),
-        ("[params]\n\n[params]", "[params] is there already, and again at line 3; put its lines below the first one"),
-        ("[motors.safety]\n[motors.safety]", "[motors.safety] is there already, and again at line 2; put"),
-        ("state = 'a'\nstate = 'b'\n", "a key that is set already, at line 2, column 12; leave one out"),
+        ("[params]\n\n[params]", "[params] exists already, and again at line 3; move its lines below the first one"),
+        ("[motors.safety]\n[motors.safety]", "[motors.safety] exists already, and again at line 2; move"),
+        ("state = 'a'\nstate = 'b'\n", "the key is set already, at line 2, column 12; remove one of them"),
         ('endpoints = "x"', 'endpoints: must be a list in [brackets], not text in "quotes"'),
         ('endpoints = ["udpin:1.2.3.4:5", "udpot:1:2"]', "endpoints[1]: endpoint 'udpot:1:2': did you mean udpout:?"),
         ("state = true", 'state: must be text in "quotes", not true or false'),
@@ -113,13 +113,13 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ("[params]\nMOT1_MIN = 60\nMOT1_MAX = 60", "params: MOT1_MIN 60 must be smaller than MOT1_MAX 60"),
         ("[params]\nMOT2_MAX = 30\nMOT2_MIN = 40", "params: MOT2_MIN 40 must be smaller than MOT2_MAX 30"),
         ('[motors]\ndriver = "article-car"\n[params]\nMOT1_MIN = 70', "params: MOT1_MIN 70 must be smaller than MOT1"),
-        (f"[params]\nMAN_TIMEOUT = {10**400}", "params.MAN_TIMEOUT: a number too large to be meant"),
-        (f"[params]\nMAN_TIMEOUT = {'1' * 5000}", "a number of thousands of digits, which nothing takes"),
-        ("x = " + "[" * 5000 + "]" * 5000, "brackets in brackets, or tables in tables"),
-        ("a" + ".a" * 3000 + " = 1", "brackets in brackets, or tables in tables, too deep to be meant"),
-        ("x = " + "[" * 40 + "]" * 40, "brackets in brackets, or tables in tables, too deep to be meant"),
-        ('[log]\nfile = "a\\u0000b"', "log.file: holds the character NUL; leave it out"),
-        ('endpoints = ["udpin:0.0.0.0:1", "serial:/dev/\\u0000:9600"]', "endpoints[1]: holds the character NUL"),
+        (f"[params]\nMAN_TIMEOUT = {10**400}", "params.MAN_TIMEOUT: the number is too large"),
+        (f"[params]\nMAN_TIMEOUT = {'1' * 5000}", "a number with thousands of digits"),
+        ("x = " + "[" * 5000 + "]" * 5000, "lists or tables are nested too deep"),
+        ("a" + ".a" * 3000 + " = 1", "lists or tables are nested too deep"),
+        ("x = " + "[" * 40 + "]" * 40, "lists or tables are nested too deep"),
+        ('[log]\nfile = "a\\u0000b"', "log.file: contains the character NUL; remove it"),
+        ('endpoints = ["udpin:0.0.0.0:1", "serial:/dev/\\u0000:9600"]', "endpoints[1]: contains the character NUL"),
         ("[sensors.encoders]\nwheels = [{ a = 5, b = 6 }]\ndiameter = inf", "sensors.encoders.diameter: must be at "),
         ('[params]\nMAN_TIMEOUT = "1"', "params.MAN_TIMEOUT: must be a number"),
         ("[params]\nMAN_TIMEOUT = true", "params.MAN_TIMEOUT: must be a number"),
@@ -145,10 +145,10 @@ def test_a_file_that_is_not_there_teaches(tmp_path: Path) -> None:
         load(tmp_path / "rover.toml")
     with pytest.raises(ConfigError, match=r"aaa: File name too long$"):
         load("a" * 300)
-    with pytest.raises(ConfigError, match="is a folder; name a file in it"):
+    with pytest.raises(ConfigError, match="is a directory; name a file in it"):
         load(tmp_path)
     (tmp_path / "noise").write_bytes(b"\xff\xfe")
-    with pytest.raises(ConfigError, match="byte 1 is no text in UTF-8; save the file as UTF-8, or name another one"):
+    with pytest.raises(ConfigError, match="byte 1 is not UTF-8 text; save the file as UTF-8, or name another one"):
         load(tmp_path / "noise")
 
 

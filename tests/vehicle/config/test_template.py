@@ -112,7 +112,7 @@ def test_the_schema_knows_every_key_with_its_help() -> None:
     assert own["properties"]["driver"]["pattern"] == ":"
     roboclaw = drivers[list(DRIVERS).index("roboclaw")]
     assert roboclaw["required"] == ["driver", "port"]
-    assert roboclaw["properties"]["timeout"]["description"].startswith("s of silence until the controller stops")
+    assert roboclaw["properties"]["timeout"]["description"].startswith("s without a frame until the controller stops")
     assert set(whole["properties"]["params"]["properties"]) == {parameter.name for parameter in TABLE}
     assert said_by("schema") == (0, build_schema(), "")
 

@@ -45,7 +45,7 @@ def test_32_of_another_ground_station_is_ignored_counted_and_said_once() -> None
         bench.wait(0.1, AHEAD)
         bench.stick(Axes(throttle=-1.0), system=OTHER)
     assert bench.throttles == (1.0, 1.0)
-    assert bench.texts == [f"Demand of GCS {OTHER} ignored: GCS {DRIVER} is in control"]
+    assert bench.texts == [f"Demand from GCS {OTHER} ignored: GCS {DRIVER} is in control"]
 
 
 def test_a_peer_that_has_shown_no_heartbeat_is_ignored() -> None:
@@ -74,7 +74,7 @@ def test_34_an_axis_out_of_range_is_neutral_and_not_clamped(wild: int) -> None:
         bench.say(axes(x=wild, r=0))
         bench.wait(0.04)
     assert not bench.turning
-    assert bench.texts.count(f"GCS {DRIVER}: axes out of -1000..1000 count as neutral") == 1
+    assert bench.texts.count(f"GCS {DRIVER}: axes outside -1000..1000 count as neutral") == 1
 
 
 def test_axes_that_are_right_or_off_need_no_word() -> None:
@@ -83,7 +83,7 @@ def test_axes_that_are_right_or_off_need_no_word() -> None:
     for x in (1000, -1000, m.INVALID_AXIS):
         bench.say(axes(x=x, r=m.INVALID_AXIS))
         bench.wait(0.04)
-    assert not said(bench, "axes out of")
+    assert not said(bench, "axes outside")
 
 
 def test_y_moves_a_vehicle_sideways_that_can() -> None:

@@ -34,7 +34,7 @@ def test_demands_that_are_old_when_they_arrive_are_refused() -> None:
     bench = going()
     drive(bench, 1.2, AHEAD, delay=0.6)
     assert not bench.turning
-    assert said(bench, "they are old when they arrive")
+    assert said(bench, "older than OPR_ECHO_MAX on arrival")
 
 
 def test_a_stop_is_obeyed_however_old() -> None:
@@ -78,7 +78,7 @@ def test_a_key_that_nobody_touches_stops_after_the_timeout() -> None:
     assert bench.turning
     drive(bench, 0.5, AHEAD, age=10_200)
     assert not bench.turning
-    assert said(bench, "no sign of the operator: stopping")
+    assert said(bench, "no operator input: stopping")
     drive(bench, 2.0, AHEAD, age=12_000)
     assert bench.mode is Mode.HOLD
 

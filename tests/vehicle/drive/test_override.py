@@ -91,10 +91,10 @@ def test_a_channel_that_moves_does_not_live_on_the_other_ones_repeats() -> None:
 def test_42_what_is_no_pulse_is_ignored(pulse: int) -> None:
     bench = armed()
     repeat(bench, 0.2, chan3=1500)
-    assert not said(bench, "channels out of")
+    assert not said(bench, "channels outside")
     repeat(bench, chan3=pulse)
     assert not bench.turning
-    assert bench.texts.count(f"GCS {DRIVER}: channels out of 800..2200 us are ignored") == 1
+    assert bench.texts.count(f"GCS {DRIVER}: channels outside 800..2200 us are ignored") == 1
 
 
 def test_42_channels_9_to_18_ignore_zero_and_give_back_65534() -> None:

@@ -125,4 +125,4 @@ def test_an_owner_that_is_silent_while_disarmed_is_free_again() -> None:
     ask(bench, DRIVER)
     bench.wait(5.5)
     assert bench.newest(m.ControlStatus).gcs_main == 0
-    assert said(bench, "Nobody is in control")
+    assert said(bench, "No GCS is in control")

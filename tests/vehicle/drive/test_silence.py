@@ -209,4 +209,4 @@ class TestGroundStationLoss:
         bench.wait(1.2)
         assert bench.newest(m.RoverFailsafeStatus).active == 0
         assert bench.mode is Mode.HOLD
-        assert said(bench, "Failsafe over: ground station lost")
+        assert said(bench, "Failsafe cleared: ground station lost")

@@ -187,7 +187,7 @@ def test_a_contact_that_cannot_be_read_is_open(monkeypatch: pytest.MonkeyPatch) 
     def broken() -> bool:
         raise MotorError("emergency stop: Input/output error")
 
-    monkeypatch.setattr(car.pins, "_open", broken)
+    monkeypatch.setattr(car.pins, "_is_open", broken)
     car.cycle()
     assert not car.rolling
     assert state(car) is states.SafetyState.ESTOP

@@ -7,6 +7,7 @@ import pytest
 from gpiozero import Device
 from gpiozero.exc import PinUnknownPi
 from gpiozero.pins.mock import MockFactory, MockPWMPin
+from msgspec.structs import astuple
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
 from vehicle.drive.demand import Demand
@@ -33,7 +34,7 @@ def factory() -> Iterator[MockFactory]:
 
 def output(factory: MockFactory, bridge: TwoInputs | PhaseEnable) -> float:
     """What a motor at this bridge gets."""
-    first, second = (float(factory.pin(pin).state) for pin in bridge.pins)
+    first, second = (float(factory.pin(pin).state) for pin in astuple(bridge))
     if isinstance(bridge, TwoInputs):
         assert first == 0.0 or second == 0.0, "both inputs of a bridge are high"
         return first - second

@@ -26,7 +26,7 @@ from vehicle.motors import MotorError, Motors, MotorSettingsError, arming_check
 from vehicle.motors.drivers import open_motors, safe_stop
 from vehicle.motors.roboclaw import RoboClawMotors, RoboClawSettings
 from vehicle.motors.sabertooth import SabertoothMotors, SabertoothSettings
-from vehicle.motors.serial_controller import tenths
+from vehicle.motors.serial_controller import SerialController
 from vehicle.sensors import NoSensors
 
 MARGIN = 0.25
@@ -208,7 +208,7 @@ class TestRoboClaw(SerialContract):
     def test_it_does_not_enable_with_another_timeout_than_it_set(self, line: OnPty, kept: float) -> None:
         line.controller.longest_timeout = kept
         motors = RoboClawMotors(RoboClawSettings(port=line.path))
-        with pytest.raises(MotorError, match=rf"its serial timeout is {kept:g} s and not 0.3 s"):
+        with pytest.raises(MotorError, match=rf"its serial timeout is {kept:g} s, not 0.3 s"):
             motors.enable()
         motors.set((1.0, 1.0))
         motors.disable()
@@ -221,7 +221,7 @@ class TestRoboClaw(SerialContract):
         assert line.controller.timeout == 0.5
         assert line.controller.outputs == [0.0, 0.0]
         line.controller.longest_timeout = 0.1
-        with pytest.raises(MotorError, match=r"its serial timeout is 0.1 s and not 0.5 s"):
+        with pytest.raises(MotorError, match=r"its serial timeout is 0.1 s, not 0.5 s"):
             arming_check(motors)()
 
     def test_a_damaged_reply_is_asked_for_again(self, line: OnPty) -> None:
@@ -230,14 +230,14 @@ class TestRoboClaw(SerialContract):
         motors.enable()
         motors.disable()
         line.controller.garbled = 3
-        with pytest.raises(MotorError, match="a bad reply"):
+        with pytest.raises(MotorError, match="invalid reply"):
             motors.enable()
 
     def test_it_tells_its_version(self, line: OnPty) -> None:
         motors = RoboClawMotors(RoboClawSettings(port=line.path))
         assert motors.version() == "USB Roboclaw 2x7a v4.2.8"
         line.controller.mute = True
-        with pytest.raises(MotorError, match="a bad reply, none"):
+        with pytest.raises(MotorError, match="invalid reply, none"):
             motors.version()
 
     def test_no_reply_at_start_is_said_with_what_to_look_at(self, line: OnPty) -> None:
@@ -304,7 +304,8 @@ class TestRoboClaw(SerialContract):
         assert says in str(caught.value)
 
     def test_a_timeout_between_two_steps_is_rounded_to_the_safe_side(self) -> None:
-        assert [tenths(value) for value in (0.1, 0.29, 0.3, 0.5)] == [1, 2, 3, 5]
+        controllers = [SerialController("", "", 9600, value, time.monotonic) for value in (0.1, 0.29, 0.3, 0.5)]
+        assert [each.timeout_tenths for each in controllers] == [1, 2, 3, 5]
 
 
 class TestSabertooth(SerialContract):

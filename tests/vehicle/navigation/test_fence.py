@@ -47,7 +47,7 @@ class TestFence:
         field.wait(3.0, AHEAD)
         assert field.mode is Mode.HOLD
         assert 4.4 < field.truth.north < 7.5
-        assert said(field, "beyond the fence: HOLD")
+        assert said(field, "outside the fence: HOLD")
         assert field.set_mode(Mode.LOITER) is Result.FAILED
         assert field.set_mode(Mode.MANUAL) is Result.ACCEPTED
         field.wait(0.2, NEUTRAL)
@@ -68,7 +68,7 @@ class TestFence:
         field.set_mode(Mode.GUIDED)
         field.goto(10.0, 0.0)
         field.wait(0.5)
-        assert said(field, "beyond the fence")
+        assert said(field, "outside the fence")
         assert field.stands_for(1.0)
 
     def test_it_stays_on_and_as_it_is_while_armed(self) -> None:
@@ -110,7 +110,7 @@ class TestFence:
 
 class TestReturnPoint:
     POINT: Item = (FenceItem.RETURN_POINT, Point(1.0, 1.0), ())
-    WORDS = "return point kept but not driven to"
+    WORDS = "return point stored but not used"
 
     def test_it_is_kept_given_back_and_told_of_and_a_breach_holds_all_the_same(self) -> None:
         field = Field(FENCE_ENABLE=1, FENCE_TYPE=4)

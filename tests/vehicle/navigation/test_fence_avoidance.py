@@ -103,7 +103,7 @@ def test_where_it_is_turned_off_it_drives_on(params: dict[str, float]) -> None:
     field.begin(Mode.GUIDED)
     field.stream(12.0, 0.8)
     assert field.truth.north > 5.0
-    assert said(field, "beyond the fence")
+    assert said(field, "outside the fence")
 
 
 @pytest.mark.parametrize(("margin", "north"), [(0, 5.0), (2, 3.0)])
@@ -120,19 +120,19 @@ def test_a_driver_is_not_held_back() -> None:
     field.wait(0.2, NEUTRAL)
     field.wait(6.0, AHEAD)
     assert field.truth.north > 4.8
-    assert said(field, "beyond the fence: HOLD")
+    assert said(field, "outside the fence: HOLD")
 
 
 @pytest.mark.parametrize(
     ("place", "why"),
-    [(Point(8, 0), "it lies beyond the fence"), (Point(5.5, 0), "nearer to the fence than FENCE_MARGIN")],
+    [(Point(8, 0), "outside the fence"), (Point(5.5, 0), "closer to the fence than FENCE_MARGIN")],
 )
 def test_no_place_there_is_driven_to(place: Point, why: str) -> None:
     field = fenced(SHAPES["inclusion circle"])
     field.begin(Mode.GUIDED)
     assert field.reposition(place) is Result.FAILED
     field.wait(1.0)
-    assert said(field, "DO_REPOSITION refused: it lies")
+    assert said(field, "DO_REPOSITION refused: ")
     assert said(field, why)
     field.goto(*place)
     field.wait(1.0)
@@ -145,7 +145,7 @@ def test_a_mission_ends_before_an_item_that_lies_beyond() -> None:
     field = ready(way(3, 0), way(3, 3), way(20, 0), FENCE_ENABLE=1, FENCE_TYPE=2, FENCE_RADIUS=8)
     start(field)
     finish(field, 60.0)
-    assert said(field, "AUTO: item 2: it lies beyond the fence: HOLD")
+    assert said(field, "AUTO: item 2: outside the fence: HOLD")
     assert field.truth.distance(Point(3, 3)) < 1.0
     field.wait(1.1)
     told = field.newest(m.MissionCurrent)
@@ -161,7 +161,7 @@ def test_a_way_through_a_forbidden_area_ends_before_it() -> None:
     field.arm()
     start(field)
     finish(field, 60.0)
-    assert said(field, "AUTO: the fence is in the way: HOLD")
+    assert said(field, "AUTO: blocked by the fence: HOLD")
     assert field.truth.north == pytest.approx(EDGE - 1.0, abs=0.6)
 
 

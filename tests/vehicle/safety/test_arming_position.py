@@ -38,7 +38,7 @@ def test_in_a_mode_that_needs_the_position_nobody_arms_without_it() -> None:
     bench.readings = NO_GPS
     bench.wait(GPS_LOST + 1.0)
     assert bench.arm() is Result.FAILED
-    assert said(bench, "PreArm: the mode cannot work: position is not known")
+    assert said(bench, "PreArm: mode not available: position is not known")
     assert bench.command(Command.COMPONENT_ARM_DISARM, 1, FORCE) is Result.FAILED
     assert bench.set_mode(Mode.MANUAL) is Result.ACCEPTED
     assert bench.arm() is Result.ACCEPTED
@@ -63,7 +63,7 @@ def test_a_fence_that_counts_needs_a_position(kind: int) -> None:
     bench = Bench(FENCE_ENABLE=1, FENCE_TYPE=kind)
     bench.wait(1.0)
     assert bench.arm() is Result.FAILED
-    assert said(bench, "PreArm: position is not known, and the fence needs it")
+    assert said(bench, "PreArm: the fence requires a position")
     assert bench.command(Command.COMPONENT_ARM_DISARM, 1, FORCE) is Result.FAILED
     bench.readings = EVERYTHING
     bench.wait(1.0)
@@ -83,7 +83,7 @@ def test_uploaded_areas_need_one() -> None:
     field.blind = {"gps_fix": 0, "latitude": None, "longitude": None}
     field.wait(GPS_LOST + 1.0)
     assert field.arm() is Result.FAILED
-    assert said(field, "PreArm: position is not known, and the fence needs it")
+    assert said(field, "PreArm: the fence requires a position")
     assert field.command(Command.DO_FENCE_ENABLE, 0) is Result.ACCEPTED
     assert field.arm() is Result.ACCEPTED
 
@@ -97,7 +97,7 @@ def test_a_driver_whose_fence_goes_blind_is_told() -> None:
     field.blind = {"gps_fix": 0, "latitude": None, "longitude": None}
     field.wait(GPS_LOST + 1.0, AHEAD)
     assert field.turning
-    assert said(field, "Fence: position is not known, it stops nobody")
+    assert said(field, "Fence not enforced: position is not known")
     field.blind = {}
     field.wait(6.0, AHEAD)
-    assert said(field, "Fence is well again")
+    assert said(field, "Fence OK again")

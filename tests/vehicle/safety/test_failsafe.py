@@ -122,7 +122,7 @@ class TestComputer:
         self.pi(bench)
         bench.wait(6.0, AHEAD)
         assert bench.throttles == (1.0, 1.0)
-        assert said(bench, "Failsafe over: Pi under-voltage or too hot")
+        assert said(bench, "Failsafe cleared: Pi under-voltage or too hot")
 
     def test_a_supply_that_comes_and_goes_is_one_trouble_and_ends_in_hold(self) -> None:
         bench = Bench()

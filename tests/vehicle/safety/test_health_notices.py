@@ -33,7 +33,7 @@ def test_a_sensors_fault_is_told_once_and_so_is_its_end() -> None:
     assert after(bench, NO_CHIP, 60.0) == ["battery sensor: no chip at 0x40"]
     assert bench.newest(m.StatusText).severity == Severity.WARNING
     assert after(bench, EVERYTHING, 4.9) == []
-    assert after(bench, EVERYTHING, 60.0) == ["battery sensor is well again"]
+    assert after(bench, EVERYTHING, 60.0) == ["battery sensor OK again"]
     assert bench.newest(m.StatusText).severity == Severity.INFO
     assert after(bench, NO_CHIP, 1.0) == ["battery sensor: no chip at 0x40"]
 
@@ -56,7 +56,7 @@ def test_each_sensor_has_its_own() -> None:
     bench = Bench()
     both = (SensorFault("battery", "no chip"), SensorFault("gps", "no gpsd"))
     assert after(bench, replace(EVERYTHING, faults=both), 10.0) == ["battery sensor: no chip", "gps sensor: no gpsd"]
-    assert after(bench, replace(EVERYTHING, faults=both[:1]), 10.0) == ["gps sensor is well again"]
+    assert after(bench, replace(EVERYTHING, faults=both[:1]), 10.0) == ["gps sensor OK again"]
 
 
 def test_under_voltage() -> None:
@@ -65,7 +65,7 @@ def test_under_voltage() -> None:
     assert after(bench, pi(under_voltage=True), 10.0) == ["Pi under-voltage"]
     unwatched = replace(EVERYTHING, computer=None)
     assert after(bench, unwatched, 10.0) + after(bench, pi(), 10.0) == []  # nobody knows: not over
-    assert after(bench, pi(under_voltage=False), 10.0) == ["Pi supply is well again"]
+    assert after(bench, pi(under_voltage=False), 10.0) == ["Pi supply OK again"]
 
 
 def test_heat_ends_below_where_it_begins() -> None:
@@ -73,7 +73,7 @@ def test_heat_ends_below_where_it_begins() -> None:
     assert after(bench, pi(85.0), 10.0) == []
     assert after(bench, pi(86.0), 10.0) == ["Pi at 86 C"]
     assert after(bench, pi(82.0), 10.0) == []
-    assert after(bench, pi(79.0), 10.0) == ["Pi temperature is well again"]
+    assert after(bench, pi(79.0), 10.0) == ["Pi temperature OK again"]
     assert after(bench, pi(82.0), 10.0) == []
 
 

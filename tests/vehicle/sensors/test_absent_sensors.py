@@ -30,7 +30,7 @@ def test_a_battery_sensor_that_never_answered_forbids_to_arm(readings: Readings)
     bench = bench_with(readings)
     assert bench.arm() is Result.FAILED
     bench.wait(0.1)
-    assert said(bench, "PreArm: battery sensor is silent")
+    assert said(bench, "PreArm: no data from the battery sensor")
     health = bench.newest(m.SysStatus)
     assert health.onboard_control_sensors_present & Sensor.BATTERY
     assert not health.onboard_control_sensors_health & Sensor.BATTERY

@@ -1,8 +1,8 @@
-"""Which items the three plans of this vehicle may hold. What a mission does is executor.py's, a fence vehicle/navigation/fence.py's.
+"""The items that the mission, fence and rally plans of this vehicle may hold.
 
-To offer another mission command, add a line here and its task or effect there. Plans move servos and relays, which
-vehicle/commands/accessories.py does; one that this vehicle has not is told at the upload, and passed over when its turn
-comes. Motors are nobody's servos: a plan that moves one is refused.
+To support another mission command, add a row here, and its task or effect in vehicle/autonomy/mission/executor.py.
+Items for servos and relays are run by vehicle/commands/accessories.py; an item for an output that this vehicle lacks is
+reported at the upload and skipped when it is due. A plan that moves a motor as a servo is rejected.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from vehicle.navigation.fence import POLYGONS
 DAY = 86400.0
 TURNS_MAX = 1000.0
 SPEED_LOW, SPEED_HIGH = -2.0, 100.0
-"""m/s; -1 and -2 are "no change" and "the usual one"."""
+"""m/s; -1 means "no change", -2 the default speed."""
 RELAY_COMMANDS = (Command.DO_SET_RELAY, Command.DO_REPEAT_RELAY)
 SERVO_COMMANDS = (Command.DO_SET_SERVO, Command.DO_REPEAT_SERVO)
 ACCESSORY_COMMANDS = (*SERVO_COMMANDS, *RELAY_COMMANDS)
 _SERVOS, _RELAYS = (1.0, LARGEST_SERVO), (0.0, LARGEST_RELAY)
 _PULSES = (500.0, 2500.0)
-"""us; what any servo takes. What this one takes is its own matter."""
+"""us; the range of any servo. The limits of a certain servo are checked when it moves."""
 _TIMES, _PERIOD = (1.0, TIMES_MAX), (0.0, PERIOD_MAX)
 CORNERS_MIN = 3
 RADIUS_MAX = 1e5
@@ -63,20 +63,20 @@ FENCE_RULES: dict[int, ItemRule] = {
 RALLY_RULES: dict[int, ItemRule] = {FenceItem.RALLY_POINT: ItemRule(PositionRule.NEEDED)}
 
 
-def _mission_is_sane(items: Items, motors: Collection[int]) -> MissionResult:
-    """Jumps lead somewhere, numbers are whole, and no servo is a motor."""
+def _check_mission(items: Items, motors: Collection[int]) -> MissionResult:
+    """Check that DO_JUMP targets exist, numbers are whole, and no servo is a motor."""
 
     def numbers(*commands: Command) -> list[float]:
         return [item.params[0] for item in items if item.command in commands]
 
-    sane = all(target == int(target) and target < len(items) for target in numbers(Command.DO_JUMP))
-    sane &= all(servo == int(servo) and servo not in motors for servo in numbers(*SERVO_COMMANDS))
-    sane &= all(relay == int(relay) for relay in numbers(*RELAY_COMMANDS))
-    return MissionResult.ACCEPTED if sane else MissionResult.INVALID_PARAM1
+    valid = all(target == int(target) and target < len(items) for target in numbers(Command.DO_JUMP))
+    valid &= all(servo == int(servo) and servo not in motors for servo in numbers(*SERVO_COMMANDS))
+    valid &= all(relay == int(relay) for relay in numbers(*RELAY_COMMANDS))
+    return MissionResult.ACCEPTED if valid else MissionResult.INVALID_PARAM1
 
 
-def _fence_is_sane(items: Items) -> MissionResult:
-    """The corners of one polygon stand together, and each says how many there are. One return point at most."""
+def _check_fence(items: Items) -> MissionResult:
+    """Check that the corners of each polygon are complete, and that there is at most one return point."""
     if sum(item.command == FenceItem.RETURN_POINT for item in items) > 1:
         return MissionResult.INVALID
     index = 0
@@ -92,9 +92,9 @@ def _fence_is_sane(items: Items) -> MissionResult:
 
 
 def plan_rules(motors: Collection[int]) -> dict[MissionType, PlanRules]:
-    """The rules of each plan; `motors` are the servo outputs that motors are at."""
+    """Return the rules of each plan; `motors` are the servo outputs of the motors."""
     return {
-        MissionType.MISSION: PlanRules(MISSION_RULES, check=partial(_mission_is_sane, motors=motors)),
-        MissionType.FENCE: PlanRules(FENCE_RULES, capacity=200, check=_fence_is_sane),
+        MissionType.MISSION: PlanRules(MISSION_RULES, check=partial(_check_mission, motors=motors)),
+        MissionType.FENCE: PlanRules(FENCE_RULES, capacity=200, check=_check_fence),
         MissionType.RALLY: PlanRules(RALLY_RULES, capacity=20),
     }

@@ -1,4 +1,4 @@
-"""LOITER: stays within LOIT_RADIUS of the place where it was chosen, and drives back if the rover was moved away."""
+"""LOITER: stays within LOIT_RADIUS of the place where it was chosen, and returns if moved away."""
 
 from __future__ import annotations
 

@@ -177,7 +177,7 @@ class TestItems:
         start(field)
         field.wait(0.5)
         assert field.mode is Mode.HOLD
-        assert said(field, "jumps go in a circle")
+        assert said(field, "endless loop of DO_JUMP")
 
     def test_a_jump_is_made_as_often_as_it_says(self) -> None:
         field = ready(way(4, 0), way(4, 4), do(Command.DO_JUMP, 0, 2), way(0, 4))
@@ -221,7 +221,7 @@ class TestItems:
         field = ready(do(Command.DO_FENCE_ENABLE, 1), way(5, 0), way(30, 0), FENCE_TYPE=2, FENCE_RADIUS=8)
         start(field)
         finish(field, 60.0)
-        assert said(field, "beyond the fence: HOLD")
+        assert said(field, "outside the fence: HOLD")
         assert field.truth.north < 10.0
 
     def test_it_ends_where_the_file_of_settings_has_no_fence(self) -> None:
@@ -229,7 +229,7 @@ class TestItems:
         field.rover._params.pinned = frozenset({"FENCE_ENABLE"})
         start(field)
         finish(field, 60.0)
-        assert said(field, "AUTO: the file of settings has FENCE_ENABLE 0: HOLD")
+        assert said(field, "AUTO: the configuration file sets FENCE_ENABLE 0: HOLD")
         assert 1.0 < field.truth.north < 5.0
         assert field.rover._params["FENCE_ENABLE"] == 0
 
@@ -238,7 +238,7 @@ class TestItems:
         field.rover._params.pinned = frozenset({"FENCE_ENABLE"})
         start(field)
         finish(field, 60.0)
-        assert said(field, "AUTO: the file of settings has FENCE_ENABLE 0: HOLD")
+        assert said(field, "AUTO: the configuration file sets FENCE_ENABLE 0: HOLD")
 
     def test_unlimited_means_until_somebody_ends_it(self) -> None:
         field = ready((Command.NAV_LOITER_UNLIM, Point(3, 0), ()), way(30, 0))

@@ -25,9 +25,9 @@ class TestRefusals:
             (2, TWIST, "frame 2"),
             (8, TWIST & ~64, "acceleration"),
             (8, TWIST & ~64 | 512, "force"),
-            (8, 0xFFF & ~512, "nothing"),
-            (8, 0xFFF, "nothing"),
-            (1, ONLY_PLACE | 1, "half a position"),
+            (8, 0xFFF & ~512, "no setpoint"),
+            (8, 0xFFF, "no setpoint"),
+            (1, ONLY_PLACE | 1, "incomplete position"),
         ],
     )
     def test_45_what_is_not_offered_is_told_once(self, frame: int, mask: int, why: str) -> None:
@@ -46,7 +46,7 @@ class TestRefusals:
         values: list[Any] = [0, 1, 1, 8, 64 | 128 | 256 | 4, 1.0, 1.0, 0, 0.1, 0.1, 0, 0, 0, 0, 0.1, 0.1]
         values[index] = NAN
         field.say(m.SetPositionTargetLocalNed(*values))
-        assert said(field, "is no number")
+        assert said(field, "is not a number")
         field.wait(0.3)
         assert field.speed > 0.7
 

@@ -1,4 +1,4 @@
-"""The line of positions, and the way from key to motor."""
+"""The thinned line of positions, and degrees as metres."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 
 import pytest
 
-from groundstation.vehicles.latency import LatencyMeter
 from groundstation.vehicles.track import MAX_POINTS, LocalFrame, Track
 
 
@@ -34,28 +33,3 @@ def test_degrees_become_metres_from_the_first_position() -> None:
     north, east = frame.to_local(60.001, 10.001)
     assert north == pytest.approx(111.3, abs=0.1)
     assert east == pytest.approx(111.3 * math.cos(math.radians(60)), abs=0.1)
-
-
-def test_latency_counts_the_first_word_for_a_changed_demand_only() -> None:
-    meter = LatencyMeter()
-    meter.record_sent(7, 1.0)
-    meter.record_applied(6, 1.01, 0.0)
-    assert meter.latest is None
-    meter.record_applied(7, 1.05, 0.03)
-    assert meter.latest == pytest.approx(0.02)
-    meter.record_applied(7, 1.22, 0.0)
-    assert meter.latest == pytest.approx(0.02)
-
-
-def test_a_number_of_the_last_lap_says_nothing() -> None:
-    meter = LatencyMeter()
-    meter.record_sent(7, 1.0)
-    meter.record_applied(7, 20.0, 0.0)
-    assert meter.latest is None
-
-
-def test_the_memory_is_bounded() -> None:
-    meter = LatencyMeter()
-    for number in range(1000):
-        meter.record_sent(number & 0xFF, float(number))
-    assert len(meter._sent) == 64
