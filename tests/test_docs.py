@@ -1,4 +1,4 @@
-"""What the docs say is there: every file, test, parameter and command that they name."""
+"""Every file, test, parameter and command that the docs name exists."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ FOLDERS = ("dialects", "link", "vehicle", "groundstation", "tests", "docs", ".ci
 
 
 def quoted(text: str) -> list[str]:
-    """What stands between backticks, outside code blocks."""
+    """Return the texts between backticks, outside code blocks."""
     return re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
 
 
 def functions(path: Path) -> set[str]:
-    """Names of the functions in a test file."""
+    """Return the names of the functions in a test file."""
     return {
         node.name
         for node in ast.walk(ast.parse(path.read_text()))
@@ -59,11 +59,11 @@ def test_parameters_in_the_safety_document_have_their_defaults() -> None:
 
 
 COMMANDS = re.compile(r"(?:^|\s|bin/)(vehicle|bridge|groundstation)((?: [^#|&;]*)?)(?:[#|&;]|$)")
-"""A command of ours in a line of a shell block, and its words."""
+"""One of our commands in a line of a shell block, and its arguments."""
 
 
 def commands(text: str) -> list[tuple[str, list[str]]]:
-    """Commands of ours in the shell blocks of a document."""
+    """Return our commands in the shell blocks of a document."""
     lines = [line for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL) for line in block.splitlines()]
     found = [match for line in lines if (match := COMMANDS.search(line.partition(" #")[0]))]
     return [(match[1], shlex.split(match[2].replace("$word", "reboot"))) for match in found]

@@ -1,4 +1,4 @@
-"""The first command of the README in a real terminal: arm, hold a key, see the rover go, let go, see it stand."""
+"""The first command of the README in a real terminal: arm, hold a key, see the rover move, release it, see it stop."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ pytestmark = [
 
 FOLDER = Path(__file__).parents[2]
 PATIENCE = 60.0
-"""s for what must come: the machine is shared."""
+"""s for every wait: the machine is shared."""
 PAUSE = 0.04
-"""s between two looks or two key repeats."""
+"""s between two polls or two key repeats."""
 
 
 class Tmux:
@@ -53,15 +53,15 @@ class Tmux:
         return done.stdout
 
     def screen(self) -> str:
-        """What a person sees."""
+        """Return the text on the screen."""
         return self._run("capture-pane", "-p")
 
     def press(self, *keys: str) -> None:
-        """Press keys, in tmux's names."""
+        """Press keys, by tmux's names."""
         self._run("send-keys", *keys)
 
     def until(self, condition: Callable[[str], bool], within: float, holding: str | None = None) -> str:
-        """Look until the screen is as it should be, with a key held meanwhile; returns the screen."""
+        """Poll until the condition holds for the screen, with a key held meanwhile; return the screen."""
         deadline = time.monotonic() + within
         while not condition(screen := self.screen()):
             assert time.monotonic() < deadline, f"not within {within} s:\n{screen}"
@@ -71,13 +71,13 @@ class Tmux:
         return screen
 
     def end(self) -> None:
-        """Close the terminal and all in it."""
+        """Close the terminal and everything in it."""
         self._run("kill-server")
 
 
 @pytest.fixture
 def tmux(tmp_path: Path) -> Iterator[Callable[..., Tmux]]:
-    """Opens a terminal; closed at the end of the test."""
+    """Return a function that opens a terminal; it is closed at the end of the test."""
     opened: list[Tmux] = []
 
     def build(columns: int, lines: int, *arguments: str) -> Tmux:
@@ -90,13 +90,13 @@ def tmux(tmp_path: Path) -> Iterator[Callable[..., Tmux]]:
 
 
 def home_distance(screen: str) -> float:
-    """m between the rover and its home, as the map tells."""
+    """Return the distance between the rover and its home as the map shows it, m."""
     found = re.search(r"home\s+([\d.]+) m", screen)
     return float(found[1]) if found else 0.0
 
 
 def speed_shown(screen: str) -> bool:
-    """Does the drive panel show a motor output?"""
+    """Return whether the drive panel shows a motor output."""
     return bool(re.search(r"left\s.*\+[1-9]\d*%", screen))
 
 

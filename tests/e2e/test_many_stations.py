@@ -1,4 +1,4 @@
-"""Sixteen ground stations on one port of a real vehicle: each is told everything, and nothing of it is lost."""
+"""Sixteen ground stations on one port of a real vehicle: each gets all telemetry, without loss."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STATIONS = 16
 
 
 class Listener:
-    """The least of a ground station: a HEARTBEAT a second, and what it hears."""
+    """A minimal ground station: it sends a HEARTBEAT a second and counts what arrives."""
 
     def __init__(self, port: int, system: int) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -81,7 +81,7 @@ def stations(tmp_path: Path) -> Iterator[list[Listener]]:
 
 
 def wait(stations: list[Listener], enough: int, within: float = 60.0) -> None:
-    """Until each has heard so many ATTITUDE."""
+    """Wait until each has received this number of ATTITUDE."""
     deadline = time.monotonic() + within
     while any(each.heard.get(m.Attitude.id, 0) < enough for each in stations):
         assert time.monotonic() < deadline, [each.heard.get(m.Attitude.id, 0) for each in stations]

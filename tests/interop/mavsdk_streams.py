@@ -1,4 +1,4 @@
-"""What MAVSDK's telemetry plugin has for a rover: stream by stream, and what its values must be like."""
+"""The streams of MAVSDK's telemetry plugin that a rover has, and what their values must be."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ UNASKED: dict[str, Callable[[Any], bool]] = {
     "health": lambda value: value.is_home_position_ok and value.is_global_position_ok and value.is_armable,
     "health_all_ok": lambda value: value,
 }
-"""Comes by itself."""
+"""Streams that start by themselves."""
 ASKED: dict[str, Callable[[Any], bool]] = {
     "attitude_quaternion": lambda value: math.isclose(
         math.hypot(value.w, value.x, value.y, value.z), 1.0, abs_tol=1e-3
@@ -37,4 +37,4 @@ ASKED: dict[str, Callable[[Any], bool]] = {
     "imu": lambda value: math.isfinite(value.angular_velocity_frd.down_rad_s),
     "altitude": lambda value: math.isfinite(value.altitude_amsl_m),
 }
-"""Comes when its rate is set."""
+"""Streams that start when their rate is set."""

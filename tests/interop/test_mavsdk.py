@@ -1,4 +1,4 @@
-"""MAVSDK: finds the vehicle, reads what it is and where, sets parameters, drives it, and reads its files."""
+"""MAVSDK finds the vehicle, reads version and position, sets parameters, drives it, and reads its files."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from vehicle.params import TABLE
 pytestmark = [pytest.mark.interop, mavsdk_process.needed]
 
 INSTANT = 0.5
-"""s: MAVSDK's own timeouts begin at this."""
+"""s: the shortest of MAVSDK's own timeouts."""
 
 
 @pytest.fixture
 def client(rover: Rover, tmp_path: Path) -> Iterator[Callable[[str], Client]]:
-    """Starts a scenario and ends the one before; returns when MAVSDK has found the vehicle."""
+    """Start a scenario and end the one before; return when MAVSDK has found the vehicle."""
     with ExitStack() as stack:
 
         def start(scenario: str) -> Client:

@@ -1,4 +1,4 @@
-"""QGroundControl's connect sequence to its end, and its joystick. See qgroundcontrol.py for what stands in for it."""
+"""QGroundControl's connect sequence to its end, and its joystick, by the stand-in of qgroundcontrol.py."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.interop
 
 @pytest.fixture
 def ground(rover: Rover) -> Iterator[QGroundControl]:
-    """It, connected."""
+    """The stand-in, connected."""
     with QGroundControl(rover.port) as ground:
         ground.meet()
         yield ground

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tests.recipes.tree import Tree
+
+pytestmark = pytest.mark.e2e
 
 CIRCLE = '''"""CIRCLE: turns to the right."""
 
