@@ -295,6 +295,8 @@ class MissionResult(IntEnum):
 
 def command_name(command: int) -> str:
     """`MAV_CMD` name without its prefix, e.g. "COMPONENT_ARM_DISARM"; "command 65535" for an unknown one."""
+    if command in Command._value2member_map_:  # also those that pymavlink's common.xml lacks
+        return Command(command).name
     entry = rover.enums["MAV_CMD"].get(command)
     return entry.name.removeprefix("MAV_CMD_") if entry else f"command {command}"
 

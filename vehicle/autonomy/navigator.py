@@ -10,9 +10,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
-from dialects.enums import Command, DriveType, Failsafe
+from dialects.enums import DriveType, Failsafe
 from dialects.modes import Mode
-from link.services.mission.items import MissionItem
 from vehicle.autonomy.mission.executor import MissionExecutor
 from vehicle.autonomy.modes.guided import GuidedMode
 from vehicle.autonomy.modes.homing import LoiterMode, ModeFinished, RtlMode, SmartRtlMode, Trail
@@ -32,9 +31,6 @@ from vehicle.params import Params
 from vehicle.readings import NO_READINGS, Readings
 from vehicle.safety.hazards import HazardInputs, HazardMonitor
 from vehicle.safety.state_machine import Safety
-
-DEFAULT_SPEED = -2.0
-"""Speed of DO_CHANGE_SPEED that means the usual one."""
 
 
 class PlanIds(NamedTuple):
@@ -82,9 +78,7 @@ class Navigator:
         self.guided = GuidedMode(params, self.guide)
         self.fence_avoidance = FenceAvoidance(params, self._home_point)
         self.return_points = ReturnPoints(params, self._home_point, self.fence_avoidance.breach_distance_at)
-        self.mission = MissionExecutor(
-            params, self.guide, self.return_points.nearest, self._run_do_item, self.fence_avoidance.rejection
-        )
+        self.mission = MissionExecutor(params, self.guide, self.return_points.nearest, self.fence_avoidance.rejection)
         self.plan_ids = PlanIds()
         self._params = params
         aside = [side for _, _, side in FOUR_WHEELS] if MIXERS[kind].sideways else []
@@ -181,9 +175,42 @@ class Navigator:
         homeward = mode in (Mode.RTL, Mode.SMART_RTL)
         return self.fence_avoidance.block_reason(homeward=homeward) or behaviour.unready(estimate)
 
+    @property
+    def fence_unenforceable_reason(self) -> str | None:
+        """Why an enabled fence would stop nothing, or None."""
+        return self.fence_avoidance.unenforceable_reason
+
+    def pause(self) -> None:
+        """Stand still in the mode that drives now, until `resume`."""
+        self.paused = True
+
+    def resume(self) -> None:
+        """End a pause."""
+        self.paused = False
+
+    def set_speed(self, speed: float | None) -> None:
+        """Set the cruise speed in m/s; None restores WP_SPEED."""
+        self.speed_override = speed
+
+    def set_reverse(self, reverse: bool) -> None:
+        """Drive paths backwards, or forwards."""
+        self.guide.set_reverse(reverse)
+
+    def set_home(self, home: Home) -> None:
+        """Set the home position."""
+        self.home = home
+
+    def set_plan_ids(self, plan_ids: PlanIds) -> None:
+        """Set the ids of the plans in force, for MISSION_CURRENT."""
+        self.plan_ids = plan_ids
+
+    def end_mode(self, reason: str) -> None:
+        """Request the end of the mode that drives now; the same cycle changes to HOLD."""
+        self.end_reason = reason
+
     def set_target(self, target: Target, now: float) -> None:
         """A setpoint for GUIDED."""
-        self.paused = False
+        self.resume()
         self.guided.set_target(target, self.estimate, now)
 
     def find_hazards(self, safety: Safety, throttles: Sequence[float], now: float) -> dict[Failsafe, float]:
@@ -238,7 +265,8 @@ class Navigator:
         if safety.mode_generation == self._mode_generation:
             return
         self._mode_generation = safety.mode_generation
-        self.paused = self.guide.reverse = False
+        self.resume()
+        self.set_reverse(False)
         self.end_reason = None
         self._controller.reset()
         if not safety.armed:
@@ -260,21 +288,6 @@ class Navigator:
     def _record_trail(self, safety: Safety) -> None:
         if safety.armed and self.estimate.good and safety.mode is not Mode.SMART_RTL:
             self._trail.add(self.estimate.place)
-
-    def _run_do_item(self, item: MissionItem) -> None:
-        """What a DO item of a mission says; its values have passed the rules of vehicle/autonomy/mission/rules.py."""
-        first, second = item.params[:2]
-        if item.command == Command.DO_CHANGE_SPEED:
-            if second >= 0.0:
-                self.speed_override = second
-            elif second == DEFAULT_SPEED:
-                self.speed_override = None
-        elif item.command == Command.DO_SET_REVERSE:
-            self.guide.reverse = bool(first)
-        elif item.command == Command.DO_FENCE_ENABLE and first:
-            self.end_reason = (
-                self.fence_avoidance.fence.set_enabled(True) or self.fence_avoidance.fence.unavailable_reason
-            )
 
     def _home_point(self) -> Point | None:
         return None if self.home is None else Point(self.home.north, self.home.east)

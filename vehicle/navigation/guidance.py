@@ -63,6 +63,10 @@ class PathFollower:
         self._pivots = kind is not DriveType.ACKERMANN
         self._pivoting = False
 
+    def set_reverse(self, reverse: bool) -> None:
+        """Drive paths backwards, or forwards."""
+        self.reverse = reverse
+
     def reset(self) -> None:
         """Another path: a pivot that was under way is not wanted any more."""
         self._pivoting = False

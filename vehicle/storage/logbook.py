@@ -7,7 +7,7 @@ strand it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Protocol
 
@@ -19,6 +19,7 @@ from link.services.ftp.protocol import FtpError
 from link.services.param.values import REAL32
 from vehicle.drive.control import Control
 from vehicle.params import Params
+from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
 
 DISARM_PERSIST = 15.0
@@ -87,14 +88,14 @@ class Logbook:
         params: Params,
         control: Control,
         texts: StatusTextQueue,
-        armed: Callable[[], bool],
+        safety: Safety,
         recording: LogRecorder | None,
     ) -> None:
         self.recording = recording or NullLogRecorder()
         self._params = params
         self._control = control
         self._texts = texts
-        self._armed = armed
+        self._safety = safety
         self._was_armed = False
         self._open = False
         self._until = float("-inf")
@@ -109,7 +110,7 @@ class Logbook:
 
     def tick(self, now: float) -> list[Outgoing]:
         """Begin, go on or end. Returns what only the log is told: all parameters, in its first moments."""
-        armed = self._armed()
+        armed = self._safety.armed
         if self._was_armed and not armed:
             self._until = now + DISARM_PERSIST
         wanted = self.is_healthy is not None and (armed or self._params["LOG_DISARMED"] or now < self._until)
@@ -131,11 +132,11 @@ class Logbook:
 
     def folder(self) -> Folder:
         """The logs for MAVLink FTP, where who is in control may remove them one by one."""
-        return _Logs(self.recording.folder, self._armed)
+        return _Logs(self.recording.folder, self._safety)
 
     def handle_log_erase(self, received: Received, now: float) -> None:
         """LOG_ERASE: all of them, by who is in control and while nothing drives."""
-        refusal = self._control.denial_reason(received.system) or ("disarm first" if self._armed() else None)
+        refusal = self._control.denial_reason(received.system) or ("disarm first" if self._safety.armed else None)
         if not received.introduced:
             refusal = "its HEARTBEAT is missing"
         if refusal is None:
@@ -157,9 +158,9 @@ _KEY = "recording"
 class _Logs(ReadOnlyFolder):
     """Fits `ftp_files.Folder`: only read, and removed from while disarmed."""
 
-    def __init__(self, logs: Folder, armed: Callable[[], bool]) -> None:
+    def __init__(self, logs: Folder, safety: Safety) -> None:
         self._logs = logs
-        self._armed = armed
+        self._safety = safety
 
     def entries(self) -> Sequence[Entry]:
         return self._logs.entries()
@@ -168,4 +169,4 @@ class _Logs(ReadOnlyFolder):
         return self._logs.open(name, query)
 
     def remove(self, name: str) -> FtpError | None:
-        return FtpError.PROTECTED if self._armed() else self._logs.remove(name)
+        return FtpError.PROTECTED if self._safety.armed else self._logs.remove(name)

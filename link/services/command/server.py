@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from dialects.enums import Result
 from dialects.messages import CommandAck, CommandCancel, CommandInt, CommandLong
@@ -53,8 +54,15 @@ class CommandRequest:
     """It may be said again: `confirmation` says so, or it is a COMMAND_INT, which has none."""
 
 
-RunCommand = Callable[[CommandRequest, float], Result | CommandJob]
-"""Runs a command at a time: its result, or where it takes a while a job of jobs.py."""
+class CommandReply(NamedTuple):
+    """A result, with messages to send after its acknowledgement."""
+
+    result: Result
+    messages: tuple[Outgoing, ...] = ()
+
+
+RunCommand = Callable[[CommandRequest, float], Result | CommandReply | CommandJob]
+"""Run a command. Return its result, a reply with messages, or a job of jobs.py if the command takes time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,13 +89,13 @@ class CommandServer:
         return frozenset(self._handlers)
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Run or cancel a command; returns the acknowledgement, or nothing where it was not for us."""
+        """Run or cancel a command. Return the acknowledgement and what follows it; nothing if it is not for us."""
         message = received.message
         if not isinstance(message, CommandLong | CommandInt | CommandCancel) or not self._for_us(message):
             return []
         if isinstance(message, CommandCancel):
             return self._jobs.cancel(message.command, received, now)
-        return [self._run(_request(message, received), now)]
+        return self._run(_request(message, received), now)
 
     def tick(self, now: float) -> list[Outgoing]:
         """News of the commands under way."""
@@ -101,15 +109,19 @@ class CommandServer:
             return handler is not None and handler.broadcast
         return bool(message.target_system == self._system)
 
-    def _run(self, request: CommandRequest, now: float) -> Outgoing:
+    def _run(self, request: CommandRequest, now: float) -> list[Outgoing]:
         handler = self._handlers.get(request.command)
         if handler is None:
-            return ack(request, Result.UNSUPPORTED)
+            return [ack(request, Result.UNSUPPORTED)]
         under_way = self._jobs.reply_to_repeat(request, now)
         if under_way is not None:
-            return under_way
+            return [under_way]
         result = handler.run(request, now)
-        return ack(request, result) if isinstance(result, Result) else self._jobs.begin(request, result, now)
+        if isinstance(result, Result):
+            return [ack(request, result)]
+        if isinstance(result, CommandReply):
+            return [ack(request, result.result), *result.messages]
+        return [self._jobs.begin(request, result, now)]
 
 
 def _comparable(param: float) -> float:

@@ -9,13 +9,13 @@ CONDITION_YAW is the exception: turning on the spot takes the whole rover, so it
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import IntEnum
 
 from dialects.enums import Command
 from link.services.mission.items import Items, MissionItem
 from vehicle.autonomy.mission.nav_items import ConditionYaw, NavDelay, NavLoiterTurns, NavTask, NavWaypoint
-from vehicle.autonomy.mission.rules import ACCESSORY_COMMANDS
+from vehicle.autonomy.mission.rules import DoItem
 from vehicle.autonomy.modes.homing import ModeFinished
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point
@@ -27,7 +27,6 @@ from vehicle.params import Params
 ITEM_SEARCH_MAX = 100
 """Items looked through for the next NAV item; more is a circle of jumps."""
 CONDITION_COMMANDS = (Command.CONDITION_DELAY, Command.CONDITION_DISTANCE)
-DO_COMMANDS = (Command.DO_CHANGE_SPEED, Command.DO_SET_REVERSE, Command.DO_FENCE_ENABLE, *ACCESSORY_COMMANDS)
 
 
 class MissionState(IntEnum):
@@ -47,23 +46,19 @@ class MissionExecutor:
         params: Params,
         guide: PathFollower,
         haven: Callable[[Estimate], ReturnPoint | None],
-        effect: Callable[[MissionItem], None],
         barred: Callable[[Point], str | None] = lambda place: None,
     ) -> None:
-        """`haven` is where to return to from there; `effect` does what a DO item says; `barred` is why a place may not
-        be driven to, or None."""
+        """`haven` is where to return to from there; `barred` is why a place may not be driven to, or None."""
         self.items: Items = ()
         self.current = 0
         """Index of the item under way, or of the one to begin with."""
         self.state = MissionState.NONE
-        self.reached_items: list[int] = []
-        """Items reached and not told yet."""
-        self.pending_accessory_items: list[MissionItem] = []
-        """Items whose turn came, and that nobody has done yet: Plans hands them on."""
+        self._reached_items: list[int] = []
+        """Items reached and not yet taken by `pop_reached_items`."""
+        self._do_items: Mapping[int, DoItem] = {}
         self._params = params
         self._guide = guide
         self._return_point = haven
-        self._effect = effect
         self._rejection = barred
         self._refused: str | None = None
         self._task: NavTask | None = None
@@ -82,6 +77,15 @@ class MissionExecutor:
     def missing_reason(self) -> str:
         """Why there is none."""
         return self._damage or "there is no mission"
+
+    def set_do_items(self, do_items: Mapping[int, DoItem]) -> None:
+        """Set what runs the DO items, by MAV_CMD."""
+        self._do_items = do_items
+
+    def pop_reached_items(self) -> list[int]:
+        """Return the items reached since the last call."""
+        reached, self._reached_items = self._reached_items, []
+        return reached
 
     def load(self, items: Items, damage: str | None = None) -> None:
         """Another mission, from its first item. `damage`: why the kept one is lost."""
@@ -126,7 +130,7 @@ class MissionExecutor:
 
     def _finish(self, estimate: Estimate) -> Point:
         """The task is done; where the next leg begins."""
-        self.reached_items.append(self.current)
+        self._reached_items.append(self.current)
         task, self._task = self._task, None
         self.current += 1
         return task.leg.end if isinstance(task, NavWaypoint) else estimate.place
@@ -147,7 +151,7 @@ class MissionExecutor:
             item = self.items[index]
             if item.command == Command.DO_JUMP:
                 index = self._jump(index, item, count=True)
-            elif item.command in CONDITION_COMMANDS or item.command in DO_COMMANDS:
+            elif item.command in CONDITION_COMMANDS or item.command in self._do_items:
                 self._waiting.append((index, item))
                 index += 1
             else:
@@ -213,7 +217,7 @@ class MissionExecutor:
             item = self.items[index]
             if item.command == Command.DO_JUMP:
                 index = self._jump(index, item, count=False)
-            elif item.command in CONDITION_COMMANDS or item.command in DO_COMMANDS:
+            elif item.command in CONDITION_COMMANDS or item.command in self._do_items:
                 index += 1
             else:
                 return item
@@ -229,12 +233,10 @@ class MissionExecutor:
         one of a mission MAVSDK knows that it is finished."""
         while self._waiting and self._may_run(self._waiting[0][1], estimate, now):
             number, item = self._waiting.pop(0)
-            self.reached_items.append(number)
+            self._reached_items.append(number)
             self._held_since = None
-            if item.command in ACCESSORY_COMMANDS:
-                self.pending_accessory_items.append(item)
-            elif item.command in DO_COMMANDS:
-                self._effect(item)
+            if item.command in self._do_items:
+                self._do_items[item.command].run(item, now)
 
     def _may_run(self, item: MissionItem, estimate: Estimate, now: float) -> bool:
         if item.command == Command.CONDITION_DELAY:
