@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from dialects.enums import Result
 from dialects.messages import CommandCancel, CommandInt, CommandLong
@@ -20,14 +21,23 @@ from link.services.command.request import PROGRESS_TIMEOUT, CommandRequest, pars
 __all__ = [
     "PROGRESS_TIMEOUT",
     "CommandHandler",
+    "CommandReply",
     "CommandRequest",
     "CommandServer",
     "RunCommand",
     "value_or_default",
 ]
 
-RunCommand = Callable[[CommandRequest, float], Result | CommandJob]
-"""Runs a command; returns its result, or a CommandJob if it takes a while."""
+
+class CommandReply(NamedTuple):
+    """A result, with messages to send after its acknowledgement."""
+
+    result: Result
+    messages: tuple[Outgoing, ...] = ()
+
+
+RunCommand = Callable[[CommandRequest, float], Result | CommandReply | CommandJob]
+"""Runs a command; returns its result, a reply with messages, or a CommandJob if it takes a while."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,13 +64,13 @@ class CommandServer:
         return frozenset(self._handlers)
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Run or cancel a command; return the acknowledgement, or nothing if the command is not for us."""
+        """Run or cancel a command. Return the acknowledgement and what follows it; nothing if it is not for us."""
         message = received.message
         if not isinstance(message, CommandLong | CommandInt | CommandCancel) or not self._for_us(message):
             return []
         if isinstance(message, CommandCancel):
             return self._jobs.cancel(message.command, received, now)
-        return [self._run(parse_command(message, received), now)]
+        return self._run(parse_command(message, received), now)
 
     def tick(self, now: float) -> list[Outgoing]:
         """Run the long-running commands; return their progress and results."""
@@ -74,12 +84,16 @@ class CommandServer:
             return handler is not None and handler.broadcast
         return bool(message.target_system == self._system)
 
-    def _run(self, request: CommandRequest, now: float) -> Outgoing:
+    def _run(self, request: CommandRequest, now: float) -> list[Outgoing]:
         handler = self._handlers.get(request.command)
         if handler is None:
-            return ack(request, Result.UNSUPPORTED)
+            return [ack(request, Result.UNSUPPORTED)]
         under_way = self._jobs.reply_to_repeat(request, now)
         if under_way is not None:
-            return under_way
+            return [under_way]
         result = handler.run(request, now)
-        return ack(request, result) if isinstance(result, Result) else self._jobs.begin(request, result, now)
+        if isinstance(result, Result):
+            return [ack(request, result)]
+        if isinstance(result, CommandReply):
+            return [ack(request, result.result), *result.messages]
+        return [self._jobs.begin(request, result, now)]

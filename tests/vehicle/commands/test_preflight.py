@@ -296,7 +296,7 @@ class TestStorage:
     def test_a_damaged_file_is_not_made_good_by_saving_nothing(self, tmp_path: Path) -> None:
         (tmp_path / "parameters").write_text("SPEED_MAX = 2.5")
         store, params, bench = ParamStore(FileWriter(tmp_path)), Params(), Bench()
-        params.damage = store.damage
+        params.mark_damaged(store.damage)
         bench.rover = Rover(params, now=bench.now, param_store=store)
         bench.wait(0.1)
         assert bench.command(STORAGE, 1) is Result.FAILED

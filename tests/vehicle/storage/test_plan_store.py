@@ -23,8 +23,8 @@ from tests.link.mission_vehicle import plain
 from tests.vehicle.bench import said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, running
-from vehicle.storage.file_writer import FileWriter
 from tests.vehicle.missions import Item, do, send, upload, way
+from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.plan_store import PlanStore
 from vehicle.storage.store import PendingWrite
 
