@@ -1,8 +1,8 @@
-"""The rover daemon: links, rover, motors and signals joined in one process; what is decided is decided in the cores.
+"""The rover daemon: connects links, rover, motors and signals in one process; decisions are made in the cores.
 
-Whatever ends it (a signal, a broken driver, a fault in our own code) the order is the same: motors neutral and without
-power, last messages, exit code with one line. Exit codes: 0 asked to stop, 1 a fault, 2 the user's mistake, which a
-restart cannot mend, 80 to 82 what a ground station asked for (vehicle/commands/reboot.py).
+Whatever ends the daemon (a signal, a failed driver, an exception in the program), the order is the same: motors neutral
+and without power, last messages, exit code and one line in the log. Exit codes: 0 requested stop, 1 fault, 2 user
+error, which a restart cannot fix, 80 to 82 requests of a ground station (vehicle/commands/reboot.py).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from vehicle.telemetry.host import HostInfo
 log = logging.getLogger(__name__)
 
 PERIOD = 0.02
-"""s, the control cycle: 50 Hz is what servos and controllers of this size take, and ten times the driver's own rate."""
+"""s, the control cycle: 50 Hz is the rate of servos and motor controllers of this size."""
 
 LEVELS: dict[Severity, int] = {
     Severity.EMERGENCY: logging.CRITICAL,
@@ -53,18 +53,18 @@ LEVELS: dict[Severity, int] = {
     Severity.INFO: logging.INFO,
     Severity.DEBUG: logging.DEBUG,
 }
-"""Of STATUSTEXT -> of the log."""
+"""Severity of STATUSTEXT -> level of the log."""
 
 FAULT = 1
-"""Exit code, beside MISTAKE and those of vehicle/runtime/shutdown.py.
+"""Exit code beside USAGE_ERROR and those of vehicle/runtime/shutdown.py.
 
-The unit starts nothing again after MISTAKE, so whatever may be otherwise later is FAULT: a host name that is not known
-yet at boot, a port that a program still has.
+systemd does not restart the service after USAGE_ERROR, so an error that may disappear is a FAULT: a host name that is
+not resolved yet at boot, or a port that another program still uses.
 """
 
 
 def run(settings: RunSettings) -> int:
-    """Run until asked to stop; the exit code. What goes wrong becomes one line of the log."""
+    """Run until a stop is requested and return the exit code. An error is logged as one line."""
     try:
         return run_loop(_serve(settings))
     except (SettingsError, EndpointError, ParamError, UnknownDriverError) as error:
@@ -77,19 +77,19 @@ def run(settings: RunSettings) -> int:
         log.error("motor driver: %s", error, exc_info=True)
         return FAULT
     except Exception as error:
-        log.critical("%s (--log-file keeps the details)", _told(error), exc_info=True)
+        log.critical("%s (use --log-file for the traceback)", _describe_fault(error), exc_info=True)
         return FAULT
 
 
-def _told(error: Exception) -> str:
-    """A fault in one line. The machine stopped the motors before it let it through, or noted that it could not."""
+def _describe_fault(error: Exception) -> str:
+    """Return an exception as one line. ControlLoop stopped the motors first, or added a note that it could not."""
     notes = getattr(error, "__notes__", [])
     state = f"motors may still turn, cut their power: {'; '.join(notes)}" if notes else "motors neutral"
     return f"{state}; stopped by a fault in the program: {type(error).__name__}: {error}"
 
 
-def _journal(severity: Severity, text: str) -> None:
-    """What ground stations read, for who reads the journal: most of it happens while nobody looks."""
+def _log_status_text(severity: Severity, text: str) -> None:
+    """Log a STATUSTEXT."""
     log.log(LEVELS[severity], "%s", text)
 
 
@@ -122,7 +122,7 @@ async def _serve(settings: RunSettings) -> int:
             plan_store=plan_store,
             recording=recorder,
             host=host,
-            told=_journal,
+            told=_log_status_text,
             rack=rack,
         )
         meter = HostMonitor(host, lambda: loop.idle_time, time.time, now)
@@ -149,11 +149,11 @@ async def _drive(
     tape: LogTap | None,
 ) -> int:
     runner = Runner(machine, links, period=PERIOD, log_tap=tape)
-    ending = Shutdown(machine, runner, notifier.stopping)
-    cycles.shutdown = ending
-    ending.install_handlers(asyncio.get_running_loop())
+    shutdown = Shutdown(machine, runner, notifier.stopping)
+    cycles.shutdown = shutdown
+    shutdown.install_handlers(asyncio.get_running_loop())
     gc.collect()
     gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
     log.info("ready, %s", status)
     notifier.ready(status)
-    return await ending.wait()
+    return await shutdown.wait()

@@ -1,4 +1,4 @@
-"""How a run ends: by a signal, by a fault in a callback, because a ground station asked; the motors always first."""
+"""Shutdown by a signal, by an exception in a callback, or on request of a ground station; the motors stop first."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from vehicle.runtime.systemd import Notifier
 log = logging.getLogger(__name__)
 
 STOPPED = 0
-"""Exit code of a run that was asked to end."""
+"""Exit code of a requested stop."""
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
-"""Asked to stop: by the service manager, by Ctrl-C, by a terminal that was closed."""
+"""Requests to stop: from the service manager, by Ctrl-C, by closing the terminal."""
 
 
 class Shutdown:
-    """How the run ends from outside the cores: asked by a signal, or by a fault in a callback of the loop."""
+    """Ends the run: stops the motors, sends the last messages, and gives the exit code or the exception."""
 
     def __init__(self, machine: ControlLoop, runner: Runner, stopping: Callable[[], None] = lambda: None) -> None:
-        """`stopping` is called once the motors stand."""
+        """Prepare a shutdown; `stopping` is called once the motors are stopped."""
         self._stopping = stopping
         self._machine = machine
         self._runner = runner
@@ -37,13 +37,13 @@ class Shutdown:
         self._code = STOPPED
 
     def install_handlers(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Take signals and what callbacks raise."""
+        """Handle signals and exceptions in callbacks of the loop."""
         for number in SIGNALS:
             loop.add_signal_handler(number, self._end, f"stopped by {number.name}, motors neutral")
         loop.set_exception_handler(lambda _, context: self._end("", context.get("exception"), context["message"]))
 
     async def wait(self) -> int:
-        """Run until the end. Raises what went wrong."""
+        """Run until the end and return the exit code. Raises the exception that ended the run."""
         await self._runner.run()
         if self._fault is not None:
             raise self._fault
@@ -51,13 +51,13 @@ class Shutdown:
         return self._code
 
     def handle_reboot_request(self, leave: RebootRequest) -> None:
-        """A ground station asked for it."""
+        """End the run with the exit code of a restart, reboot or power-off that a ground station requested."""
         if self._reason is None:
             self._code = int(leave)
-        self._end(f"{leave.label} as a ground station asked, motors neutral")
+        self._end(f"{leave.label} as requested by a ground station, motors neutral")
 
     def _end(self, reason: str, fault: Exception | None = None, message: str = "") -> None:
-        """The same order as everywhere: motors, last messages (Runner.run sends them), end."""
+        """Stop the motors, then the runner, which sends the last messages. Only the first call has an effect."""
         if self._reason is not None:
             return
         self._reason = reason
@@ -65,15 +65,13 @@ class Shutdown:
         try:
             self._machine.shutdown(asyncio.get_running_loop().time())
         except Exception as error:
-            self._fault = MotorError(f"the motors did not stop when told, cut their power: {error}")
+            self._fault = MotorError(f"the motors could not be stopped, cut their power: {error}")
         self._stopping()
         self._runner.stop()
 
 
 class CycleObserver:
-    """What follows from a completed control cycle: the watchdog is fed, the host is looked at, and a wish to leave is
-    heard.
-    """
+    """The daemon's work after a control cycle: feed the watchdog, update the host info, handle a reboot request."""
 
     def __init__(self, rover: Rover, notifier: Notifier, meter: HostMonitor) -> None:
         self.shutdown: Shutdown | None = None
@@ -82,7 +80,7 @@ class CycleObserver:
         self._meter = meter
 
     def handle_cycle(self, now: float) -> None:
-        """One more."""
+        """Feed the watchdog, update the host info, and handle a reboot request."""
         self._notifier.alive(now)
         self._meter.update(now)
         leave = self._rover.reboot_request(now)

@@ -147,7 +147,7 @@ def test_the_process_ends_with_the_code_that_says_what_is_wanted(
         ask(ground, REBOOT, *wish, until=lambda: vehicle.process.poll() is not None)
         ended, lines = vehicle.ended()
         assert ended == code
-        assert lines[-1] == f"vehicle: {RebootRequest(code).label} as a ground station asked, motors neutral"
+        assert lines[-1] == f"vehicle: {RebootRequest(code).label} as requested by a ground station, motors neutral"
         ground.drain()
         assert answers(ground, REBOOT)[-1] == Result.ACCEPTED
 

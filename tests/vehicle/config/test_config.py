@@ -141,7 +141,7 @@ def test_several_mistakes_are_all_found() -> None:
 
 
 def test_a_file_that_is_not_there_teaches(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"No such file or directory; `vehicle init .*rover.toml` writes one"):
+    with pytest.raises(ConfigError, match=r"No such file or directory; `vehicle init .*rover.toml` writes a template"):
         load(tmp_path / "rover.toml")
     with pytest.raises(ConfigError, match=r"aaa: File name too long$"):
         load("a" * 300)

@@ -239,10 +239,10 @@ def test_where_the_programs_beside_a_vehicle_look(tmp_path: Path, monkeypatch: p
 def test_damage_reaches_the_arming_checks(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "parameters").write_text("half")
     assert build_params(RunSettings(()), ParamStore(FileWriter(tmp_path))).damage == "parameter file damaged"
-    assert "nobody can arm" in caplog.text
+    assert "arming is denied" in caplog.text
 
 
 def test_damage_is_told_with_its_folder(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "parameters").write_text("half")
     build_params(RunSettings((), state=tmp_path), ParamStore(FileWriter(tmp_path)))
-    assert f"{tmp_path}: parameter file damaged: all parameters" in caplog.text
+    assert f"{tmp_path}: parameter file damaged: all saved parameters" in caplog.text
