@@ -12,10 +12,8 @@ from typing import Any
 
 import pytest
 
-from dialects.messages import Attitude, CommandLong, ManualControl, RadioStatus
-from link.core import LinkReport
+from dialects.messages import Attitude, CommandLong, ManualControl
 from link.endpoint import parse_endpoint
-from link.protocol.channel import Channel
 from link.protocol.framer import Framer
 from link.transport.serial import SerialTransport, open_serial
 from link.transport.transport import LinkError
@@ -220,47 +218,3 @@ async def test_a_demand_overtakes_bulk_and_finds_less_than_30_ms_of_bytes_before
 
 def _demands(data: bytes) -> int:
     return sum(message_id == ManualControl.id for message_id, *_ in Framer(stream=True).feed(data, 0.0))
-
-
-# ---- noise ----
-
-
-def told(*pieces: bytes) -> LinkReport:
-    channel = Channel("serial:/dev/ttyX:57600", 0, system=1, component=1, stream=True, target="x", capacity=5760.0)
-    for number, data in enumerate(pieces):
-        channel.receive(data, "x", number * 0.05)
-    return channel.report()
-
-
-def test_modem_manager_is_only_noise() -> None:
-    report = told(b"AT\r", b"AT\r", b"AT+GCAP\r", heartbeat(0))
-    assert (report.frames, report.resync_bytes, report.down) == (1, 14, None)
-
-
-def test_noise_and_nothing_else_is_called_a_wrong_baud_rate() -> None:
-    assert told(b"\x80\xf8" * 100).down is None
-    assert "wrong baud rate?" in (told(*[b"\x80\xf8" * 100] * 3).down or "")
-    assert told(*[b"\x80\xf8" * 100] * 3, heartbeat(0)).down is None
-
-
-def test_a_radio_that_is_full_asks_for_less() -> None:
-    channel = Channel("serial:/dev/ttyX:57600", 0, system=1, component=1, stream=True, target="x", capacity=5760.0)
-    assert (channel.report().capacity, channel.report().headroom) == (5760.0, 1.0)
-    for number in range(10):
-        channel.receive(_radio_status(number, txbuf=10), "x", float(number))
-    low = channel.report(now=10.0).headroom
-    assert low == pytest.approx(0.25)
-    for number in range(10, 40):
-        channel.receive(_radio_status(number, txbuf=99), "x", float(number))
-    assert channel.report(now=40.0).headroom == 1.0
-
-
-def test_a_radio_that_fell_silent_limits_nothing() -> None:
-    channel = Channel("serial:/dev/ttyX:57600", 0, system=1, component=1, stream=True, target="x", capacity=5760.0)
-    channel.receive(_radio_status(0, txbuf=1), "x", 0.0)
-    assert channel.report(now=1.0).headroom < 1.0
-    assert channel.report(now=9.0).headroom == 1.0
-
-
-def _radio_status(number: int, txbuf: int) -> bytes:
-    return frame(RadioStatus(200, 200, txbuf, 30, 30, 0, 0), number, 51, 68)
