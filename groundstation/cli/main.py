@@ -31,7 +31,7 @@ examples:
   groundstation --sitl                     start a simulated rover and drive it
   groundstation                            wait for a vehicle on {DEFAULT_ENDPOINT}
   groundstation udpin:0.0.0.0:14550        the same, from any machine of the network
-  groundstation udpout:192.168.1.20:14550  speak first, to a vehicle that waits
+  groundstation udpout:192.168.1.20:14550  send first, to a vehicle that listens
   groundstation --style latch --speed 0.3  the article's way of driving, slowly
   groundstation --keys teleop              the keys of teleop_twist_keyboard
   groundstation --keys my.toml             your own; see below
