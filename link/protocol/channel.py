@@ -119,9 +119,9 @@ class Channel:
         return not state.systems or now - state.last_seen > PEER_SILENCE
 
     def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
-        return PeerState(self._name(address), Framer(stream=self._stream), now, fixed, silent=fixed)
+        return PeerState(self._new_conversation(address), Framer(stream=self._stream), now, fixed, silent=fixed)
 
-    def _name(self, address: Hashable) -> Peer:
+    def _new_conversation(self, address: Hashable) -> Peer:
         """Return the peer of a new conversation."""
         return Peer(self.index, address, next(self._conversations))
 
@@ -240,7 +240,7 @@ class Channel:
             if state.silent or now - state.last_seen <= PEER_SILENCE:
                 continue
             if state.is_expected:
-                state.peer, state.silent = self._name(state.peer.address), True
+                state.peer, state.silent = self._new_conversation(state.peer.address), True
             else:
                 self._forget(state)
 

@@ -1,25 +1,10 @@
-"""Silence, token buckets and rates, in literal seconds."""
+"""Token buckets and rate meters, in literal seconds."""
 
 from __future__ import annotations
 
-import math
-
 import pytest
 
-from link.protocol.heartbeat import HeartbeatMonitor
 from link.protocol.rate import RateMeter, TokenBucket
-
-
-def test_silence_begins_with_the_last_word() -> None:
-    monitor = HeartbeatMonitor(timeout=5.0)
-    assert not monitor.ever_heard
-    assert monitor.silence(1.0) == math.inf
-    assert not monitor.is_alive(1.0)
-    monitor.update(1.0)
-    assert monitor.ever_heard
-    assert monitor.is_alive(6.0)
-    assert not monitor.is_alive(6.1)
-    assert monitor.silence(3.5) == 2.5
 
 
 def test_a_bucket_lets_a_burst_and_then_its_rate_through() -> None:
