@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import msgspec
 
+from groundstation.input.screens import SCREENS
 from groundstation.intents import (
     AnyIntent,
     Arm,
@@ -107,7 +108,7 @@ _ACTIONS = (
     OperatorAction("vehicle.control", "Take control", "Ask to be the ground station in control", "vehicle", RequestControl()),
     OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and look at the next one", "vehicle", SelectNextVehicle()),
     OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator()),
-    OperatorAction("app.help", "Help", "Keys and what they do", "app"),
+    *(OperatorAction(screen.action, screen.title, screen.help, "app") for screen in SCREENS),
     OperatorAction("app.quit", "Quit", "Stop the vehicle and leave", "app"),
 )  # fmt: skip
 
@@ -122,8 +123,8 @@ _EVERYWHERE = {
     "space": "drive.stop", "exclamation_mark": "stop.emergency", "f9": "stop.emergency", "t": "stop.clear",
     "r": "vehicle.arm", "1": "vehicle.manual", "2": "vehicle.hold", "g": "vehicle.control", "n": "vehicle.next",
     "tab": "drive.style",
-    "f5": "app.simulator", "question_mark": "app.help", "ctrl+q": "app.quit", "ctrl+c": "app.quit",
-}  # fmt: skip
+    "f5": "app.simulator", "ctrl+q": "app.quit", "ctrl+c": "app.quit",
+} | {key: screen.action for screen in SCREENS for key in screen.keys}  # fmt: skip
 
 KEYMAPS: dict[str, dict[str, str]] = {
     "standard": _EVERYWHERE

@@ -15,7 +15,7 @@ from groundstation.ui.colours import style
 from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.chart import Chart, Series
-from groundstation.ui.widgets.footer import KeyFooter
+from groundstation.ui.widgets.footer import FooterValue, KeyFooter
 from groundstation.ui.widgets.heading_tape import heading_marks
 from groundstation.ui.widgets.horizon import Horizon, HorizonValue, ground_fraction
 from groundstation.ui.widgets.keycaps import lit_actions
@@ -191,7 +191,7 @@ def test_caps_show_the_block_around_k() -> None:
 @pytest.mark.parametrize("width", [80, 100, 140])
 @pytest.mark.parametrize("keymap", list(KEYMAPS))
 def test_the_footer_always_has_the_stops_and_the_way_out(width: int, keymap: str) -> None:
-    line = KeyFooter(Keymap(keymap, KEYMAPS[keymap])).draw(width, 1)[0].text
+    line = KeyFooter(FooterValue(Keymap(keymap, KEYMAPS[keymap]))).draw(width, 1)[0].text
     assert len(line) == width
     for words in ("SPACE Stop", "! E-STOP", "? Help", "^q Quit"):
         assert words in line
@@ -233,7 +233,7 @@ def test_a_vehicle_in_emergency_stop_is_not_shown_as_armed() -> None:
 
 
 def test_a_chart_takes_gaps_and_keeps_a_minute() -> None:
-    chart = Chart("speed", "m/s", (Series("", "#ffffff"),), step=0.5, id="x")
+    chart = Chart((), title="speed", unit="m/s", series=(Series("", "#ffffff"),), step=0.5, id="x")
     for second in range(200):
         chart.add(float(second), None if second % 7 == 0 else second / 100)
     assert 59 <= len(chart.value) <= 61
