@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from groundstation.input.screens import SCREENS
+from groundstation.screens import SCREENS
 from groundstation.intents import (
     AnyIntent,
     Arm,

@@ -19,8 +19,8 @@ from textual.driver import Driver
 from textual.screen import Screen
 
 from groundstation.input.keymap import ACTIONS, KeyEvent, Keymap, OperatorAction
-from groundstation.input.screens import SCREENS
 from groundstation.intents import AnyIntent, DriveKeyDown, RenewLease
+from groundstation.screens import SCREENS
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import THEME
 from groundstation.ui.display_state import DisplayState

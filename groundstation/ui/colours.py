@@ -1,4 +1,4 @@
-"""The colours of the console, by meaning: green is well, amber wants a look, red wants a hand."""
+"""Colours of the console by meaning: green is good, amber a warning, red needs action."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ THEME = Theme(
 
 @cache
 def style(colour: str = TEXT, on: str = BACKGROUND, *, bold: bool = False) -> Style:
-    """A ready-made style: making one anew for each segment is what costs. Textual fills no ground, so it is said."""
+    """Return a cached style, because creating one per segment is expensive. Textual fills no background by itself."""
     return Style(color=colour, bgcolor=on, bold=bold or None)
 
 
 def badge(colour: str) -> Style:
-    """Dark bold letters on a colour; white ones on a dark red."""
+    """Return dark bold text on a colour, or white text on dark red."""
     return style(WHITE if colour == DEEP_RED else BLACK, colour, bold=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 from textual.app import App
 
-from groundstation.input.screens import SCREENS, ScreenRow
+from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 
 ROOT = SCREENS[0]

@@ -11,7 +11,7 @@ from textual.content import Content
 from textual.widgets import Static
 
 from groundstation.input.keymap import ACTIONS, CONFIRM_KEY
-from groundstation.input.screens import SCREENS
+from groundstation.screens import SCREENS
 from groundstation.ui.colours import BLUE, DIM, RED, YELLOW
 from groundstation.ui.keynames import format_key
 from groundstation.ui.screens.screen import ConsoleScreen

@@ -1,4 +1,4 @@
-"""The line of the most urgent alert, and how many more there are."""
+"""Alert line: the most urgent alert, and the number of further ones."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _MARKS = {AlertLevel.HINT: "â€º", AlertLevel.WARNING: "!", AlertLevel.DANGER: "â
 
 
 class AlertLine(Instrument[tuple[Alert, ...]]):
-    """One line over the whole width."""
+    """One line over the full width."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """The first alert in its colour; hints count for nothing beside another one."""
+        """Draw the first alert in its colour; further hints are not counted."""
         if not self.value:
             return []
         first = self.value[0]

@@ -71,7 +71,7 @@ class Chart(Instrument[Samples]):
 
     def _draw_grid(self, canvas: Canvas, low: float, high: float) -> None:
         for row, value in ((0, high), (canvas.height - 1, low)):
-            canvas.word(0, row, f"{value:{AXIS - 1}.1f}", style(DIM))
+            canvas.write(0, row, f"{value:{AXIS - 1}.1f}", style(DIM))
             for x in range(AXIS * 2, canvas.across, 8):
                 canvas.dot(x, row * 4 + (3 if row else 0), style(LINE))
 
@@ -86,7 +86,7 @@ class Chart(Instrument[Samples]):
         canvas.path(points, style(series.colour))
         if (last := self.value[-1][1][number]) is not None:
             text = f"{series.name} {last:.2f} {self._unit}".strip()
-            canvas.word(AXIS + 1 + number * (canvas.width - AXIS) // 2, 0, text, style(series.colour))
+            canvas.write(AXIS + 1 + number * (canvas.width - AXIS) // 2, 0, text, style(series.colour))
 
 
 def _scale(values: Sequence[float], step: float) -> tuple[float, float]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.input.screens import SCREENS, ScreenRow
 from groundstation.intents import DriveKeyDown, EmergencyStop, SetKeyGate, Stop
+from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.navigation import ROOT, load_screen
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.help import HelpScreen

@@ -6,7 +6,7 @@ import pytest
 
 from groundstation.input.keymap import ACTIONS, KEYMAPS, Keymap
 from groundstation.input.keymap_file import parse_keymap
-from groundstation.input.screens import SCREENS, ScreenRow
+from groundstation.screens import SCREENS, ScreenRow
 
 
 @pytest.mark.parametrize("row", SCREENS, ids=lambda row: row.id)
