@@ -1,4 +1,8 @@
-"""Colours of the console by meaning: green is good, amber a warning, red needs action."""
+"""Colours of the console by meaning: green is good, amber a warning, red needs action.
+
+Over SSH and in tmux COLORTERM is often missing, and Textual then uses 256 colours; some terminals have 16. The greys
+are chosen so that the nearest of 256 colours is a grey, too, and that text and background differ with 16 colours.
+"""
 
 from __future__ import annotations
 
@@ -12,14 +16,18 @@ PANEL = "#10151f"
 LINE = "#3a4350"
 TEXT = "#c9d1d9"
 DIM = "#6b7684"
-FAINT = "#2b3440"
+FAINT = "#2f353d"
+MUTED = "#8f99a6"
+"""Text on FAINT that is out of use: DIM and FAINT are one colour of 16."""
+WARNING = "#302c24"
+"""Background of warnings."""
 BLUE = "#58b6ff"
 GREEN = "#4ed07e"
 AMBER = "#ffb04d"
 YELLOW = "#ffd75f"
 RED = "#ff5f5f"
 DEEP_RED = "#b3261e"
-SKY, GROUND = "#2b7cb8", "#573a20"
+SKY, GROUND = "#2b7cb8", "#875f2f"
 WHITE = "#ffffff"
 BLACK = "#0b0e14"
 
@@ -46,5 +54,5 @@ def style(colour: str = TEXT, on: str = BACKGROUND, *, bold: bool = False) -> St
 
 
 def badge(colour: str) -> Style:
-    """Return dark bold text on a colour, or white text on dark red."""
-    return style(WHITE if colour == DEEP_RED else BLACK, colour, bold=True)
+    """Return dark text on a colour, or white bold text on dark red. Bold black is grey where there are 16 colours."""
+    return style(WHITE, colour, bold=True) if colour == DEEP_RED else style(BLACK, colour)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from textual.strip import Strip
 
 from groundstation.ui.alerts import Alert, AlertLevel
-from groundstation.ui.colours import AMBER, DEEP_RED, PANEL, TEXT, YELLOW, badge, style
+from groundstation.ui.colours import AMBER, DEEP_RED, PANEL, TEXT, WARNING, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 _LOOKS = {
     AlertLevel.HINT: style(TEXT, PANEL),
-    AlertLevel.WARNING: style(AMBER, "#33270f", bold=True),
+    AlertLevel.WARNING: style(AMBER, WARNING, bold=True),
     AlertLevel.DANGER: badge(DEEP_RED),
     AlertLevel.QUESTION: badge(YELLOW),
 }

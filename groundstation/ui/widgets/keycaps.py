@@ -9,7 +9,7 @@ from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
 from groundstation.intents import DriveKeyDown, Stop
-from groundstation.ui.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, MUTED, RED, TEXT, YELLOW, badge, style
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
@@ -82,7 +82,7 @@ class Keycaps(Instrument[KeycapsValue]):
         if action in self.value.lit:
             look = badge(DEEP_RED) if action == "drive.stop" else badge(YELLOW)
         elif not self.value.open:
-            look = style(DIM, FAINT)
+            look = style(MUTED, FAINT)
         else:
             look = style(RED if action == "drive.stop" else TEXT, FAINT, bold=True)
         return [(f" {name[:1]} ", look), (" ", style())]

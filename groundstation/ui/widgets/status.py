@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from textual.strip import Strip
 
 from groundstation.snapshot import LinkView, Snapshot, VehicleView
-from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, GREEN, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
 
 STALE_COMMAND, OLD_COMMAND = 0.45, 0.2
@@ -73,7 +73,7 @@ def _badges(snapshot: Snapshot) -> list[Part]:
     elif vehicle.armed:
         parts.append((" ARMED ", badge(DEEP_RED)))
     else:
-        parts.append((" DISARMED ", style(TEXT, "#27303c", bold=True)))
+        parts.append((" DISARMED ", style(TEXT, FAINT, bold=True)))
     return [*parts, (" ", style()), _driver(vehicle)]
 
 
@@ -99,7 +99,7 @@ def _links(snapshot: Snapshot) -> list[StatusField]:
     loss, trip = finite_or_none(link.loss), finite_or_none(link.round_trip)
     bars, colour = _quality(link, alive)
     strength = StatusField(
-        1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_BARS[bars:]} ", style("#2b3440")))
+        1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_BARS[bars:]} ", style(FAINT)))
     )
     return [
         strength,
