@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias, Union
 
 import msgspec
 
+from groundstation.screens import SCREENS
+
 LEASE_TIMEOUT = 0.3
 """s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz, and longer than its longest
 drawing (0.1 s). A frozen screen then means neutral well within 0.5 s."""
@@ -215,7 +217,7 @@ _ROWS = (
     OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and select the next one", "vehicle",
                    SelectNextVehicle(), ("n",)),
     OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator(), ("f5",)),
-    OperatorAction("app.help", "Help", "Keys and what they do", "app", keys=("question_mark",)),
+    *(OperatorAction(screen.action, screen.title, screen.help, "app", keys=screen.keys) for screen in SCREENS),
     OperatorAction("app.quit", "Quit", "Stop the vehicle and quit", "app", keys=("ctrl+q", "ctrl+c")),
 )  # fmt: skip
 

@@ -75,7 +75,7 @@ class Program:
 
 
 class Journal(Recorder):
-    """A station that also writes the names of its intents to a file at once; with `crash` its lease breaks the screen."""
+    """A station that writes the names of its intents to a file at once; with `crash` its lease breaks the screen."""
 
     def __init__(self, file: Path, *, crash: bool) -> None:
         super().__init__()
