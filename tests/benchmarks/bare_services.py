@@ -1,7 +1,9 @@
 """The reference of `services` on a network: both ends of the protocols in the barest form that works without loss.
 
 Blocking loops answer each datagram before they read the next: no pacing but the receive buffer of a socket, no repeats,
-no checks, no telemetry. Usage of the vehicle's end: python -m tests.benchmarks.bare_services PORT PARAMETERS FILE
+no checks, no telemetry.
+
+Usage of the vehicle's end: python -m tests.benchmarks.bare_services PORT PARAMETERS FILE
 """
 
 from __future__ import annotations

@@ -112,4 +112,4 @@ _MAKERS: dict[Callable[[random.Random], Message], int] = {
     _position: 2,
     _servos: 2,
 }
-"""Kind -> how often, in Hz: HEARTBEAT and the six that our vehicle sends most often (vehicle/telemetry/telemetry.py)."""
+"""Kind -> Hz: HEARTBEAT and the six that our vehicle sends most often (vehicle/telemetry/streams.py)."""
