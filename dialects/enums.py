@@ -293,6 +293,14 @@ class MissionResult(IntEnum):
     CANCELLED = rover.MAV_MISSION_OPERATION_CANCELLED
 
 
+def command_name(command: int) -> str:
+    """Return the name of a `MAV_CMD` without its prefix; "command 65535" for an unknown one."""
+    if command in Command._value2member_map_:  # also those that pymavlink's common.xml lacks
+        return Command(command).name
+    entry = rover.enums["MAV_CMD"].get(command)
+    return entry.name.removeprefix("MAV_CMD_") if entry else f"command {command}"
+
+
 def result_name(result: int) -> str:
     """Return the name of a `MAV_RESULT` in lower case, e.g. "denied"; "result 99" for an unknown one."""
     entry = rover.enums["MAV_RESULT"].get(result)

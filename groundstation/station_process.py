@@ -193,7 +193,7 @@ class StationProcess:
             return
         self._broken = self._ending = True
         now = asyncio.get_running_loop().time()
-        what = printable(f"station crashed ({type(error).__name__}: {error}): neutral sent, exiting")
+        what = printable(f"station crashed ({type(error).__name__}: {error}): sending neutral, then exiting")
         log.critical(what, exc_info=error)
         self._core.activate(now)
         self._runner.flush()

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 
 class EndpointError(ValueError):
-    """An endpoint that cannot be parsed; the message is one line that names the endpoint, the error and the remedy."""
+    """An endpoint cannot be parsed; the message is one line with the endpoint, the error and the remedy."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ REAL32 parameters read the same in every ground station.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 
@@ -194,10 +194,8 @@ class Params:
         self._usual = dict(usual or {})
         self.generation = 0
         """Grows with each value that is put in force: what was derived from values may be kept until then."""
-        self.damage: str | None = None
-        """Why saved values could not be had; nobody arms before somebody has set one anew."""
-        self.unannounced: set[str] = set()
-        """What was put in force and ground stations were not told of (vehicle/commands/params.py)."""
+        self._damage: str | None = None
+        self._unannounced: set[str] = set()
         self._values = {parameter.name: float(parameter.default) for parameter in TABLE}
         for name, value in (values or {}).items():
             self.set(name, value)
@@ -210,6 +208,33 @@ class Params:
             replace(each, read_only=each.read_only or each.name in pinned, default=usual.get(each.name, each.default))
             for each in TABLE
         )
+
+    @property
+    def damage(self) -> str | None:
+        """Why saved values are lost; arming is refused until a parameter is set."""
+        return self._damage
+
+    def mark_damaged(self, reason: str | None) -> None:
+        """Record why saved values are lost."""
+        self._damage = reason
+
+    def clear_damage(self) -> None:
+        """Allow arming again: a parameter was set since the saved values were lost."""
+        self._damage = None
+
+    def pop_unannounced(self) -> list[str]:
+        """Return the names that changed and that no PARAM_VALUE has announced, sorted; the list is empty then."""
+        names = sorted(self._unannounced)
+        self._unannounced.clear()
+        return names
+
+    def set_unannounced(self, names: Iterable[str]) -> None:
+        """Announce exactly these changes."""
+        self._unannounced = set(names)
+
+    def mark_announced(self, name: str) -> None:
+        """Leave out a change that its own PARAM_VALUE announces."""
+        self._unannounced.discard(name)
 
     def __getitem__(self, name: str) -> float:
         return self._values[name]
@@ -232,7 +257,7 @@ class Params:
         self._check_order({**self._values, name: value})
         self._values[name] = float(value)
         self.generation += 1
-        self.unannounced.add(name)
+        self._unannounced.add(name)
 
     @staticmethod
     def _check_order(values: Mapping[str, float]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from pathlib import Path
 
 from groundstation.input.keymap import CONFIRM_KEY, KEYMAPS, Keymap, KeymapError
@@ -45,9 +45,6 @@ NAMED_KEYS = frozenset(
 REQUIRED_ACTIONS = ("drive.stop", "stop.emergency", "app.quit")
 """Actions that need a key in every key map. Escape does not count: a plain terminal reports it 0.1 s late."""
 
-_NO_KEY = "no key for "
-"""Prefix of the entry of an action whose list of keys is empty."""
-
 _MODIFIERS = re.compile(r"^(?:(?:ctrl|alt|shift|super)\+)+")
 
 
@@ -76,12 +73,12 @@ def parse_keymap(content: Mapping[str, object], name: str, where: str) -> Keymap
     keys = content.get("keys", {})
     if not isinstance(keys, dict):
         raise KeymapError(f"key map {where}: 'keys' must be a table")
-    bindings = _rebind(KEYMAPS[base], _rebindings(keys, where))
+    bindings = _rebind(KEYMAPS[base], _parse_keys(keys, where), changed=set(keys))
     _check(bindings, where)
     return Keymap(name, bindings)
 
 
-def _rebindings(keys: Mapping[str, object], where: str) -> dict[str, str]:
+def _parse_keys(keys: Mapping[str, object], where: str) -> dict[str, str]:
     """Return key -> action id for everything that the file binds."""
     bound: dict[str, str] = {}
     for action_id, value in keys.items():
@@ -91,16 +88,13 @@ def _rebindings(keys: Mapping[str, object], where: str) -> dict[str, str]:
             name = parse_key(key, where)
             if bound.setdefault(name, action_id) != action_id:
                 raise KeymapError(f"key map {where}: key {key!r} is bound to {bound[name]} and to {action_id}")
-    for action_id in keys:
-        bound.setdefault(f"{_NO_KEY}{action_id}", action_id)  # an empty list removes all keys
     return bound
 
 
-def _rebind(base: Mapping[str, str], bound: Mapping[str, str]) -> dict[str, str]:
-    """Return the base map, in which each action of the file has the file's keys only."""
-    changed = set(bound.values())
+def _rebind(base: Mapping[str, str], bound: Mapping[str, str], changed: Set[str]) -> dict[str, str]:
+    """Return the base map, in which each action in `changed` has the keys of `bound` only."""
     kept = {key: action_id for key, action_id in base.items() if action_id not in changed and key not in bound}
-    return kept | {key: action_id for key, action_id in bound.items() if not key.startswith(_NO_KEY)}
+    return kept | dict(bound)
 
 
 def parse_key(key: object, where: str) -> str:

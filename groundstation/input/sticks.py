@@ -137,7 +137,7 @@ class Sticks:
 
     def _press(self, push: DriveKeyDown, now: float) -> None:
         if not self.reports_releases:
-            self._drop_rivals(push)
+            self._release_same_stick(push)
         trace = self._windows.start_press(self._traces.get(push.key), now)
         self._traces[push.key] = trace
         until = math.inf if self.reports_releases else now + self._windows.press_window
@@ -149,7 +149,7 @@ class Sticks:
         held.until = math.inf if self.reports_releases else until
         self._refresh_others(until)
 
-    def _drop_rivals(self, push: DriveKeyDown) -> None:
+    def _release_same_stick(self, push: DriveKeyDown) -> None:
         """Release the keys of the same stick: without reported releases a new key replaces them."""
         for key, held in list(self._held.items()):
             if (held.throttle and push.throttle) or (held.steering and push.steering):

@@ -1,4 +1,6 @@
-"""Finds out whether a vehicle speaks our dialect: it sends ROVER_* only to ground stations that request one of them.
+"""Finds out whether a vehicle speaks our dialect, by requesting ROVER_DRIVE_INFO.
+
+Our rover sends ROVER_* and CONTROL_STATUS only to ground stations that have requested one of them.
 
 UNKNOWN --no ROVER_DRIVE_STATUS--> REQUESTED --accepted, or it arrives--> SENDING (else requested ever less often)
    ^                                  |                                     |

@@ -1,4 +1,4 @@
-"""The command line of the bridge: words in, transports joined. It only reads and refuses; bridge.py does the work."""
+"""Command line of the bridge: parses and checks the arguments, opens the transports, runs bridge.py."""
 
 from __future__ import annotations
 
@@ -28,22 +28,22 @@ log = logging.getLogger(__name__)
 
 EXAMPLES = """\
 examples:
-  bridge serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550        an autopilot, for every ground station that comes
+  bridge serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550        an autopilot, for any number of ground stations
   bridge serial:/dev/ttyACM0:921600 udpout:192.168.1.20:14550 udpin:127.0.0.1:14551
   bridge udpin:0.0.0.0:14550 tcpin:0.0.0.0:5760 --json --tlog logs
 
 endpoints (two or more):
 {endpoints}
 
-exit codes: 0 options to stop (SIGTERM, Ctrl-C, SIGHUP), 2 a mistake on the command line.
+exit codes: 0 stopped by a signal (SIGTERM, Ctrl-C, SIGHUP), 2 usage error.
 """
 
 SWITCH_INTERVAL = 0.0005
-"""s that the table's thread may hold up the loop at a time; Python's own 5 ms would show in the latency."""
+"""s that the table's thread may hold up the loop at a time; Python's default of 5 ms would show in the latency."""
 
 
 class _Version(argparse.Action):
-    """Looks the version up only when options."""
+    """Looks the version up only on request."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         from importlib.metadata import version
@@ -53,7 +53,7 @@ class _Version(argparse.Action):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the bridge; the exit code."""
+    """Run the bridge; return the exit code."""
     stdio.ensure_open()
     parser = _parser()
     options = parser.parse_args(parser.reject_empty(sys.argv[1:] if argv is None else argv))
@@ -64,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             asyncio.run(_serve(options, stack))
     except (LinkError, RecorderError) as error:
         parser.exit(2, f"bridge: {error}\n")
-    except KeyboardInterrupt:  # before the loop takes signals
+    except KeyboardInterrupt:  # before the loop handles signals
         return 0
     return 0
 
@@ -78,7 +78,7 @@ async def _serve(options: argparse.Namespace, stack: ExitStack) -> None:
         loop.add_signal_handler(number, bridge.stop)
     sys.setswitchinterval(SWITCH_INTERVAL)
     gc.collect()
-    gc.freeze()  # a full collection would hold frames up for 20 ms
+    gc.freeze()  # a full collection would delay frames by 20 ms
     log.info("ready, %s", " + ".join(options.endpoints))
     await bridge.run()
     log.info("stopped")
@@ -99,7 +99,7 @@ def _recorder(folder: Path | None, transports: Sequence[Transport], stack: ExitS
 
 
 def _screen(options: argparse.Namespace, stack: ExitStack) -> Callable[[BridgeStatus], None]:
-    """Where the status goes: a table on a terminal, else what goes wrong to the log, with --json every line as well."""
+    """Return the status output: a table on a terminal, else a log of problems, with --json also JSON."""
     if sys.stdout.isatty() and not options.quiet and not options.json:
         return StatusWriter(_live_table(stack)).update
     logger = StatusLogger()
@@ -126,7 +126,7 @@ def _live_table(stack: ExitStack) -> Callable[[BridgeStatus], None]:
 
 def _check(endpoints: Sequence[str], parser: CommandLineParser) -> None:
     if len(endpoints) < 2:
-        parser.error("a bridge has two ends or more, for example serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550")
+        parser.error("two endpoints or more are needed, for example serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550")
     try:
         parse_endpoints(endpoints)
     except EndpointError as error:
@@ -151,12 +151,12 @@ def _parser() -> CommandLineParser:
     parser.add_argument("endpoints", nargs="*", metavar="ENDPOINT", type=_endpoint, help="one end of the bridge")
     shown = parser.add_mutually_exclusive_group()
     shown.add_argument("--json", action="store_true", help="print the status as one line of JSON a second")
-    shown.add_argument("--quiet", action="store_true", help="no table; log only what goes wrong")
+    shown.add_argument("--quiet", action="store_true", help="no table; log problems only")
     parser.add_argument("--tlog", metavar="DIR", type=Path, help="record all frames to a telemetry log in DIR")
     parser.add_argument(
         "--one-frame",
         action="store_true",
-        help="never join waiting frames in a datagram, for receivers that read only the first",
+        help="send each frame in its own datagram, for receivers that read only the first frame",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     return parser

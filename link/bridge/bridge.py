@@ -1,4 +1,4 @@
-"""Wires joined by the router: what arrives on one goes out on others, at once. It decides nothing; link/routing/router.py does."""
+"""Forwards frames between transports at once, as link/routing/router.py decides."""
 
 from __future__ import annotations
 
@@ -14,18 +14,20 @@ from link.tlog.recorder import Recorder
 from link.transport.transport import Transport
 
 TICK = 0.05
-"""s between two looks at half frames and silent peers: half of what a framer waits (framer.PARTIAL_DEADLINE)."""
+"""s between two checks for partial frames and silent peers: half of framer.PARTIAL_DEADLINE."""
 STATUS_PERIOD = 1.0
-"""s between two lines or pictures of the status."""
+"""s between two status reports."""
 DATAGRAM = 1400
-"""Bytes at most when frames that wait are joined: below every usual MTU."""
+"""Bytes of a datagram with several frames, at most: below every usual MTU."""
 
 
 class Bridge:
-    """Forwards between `transports` until stop(). `on_status` is handed the status once a second; `recorder` every frame.
+    """Forwards frames between transports until stop().
 
-    `join` puts frames that wait anyway into one datagram; none is ever delayed for that. False is for receivers that
-    read only the first frame of a datagram.
+    `on_status` gets the status once a second, `recorder` every frame.
+
+    `join` puts frames that wait at the same time into one datagram; none is ever delayed for that. False is for
+    receivers that read only the first frame of a datagram.
     """
 
     def __init__(
@@ -47,7 +49,7 @@ class Bridge:
         self._ended: asyncio.Future[None] = self._loop.create_future()
 
     async def run(self) -> None:
-        """Forward until stop(); frees the ports at the end."""
+        """Forward until stop(); close the transports at the end."""
         timers = [
             self._loop.create_task(self._every(period, step))
             for period, step in ((TICK, self._tick), (STATUS_PERIOD, self._report_status))
@@ -67,12 +69,12 @@ class Bridge:
                 transport.close()
 
     def stop(self) -> None:
-        """Let run() return."""
+        """End run()."""
         if not self._ended.done():
             self._ended.set_result(None)
 
     def _timer_ended(self, timer: asyncio.Task[None]) -> None:
-        """They end only by a fault of ours, which ends the bridge, or because it ends."""
+        """End the bridge if a timer has failed; timers end in no other way but by cancel()."""
         if not timer.cancelled() and (fault := timer.exception()) and not self._ended.done():
             self._ended.set_exception(fault)
 
@@ -116,7 +118,7 @@ class Bridge:
 
 
 def join_frames(frames: Sequence[bytes]) -> list[bytes]:
-    """Frames as datagrams of at most DATAGRAM bytes, in order; no frame is divided."""
+    """Join frames into datagrams of at most DATAGRAM bytes, in order; no frame is split."""
     ends = list(accumulate(map(len, frames)))
     datagrams: list[bytes] = []
     first = before = 0

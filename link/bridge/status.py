@@ -1,4 +1,4 @@
-"""What the bridge tells once a second: links and routes, as rates of the last second and totals."""
+"""The bridge's status, once a second: links and routes, with rates of the last second and totals."""
 
 from __future__ import annotations
 
@@ -24,48 +24,48 @@ class LinkStatus:
     frames_out_per_s: float
     bytes_out_per_s: float
     loss: float
-    """Share of frames that did not arrive here in the last second, by their numbers."""
+    """Share of frames lost in the last second, by their sequence numbers."""
     lost: int
     crc_errors: int
     noise_bytes: int
     unknown: int
-    """Frames of ids that we do not know, forwarded all the same."""
+    """Frames with an id outside the dialect, which are forwarded as well."""
     dropped: int
-    """Frames that this link had no room for."""
+    """Frames dropped because this link had no room."""
 
 
 @dataclass(frozen=True, slots=True)
 class RouteStatus:
-    """One system and component, where it was heard."""
+    """One system and component, and the peer behind which it was seen."""
 
     system: int
     component: int
     endpoint: str
     address: str
     silence: float
-    """s since it was last heard there."""
+    """s since the last frame from there."""
     frames_per_s: float
     lost: int
 
 
 @dataclass(frozen=True, slots=True)
 class BridgeStatus:
-    """All of it."""
+    """The whole status."""
 
     links: tuple[LinkStatus, ...]
     routes: tuple[RouteStatus, ...]
     duplicates: int
-    """Frames that redundant links brought again."""
+    """Repeats that redundant links brought."""
     refused_peers: int
     recorder_problem: str | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return the status for JSON."""
         return asdict(self)
 
 
 class StatusMeter:
-    """Makes rates of two readings."""
+    """Computes rates from two readings."""
 
     def __init__(self, transports: Sequence[Transport], router: Router) -> None:
         self._transports = transports
@@ -75,7 +75,7 @@ class StatusMeter:
         self._at: float | None = None
 
     def read(self, now: float, recorder_problem: str | None = None) -> BridgeStatus:
-        """The status, with the rates since the last reading."""
+        """Return the status, with the rates since the last reading."""
         period = now - self._at if self._at is not None and now > self._at else 1.0
         reports, before = self._router.table.transport_reports(), self._reports
         routes = self._router.table.route_reports(now)
@@ -106,7 +106,7 @@ class StatusMeter:
 
 
 def address_text(address: Hashable) -> str:
-    """`HOST:PORT` of a socket's address; the name of a fixed one."""
+    """Return `HOST:PORT` of a socket's address, or a fixed address as it is."""
     if isinstance(address, tuple) and len(address) >= 2:
         return f"{address[0]}:{address[1]}"
     return str(address)

@@ -105,7 +105,7 @@ class Channel:
         if len(self._peers) >= MAX_PEERS:
             leaving = min(
                 (each for each in self._peers.values() if not each.fixed and self._is_evictable(each, now)),
-                key=lambda each: each.last_heard,
+                key=lambda each: each.last_seen,
                 default=None,
             )
             if leaving is None:
@@ -116,7 +116,7 @@ class Channel:
         return state
 
     def _is_evictable(self, state: PeerState, now: float) -> bool:
-        return not state.systems or now - state.last_heard > PEER_SILENCE
+        return not state.systems or now - state.last_seen > PEER_SILENCE
 
     def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
         return PeerState(self._name(address), Framer(stream=self._stream), now, fixed, silent=fixed)
@@ -135,7 +135,7 @@ class Channel:
             return
         self._forget(state)
         if state.fixed:
-            successor = self._peers[address] = self._new_peer(address, state.last_heard, fixed=True)
+            successor = self._peers[address] = self._new_peer(address, state.last_seen, fixed=True)
             successor.sequence = state.sequence
 
     def _forget(self, state: PeerState) -> None:
@@ -152,7 +152,7 @@ class Channel:
             if not system or sender == self.ids:  # component 0 is valid: pymavlink sends it by default
                 self._own_id |= sender == self.ids
                 continue
-            state.last_heard, state.silent = now, False
+            state.last_seen, state.silent = now, False
             source = state.sources.get(sender)
             order = source.accept(sequence, number) if source else state.add_source(frame)
             if order is not NEW and self._is_old(order, number):
@@ -237,7 +237,7 @@ class Channel:
         The peer that the user named and connections stay, and begin a new conversation.
         """
         for state in list(self._peers.values()):
-            if state.silent or now - state.last_heard <= PEER_SILENCE:
+            if state.silent or now - state.last_seen <= PEER_SILENCE:
                 continue
             if state.is_expected:
                 state.peer, state.silent = self._name(state.peer.address), True

@@ -26,7 +26,7 @@ class PeerState:
 
     peer: Peer
     framer: Framer
-    last_heard: float
+    last_seen: float
     fixed: bool = False
     """The user named this address: it is sent to before its first frame."""
     connected: bool = False

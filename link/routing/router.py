@@ -110,7 +110,7 @@ class Router:
 
         A frame of a known source costs no call here but list.append, dict.get and target_of.
         """
-        peer.heard = now
+        peer.last_seen = now
         sources, loaded, table = peer.sources, self._loaded, self.table
         known: RoutedSource | None = None
         if self.captured is not None:
@@ -124,7 +124,7 @@ class Router:
                 continue
             if sequence == source.next:
                 source.received += 1
-                source.heard, source.next = now, (sequence + 1) & 0xFF
+                source.last_seen, source.next = now, (sequence + 1) & 0xFF
             else:
                 source.count_frame(sequence, now)
             recent = source.recent

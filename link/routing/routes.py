@@ -29,7 +29,16 @@ class RoutedSource:
     """One system and component, as seen behind one peer."""
 
     __slots__ = (
-        "component", "destinations", "epoch", "heard", "key", "lost", "next", "received", "recent", "system",
+        "component",
+        "destinations",
+        "epoch",
+        "key",
+        "last_seen",
+        "lost",
+        "next",
+        "received",
+        "recent",
+        "system",
     )  # fmt: skip
 
     def __init__(self, key: SourceId, sequence: int, now: float) -> None:
@@ -37,7 +46,7 @@ class RoutedSource:
         self.system, self.component = key
         self.next = sequence
         """Sequence number after the newest frame."""
-        self.heard = now
+        self.last_seen = now
         self.received = 0
         self.lost = 0
         self.destinations: dict[SourceId, tuple[RoutedPeer, ...]] = {}
@@ -48,7 +57,7 @@ class RoutedSource:
 
     def count_frame(self, sequence: int, now: float) -> None:
         """Count one frame."""
-        self.heard = now
+        self.last_seen = now
         self.received += 1
         ahead = (sequence - self.next) & 0xFF
         if ahead < 0xFF - LATE:
@@ -62,7 +71,7 @@ class RoutedPeer:
     """One address on one link. The router treats each as a link of its own."""
 
     __slots__ = (
-        "address", "bytes_in", "bytes_out", "fixed", "framer", "frames_out", "heard", "link", "sources", "waiting",
+        "address", "bytes_in", "bytes_out", "fixed", "framer", "frames_out", "last_seen", "link", "sources", "waiting",
     )  # fmt: skip
 
     def __init__(self, link: int, address: Hashable, now: float, *, stream: bool, fixed: bool = False) -> None:
@@ -71,7 +80,7 @@ class RoutedPeer:
         self.fixed = fixed
         """The user named it: it is sent to before its first frame, and is never forgotten."""
         self.framer = Framer(stream=stream, unknown=True)
-        self.heard = now
+        self.last_seen = now
         self.sources: dict[SourceId, RoutedSource] = {}
         self.waiting: list[bytes] = []
         """Frames to send to it now."""
@@ -168,7 +177,9 @@ class RouteTable:
             return
         self.remove_peer(peer)
         if peer.fixed:
-            self._peers[link][address] = RoutedPeer(link, address, peer.heard, stream=self._streams[link], fixed=True)
+            self._peers[link][address] = RoutedPeer(
+                link, address, peer.last_seen, stream=self._streams[link], fixed=True
+            )
 
     def remove_peer(self, peer: RoutedPeer) -> None:
         """Remove a peer; its traffic still counts."""
@@ -179,10 +190,10 @@ class RouteTable:
     def expire(self, now: float) -> None:
         """Forget silent peers and sources."""
         for peer in list(self.all_peers()):
-            if not peer.fixed and not self._streams[peer.link] and now - peer.heard > PEER_SILENCE:
+            if not peer.fixed and not self._streams[peer.link] and now - peer.last_seen > PEER_SILENCE:
                 self.remove_peer(peer)
                 continue
-            for key in [key for key, source in peer.sources.items() if now - source.heard > ROUTE_SILENCE]:
+            for key in [key for key, source in peer.sources.items() if now - source.last_seen > ROUTE_SILENCE]:
                 del peer.sources[key]
                 self.epoch += 1
 
@@ -215,7 +226,7 @@ class RouteTable:
     def route_reports(self, now: float) -> list[RouteReport]:
         """Return every system and component, with the peer where it was seen."""
         found = [
-            RouteReport(*key, peer.link, peer.address, now - source.heard, source.received, source.lost)
+            RouteReport(*key, peer.link, peer.address, now - source.last_seen, source.received, source.lost)
             for peer in self.all_peers()
             for key, source in peer.sources.items()
         ]
@@ -225,5 +236,7 @@ class RouteTable:
         """Return the peer to replace; none on a stream, whose connections end by themselves."""
         if self._streams[link]:
             return None
-        silent = [peer for peer in self._peers[link].values() if not peer.fixed and now - peer.heard > PEER_SILENCE / 3]
-        return min(silent, key=lambda peer: peer.heard, default=None)
+        silent = [
+            peer for peer in self._peers[link].values() if not peer.fixed and now - peer.last_seen > PEER_SILENCE / 3
+        ]
+        return min(silent, key=lambda peer: peer.last_seen, default=None)

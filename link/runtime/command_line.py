@@ -27,18 +27,18 @@ class CommandLineParser(argparse.ArgumentParser):
             message = journald.priority_prefix(journald.ERROR) + message
         super().exit(status, message)
 
-    def reject_empty(self, words: Sequence[str]) -> list[str]:
+    def reject_empty(self, arguments: Sequence[str]) -> list[str]:
         """Return the arguments; exit if one of them is empty.
 
         An empty argument is most often an unset variable of a script, and as the name of a folder it would mean that
         nothing is saved.
         """
-        for before, word in pairwise(["", *words]):
-            option, given, value = word.partition("=")
-            if not word:
+        for before, argument in pairwise(["", *arguments]):
+            option, given, value = argument.partition("=")
+            if not argument:
                 self.error(
                     f"{before} {EMPTY_VALUE}" if before.startswith("-") else "an argument is empty: leave it out"
                 )
             if given and option.startswith("-") and value in ("", "--"):  # argparse gives -- a meaning of its own
                 self.error(f"{option} {EMPTY_VALUE}")
-        return list(words)
+        return list(arguments)

@@ -159,7 +159,7 @@ class TcpClientTransport:
         error = sock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
         # On one machine a port without a listener can be our own end: the socket would be connected to itself.
         if error or sock.getsockname() == sock.getpeername():
-            self._refused(loop, os.strerror(error) if error else "nobody listens")
+            self._refused(loop, os.strerror(error) if error else "no listener")
             return
         self._connecting = None
         self._stop_connecting()

@@ -1,4 +1,4 @@
-"""Cockpits in the states that tests of the station begin with."""
+"""Cockpits in the states in which tests of the station start."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ def armed_cockpit(vehicle: FakeVehicle | None = None) -> Cockpit:
 
 
 def driving_cockpit(vehicle: FakeVehicle | None = None) -> Cockpit:
-    """Armed, exact keys, `i` held: the vehicle hears 60 %."""
+    """Armed, key releases reported, `i` held: the vehicle gets 60 %."""
     cockpit = armed_cockpit(vehicle)
     cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.5)
-    assert cockpit.helm.throttle == pytest.approx(0.6)
+    assert cockpit.operator.throttle == pytest.approx(0.6)
     return cockpit
 
 

@@ -10,5 +10,5 @@ from tests.groundstation.screen import PATIENCE
 
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A station may take its time to end."""
+    """Give the station more time to exit."""
     monkeypatch.setattr(client_module, "CLOSE_TIMEOUT", PATIENCE)

@@ -26,7 +26,7 @@ def moving(vehicle: UdpVehicle, since: float) -> list[float]:
         ("udpin:no-such-host.invalid:14550", "is not known"),
     ],
 )
-def test_what_is_wrong_is_told_in_one_line_before_anything_opens(endpoint: str, words: str) -> None:
+def test_start_errors_are_one_line(endpoint: str, words: str) -> None:
     with pytest.raises(StationError) as caught:
         StationClient.start([endpoint])
     assert words in str(caught.value)

@@ -49,7 +49,7 @@ def test_the_simulator_dies_with_a_station_that_is_killed() -> None:
         until(lambda: not running(simulator))
 
 
-def test_the_end_of_the_simulator_is_told() -> None:
+def test_the_exit_of_the_simulator_is_reported() -> None:
     with Screen(sitl=True) as screen:
         sees_rover(screen)
         os.kill(children(screen.client.pid)[0], signal.SIGKILL)

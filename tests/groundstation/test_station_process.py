@@ -34,7 +34,7 @@ def neutral(vehicle: UdpVehicle, since: float) -> list[float]:
 
 
 def assert_said_neutral(vehicle: UdpVehicle, since: float) -> None:
-    """A station that has ended said neutral five times as the last it said."""
+    """Check that the last demands of the station were five neutrals."""
     until(lambda: len(neutral(vehicle, since)) >= 5)
     assert len(neutral(vehicle, since)) == 5
     assert not moving(vehicle, neutral(vehicle, since)[0])
@@ -134,16 +134,16 @@ def test_no_key_is_lost_at_5_ms() -> None:
 
 
 def counted(vehicle: UdpVehicle) -> int:
-    """Keys, as the station has told last."""
+    """Return the number of inputs that the station reported last."""
     return vehicle.core.all(m.RoverOperatorPresence)[-1][1].input_count
 
 
 def late(snapshot: Snapshot) -> int:
-    """Keys that a station which the machine held up has dropped, because they came 0.3 s late, and has told."""
+    """Return how many keys the station dropped and logged because a busy machine delayed them by 0.3 s."""
     return sum(line.count for line in snapshot.texts if "DriveKeyDown arrived" in line.text)
 
 
-def test_intents_that_lay_in_the_pipe_of_a_frozen_station_do_not_act() -> None:
+def test_intents_that_waited_in_the_pipe_of_a_frozen_station_are_dropped() -> None:
     with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
         screen.see(lambda snapshot: snapshot.vehicle is not None)
         old = IntentBatch(time.monotonic() - 2.0, (Arm(), FORWARD, SetKeyGate(open=False, reason="late but true")))

@@ -102,7 +102,7 @@ class Download:
         return None if answer is None else parse_packet(answer)
 
     def _fits(self, request: FtpPacket, answer: FtpPacket) -> bool:
-        if answer.asked != request.op:
+        if answer.req_opcode != request.op:
             return False
         late = request.op == FtpOpcode.BURST and answer.op == FtpOpcode.ACK and answer.sequence >= self._expected
         return late or answer.sequence == self._expected

@@ -88,7 +88,7 @@ class Vehicle:
         self.sequence += 1
         who = {key: more.pop(key) for key in ("system", "peer", "now") if key in more}
         [answer] = self.send(FtpPacket(self.sequence, op, session, data, offset, **more), **who)
-        assert (answer.asked, answer.sequence) == (op, self.sequence + 1)
+        assert (answer.req_opcode, answer.sequence) == (op, self.sequence + 1)
         return answer
 
     def tick(self, now: float) -> list[FtpPacket]:

@@ -5,9 +5,9 @@ pins and channels of motors are rejected before anything is opened (vehicle/conf
 vehicle/runtime/factory.py).
 
 To add a driver, write a class that fits `Accessory`, add one row to DRIVERS in vehicle/accessories/drivers.py, and test
-the class with tests/vehicle/accessories/contract.py. A driver outside this package needs no row: name it "module:Class".
-A driver with settings names their type `Settings` (a msgspec.Struct) and is built as `Class(settings, value)`, any
-other as `Class(value)`.
+the class with tests/vehicle/accessories/contract.py. A driver outside this package needs no row: name it
+"module:Class". A driver with settings names their type `Settings` (a msgspec.Struct) and is built as
+`Class(settings, value)`, any other as `Class(value)`.
 """
 
 from __future__ import annotations

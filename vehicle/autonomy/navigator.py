@@ -11,9 +11,8 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from dialects.enums import Command, DriveType, Failsafe
+from dialects.enums import DriveType, Failsafe
 from dialects.modes import Mode
-from link.services.mission.items import MissionItem
 from vehicle.autonomy.mission.executor import MissionExecutor
 from vehicle.autonomy.mode import AutonomousMode, ModeContext, ModeFinished
 from vehicle.autonomy.modes.guided import GuidedMode
@@ -45,8 +44,6 @@ MODE_CLASSES: dict[Mode, Callable[[ModeContext], AutonomousMode]] = {
 }
 """The autonomous modes besides AUTO and GUIDED, which also take commands. To add a mode, write its class and a row here
 and in vehicle/modes.py; a number that ArduRover has not assigned also needs a row in dialects/modes.py."""
-DEFAULT_SPEED = -2.0
-"""Speed of DO_CHANGE_SPEED that selects WP_SPEED."""
 
 
 class PlanIds(NamedTuple):
@@ -77,9 +74,7 @@ class Navigator:
         self.guided = GuidedMode(params, self.guide)
         self.fence_avoidance = FenceAvoidance(params, self._home_point)
         self.return_points = ReturnPoints(params, self._home_point, self.fence_avoidance.breach_distance_at)
-        self.mission = MissionExecutor(
-            params, self.guide, self.return_points.nearest, self._run_do_item, self.fence_avoidance.rejection
-        )
+        self.mission = MissionExecutor(params, self.guide, self.return_points.nearest, self.fence_avoidance.rejection)
         self.plan_ids = PlanIds()
         self._params = params
         aside = [side for _, _, side in FOUR_WHEELS] if MIXERS[kind].sideways else []
@@ -171,9 +166,42 @@ class Navigator:
         homeward = MODES[mode].leads_home
         return self.fence_avoidance.block_reason(homeward=homeward) or active.unready(estimate)
 
+    @property
+    def fence_unenforceable_reason(self) -> str | None:
+        """Why an enabled fence would stop nothing, or None."""
+        return self.fence_avoidance.unenforceable_reason
+
+    def pause(self) -> None:
+        """Stand still in the mode that drives now, until `resume`."""
+        self.paused = True
+
+    def resume(self) -> None:
+        """End a pause."""
+        self.paused = False
+
+    def set_speed(self, speed: float | None) -> None:
+        """Set the cruise speed in m/s; None restores WP_SPEED."""
+        self.speed_override = speed
+
+    def set_reverse(self, reverse: bool) -> None:
+        """Drive paths backwards, or forwards."""
+        self.guide.set_reverse(reverse)
+
+    def set_home(self, home: Home) -> None:
+        """Set the home position."""
+        self.home = home
+
+    def set_plan_ids(self, plan_ids: PlanIds) -> None:
+        """Set the ids of the plans in force, for MISSION_CURRENT."""
+        self.plan_ids = plan_ids
+
+    def end_mode(self, reason: str) -> None:
+        """Request the end of the mode that drives now; the same cycle changes to HOLD."""
+        self.end_reason = reason
+
     def set_target(self, target: Target, now: float) -> None:
         """Set the target of GUIDED; a pause ends."""
-        self.paused = False
+        self.resume()
         self.guided.set_target(target, self.estimate, now)
 
     def build_failsafe_inputs(self, safety: Safety, throttles: Sequence[float]) -> MotionInputs:
@@ -188,10 +216,8 @@ class Navigator:
             readings=self._readings,
             estimate=self.estimate,
             throttles=throttles,
-            needs_position=placed or bool(latched and latched & Failsafe.POSITION),
-            setpoint_expires=self.guided.expires_at()
-            if guided or (latched and latched & Failsafe.GUIDED_LOSS)
-            else None,
+            needs_position=placed or bool(latched & Failsafe.POSITION),
+            setpoint_expires=self.guided.expires_at() if guided or latched & Failsafe.GUIDED_LOSS else None,
             outside_fence=self.fence_avoidance.breach_distance > 0.0,
         )
 
@@ -232,7 +258,8 @@ class Navigator:
         if safety.mode_generation == self._mode_generation:
             return
         self._mode_generation = safety.mode_generation
-        self.paused = self.guide.reverse = False
+        self.resume()
+        self.set_reverse(False)
         self.end_reason = None
         self._controller.reset()
         if not safety.armed:
@@ -254,21 +281,6 @@ class Navigator:
     def _record_trail(self, safety: Safety) -> None:
         if safety.armed and self.estimate.good and safety.mode is not Mode.SMART_RTL:
             self._trail.add(self.estimate.place)
-
-    def _run_do_item(self, item: MissionItem) -> None:
-        """Run a DO item of a mission; its values have passed vehicle/autonomy/mission/rules.py."""
-        first, second = item.params[:2]
-        if item.command == Command.DO_CHANGE_SPEED:
-            if second >= 0.0:
-                self.speed_override = second
-            elif second == DEFAULT_SPEED:
-                self.speed_override = None
-        elif item.command == Command.DO_SET_REVERSE:
-            self.guide.reverse = bool(first)
-        elif item.command == Command.DO_FENCE_ENABLE and first:
-            self.end_reason = (
-                self.fence_avoidance.fence.set_enabled(True) or self.fence_avoidance.fence.unavailable_reason
-            )
 
     def _home_point(self) -> Point | None:
         return None if self.home is None else Point(self.home.north, self.home.east)

@@ -137,7 +137,7 @@ def parse_position_target(message: SetPosition, estimate: Estimate) -> Target | 
     if mask & POSITION not in (0, POSITION):
         return SetpointRejection("incomplete position")
     if mask & (POSITION | VELOCITY | YAW | YAW_RATE) == POSITION | VELOCITY | YAW | YAW_RATE:
-        return SetpointRejection("no setpoint in it")
+        return SetpointRejection("all fields are ignored")
     wrong = _first_invalid(message, mask)
     if wrong:
         return SetpointRejection(f"{wrong} is not a number")

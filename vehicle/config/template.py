@@ -1,4 +1,4 @@
-"""The commented file of settings that `vehicle init` writes: every key and its default, from the tables in the code."""
+"""The commented configuration file that `vehicle init` writes, with every key and its default."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ WIDTH = 116
 
 SIMULATED: dict[str, Any] = {"driver": "simulated"}
 LISTENING = ["udpin:0.0.0.0:14550"]
-"""The two things that the sample sets, so that it runs as it is: 14550 is the port that ground stations know."""
+"""The two values that the template sets, so that it runs unchanged: 14550 is the usual port of ground stations."""
 
-AROUND: dict[str, Any] = {
+COMMON_MOTOR: dict[str, Any] = {
     "safety": {"estop_pin": 17, "enable_pin": 22, "heartbeat_pin": 27},
 }
 SENSORS: dict[str, Any] = {
@@ -42,38 +42,38 @@ TOP: dict[str, Any] = {
 }
 
 HEAD = """\
-# Settings of the vehicle daemon. `vehicle --config rover.toml` runs with them, `vehicle check rover.toml` tries them.
+# Configuration of the vehicle. `vehicle --config rover.toml` runs with it, `vehicle check rover.toml` checks it.
 #
-# A line like "#key = value", without a space, is a setting: take the # away to set it. What is shown is the default, or
-# an example where there is none. An unknown key is an error, so that a slip of the pen is not silently ignored.
-# Editors that know JSON schemas can check and complete this file: vehicle schema > rover.schema.json
+# A line like "#key = value", without a space after #, is a setting: remove the # to set it. The value shown is the
+# default, or an example if there is no default. An unknown key is an error, so that a typing error is not ignored.
+# Editors with JSON schema support can check and complete this file: vehicle schema > rover.schema.json
 
 """
 
 
 def build_template() -> str:
-    """The sample file."""
+    """Return the text of the file."""
     config = msgspec.convert({**TOP, "endpoints": LISTENING, "motors": SIMULATED}, Config)
     sensors = msgspec.convert(SENSORS, SensorSettings)
-    around = msgspec.convert(AROUND, CommonMotorSettings)
+    common_motor = msgspec.convert(COMMON_MOTOR, CommonMotorSettings)
     parts = [
         HEAD,
         _line("endpoints", list(config.endpoints), Config, active=True),
         _line("state", config.state, Config),
         "\n[identity]\n" + _body(config.identity, "identity"),
         f"\n[motors]\n# One of {', '.join(DRIVERS)}; or your own as module:Class.\n"
-        "# docs/pi.md has the wiring of each.\n" + 'driver = "simulated"\n',
+        "# docs/pi.md describes the wiring of each.\n" + 'driver = "simulated"\n',
         *(_driver(name, entry) for name, entry in DRIVERS.items() if name != "simulated"),
-        "\n# ---- for any driver\n" + _body(around, "motors"),
+        "\n# ---- for any driver\n" + _body(common_motor, "motors"),
         "\n[sensors]\n" + _body(sensors, "sensors"),
-        f"\n[accessories]\n{_comment(first_paragraph(Accessories.__doc__))}# docs/pi.md has their wiring.\n",
+        f"\n[accessories]\n{_comment(first_paragraph(Accessories.__doc__))}# docs/pi.md describes their wiring.\n",
         *(
             _accessory(kind, name, entry)
             for kind, drivers in ACCESSORY_DRIVERS.items()
             for name, entry in drivers.items()
             if name != "simulated"
         ),
-        "\n[params]\n# A parameter that is set here is set here only: ground stations can read it and not change it.\n",
+        "\n[params]\n# Ground stations can read a parameter that is set here, but cannot change it.\n",
         *(_parameter(parameter) for parameter in TABLE),
         "\n[log]\n" + _body(config.log, "log"),
     ]
@@ -85,7 +85,7 @@ def _driver(name: str, entry: DriverEntry) -> str:
     heading = f"\n# ---- {name}: {entry.title}\n"
     if entry.profile:
         params = ", ".join(f"{key} = {value:g}" for key, value in entry.params.items())
-        note = f"# Unless you set them, its parameters are {params}.\n" if params else ""
+        note = f"# Its parameter defaults: {params}.\n" if params else ""
         return f'{heading}{note}#driver = "{name}"\n'
     try:
         kind = settings_type(name) or NoSettings
@@ -105,48 +105,48 @@ def _accessory(kind: Kind, name: str, entry: DriverEntry) -> str:
 
 
 def _plain(example: Mapping[str, Any], kind: Any) -> str:
-    """The keys of a table without tables, as far as `kind` knows them."""
+    """Return the keys of a table without subtables, as far as `kind` has them."""
     names = kind.__struct_fields__
     struct = msgspec.convert({key: value for key, value in example.items() if key in names}, kind)
     return "".join(_line(key, getattr(struct, key), kind) for key in names)
 
 
 def _body(struct: msgspec.Struct, path: str) -> str:
-    """Every key of a table: plain ones first, as TOML wants it, then the tables inside."""
+    """Return every key of a table: plain keys first, as TOML requires, then the subtables."""
     kind = type(struct)
-    plain, inside = [], []
+    plain, subtables = [], []
     tag = kind.__struct_config__.tag
     if tag is not None:
         plain.append(f"#{kind.__struct_config__.tag_field} = {_value(tag)}\n")
     for name in kind.__struct_fields__:
         value = getattr(struct, name)
         if isinstance(value, msgspec.Struct):
-            inside.append(_table(f"[{path}.{name}]", name, kind, value, f"{path}.{name}"))
+            subtables.append(_table(f"[{path}.{name}]", name, kind, value, f"{path}.{name}"))
         elif isinstance(value, tuple) and value and isinstance(value[0], msgspec.Struct):
-            inside += [_table(f"[[{path}.{name}]]", name, kind, each, f"{path}.{name}") for each in value]
+            subtables += [_table(f"[[{path}.{name}]]", name, kind, each, f"{path}.{name}") for each in value]
         else:
             plain.append(_line(name, value, kind))
-    return "".join(plain + inside)
+    return "".join(plain + subtables)
 
 
 def _table(header: str, name: str, owner: type, value: msgspec.Struct, path: str) -> str:
-    about = field_docs(owner).get(name) or first_paragraph(type(value).__doc__)
-    return f"\n{_comment(about)}#{header}\n" + _body(value, path)
+    text = field_docs(owner).get(name) or first_paragraph(type(value).__doc__)
+    return f"\n{_comment(text)}#{header}\n" + _body(value, path)
 
 
 def _line(name: str, value: Any, owner: type, *, active: bool = False) -> str:
     if value is None:
         return ""
-    about = f"{field_docs(owner).get(name, '')}{_state(owner, name)}"
-    return f"{_comment(about)}{'' if active else '#'}{name} = {_value(value)}\n"
+    text = f"{field_docs(owner).get(name, '')}{_default_note(owner, name)}"
+    return f"{_comment(text)}{'' if active else '#'}{name} = {_value(value)}\n"
 
 
-def _state(owner: type, name: str) -> str:
-    """What the value shown is, where it is not the default."""
+def _default_note(owner: type, name: str) -> str:
+    """Return a note if the value shown is not the default."""
     field = next(field for field in msgspec.structs.fields(owner) if field.name == name)
     if field.default is None:
-        return " Not set unless you set it."
-    return " Must be set." if field.required else ""
+        return " Not set by default."
+    return " Required." if field.required else ""
 
 
 def _parameter(parameter: Parameter) -> str:
@@ -154,7 +154,7 @@ def _parameter(parameter: Parameter) -> str:
 
 
 def parameter_help(parameter: Parameter) -> str:
-    """What it does and what it may be."""
+    """Return description and range of a parameter."""
     unit = f" {parameter.unit}" if parameter.unit else ""
     return f"{parameter.description} ({parameter.low:g} to {parameter.high:g}{unit})"
 

@@ -60,6 +60,10 @@ class Control:
         self.owner = 0
         self.reset()
 
+    def allow_takeover(self, allowed: bool) -> None:
+        """Let others take control without asking the owner, or not."""
+        self.takeover_allowed = allowed
+
     def takeover_denial_reason(self, system: int, now: float) -> str | None:
         """Return why `system` may not take control, or None if it may."""
         reason = self.denial_reason(system)

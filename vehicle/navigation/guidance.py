@@ -64,6 +64,10 @@ class PathFollower:
         self._pivots = kind is not DriveType.ACKERMANN
         self._pivoting = False
 
+    def set_reverse(self, reverse: bool) -> None:
+        """Drive paths backwards, or forwards."""
+        self.reverse = reverse
+
     def reset(self) -> None:
         """Forget the path and a pivot in progress."""
         self._pivoting = False

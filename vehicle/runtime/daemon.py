@@ -20,9 +20,8 @@ from link.protocol.log_tap import LogTap
 from link.runner import Runner, open_links
 from link.runtime.command_line import USAGE_ERROR
 from link.runtime.event_loop import run_loop, running_loop
-from link.transport.transport import LinkError
-from vehicle.commands.dispatch import COMPONENT
-from vehicle.commands.inbound import INBOUND_IDS
+from link.transport.transport import Link, LinkError
+from vehicle.commands.context import COMPONENT
 from vehicle.config.run_settings import RunSettings, SettingsError
 from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError, UnknownDriverError
@@ -131,7 +130,9 @@ async def _serve(settings: RunSettings) -> int:
         machine = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
         tape = recorder.tape if recorder else None
         try:
-            return await _drive(machine, settings.endpoints, system, notifier, cycles, tape)
+            links = open_links(settings.endpoints, system=system, component=COMPONENT, wanted=rover.message_ids)
+            status = f"system {system}, {', '.join(settings.endpoints)}"
+            return await _drive(machine, links, status, notifier, cycles, tape)
         except BaseException as error:
             machine.abort(error, loop.time())
             raise
@@ -141,20 +142,18 @@ async def _serve(settings: RunSettings) -> int:
 
 async def _drive(
     machine: ControlLoop,
-    endpoints: Sequence[str],
-    system: int,
+    links: Sequence[Link],
+    status: str,
     notifier: Notifier,
     cycles: CycleObserver,
     tape: LogTap | None,
 ) -> int:
-    links = open_links(endpoints, system=system, component=COMPONENT, wanted=INBOUND_IDS)
     runner = Runner(machine, links, period=PERIOD, log_tap=tape)
     ending = Shutdown(machine, runner, notifier.stopping)
     cycles.shutdown = ending
     ending.install_handlers(asyncio.get_running_loop())
     gc.collect()
     gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
-    status = f"system {system}, {', '.join(endpoints)}"
     log.info("ready, %s", status)
     notifier.ready(status)
     return await ending.wait()

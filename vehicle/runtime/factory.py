@@ -15,7 +15,7 @@ from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.accessories.output import AccessorySpec, PulseRange
 from vehicle.accessories.settings import build_specs
 from vehicle.accessories.simulated import SimulatedAccessory
-from vehicle.commands.dispatch import COMPONENT
+from vehicle.commands.context import COMPONENT
 from vehicle.config.conflicts import find_conflicts, find_motor_conflicts
 from vehicle.config.run_settings import RunSettings, SettingsError, Simulation
 from vehicle.control_loop import ControlLoop
@@ -53,7 +53,7 @@ def build_params(settings: RunSettings, store: ParamStore) -> Params:
     params, left_out = merge_params(given, kept=kept, usual=usual, pinned=settings.pinned.keys(), run=settings.params)
     for problem in left_out:
         log.warning("a kept parameter is not used: %s", problem)
-    params.damage = store.damage
+    params.mark_damaged(store.damage)
     if params.damage:
         consequence = "all parameters that were set have their defaults, and nobody can arm until one is set"
         log.warning("%s: %s: %s", settings.state, params.damage, consequence)

@@ -56,7 +56,7 @@ def _running(facts: ArmingFacts) -> str | None:
     return f"vehicle is in state {facts.state.value}" if facts.state in (SafetyState.BOOT, SafetyState.OFF) else None
 
 
-def _settings(facts: ArmingFacts) -> str | None:
+def _parameters(facts: ArmingFacts) -> str | None:
     """Return the first contradiction between parameters; each single value is in its range already."""
     params = facts.params
     if params["BATT_LOW_VOLT"] and params["BATT_CRT_VOLT"] > params["BATT_LOW_VOLT"]:
@@ -66,7 +66,7 @@ def _settings(facts: ArmingFacts) -> str | None:
     return None
 
 
-def _saved_settings(facts: ArmingFacts) -> str | None:
+def _saved_parameters(facts: ArmingFacts) -> str | None:
     damage = facts.params.damage
     return f"{damage}, using defaults; set one to continue" if damage else None
 
@@ -99,8 +99,8 @@ CHECKS: tuple[ArmingCheck, ...] = (
     ArmingCheck(_emergency_stop, hard=True),
     ArmingCheck(_motor_driver, hard=True),
     ArmingCheck(_running, hard=True),
-    ArmingCheck(_settings, hard=True),
-    ArmingCheck(_saved_settings, hard=True),
+    ArmingCheck(_parameters, hard=True),
+    ArmingCheck(_saved_parameters, hard=True),
     ArmingCheck(_mode, hard=True),
     ArmingCheck(_fence, hard=True),
     ArmingCheck(_battery, hard=False),

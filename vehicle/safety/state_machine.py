@@ -5,7 +5,7 @@ The methods know no messages: vehicle/commands/arming.py translates commands int
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Protocol
 
 from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
@@ -21,6 +21,17 @@ from vehicle.safety.states import TRANSITIONS, SafetyEvent, SafetyState
 from vehicle.statustext import StatusTextQueue
 
 
+class Readiness(Protocol):
+    """Why self-driving cannot work now; vehicle.autonomy.navigator.Navigator is one."""
+
+    def unready_reason(self, mode: Mode) -> str | None:
+        """Return why a mode cannot be chosen now, or None."""
+
+    @property
+    def fence_unenforceable_reason(self) -> str | None:
+        """Why an enabled fence would stop nothing, or None."""
+
+
 class Safety:
     """Arms, disarms and changes the mode; nothing else does."""
 
@@ -30,14 +41,9 @@ class Safety:
         control: Control,
         texts: StatusTextQueue,
         now: float,
-        unready: Callable[[Mode], str | None] = lambda mode: None,
-        unfenced: Callable[[], str | None] = lambda: None,
+        readiness: Readiness,
     ) -> None:
-        """Start in BOOT and in the mode INITIAL_MODE.
-
-        `unready` returns why a mode is not available now, `unfenced` why an enabled fence cannot be enforced; both None
-        if there is no reason.
-        """
+        """Start in BOOT and in the mode INITIAL_MODE. `readiness` knows whether autonomous modes can work."""
         self.state = SafetyState.BOOT
         self.mode = self.intended = initial_mode(params["INITIAL_MODE"])
         self.terminated = False
@@ -58,8 +64,7 @@ class Safety:
         self._params = params
         self._control = control
         self._texts = texts
-        self._unready = unready
-        self._unfenced = unfenced
+        self._readiness = readiness
         self.armed_at = now
         """Time of the last arming."""
 
@@ -92,8 +97,8 @@ class Safety:
             battery_critical=self.battery.critical_since(now) is not None,
             battery_silent=self.battery.is_silent(now),
             computer=self.computer.problem(),
-            mode=self._unready(self.mode),
-            fence=self._unfenced(),
+            mode=self._readiness.unready_reason(self.mode),
+            fence=self._readiness.fence_unenforceable_reason,
             sticks_moving=self._control.requests_motion() and not self._control.is_demand_stale(now),
         )
         return find_problems(facts, force=force)
@@ -163,7 +168,7 @@ class Safety:
         blocking = self.failsafes.mode_blocking_conditions()
         if blocking and MODES[mode].moves:
             return " and ".join(RULES[cause].label for cause in Failsafe if cause & blocking)
-        unready = self._unready(mode)
+        unready = self._readiness.unready_reason(mode)
         if unready:
             return unready
         self.intended = mode

@@ -6,7 +6,7 @@ starts at boot, in a log of its own. A vehicle that cannot record reports it and
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Protocol
 
@@ -18,6 +18,7 @@ from link.services.ftp.protocol import FtpError
 from link.services.param.values import REAL32
 from vehicle.drive.control import Control
 from vehicle.params import Params
+from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
 
 DISARM_PERSIST = 15.0
@@ -86,14 +87,14 @@ class Logbook:
         params: Params,
         control: Control,
         texts: StatusTextQueue,
-        armed: Callable[[], bool],
+        safety: Safety,
         recording: LogRecorder | None,
     ) -> None:
         self.recording = recording or NullLogRecorder()
         self._params = params
         self._control = control
         self._texts = texts
-        self._armed = armed
+        self._safety = safety
         self._was_armed = False
         self._open = False
         self._until = float("-inf")
@@ -108,7 +109,7 @@ class Logbook:
 
     def tick(self, now: float) -> list[Outgoing]:
         """Start or stop recording. Returns messages for the log only: all parameters, after the start of a log."""
-        armed = self._armed()
+        armed = self._safety.armed
         if self._was_armed and not armed:
             self._until = now + DISARM_PERSIST
         wanted = self.is_healthy is not None and (armed or self._params["LOG_DISARMED"] or now < self._until)
@@ -130,11 +131,11 @@ class Logbook:
 
     def folder(self) -> Folder:
         """Return the logs for MAVLink FTP, where files may be removed while disarmed."""
-        return _Logs(self.recording.folder, self._armed)
+        return _Logs(self.recording.folder, self._safety)
 
     def handle_log_erase(self, received: Received, now: float) -> None:
         """Handle LOG_ERASE: remove all logs, for the ground station in control and while disarmed."""
-        denial = self._control.denial_reason(received.system) or ("disarm first" if self._armed() else None)
+        denial = self._control.denial_reason(received.system) or ("disarm first" if self._safety.armed else None)
         if not received.introduced:
             denial = "its HEARTBEAT is missing"
         if denial is not None:
@@ -155,9 +156,9 @@ _KEY = "recording"
 class _Logs(ReadOnlyFolder):
     """The logs as a `link.services.ftp.files.Folder`: read-only; files may be removed while disarmed."""
 
-    def __init__(self, logs: Folder, armed: Callable[[], bool]) -> None:
+    def __init__(self, logs: Folder, safety: Safety) -> None:
         self._logs = logs
-        self._armed = armed
+        self._safety = safety
 
     def entries(self) -> Sequence[Entry]:
         return self._logs.entries()
@@ -166,4 +167,4 @@ class _Logs(ReadOnlyFolder):
         return self._logs.open(name, query)
 
     def remove(self, name: str) -> FtpError | None:
-        return FtpError.PROTECTED if self._armed() else self._logs.remove(name)
+        return FtpError.PROTECTED if self._safety.armed else self._logs.remove(name)

@@ -1,4 +1,8 @@
-"""The client half of the command protocol: sends COMMAND_LONG and repeats it until COMMAND_ACK."""
+"""Client half of the command protocol: sends COMMAND_LONG and repeats it until COMMAND_ACK.
+
+Rules (https://mavlink.io/en/services/command.html): repeats have a rising `confirmation`; IN_PROGRESS extends the
+timeout.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +14,10 @@ from link.core import Outgoing, Received
 from link.services.command.request import PROGRESS_TIMEOUT, Params
 
 REPEAT_AFTER = 0.35
-"""s without an answer before a command is sent again: longer than a loaded 57600 baud radio takes (0.18 s)."""
+"""s without a COMMAND_ACK before a command is repeated: longer than a loaded 57600 baud radio takes (0.18 s)."""
 TRIES = 6
-"""At 30 % loss each way all six fail once in 55 tries of the worst kind; a driver sees the failure after 2.1 s."""
+"""At 30 % loss each way all six fail once in 55 commands of the worst kind; the operator sees the failure after 2.1
+s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,9 +28,9 @@ class CommandOutcome:
     params: Params
     target_system: int
     result: Result | None
-    """None: nobody answered."""
+    """None: no answer."""
     number: int | None = None
-    """MAV_RESULT as it came, also where we do not know it."""
+    """MAV_RESULT as received, also one without a name here."""
 
 
 @dataclass(slots=True)
@@ -40,8 +45,8 @@ class _Waiting:
 class CommandClient:
     """Sends commands and repeats them until they are acknowledged.
 
-    One command of a kind waits for a target at a time: MAVLink acknowledges the kind and not the instance, so that a
-    newer one replaces the older.
+    COMMAND_ACK names the command but not the instance, so a newer command replaces a waiting one of the same kind and
+    target.
     """
 
     def __init__(self, system: int, component: int) -> None:
@@ -51,22 +56,22 @@ class CommandClient:
         self._outcomes: list[CommandOutcome] = []
 
     def send(self, command: int, *params: float, target_system: int, target_component: int = 1, now: float) -> None:
-        """Send a command with up to 7 parameters (missing ones are 0) and wait for its answer."""
+        """Send a command with up to 7 parameters (missing ones are 0) and wait for its COMMAND_ACK."""
         full: Params = (*params, *(0.0,) * (7 - len(params)))  # type: ignore[assignment]
         waiting = _Waiting(int(command), full, (target_system, target_component), now)
         self._waiting[target_system, int(command)] = waiting
         self._transmit(waiting, now)
 
     def cancel(self, command: int) -> None:
-        """Stop repeating a command, whoever it was for."""
+        """Stop repeating a command to any target."""
         self._waiting = {key: each for key, each in self._waiting.items() if each.command != command}
 
     def is_waiting(self, command: int, target_system: int) -> bool:
-        """Has this system not answered a command of this kind yet?"""
+        """Return whether a command of this kind to this system still waits for its COMMAND_ACK."""
         return (target_system, int(command)) in self._waiting
 
     def receive(self, received: Received, now: float) -> None:
-        """Take a COMMAND_ACK; others are ignored."""
+        """Handle COMMAND_ACK; other messages are ignored."""
         message = received.message
         if not isinstance(message, CommandAck) or message.target_system not in (0, self._ids[0]):
             return
@@ -81,7 +86,7 @@ class CommandClient:
         self._outcomes.append(CommandOutcome(waiting.command, waiting.params, received.system, known, message.result))
 
     def tick(self, now: float) -> None:
-        """Repeat what is overdue, give up what was repeated enough."""
+        """Repeat overdue commands; give up those repeated TRIES times."""
         for key, waiting in list(self._waiting.items()):
             if now < waiting.due:
                 continue
@@ -92,12 +97,12 @@ class CommandClient:
                 self._transmit(waiting, now)
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What to send now; empties what it returns."""
+        """Return the messages to send now, and remove them."""
         outbox, self._outbox = self._outbox, []
         return outbox
 
     def outcomes(self) -> list[CommandOutcome]:
-        """Commands that ended since the last call."""
+        """Return the commands that ended since the last call."""
         outcomes, self._outcomes = self._outcomes, []
         return outcomes
 

@@ -1,4 +1,4 @@
-"""A command as handlers see it, whether COMMAND_LONG or COMMAND_INT brought it."""
+"""A command as handlers see it, from COMMAND_LONG or COMMAND_INT."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from dialects.messages import CommandInt, CommandLong
 from link.core import Peer, Received
 
 PROGRESS_TIMEOUT = 3.0
-"""s in which the same command from the same source is a repeat and not a new wish."""
+"""s in which the same command from the same sender is a repeat."""
 
 Params = tuple[float, float, float, float, float, float, float]
 
 
 def value_or_default(value: float, otherwise: float = 0.0) -> float:
-    """A parameter that may be left out: COMMAND_LONG always has seven, and MAVSDK puts NaN where it says nothing."""
+    """Return a parameter's value, or `otherwise` for NaN, which MAVSDK sends in parameters it omits."""
     return otherwise if math.isnan(value) else value
 
 
 @dataclass(frozen=True, slots=True)
 class CommandRequest:
-    """A command as a handler sees it, whichever message brought it."""
+    """One command."""
 
     command: int
     params: Params
@@ -37,17 +37,19 @@ class CommandRequest:
     introduced: bool
     may_ask: bool
     repeated: bool = field(default=False, compare=False)
-    """It may be said again: `confirmation` says so, or it is a COMMAND_INT, which has none."""
+    """May be a repeat: `confirmation` is above 0, or it is a COMMAND_INT, which has none."""
 
 
 def _comparable(param: float) -> float:
-    """Every NaN as the same object, which tuples find equal: MAVSDK leaves NaN where it says nothing, and what is said
-    again must be known again.
+    """Return every NaN as the same object, which tuples find equal.
+
+    MAVSDK leaves omitted parameters NaN, and a repeated command must be equal to the first.
     """
     return math.nan if param != param else param
 
 
 def parse_command(message: CommandLong | CommandInt, received: Received) -> CommandRequest:
+    """Return the command of either message."""
     if isinstance(message, CommandInt):
         last: tuple[float, float, float] = (message.x, message.y, message.z)
         frame, x, y = message.frame, message.x, message.y

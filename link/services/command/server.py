@@ -1,15 +1,16 @@
-"""The command protocol, both halves: COMMAND_LONG and COMMAND_INT, answered by COMMAND_ACK, never by silence.
+"""Server half of the command protocol: COMMAND_LONG and COMMAND_INT, each answered with COMMAND_ACK.
 
-Rules (mavlink.io/en/services/command.html): the client repeats with a rising `confirmation` until acknowledged; the
-server acknowledges every command meant for it, UNSUPPORTED when it does not know it. A command for somebody else is
-never acknowledged. What takes time: jobs.py. Repeats are run: a handler does no more at the second time, or
-knows a repeat itself, as vehicle/commands/actuator_test.py.
+Rules (https://mavlink.io/en/services/command.html): every command for this component is acknowledged, with UNSUPPORTED
+if there is no handler; a command for another component never is. Repeats are run: a second run of a handler changes
+nothing, or the handler detects the repeat itself, as vehicle/commands/actuator_test.py does. Long-running commands:
+jobs.py.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from dialects.enums import Result
 from dialects.messages import CommandCancel, CommandInt, CommandLong
@@ -20,14 +21,23 @@ from link.services.command.request import PROGRESS_TIMEOUT, CommandRequest, pars
 __all__ = [
     "PROGRESS_TIMEOUT",
     "CommandHandler",
+    "CommandReply",
     "CommandRequest",
     "CommandServer",
     "RunCommand",
     "value_or_default",
 ]
 
-RunCommand = Callable[[CommandRequest, float], Result | CommandJob]
-"""Runs a command at a time: its result, or where it takes a while a job of jobs.py."""
+
+class CommandReply(NamedTuple):
+    """A result, with messages to send after its acknowledgement."""
+
+    result: Result
+    messages: tuple[Outgoing, ...] = ()
+
+
+RunCommand = Callable[[CommandRequest, float], Result | CommandReply | CommandJob]
+"""Runs a command; returns its result, a reply with messages, or a CommandJob if it takes a while."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +46,11 @@ class CommandHandler:
 
     run: RunCommand
     broadcast: bool = False
-    """Obeyed and acknowledged when sent to system 0. Only for what can do no harm: stops and questions."""
+    """Run and acknowledged when sent to system 0. Only for what can do no harm: stops and queries."""
 
 
 class CommandServer:
-    """Answers commands for one system and component from a table."""
+    """Answers the commands to one system and component from a table of handlers."""
 
     def __init__(self, handlers: Mapping[int, CommandHandler], *, system: int, component: int) -> None:
         self._handlers = handlers
@@ -50,20 +60,20 @@ class CommandServer:
 
     @property
     def commands(self) -> frozenset[int]:
-        """What has a handler."""
+        """The commands that have a handler."""
         return frozenset(self._handlers)
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Run or cancel a command; returns the acknowledgement, or nothing where it was not for us."""
+        """Run or cancel a command. Return the acknowledgement and what follows it; nothing if it is not for us."""
         message = received.message
         if not isinstance(message, CommandLong | CommandInt | CommandCancel) or not self._for_us(message):
             return []
         if isinstance(message, CommandCancel):
             return self._jobs.cancel(message.command, received, now)
-        return [self._run(parse_command(message, received), now)]
+        return self._run(parse_command(message, received), now)
 
     def tick(self, now: float) -> list[Outgoing]:
-        """News of the commands under way."""
+        """Run the long-running commands; return their progress and results."""
         return self._jobs.tick(now)
 
     def _for_us(self, message: CommandLong | CommandInt | CommandCancel) -> bool:
@@ -74,12 +84,16 @@ class CommandServer:
             return handler is not None and handler.broadcast
         return bool(message.target_system == self._system)
 
-    def _run(self, request: CommandRequest, now: float) -> Outgoing:
+    def _run(self, request: CommandRequest, now: float) -> list[Outgoing]:
         handler = self._handlers.get(request.command)
         if handler is None:
-            return ack(request, Result.UNSUPPORTED)
+            return [ack(request, Result.UNSUPPORTED)]
         under_way = self._jobs.reply_to_repeat(request, now)
         if under_way is not None:
-            return under_way
+            return [under_way]
         result = handler.run(request, now)
-        return ack(request, result) if isinstance(result, Result) else self._jobs.begin(request, result, now)
+        if isinstance(result, Result):
+            return [ack(request, result)]
+        if isinstance(result, CommandReply):
+            return [ack(request, result.result), *result.messages]
+        return [self._jobs.begin(request, result, now)]

@@ -1,4 +1,4 @@
-"""Key maps of a user: what is taken, and what is told in one line."""
+"""Key map files: what is accepted, and errors of one line."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def test_every_punctuation_name_is_textuals() -> None:
         (f"base = {'[' * 3000}{']' * 3000}", ["mine.toml", "nested too deep"]),
     ],
 )
-def test_mistakes_are_told_in_one_line_with_the_choices(tmp_path: Path, text: str, words: list[str]) -> None:
+def test_mistakes_are_reported_in_one_line_with_the_choices(tmp_path: Path, text: str, words: list[str]) -> None:
     with pytest.raises(KeymapError) as caught:
         load_keymap(write(tmp_path, text))
     line = str(caught.value)

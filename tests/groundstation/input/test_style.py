@@ -5,7 +5,7 @@ from __future__ import annotations
 from groundstation.input.style import Style
 
 
-def test_the_next_style_goes_round() -> None:
+def test_the_next_style_wraps() -> None:
     style, seen = Style.HOLD, []
     for _ in range(3):
         style = style.next

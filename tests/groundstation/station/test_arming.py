@@ -16,7 +16,7 @@ from tests.groundstation.fake_vehicle import OURS, FakeVehicle
 ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
 
 
-def test_arming_in_hold_asks_for_manual_first() -> None:
+def test_arming_in_hold_changes_to_manual_first() -> None:
     vehicle = FakeVehicle(mode=Mode.HOLD)
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm())
@@ -32,7 +32,7 @@ def test_arming_in_guided_leaves_the_mode_alone() -> None:
     assert cockpit.view.mode == "GUIDED"
 
 
-def test_neutral_demands_go_before_arming_where_the_vehicle_does_not_tell_its_driver() -> None:
+def test_neutral_demands_precede_arming_without_control_status() -> None:
     vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm())
@@ -43,7 +43,7 @@ def test_neutral_demands_go_before_arming_where_the_vehicle_does_not_tell_its_dr
     assert all(message.z == 0 and message.y == 0 for message in before)
 
 
-def test_no_demand_goes_before_arming_to_a_vehicle_that_obeys_nobody_yet() -> None:
+def test_no_demand_precedes_arming_while_no_driver_is_in_control() -> None:
     cockpit = armed_cockpit()
     armed_at = min(at for at, message in cockpit.vehicle.all(m.CommandLong) if message.command == ARM)
     assert [at for at, _, _ in cockpit.demands() if at < armed_at] == []
@@ -59,7 +59,7 @@ def test_refused_mode_ends_the_arming() -> None:
     assert cockpit.view.refusal == "mode MANUAL failed"
 
 
-def test_acknowledged_but_not_armed_is_told() -> None:
+def test_acknowledged_but_not_armed_is_reported() -> None:
     vehicle = FakeVehicle()
     vehicle._obey = lambda message, source: None  # type: ignore[method-assign]
     cockpit = cockpit_with(vehicle)

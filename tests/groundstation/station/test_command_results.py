@@ -29,10 +29,10 @@ def test_a_reason_after_the_refusal_counts_and_a_later_text_does_not() -> None:
     cockpit = cockpit_with(vehicle)
     cockpit.do(Arm())
     cockpit.run(0.3)
-    vehicle.say(m.StatusText(4, b"wheel blocked"))
+    vehicle.send(m.StatusText(4, b"wheel blocked"))
     cockpit.run(2.0)
     assert cockpit.view.refusal == "arm denied: wheel blocked"
-    vehicle.say(m.StatusText(4, b"something else"))
+    vehicle.send(m.StatusText(4, b"something else"))
     cockpit.run(0.2)
     assert cockpit.view.refusal == "arm denied: wheel blocked"
 
@@ -51,7 +51,7 @@ def test_acceptance_clears_the_refusal() -> None:
     assert cockpit.view.armed
 
 
-def test_no_answer_is_told() -> None:
+def test_no_answer_is_reported() -> None:
     vehicle = FakeVehicle()
     vehicle.silent_on.add(ARM)
     cockpit = cockpit_with(vehicle)

@@ -1,4 +1,4 @@
-"""Disarming, modes and control requests, against a vehicle that answers as the test says."""
+"""Disarming, modes and control requests, with a scripted vehicle."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.groundstation.fake_vehicle import FakeVehicle
 ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
 
 
-def test_disarm_is_asked_again_while_the_heartbeat_says_armed() -> None:
+def test_disarm_is_repeated_while_the_heartbeat_reports_armed() -> None:
     cockpit = armed_cockpit()
     obey, vehicle = cockpit.vehicle._obey, cockpit.vehicle
     vehicle._obey = lambda message, source: None  # type: ignore[method-assign]  # acknowledged, and not done
@@ -31,7 +31,7 @@ def test_disarm_is_asked_again_while_the_heartbeat_says_armed() -> None:
     assert not cockpit.view.armed
 
 
-def test_disarm_that_never_becomes_true_is_told() -> None:
+def test_disarm_that_never_takes_effect_is_reported() -> None:
     cockpit = armed_cockpit()
     cockpit.vehicle._obey = lambda message, source: None  # type: ignore[method-assign]
     cockpit.do(Disarm())
@@ -48,7 +48,7 @@ def test_mode_by_name() -> None:
 
 
 @pytest.mark.parametrize("name", ["FLY", "", "manual"])
-def test_unknown_mode_is_told_and_not_sent(name: str) -> None:
+def test_unknown_mode_is_reported_and_not_sent(name: str) -> None:
     cockpit = armed_cockpit()
     cockpit.do(SetMode(mode=name))
     cockpit.run(0.5)

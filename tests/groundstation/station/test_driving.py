@@ -70,8 +70,8 @@ def test_nothing_is_sent_to_a_disarmed_vehicle() -> None:
     cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(1.0)
     assert cockpit.demands() == []
-    assert cockpit.helm.gate_reason == "disarmed"
-    assert cockpit.helm.held == ("i",)
+    assert cockpit.operator.gate_reason == "disarmed"
+    assert cockpit.operator.held == ("i",)
 
 
 def test_a_key_held_while_arming_does_not_drive() -> None:
@@ -94,7 +94,7 @@ def test_nothing_is_sent_while_another_station_drives() -> None:
     cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(1.0)
     assert cockpit.demands() == []
-    assert cockpit.helm.gate_reason == "GCS 254 is in control"
+    assert cockpit.operator.gate_reason == "GCS 254 is in control"
     cockpit.do(RequestControl())
     cockpit.run(1.0)
     assert cockpit.view.in_control
@@ -108,7 +108,7 @@ def test_a_key_held_over_a_lost_link_has_to_be_pressed_anew() -> None:
     cockpit.world.cut()
     cockpit.run(5.0)
     assert not cockpit.view.alive
-    assert cockpit.helm.gate_reason == "Rover 1: link lost"
+    assert cockpit.operator.gate_reason == "Rover 1: link lost"
     cockpit.world.cut(False)
     back = cockpit.now
     cockpit.run(2.0)
@@ -125,11 +125,11 @@ def test_hold_mode_keeps_the_keys_from_driving() -> None:
     cockpit = driving_cockpit()
     cockpit.vehicle.mode = Mode.HOLD
     cockpit.run(1.5)
-    assert cockpit.helm.gate_reason == "mode HOLD"
+    assert cockpit.operator.gate_reason == "mode HOLD"
     assert cockpit.demands()[-1][1] == 0
 
 
-def test_disarm_stops_at_once_and_then_says_nothing() -> None:
+def test_disarm_stops_at_once_and_then_sends_nothing() -> None:
     cockpit = driving_cockpit()
     at = cockpit.now
     cockpit.do(Disarm())

@@ -32,7 +32,7 @@ def test_emergency_stop_is_two_commands_and_neutral_at_once() -> None:
     assert cockpit.demands(at + 0.001)[0][1] == 0
     cockpit.run(1.0)
     assert cockpit.view.emergency_stop
-    assert cockpit.helm.gate_reason == "emergency stop"
+    assert cockpit.operator.gate_reason == "emergency stop"
 
 
 def test_emergency_stop_is_repeated_until_the_link_is_back() -> None:

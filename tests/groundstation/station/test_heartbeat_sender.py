@@ -23,7 +23,7 @@ def test_heartbeats_once_a_second_as_ground_station() -> None:
     assert (beat.type, beat.autopilot, beat.base_mode, beat.system_status) == (6, 8, 0, SystemState.ACTIVE)
 
 
-def test_a_vehicle_at_a_new_address_is_greeted_at_once() -> None:
+def test_a_vehicle_at_a_new_address_gets_a_heartbeat_at_once() -> None:
     # It obeys only who has shown a heartbeat, and heard none of those that went out before it was there.
     station = Station(["udpin:127.0.0.1:14550"], now=100.0)
     station.handle_intent(RenewLease(), 100.0)

@@ -17,11 +17,11 @@ from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
 from tests.groundstation.fake_vehicle import Cockpit
 
 
-def test_styles_are_told_and_latch_drives_without_a_held_key() -> None:
+def test_style_changes_are_logged_and_latch_drives_without_a_held_key() -> None:
     cockpit = armed_cockpit()
     cockpit.do(SetStyle(style="next"), FORWARD)
     cockpit.run(3.0)
-    assert cockpit.helm.style == "latch"
+    assert cockpit.operator.style == "latch"
     assert cockpit.demands()[-1][1] == 600
     assert "drive style latch" in cockpit.texts
     cockpit.do(Stop())
@@ -29,7 +29,7 @@ def test_styles_are_told_and_latch_drives_without_a_held_key() -> None:
     assert cockpit.demands()[-1][1] == 0
 
 
-def test_orders_without_a_vehicle_are_answered_in_words() -> None:
+def test_commands_without_a_vehicle_are_logged() -> None:
     cockpit = Cockpit()
     cockpit.world.cut()
     cockpit.do(Arm())

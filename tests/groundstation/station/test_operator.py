@@ -26,8 +26,8 @@ def test_closing_the_gate_is_neutral_at_once() -> None:
     assert demands
     assert demands[0][0] - closed <= 0.006
     assert all(x == 0 for _, x, _ in demands)
-    assert cockpit.helm.gate_reason == "help is open"
-    assert cockpit.helm.held == ()
+    assert cockpit.operator.gate_reason == "help is open"
+    assert cockpit.operator.held == ()
     cockpit.do(FORWARD, SetKeyGate(open=True), DriveKeyDown(key="i", throttle=1, steering=0, repeat=True))
     cockpit.run(0.3)
     assert cockpit.demands()[-1][1] == 0, "a key pressed behind a closed gate must not drive after it opened"
@@ -50,7 +50,7 @@ def test_a_key_that_repeats_from_before_the_gate_opened_does_not_drive() -> None
     assert cockpit.demands()[-1][1] == 600
 
 
-def test_frozen_screen_is_neutral_within_half_a_second_then_silence() -> None:
+def test_frozen_screen_is_neutral_within_half_a_second_then_nothing_is_sent() -> None:
     cockpit = driving_cockpit()
     frozen = cockpit.now
     cockpit.leasing = False
@@ -60,8 +60,8 @@ def test_frozen_screen_is_neutral_within_half_a_second_then_silence() -> None:
     neutral = [at for at, x, _ in cockpit.demands(max(moving) + 0.001) if x == 0]
     assert len(set(neutral)) == 5
     assert max(at for at, _ in cockpit.vehicle.all(m.Heartbeat)) - frozen <= 1.1
-    assert not cockpit.helm.sending
-    assert cockpit.helm.held == ()
+    assert not cockpit.operator.sending
+    assert cockpit.operator.held == ()
 
 
 def test_keys_typed_at_a_frozen_screen_do_not_drive_when_it_thaws() -> None:
@@ -78,14 +78,14 @@ def test_keys_typed_at_a_frozen_screen_do_not_drive_when_it_thaws() -> None:
     assert cockpit.demands()[-1][1] == 600
 
 
-def test_proof_of_life_goes_before_each_demand_to_a_vehicle_that_knows_it() -> None:
+def test_operator_presence_precedes_each_demand_to_a_vehicle_of_our_dialect() -> None:
     cockpit = armed_cockpit()
     cockpit.run(0.5)
     cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.3)
     tail = [
         message
-        for _, message in cockpit.vehicle.heard
+        for _, message in cockpit.vehicle.received
         if isinstance(message, (m.RoverOperatorPresence, m.ManualControl))
     ]
     assert [type(message) for message in tail[-4:]] == [m.RoverOperatorPresence, m.ManualControl] * 2
@@ -97,7 +97,7 @@ def test_proof_of_life_goes_before_each_demand_to_a_vehicle_that_knows_it() -> N
     assert proof.echo_time_boot_ms == pytest.approx(cockpit.now * 1000, abs=110)
 
 
-def test_no_proof_of_life_to_a_vehicle_that_does_not_know_it() -> None:
+def test_no_operator_presence_to_a_foreign_vehicle() -> None:
     cockpit = driving_cockpit(FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None))
     cockpit.run(1.0)
     assert cockpit.vehicle.all(m.RoverOperatorPresence) == []

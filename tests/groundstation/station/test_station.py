@@ -1,4 +1,4 @@
-"""The station with a vehicle that does as the test says: what it waits for, finds and shows."""
+"""The station with a scripted vehicle: what it waits for, finds and shows."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ def test_waiting_line_names_the_endpoint() -> None:
     cockpit.run(1.0)
     assert cockpit.snapshot.waiting == "waiting for a vehicle on udpin:127.0.0.1:14550"
     assert cockpit.snapshot.vehicle is None
-    assert cockpit.helm.gate_reason == "no vehicle"
+    assert cockpit.operator.gate_reason == "no vehicle"
 
 
-def test_bytes_without_a_vehicle_are_told() -> None:
+def test_bytes_without_a_vehicle_are_reported() -> None:
     cockpit = Cockpit()
-    cockpit.vehicle.tick = lambda now: cockpit.vehicle.say(m.SystemTime(0, 0))  # type: ignore[method-assign]
+    cockpit.vehicle.tick = lambda now: cockpit.vehicle.send(m.SystemTime(0, 0))  # type: ignore[method-assign]
     cockpit.run(2.0)
     waiting = cockpit.snapshot.waiting
     assert waiting is not None
@@ -28,7 +28,7 @@ def test_bytes_without_a_vehicle_are_told() -> None:
 
 def test_a_ground_station_is_no_vehicle() -> None:
     cockpit = Cockpit()
-    cockpit.vehicle.tick = lambda now: cockpit.vehicle.say(m.Heartbeat(6, 8, 0, 0, 4, 3))  # type: ignore[method-assign]
+    cockpit.vehicle.tick = lambda now: cockpit.vehicle.send(m.Heartbeat(6, 8, 0, 0, 4, 3))  # type: ignore[method-assign]
     cockpit.run(2.0)
     assert cockpit.station.fleet.system_ids == ()
 

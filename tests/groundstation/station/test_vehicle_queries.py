@@ -13,12 +13,12 @@ from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 INTERVAL = Command.SET_MESSAGE_INTERVAL
 
 
-def asked(vehicle: FakeVehicle) -> dict[int, float]:
+def requested_rates(vehicle: FakeVehicle) -> dict[int, float]:
     """Message -> rate in Hz, as requested."""
     return {int(each.param1): 1e6 / each.param2 for each in vehicle.commands(INTERVAL)}
 
 
-def test_nobody_is_asked_while_lost() -> None:
+def test_no_queries_while_the_link_is_lost() -> None:
     vehicle = FakeArduPilot()
     vehicle.silent_on.add(INTERVAL)
     cockpit = Cockpit(vehicle)
@@ -32,7 +32,7 @@ def test_nobody_is_asked_while_lost() -> None:
     assert [message for at, message in cockpit.world.near.sent if at > lost and isinstance(message, asked)] == []
 
 
-def test_nobody_is_asked_while_the_screen_is_frozen() -> None:
+def test_no_queries_while_the_screen_is_frozen() -> None:
     vehicle = FakeArduPilot()
     vehicle.silent_on.add(INTERVAL)
     cockpit = Cockpit(vehicle)
@@ -46,7 +46,7 @@ def test_the_capacity_is_that_of_the_vehicles_link() -> None:
     cockpit = Cockpit(vehicle)
     cockpit.world.near.channel._capacity = 960.0
     cockpit.run(2.0)
-    assert asked(vehicle)[m.Attitude.id] == pytest.approx(10 * CAPACITY_SHARE * 960 / LOAD, rel=0.01)
+    assert requested_rates(vehicle)[m.Attitude.id] == pytest.approx(10 * CAPACITY_SHARE * 960 / LOAD, rel=0.01)
 
 
 def test_ardupilot_settings_that_let_it_drive_on_are_warned_of() -> None:

@@ -50,7 +50,7 @@ def test_no_number_is_no_setting(number: float) -> None:
     assert check.warnings == ()
 
 
-def test_silence_is_asked_again_three_times_and_then_left_alone() -> None:
+def test_an_unanswered_read_is_repeated_three_times() -> None:
     check = new_check()
     asked: list[bytes] = []
     check.receive(value("FS_GCS_ENABLE", 1.0), 0.0)

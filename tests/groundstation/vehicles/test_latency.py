@@ -7,7 +7,7 @@ import pytest
 from groundstation.vehicles.latency import LatencyMeter
 
 
-def test_latency_counts_the_first_word_for_a_changed_demand_only() -> None:
+def test_latency_counts_the_first_report_on_a_changed_demand_only() -> None:
     meter = LatencyMeter()
     meter.record_sent(7, 1.0)
     meter.record_applied(6, 1.01, 0.0)
@@ -18,7 +18,7 @@ def test_latency_counts_the_first_word_for_a_changed_demand_only() -> None:
     assert meter.latest == pytest.approx(0.02)
 
 
-def test_a_number_of_the_last_lap_says_nothing() -> None:
+def test_a_reused_sequence_number_is_ignored() -> None:
     meter = LatencyMeter()
     meter.record_sent(7, 1.0)
     meter.record_applied(7, 20.0, 0.0)

@@ -1,6 +1,6 @@
-"""A real ArduRover 4.7, as recorded, through channel and station in virtual time; bare pymavlink says what is in it.
+"""A real ArduRover 4.7, as recorded, through channel and station in virtual time; plain pymavlink gives the reference.
 
-Not ours: unknown ids, another ground station at work, every stream there is, parameters, files, texts.
+It contains unknown ids, another active ground station, every stream, parameters, files and texts.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ LARGEST = 60_000
 
 
 class Moment(NamedTuple):
-    """What the station shows, and the newest recorded message of each kind by then."""
+    """A snapshot, and the newest recorded message of each kind by then."""
 
     at: float
     snapshot: Snapshot

@@ -1,4 +1,4 @@
-"""Telemetry that a foreign vehicle is asked for: which, how often, and what when it does not want to."""
+"""Telemetry requests to a foreign vehicle: which, how often, and the fallback when it refuses."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ EXPECTED = {
 }  # fmt: skip
 
 
-def asked(vehicle: FakeVehicle) -> dict[int, float]:
-    """Message -> Hz, as it was asked for last by SET_MESSAGE_INTERVAL."""
+def requested_rates(vehicle: FakeVehicle) -> dict[int, float]:
+    """Return message -> Hz of the last SET_MESSAGE_INTERVAL."""
     return {int(command.param1): 1e6 / command.param2 for command in vehicle.commands(INTERVAL)}
 
 
@@ -33,16 +33,16 @@ def groups(vehicle: FakeVehicle) -> dict[int, int]:
     return {message.req_stream_id: message.req_message_rate for _, message in vehicle.all(m.RequestDataStream)}
 
 
-def test_all_that_the_drive_screen_needs_is_wanted() -> None:
+def test_everything_that_the_drive_screen_needs_is_requested() -> None:
     assert {m.MESSAGES[number].msgname for number in STREAM_RATES} == EXPECTED
 
 
 @pytest.mark.parametrize("autopilot", [Autopilot.ARDUPILOT, Autopilot.PX4])
-def test_a_foreign_vehicle_is_asked_at_once_one_message_after_the_other(autopilot: Autopilot) -> None:
+def test_a_foreign_vehicle_gets_requests_at_once_one_message_after_the_other(autopilot: Autopilot) -> None:
     vehicle = FakeArduPilot(autopilot=autopilot)
     cockpit = Cockpit(vehicle)
     cockpit.run(2.0)
-    assert asked(vehicle) == {number: pytest.approx(wanted.rate) for number, wanted in STREAM_RATES.items()}
+    assert requested_rates(vehicle) == {number: pytest.approx(wanted.rate) for number, wanted in STREAM_RATES.items()}
     assert len(vehicle.commands(INTERVAL)) == len(STREAM_RATES), "each once: they were acknowledged"
     assert groups(vehicle) == {}
     cockpit.run(3.0)
@@ -51,28 +51,28 @@ def test_a_foreign_vehicle_is_asked_at_once_one_message_after_the_other(autopilo
     assert not any("command" in text or "accepted" in text for text in cockpit.texts), "nobody needs to read of it"
 
 
-def test_our_own_rover_is_never_asked() -> None:
+def test_our_own_rover_gets_no_requests() -> None:
     vehicle = FakeVehicle()
     cockpit = Cockpit(vehicle)
     cockpit.run(0.1)
-    vehicle.say(m.RoverDriveStatus(1, 0, 0, 0, [0, 0, 0, 0], 0, 0, 0))
+    vehicle.send(m.RoverDriveStatus(1, 0, 0, 0, [0, 0, 0, 0], 0, 0, 0))
     cockpit.run(10.0)
     assert vehicle.commands(INTERVAL) == []
     assert groups(vehicle) == {}
 
 
-def test_a_vehicle_of_no_known_kind_is_asked_for_what_does_not_come() -> None:
+def test_an_unknown_vehicle_gets_requests_for_what_does_not_arrive() -> None:
     vehicle = FakeVehicle(driver=None)
     cockpit = Cockpit(vehicle)
     cockpit.run(0.1)
-    vehicle.say(m.Attitude(1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    vehicle.send(m.Attitude(1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     cockpit.run(2.5)
     assert vehicle.commands(INTERVAL) == []
     cockpit.run(3.0)
-    assert set(asked(vehicle)) == set(STREAM_RATES) - {m.Attitude.id}
+    assert set(requested_rates(vehicle)) == set(STREAM_RATES) - {m.Attitude.id}
 
 
-def test_a_vehicle_that_does_not_know_the_command_is_asked_for_groups() -> None:
+def test_a_vehicle_that_does_not_know_the_command_gets_group_requests() -> None:
     vehicle = FakeArduPilot()
     vehicle.answers[INTERVAL] = Result.UNSUPPORTED
     cockpit = Cockpit(vehicle)
@@ -86,7 +86,7 @@ def test_a_vehicle_that_does_not_know_the_command_is_asked_for_groups() -> None:
     assert vehicle.rates[m.Attitude.id] == 10.0
 
 
-def test_a_vehicle_that_does_not_answer_is_asked_for_groups() -> None:
+def test_a_vehicle_that_does_not_answer_gets_group_requests() -> None:
     vehicle = FakeArduPilot()
     vehicle.silent_on.add(INTERVAL)
     cockpit = Cockpit(vehicle)
@@ -96,7 +96,7 @@ def test_a_vehicle_that_does_not_answer_is_asked_for_groups() -> None:
     assert cockpit.view.refusal is None
 
 
-def test_one_refused_message_is_asked_for_by_its_group_alone() -> None:
+def test_a_refused_message_is_requested_by_its_group_alone() -> None:
     class Picky(FakeArduPilot):
         def _command(self, message: m.CommandLong, source: int) -> None:
             refuses = message.command == INTERVAL and message.param1 == m.ServoOutputRaw.id
@@ -105,11 +105,11 @@ def test_one_refused_message_is_asked_for_by_its_group_alone() -> None:
 
     vehicle = Picky()
     Cockpit(vehicle).run(5.0)
-    assert set(asked(vehicle)) == set(STREAM_RATES)
+    assert set(requested_rates(vehicle)) == set(STREAM_RATES)
     assert groups(vehicle) == {DataStream.RC_CHANNELS: 5}
 
 
-def test_it_is_asked_again_when_it_was_lost_and_is_back() -> None:
+def test_requested_again_when_lost_and_back() -> None:
     vehicle = FakeArduPilot()
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)

@@ -208,7 +208,7 @@ def test_a_line_of_json_a_second_and_nobody_has_to_read_on(
     assert (route["system"], route["component"], route["endpoint"]) == (1, 1, cable.endpoint)
     assert program.process.stdout
     program.process.stdout.close()
-    program.wait_for("nobody reads the status any more")
+    program.wait_for("the status output was closed")
     cable.write(BULK[8])
     while BULK[8] not in ground.recv(2000):
         continue  # what came before it
@@ -284,16 +284,19 @@ def test_it_records_what_passes_and_the_file_is_whole_after_a_signal(
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ((), "a bridge has two ends or more"),
-        (("udpin:127.0.0.1:14999",), "a bridge has two ends or more"),
+        ((), "two endpoints or more are needed"),
+        (("udpin:127.0.0.1:14999",), "two endpoints or more are needed"),
         (("udpin:127.0.0.1:14999", "udpin:127.0.0.1:14999"), "is given twice"),
         (("udpin:127.0.0.1:14999", "serial:ttyAMA0:57600"), "write serial:/dev/ttyAMA0:57600"),
         (("udpin:127.0.0.1:0", "serial:/dev/ttyX:57600", "--json", "--quiet"), "port '0'"),
         (("serial:/dev/null:57600", "udpout:127.0.0.1:14999"), "/dev/null is not a serial port"),
-        (("udpout:127.0.0.1:1", "udpout:127.0.0.1:2", "--tlog", "/dev/null/x"), "--tlog /dev/null/x: there is a file"),
+        (
+            ("udpout:127.0.0.1:1", "udpout:127.0.0.1:2", "--tlog", "/dev/null/x"),
+            "--tlog /dev/null/x: a file of that name exists",
+        ),
         (
             ("udpout:127.0.0.1:1", "udpout:127.0.0.1:2", "--tlog", "/dev/null"),
-            "/dev/null: there is a file of that name",
+            "/dev/null: a file of that name exists",
         ),
     ],
 )

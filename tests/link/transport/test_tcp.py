@@ -237,21 +237,24 @@ async def test_it_does_not_talk_to_itself() -> None:
     wire._refused = lambda loop, why: refused.append(why)  # type: ignore[method-assign]
     refused: list[str] = []
     wire._connected(asyncio.get_running_loop(), own)
-    assert refused == ["nobody listens"]
+    assert refused == ["no listener"]
     own.close()
 
 
 class Names:
     """A name server: what it says can change, and it can be slow or away."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, port: int) -> None:
         self.address: str | None = "127.0.0.1"
+        self.port = port
         self.asked = 0
         self.answers = threading.Event()
         self.answers.set()
         monkeypatch.setattr(socket, "getaddrinfo", self._answer)
 
     def _answer(self, host: str, port: int, *_: object, **__: object) -> list[tuple[object, ...]]:
+        if port != self.port:  # a thread of an earlier test's transport
+            raise socket.gaierror(socket.EAI_AGAIN, "Temporary failure in name resolution")
         assert host == "rover.example"
         self.asked += 1
         assert self.answers.wait(60)
@@ -268,7 +271,7 @@ async def taken(address: str, port: int, wire: TcpClientTransport) -> None:
 
 
 async def test_a_name_that_moves_is_followed(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = Names(monkeypatch)
+    names = Names(monkeypatch, port)
     wire = open_tcpout(parse_endpoint(f"tcpout:rover.example:{port}"))
     Heard(wire)
     await taken("127.0.0.1", port, wire)
@@ -280,7 +283,7 @@ async def test_a_name_that_moves_is_followed(port: int, monkeypatch: pytest.Monk
 
 
 async def test_a_name_server_that_hangs_delays_no_connection(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = Names(monkeypatch)
+    names = Names(monkeypatch, port)
     wire = open_tcpout(parse_endpoint(f"tcpout:rover.example:{port}"))
     names.answers.clear()
     Heard(wire)
@@ -292,7 +295,7 @@ async def test_a_name_server_that_hangs_delays_no_connection(port: int, monkeypa
 
 async def test_a_number_is_not_looked_up(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     wire = client(port)
-    names = Names(monkeypatch)
+    names = Names(monkeypatch, port)
     Heard(wire)
     await taken("127.0.0.1", port, wire)
     wire.close()

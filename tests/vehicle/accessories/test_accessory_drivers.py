@@ -118,7 +118,7 @@ def test_a_chip_that_lost_its_power_is_not_woken_by_a_servo() -> None:
     servo = Pca9685Servo(Pca9685ServoSettings(channel=4), 0, bus=fake)
     fake.lose_power()
     fake.writes.clear()
-    with pytest.raises(MotorError, match="it has lost its power, restart the vehicle"):
+    with pytest.raises(MotorError, match="it has lost its power; restart the vehicle"):
         servo.set(1500)
     assert fake.writes == []
 

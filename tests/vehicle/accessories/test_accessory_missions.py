@@ -7,9 +7,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command, Failsafe, FenceItem, MissionResult, MissionType
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import Item, do, finish, start, upload, way
 from tests.vehicle.bench import Equipped, said
 from tests.vehicle.field import Field
+from tests.vehicle.missions import Item, do, finish, start, upload, way
 from vehicle.navigation.geo import Point
 
 RELAY, SERVO = Command.DO_SET_RELAY, Command.DO_SET_SERVO

@@ -66,26 +66,26 @@ def test_a_file_becomes_outputs() -> None:
         (RELAY.replace("number = 0", ""), "relays[0].number: missing; add it"),
         (RELAY + "start = 1", "relays[0].start: must be true or false, not a whole number"),
         (RELAY + 'until = "never"', "relays[0].until: 'never' is not known; there are"),
-        (RELAY + 'until = "disarm"\nstart = true', "relays[0]: start must be as safe where until is"),
-        (RELAY + RELAY.replace("16", "17"), "relays[1].number: 0 is accessories.relays[0]'s already"),
-        (RELAY + RELAY.replace("= 0", "= 1"), "relays[1]: GPIO 16 is taken by accessories.relays[0] already"),
+        (RELAY + 'until = "disarm"\nstart = true', "relays[0]: start must equal safe if until is"),
+        (RELAY + RELAY.replace("16", "17"), "relays[1].number: 0 is already used by accessories.relays[0]"),
+        (RELAY + RELAY.replace("= 0", "= 1"), "relays[1]: GPIO 16 is already used by accessories.relays[0]"),
         (SERVO.replace("9", "0", 1), "servos[0].number: must be at least 1"),
         (SERVO + "max_us = 3000", "servos[0].max_us: must be at most 2500"),
         (SERVO + "trim_us = 2100", "servos[0]: min 1000 <= trim 2100 <= max 2000 us must hold"),
         (SERVO + "frequency = 400.0\nmax_us = 2400", "servos[0]: max_us 2400 does not fit into 400 Hz"),
-        (SERVO + SERVO.replace("= 9", "= 10"), "servos[1]: channel 4 at address 0x40 on I2C bus 1 is taken by"),
+        (SERVO + SERVO.replace("= 9", "= 10"), "servos[1]: channel 4 at address 0x40 on I2C bus 1 is already used by"),
         # what motors have
-        ('[motors]\ndriver = "article-car"\n' + RELAY.replace("16", "10"), "relays[0]: GPIO 10 is taken by mo"),
-        (BOARD + SERVO.replace("= 4", "= 1"), "servos[0]: channel 1 at address 0x40 on I2C bus 1 is taken by m"),
-        (BOARD + RELAY.replace("16", "2"), "relays[0]: GPIO 2 may be the motors'; it needs another"),
-        (PWM + RELAY.replace("16", "12"), "relays[0]: GPIO 12 may be the motors'; it needs another"),
+        ('[motors]\ndriver = "article-car"\n' + RELAY.replace("16", "10"), "relays[0]: GPIO 10 is already used by mo"),
+        (BOARD + SERVO.replace("= 4", "= 1"), "servos[0]: channel 1 at address 0x40 on I2C bus 1 is already used by m"),
+        (BOARD + RELAY.replace("16", "2"), "relays[0]: GPIO 2 may be used by the motors; use another pin"),
+        (PWM + RELAY.replace("16", "12"), "relays[0]: GPIO 12 may be used by the motors; use another pin"),
         ('[motors]\ndriver = "roboclaw"\nport = "/dev/serial0"\n' + RELAY.replace("16", "14"), "relays[0]: GPIO"),
         (
             BOARD + SERVO + "frequency = 60.0",
             "servos[0]: address 0x40 on I2C bus 1 is a PCA9685 of 50 Hz with an oscillator of 2.5e+07 Hz "
-            "in motors; say the same here",
+            "in motors; set the same here",
         ),
-        (SERVO + '[sensors.battery]\nkind = "ina219"', "servos[0]: address 0x40 on I2C bus 1 is taken by"),
+        (SERVO + '[sensors.battery]\nkind = "ina219"', "servos[0]: address 0x40 on I2C bus 1 is already used by"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_one_line_that_says_where_and_what_to_do(text: str, says: str) -> None:
@@ -118,7 +118,7 @@ def test_a_servo_with_a_motors_number_is_refused_at_the_start(caplog: pytest.Log
     ):
         caplog.clear()
         assert daemon.run(settings) == USAGE_ERROR
-        assert "servo 2 is a motor where DRIVE_TYPE is 4; it needs another number" in caplog.text
+        assert "servo 2 is a motor with DRIVE_TYPE 4; use another number" in caplog.text
 
 
 def test_other_motors_than_the_files_are_looked_at_again(caplog: pytest.LogCaptureFixture) -> None:
@@ -126,7 +126,7 @@ def test_other_motors_than_the_files_are_looked_at_again(caplog: pytest.LogCaptu
     accessories = parse_config(RELAY.replace("16", "10"), "f").accessories
     settings = RunSettings(("udpout:127.0.0.1:9",), motors={"driver": "article-car"}, accessories=accessories)
     assert daemon.run(settings) == USAGE_ERROR
-    assert "accessories.relays[0]: GPIO 10 is taken by motors already" in caplog.text
+    assert "accessories.relays[0]: GPIO 10 is already used by motors" in caplog.text
 
 
 # check
@@ -165,7 +165,7 @@ def test_check_says_what_does_not_answer_and_what_is_a_motor(tmp_path: Path) -> 
     assert lines[0].startswith("FAIL  servo 9: I2C bus 99: ")
     code, lines = checked(tmp_path, SIMULATED.replace("9", "3"))
     assert code == 2
-    assert lines[0] == "FAIL  settings: accessories: servo 3 is a motor where DRIVE_TYPE is 1; it needs another number"
+    assert lines[0] == "FAIL  settings: accessories: servo 3 is a motor with DRIVE_TYPE 1; use another number"
 
 
 def test_check_touches_no_accessory_of_a_vehicle_that_runs(tmp_path: Path) -> None:

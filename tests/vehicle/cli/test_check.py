@@ -222,6 +222,6 @@ def test_kept_parameters_that_are_damaged_are_a_fault(tmp_path: Path) -> None:
     text = f'{FREE}state = "{tmp_path}"\n[motors]\ndriver = "simulated"\n{QUIET}'
     code, lines = all_checked(tmp_path, text)
     assert code == 1
-    damaged = "parameter file damaged; start the vehicle and set one from a ground station, which ends this"
+    damaged = "parameter file damaged; start the vehicle and set a parameter from a ground station to repair it"
     assert lines[1] == f"FAIL  parameters: 0 from the file, 0 kept in FOLDER: {damaged}"
     assert all_checked(tmp_path, text, "--state", "/nowhere")[1][1].endswith("0 kept in /nowhere")

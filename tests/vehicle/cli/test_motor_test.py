@@ -226,7 +226,7 @@ def test_without_knowing_what_is_kept_nothing_turns(line: OnPty, tmp_path: Path)
     (tmp_path / "parameters").write_bytes(b"MOT2_REVERSED 1.0\n")
     words = ["--config", str(file_for(line, tmp_path)), "right", "--yes"]
     code, _, error = said_by("motor-test", *words)
-    damaged = "parameter file damaged; start the vehicle and set one from a ground station, which ends this"
+    damaged = "parameter file damaged; start the vehicle and set a parameter from a ground station to repair it"
     assert (code, error) == (2, f"vehicle motor-test: {tmp_path}: {damaged}\n")
     code, _, _ = said_by("motor-test", *words, "--time", "0.1", "--state", str(tmp_path / "elsewhere"))
     assert code == 0

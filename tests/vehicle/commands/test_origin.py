@@ -10,9 +10,9 @@ from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionType, Result
 from dialects.modes import Mode
 from link.core import Peer
-from tests.vehicle.autonomy.mission.test_mission import finish, start, upload, way
 from tests.vehicle.bench import DRIVER, OTHER, Bench, said
 from tests.vehicle.field import GROUND, Field
+from tests.vehicle.missions import finish, start, upload, way
 from tests.vehicle.navigation.test_fence import square
 from vehicle.navigation.geo import Point
 

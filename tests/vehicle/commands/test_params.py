@@ -232,7 +232,7 @@ def test_no_command_puts_in_force_what_the_file_denies(fence: int) -> None:
 
 def test_64_after_damage_nobody_arms_until_somebody_sees_to_it() -> None:
     params = Params()
-    params.damage = "parameter file damaged"
+    params.mark_damaged("parameter file damaged")
     bench, memory = bench_with(params)
     assert bench.arm() is Result.FAILED
     bench.wait(0.1)

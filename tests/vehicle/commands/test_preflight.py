@@ -11,10 +11,10 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionType, Result
 from link.tlog.tlog import encode_record, read_records
-from tests.vehicle.autonomy.mission.test_mission import send, way
 from tests.vehicle.bench import AHEAD, DRIVER, OTHER, Bench, said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, drive, running
+from tests.vehicle.missions import send, way
 from tests.vehicle.storage.test_plan_store import SlowDisk, field_with
 from vehicle.commands.reboot import RebootRequest
 from vehicle.navigation.geo import Point
@@ -296,7 +296,7 @@ class TestStorage:
     def test_a_damaged_file_is_not_made_good_by_saving_nothing(self, tmp_path: Path) -> None:
         (tmp_path / "parameters").write_text("SPEED_MAX = 2.5")
         store, params, bench = ParamStore(FileWriter(tmp_path)), Params(), Bench()
-        params.damage = store.damage
+        params.mark_damaged(store.damage)
         bench.rover = Rover(params, now=bench.now, param_store=store)
         bench.wait(0.1)
         assert bench.command(STORAGE, 1) is Result.FAILED

@@ -82,7 +82,7 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ("[identity]\nsystem = 0", "identity.system: must be at least 1"),
         ("[identity]\nsystem = 256", "identity.system: must be at most 255"),
         ("[identity]\nsystem = 2.5", "identity.system: must be a whole number, not a number"),
-        ("[identity]\nsystem = 2\n[params]\nMAV_SYSID = 2", "params.MAV_SYSID: identity.system says the same thing"),
+        ("[identity]\nsystem = 2\n[params]\nMAV_SYSID = 2", "params.MAV_SYSID: identity.system sets the same value"),
         ('[motors]\nport = "x"', "motors.driver: missing; add it, one of simulated, gpio, "),
         ("[motors]\ndriver = 3", "motors.driver: missing"),
         ('[motors]\ndriver = "robclaw"', "motors.driver: unknown motor driver 'robclaw'; did you mean 'roboclaw'?"),
@@ -137,7 +137,7 @@ def test_several_mistakes_are_all_found() -> None:
     assert [each.split(": ")[1] for each in found] == [
         "endpoints[0]", "lgo", "motors.driver", "params.MAN_TIMEOUT", "params.X"
     ]  # fmt: skip
-    assert str(ConfigError(*found)) == f"{found[0]} (and 4 more, see `vehicle check`)"
+    assert str(ConfigError(*found)) == f"{found[0]} (and 4 more; see `vehicle check`)"
 
 
 def test_a_file_that_is_not_there_teaches(tmp_path: Path) -> None:

@@ -255,7 +255,7 @@ def test_a_file_that_goes_while_it_is_fetched_is_a_failure_and_not_silence(
     assert vehicle.ask(FtpOpcode.OPEN, b"/logs/1.tlog").op == FtpOpcode.ACK
     (tmp_path / "logs/1.tlog").unlink()
     answer = vehicle.ask(op, offset=0, size=239)
-    assert (answer.op, answer.data, answer.asked) == (FtpOpcode.NAK, bytes([FtpError.FAIL]), op)
+    assert (answer.op, answer.data, answer.req_opcode) == (FtpOpcode.NAK, bytes([FtpError.FAIL]), op)
     assert vehicle.server.tick(2.0) == []
 
 

@@ -20,10 +20,10 @@ from link.services.mission.client import MissionClient, MissionOutcome
 from link.services.mission.items import Items, MissionItem
 from link.services.mission.plans import plan_id
 from tests.link.mission_vehicle import plain
-from tests.vehicle.autonomy.mission.test_mission import Item, do, send, upload, way
 from tests.vehicle.bench import said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, running
+from tests.vehicle.missions import Item, do, send, upload, way
 from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.plan_store import PlanStore
 from vehicle.storage.store import PendingWrite

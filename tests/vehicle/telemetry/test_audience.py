@@ -11,8 +11,8 @@ from dialects import messages as m
 from dialects.enums import Command, Result
 from link.core import RECORDER, Peer
 from link.protocol.channel import MAX_PEERS
+from tests.vehicle.bench import MESSAGE_IDS
 from tests.vehicle.crowd import Crowd, weight
-from vehicle.commands.inbound import INBOUND_IDS
 from vehicle.storage.logbook import NullLogRecorder
 from vehicle.telemetry import telemetry
 from vehicle.telemetry.schedule import PEER_MESSAGE_RATE_MAX
@@ -330,8 +330,9 @@ def test_a_crowd_of_newcomers_fills_no_table() -> None:
     assert crowd.all(late, m.Attitude)
 
 
-def test_what_shows_something_or_asks_is_heard() -> None:
-    assert {kind.id for kind in telemetry._HANDLERS} <= INBOUND_IDS
+def test_messages_that_telemetry_acts_on_are_decoded() -> None:
+    assert {kind.id for kind in telemetry._OBSERVED} <= MESSAGE_IDS
+    assert {each.id for each in (m.Heartbeat, m.RequestDataStream, m.RadioStatus)} <= MESSAGE_IDS
 
 
 def test_an_origin_is_told_when_it_is_known_and_to_each_newcomer_once() -> None:

@@ -10,13 +10,13 @@ link/services/mission/server.py handles the upload. Protocol: https://mavlink.io
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import IntEnum
 
 from dialects.enums import Command
 from link.services.mission.items import Items, MissionItem
 from vehicle.autonomy.mission.nav_items import ConditionYaw, NavDelay, NavLoiterTurns, NavTask, NavWaypoint
-from vehicle.autonomy.mission.rules import ACCESSORY_COMMANDS
+from vehicle.autonomy.mission.rules import DoItem
 from vehicle.autonomy.mode import ModeFinished
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point
@@ -28,7 +28,6 @@ from vehicle.params import Params
 ITEM_SEARCH_MAX = 100
 """Items searched for the next NAV item; more are an endless loop of DO_JUMP."""
 CONDITION_COMMANDS = (Command.CONDITION_DELAY, Command.CONDITION_DISTANCE)
-DO_COMMANDS = (Command.DO_CHANGE_SPEED, Command.DO_SET_REVERSE, Command.DO_FENCE_ENABLE, *ACCESSORY_COMMANDS)
 
 
 class MissionState(IntEnum):
@@ -48,26 +47,22 @@ class MissionExecutor:
         params: Params,
         guide: PathFollower,
         find_return_point: Callable[[Estimate], ReturnPoint | None],
-        run_do_item: Callable[[MissionItem], None],
         rejection: Callable[[Point], str | None] = lambda place: None,
     ) -> None:
         """Create an executor without a mission.
 
-        `find_return_point` returns the nearest return point, `run_do_item` runs a DO item, and `rejection` returns why
-        a place may not be driven to, or None.
+        `find_return_point` returns the nearest return point, and `rejection` why a place may not be driven to, or None.
         """
         self.items: Items = ()
         self.current = 0
         """Index of the item in progress, or of the first one to run."""
         self.state = MissionState.NONE
-        self.reached_items: list[int] = []
-        """Items reached and not reported yet."""
-        self.pending_accessory_items: list[MissionItem] = []
-        """Items for servos and relays that are due; the mission service takes them."""
+        self._reached_items: list[int] = []
+        """Items reached and not yet taken by `pop_reached_items`."""
+        self._do_items: Mapping[int, DoItem] = {}
         self._params = params
         self._guide = guide
         self._find_return_point = find_return_point
-        self._run_do_item = run_do_item
         self._rejection = rejection
         self._rejection_reason: str | None = None
         self._task: NavTask | None = None
@@ -86,6 +81,15 @@ class MissionExecutor:
     def missing_reason(self) -> str:
         """Why there is no mission."""
         return self._damage or "there is no mission"
+
+    def set_do_items(self, do_items: Mapping[int, DoItem]) -> None:
+        """Set what runs the DO items, by MAV_CMD."""
+        self._do_items = do_items
+
+    def pop_reached_items(self) -> list[int]:
+        """Return the items reached since the last call."""
+        reached, self._reached_items = self._reached_items, []
+        return reached
 
     def load(self, items: Items, damage: str | None = None) -> None:
         """Use another mission from its first item. `damage`: why the stored mission is lost."""
@@ -130,7 +134,7 @@ class MissionExecutor:
 
     def _finish(self, estimate: Estimate) -> Point:
         """Finish the current task; return where the next leg begins."""
-        self.reached_items.append(self.current)
+        self._reached_items.append(self.current)
         task, self._task = self._task, None
         self.current += 1
         return task.leg.end if isinstance(task, NavWaypoint) else estimate.place
@@ -151,7 +155,7 @@ class MissionExecutor:
             item = self.items[index]
             if item.command == Command.DO_JUMP:
                 index = self._jump(index, item, count=True)
-            elif item.command in CONDITION_COMMANDS or item.command in DO_COMMANDS:
+            elif item.command in CONDITION_COMMANDS or item.command in self._do_items:
                 self._waiting.append((index, item))
                 index += 1
             else:
@@ -217,7 +221,7 @@ class MissionExecutor:
             item = self.items[index]
             if item.command == Command.DO_JUMP:
                 index = self._jump(index, item, count=False)
-            elif item.command in CONDITION_COMMANDS or item.command in DO_COMMANDS:
+            elif item.command in CONDITION_COMMANDS or item.command in self._do_items:
                 index += 1
             else:
                 return item
@@ -235,12 +239,10 @@ class MissionExecutor:
         """
         while self._waiting and self._may_run(self._waiting[0][1], estimate, now):
             number, item = self._waiting.pop(0)
-            self.reached_items.append(number)
+            self._reached_items.append(number)
             self._held_since = None
-            if item.command in ACCESSORY_COMMANDS:
-                self.pending_accessory_items.append(item)
-            elif item.command in DO_COMMANDS:
-                self._run_do_item(item)
+            if item.command in self._do_items:
+                self._do_items[item.command].run(item, now)
 
     def _may_run(self, item: MissionItem, estimate: Estimate, now: float) -> bool:
         if item.command == Command.CONDITION_DELAY:

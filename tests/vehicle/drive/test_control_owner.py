@@ -1,4 +1,4 @@
-"""Who is in control, and how it changes."""
+"""The ground station in control: arming, requests, takeover, release and timeout."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ def ask(bench: Bench, system: int, action: float = 1, takeover: float = 0) -> Re
     return bench.command(Command.REQUEST_OPERATOR_CONTROL, action, takeover, 10, system, system=system)
 
 
-def test_nobody_at_boot_then_who_arms() -> None:
+def test_control_is_free_at_boot_and_taken_by_arming() -> None:
     bench = Bench()
     assert owner(bench) == 0
     bench.arm()
     assert owner(bench) == DRIVER
 
 
-def test_nobody_at_boot_then_who_asks() -> None:
+def test_control_is_free_at_boot_and_taken_by_a_request() -> None:
     bench = Bench()
     assert ask(bench, OTHER) is Result.ACCEPTED
     bench.wait(0.1)
@@ -35,7 +35,7 @@ def test_nobody_at_boot_then_who_asks() -> None:
     assert said(bench, f"PreArm: GCS {OTHER} is in control")
 
 
-def test_a_request_is_refused_and_passed_on_to_the_owner() -> None:
+def test_a_control_request_is_rejected_and_forwarded_to_the_owner() -> None:
     bench = Bench()
     bench.drive()
     assert ask(bench, OTHER) is Result.FAILED
@@ -46,11 +46,11 @@ def test_a_request_is_refused_and_passed_on_to_the_owner() -> None:
         OTHER,
     )
     ask(bench, OTHER)
-    assert len(bench.all(m.CommandLong)) == 1  # a repeat does not nag
+    assert len(bench.all(m.CommandLong)) == 1  # a repeated request is not forwarded
     assert bench.turning
 
 
-def test_takeover_that_the_owner_allowed_needs_neutral_first() -> None:
+def test_an_allowed_takeover_requires_neutral_first() -> None:
     bench = Bench()
     bench.drive()
     assert ask(bench, DRIVER, takeover=1) is Result.ACCEPTED
@@ -63,7 +63,7 @@ def test_takeover_that_the_owner_allowed_needs_neutral_first() -> None:
     assert said(bench, f"GCS {OTHER} is in control")
 
 
-def test_the_owner_may_ask_again_while_it_drives() -> None:
+def test_the_owner_may_request_control_again_while_driving() -> None:
     bench = Bench()
     bench.drive()
     assert ask(bench, DRIVER) is Result.ACCEPTED
@@ -71,7 +71,7 @@ def test_the_owner_may_ask_again_while_it_drives() -> None:
     assert bench.throttles == (1.0, 1.0)
 
 
-def test_who_has_shown_no_heartbeat_cannot_ask() -> None:
+def test_a_peer_without_a_heartbeat_cannot_request_control() -> None:
     bench = Bench()
     request = Command.REQUEST_OPERATOR_CONTROL
     assert bench.command(request, 1, 0, 10, 0, introduced=False) is Result.FAILED
@@ -79,7 +79,7 @@ def test_who_has_shown_no_heartbeat_cannot_ask() -> None:
     assert bench.newest(m.ControlStatus).gcs_main == 0
 
 
-def test_a_silent_owner_can_be_relieved() -> None:
+def test_control_can_be_taken_from_an_owner_that_timed_out() -> None:
     bench = Bench()
     bench.drive()
     bench.wait(4.9)
@@ -88,7 +88,7 @@ def test_a_silent_owner_can_be_relieved() -> None:
     assert ask(bench, OTHER) is Result.ACCEPTED
 
 
-def test_the_owner_gives_up_and_the_rover_holds() -> None:
+def test_releasing_control_causes_hold() -> None:
     bench = Bench()
     bench.drive()
     assert ask(bench, DRIVER, action=0) is Result.ACCEPTED
@@ -98,7 +98,7 @@ def test_the_owner_gives_up_and_the_rover_holds() -> None:
     assert bench.newest(m.ControlStatus).gcs_main == 0
 
 
-def test_nobody_else_can_give_it_up() -> None:
+def test_only_the_owner_can_release_control() -> None:
     bench = Bench()
     bench.drive()
     assert ask(bench, OTHER, action=0) is Result.FAILED
@@ -108,19 +108,19 @@ def test_nobody_else_can_give_it_up() -> None:
 @pytest.mark.parametrize(
     "params", [(2, 0, 10, 0), (0.5, 0, 10, 0), (1, 2, 10, 0), (1, 0, 10, 77), (float("nan"), 0, 0, 0)]
 )
-def test_nonsense_is_denied(params: tuple[float, ...]) -> None:
+def test_invalid_control_requests_are_denied(params: tuple[float, ...]) -> None:
     bench = Bench()
     assert bench.command(Command.REQUEST_OPERATOR_CONTROL, *params) is Result.DENIED
 
 
-def test_a_fixed_ground_station_is_the_only_one() -> None:
+def test_only_the_configured_ground_station_may_take_control() -> None:
     bench = Bench(MAV_GCS_SYSID=OTHER)
     assert bench.arm() is Result.FAILED
     assert ask(bench, DRIVER) is Result.FAILED
     assert bench.arm(OTHER) is Result.ACCEPTED
 
 
-def test_an_owner_that_is_silent_while_disarmed_is_free_again() -> None:
+def test_control_is_released_from_an_owner_that_timed_out_while_disarmed() -> None:
     bench = Bench()
     ask(bench, DRIVER)
     bench.wait(5.5)

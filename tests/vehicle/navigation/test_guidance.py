@@ -1,4 +1,4 @@
-"""ATC_TURN_MAX_G: a rover that drives by itself does not corner so fast that it tips."""
+"""ATC_TURN_MAX_G: path following limits the lateral acceleration."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def at(speed: float, yaw: float = 0.0, place: Point = HERE) -> Estimate:
 
 @pytest.mark.parametrize("grip", [0.1, 0.3, 0.6])
 @pytest.mark.parametrize("speed", [-3.0, -1.0, 0.5, 1.0, 3.0, 10.0])
-def test_no_way_of_steering_is_sharper_at_speed(grip: float, speed: float) -> None:
+def test_steering_at_speed_respects_the_lateral_limit(grip: float, speed: float) -> None:
     limit = grip * GRAVITY / abs(speed)
     path = guide(ATC_TURN_MAX_G=grip, ATC_STR_ANG_P=10, WP_PIVOT_ANGLE=180, SPEED_MAX=30)
     assert path.limit_turn_rate(100.0, speed, at(0.0)) == pytest.approx(min(limit, math.radians(720)))
@@ -38,11 +38,11 @@ def test_no_way_of_steering_is_sharper_at_speed(grip: float, speed: float) -> No
         assert motion.turn_rate
 
 
-def test_at_rest_only_the_turn_rate_counts() -> None:
+def test_at_rest_only_the_turn_rate_is_limited() -> None:
     assert guide(ATC_TURN_MAX_G=0.1).limit_turn_rate(99.0, 0.0, at(0.0)) == pytest.approx(math.radians(720))
 
 
-def test_a_circle_is_driven_as_fast_as_it_may_be() -> None:
+def test_a_circle_is_driven_at_the_largest_allowed_speed() -> None:
     path = guide(ATC_TURN_MAX_G=0.1, SPEED_MAX=30)
     on_it = at(5.0, yaw=math.pi / 2, place=Point(4.0, 0.0))
     motion = path.orbit(Point(0.0, 0.0), 4.0, on_it, 5.0)
@@ -61,7 +61,7 @@ def cornering(field: Field, seconds: float, turn_rate: float) -> float:
     return largest
 
 
-def test_a_rover_in_guided_keeps_to_it() -> None:
+def test_guided_respects_the_lateral_limit() -> None:
     wild, tame = Field(seed=None, ATC_TURN_MAX_G=10), Field(seed=None, ATC_TURN_MAX_G=0.1)
     found = []
     for field in (wild, tame):

@@ -1,4 +1,4 @@
-"""The stop matrix of the modes that drive by themselves, and what no order may do. First it moves, then not."""
+"""Every stop in every autonomous mode, and commands that must not move the rover. First it moves, then not."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from dialects.axes import Axes
 from dialects.enums import Command, Result
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import upload, way
 from tests.vehicle.bench import CYCLE, DRIVER, NEUTRAL, OTHER
 from tests.vehicle.field import Field
+from tests.vehicle.missions import upload, way
 from vehicle.modes import MODES
 from vehicle.navigation.geo import Point
 from vehicle.safety.failsafe import FailsafeAction
@@ -76,7 +76,7 @@ STOPS: dict[str, tuple[float, ...]] = {
 
 @pytest.mark.parametrize("stop", STOPS)
 @pytest.mark.parametrize("drive", DRIVES, ids=lambda drive: drive.__name__)
-def test_whoever_asks_for_it_every_stop_stops_every_mode(drive: Callable[[Field], None], stop: str) -> None:
+def test_every_stop_of_any_station_stops_every_mode(drive: Callable[[Field], None], stop: str) -> None:
     field = Field()
     drive(field)
     assert field.turning
@@ -90,7 +90,7 @@ def test_whoever_asks_for_it_every_stop_stops_every_mode(drive: Callable[[Field]
 
 
 @pytest.mark.parametrize("drive", DRIVES, ids=lambda drive: drive.__name__)
-def test_the_silence_of_the_driver_ends_every_mode_in_hold(drive: Callable[[Field], None]) -> None:
+def test_a_lost_ground_station_ends_every_mode_in_hold(drive: Callable[[Field], None]) -> None:
     field = Field()
     drive(field)
     assert field.turning
@@ -98,11 +98,11 @@ def test_the_silence_of_the_driver_ends_every_mode_in_hold(drive: Callable[[Fiel
     assert field.mode is Mode.HOLD
     assert field.stands_for(2.0)
     field.beat(3.0)
-    assert field.stands_for(1.0)  # a voice that is back starts nothing
+    assert field.stands_for(1.0)  # a returning ground station starts nothing
 
 
 @pytest.mark.parametrize("drive", [place, auto, home, back], ids=lambda drive: drive.__name__)
-def test_a_lost_position_ends_what_goes_by_it(drive: Callable[[Field], None]) -> None:
+def test_a_lost_position_ends_modes_that_require_one(drive: Callable[[Field], None]) -> None:
     field = Field()
     drive(field)
     assert field.turning
@@ -115,7 +115,7 @@ def test_a_lost_position_ends_what_goes_by_it(drive: Callable[[Field], None]) ->
 
 
 @pytest.mark.parametrize("drive", [twist, place, auto, home, acro], ids=lambda drive: drive.__name__)
-def test_after_a_motor_failure_nothing_goes_on_by_itself(drive: Callable[[Field], None]) -> None:
+def test_nothing_resumes_by_itself_after_a_motor_failure(drive: Callable[[Field], None]) -> None:
     field = Field()
     drive(field)
     assert field.turning
@@ -147,11 +147,11 @@ STEPS = st.one_of(
 
 @dataclass
 class Witness:
-    """Believes only what it ordered itself and the state that is told."""
+    """Checks motion against its own commands and the reported state only."""
 
     field: Field
     asked: bool = False
-    """Somebody in control asked for self-driving since the vehicle was armed."""
+    """The station in control requested autonomous motion since the vehicle was armed."""
     before: tuple[float, ...] = (0.0, 0.0)
 
     def play(self, step: Step) -> None:
@@ -211,7 +211,7 @@ class Witness:
 
 @settings(max_examples=40)
 @given(st.lists(STEPS, max_size=25))
-def test_no_order_moves_a_rover_that_is_disarmed_stopped_or_in_a_failsafe(steps: list[Step]) -> None:
+def test_no_command_moves_a_rover_that_is_disarmed_stopped_or_in_a_failsafe(steps: list[Step]) -> None:
     field = Field()
     upload(field, way(20, 0), way(20, 20))
     witness = Witness(field)
@@ -219,7 +219,7 @@ def test_no_order_moves_a_rover_that_is_disarmed_stopped_or_in_a_failsafe(steps:
         witness.play(step)
 
 
-def test_the_witness_sees_motion() -> None:
+def test_the_rover_can_move_in_this_test() -> None:
     field = Field()
     upload(field, way(20, 0))
     witness = Witness(field)

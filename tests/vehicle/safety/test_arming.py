@@ -1,4 +1,4 @@
-"""What the estimator's health has to do with arming, and how SYS_STATUS tells it."""
+"""Pre-arm checks of position and fence, and their report in SYS_STATUS."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result, Sensor
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import upload
 from tests.vehicle.bench import AHEAD, EVERYTHING, NEUTRAL, Bench, said
 from tests.vehicle.field import Field
+from tests.vehicle.missions import upload
 from vehicle.navigation.estimator import GPS_LOST
 from vehicle.navigation.geo import Point
 
@@ -32,7 +32,7 @@ def healthy(bench: Bench, sensor: Sensor) -> bool:
     return bool(status.onboard_control_sensors_health & sensor)
 
 
-def test_in_a_mode_that_needs_the_position_nobody_arms_without_it() -> None:
+def test_a_mode_that_requires_a_position_forbids_arming_without_one() -> None:
     bench = with_gps()
     assert bench.set_mode(Mode.LOITER) is Result.ACCEPTED
     bench.readings = NO_GPS
@@ -59,7 +59,7 @@ def test_the_state_of_the_estimate_is_in_sys_status() -> None:
 
 
 @pytest.mark.parametrize("kind", [2, 6])
-def test_a_fence_that_counts_needs_a_position(kind: int) -> None:
+def test_an_enabled_fence_requires_a_position_for_arming(kind: int) -> None:
     bench = Bench(FENCE_ENABLE=1, FENCE_TYPE=kind)
     bench.wait(1.0)
     assert bench.arm() is Result.FAILED
@@ -70,13 +70,13 @@ def test_a_fence_that_counts_needs_a_position(kind: int) -> None:
     assert bench.arm() is Result.ACCEPTED, bench.texts
 
 
-def test_a_fence_without_a_line_needs_none() -> None:
+def test_a_fence_without_a_boundary_requires_no_position() -> None:
     bench = Bench(FENCE_ENABLE=1, FENCE_TYPE=4)
     bench.wait(1.0)
     assert bench.arm() is Result.ACCEPTED
 
 
-def test_uploaded_areas_need_one() -> None:
+def test_uploaded_areas_require_a_position_for_arming() -> None:
     field = Field(FENCE_ENABLE=1, FENCE_TYPE=4)
     circle = [(FenceItem.CIRCLE_INCLUSION, Point(0, 0), (20,))]
     assert upload(field, *circle, kind=MissionType.FENCE) == MissionResult.ACCEPTED
@@ -88,7 +88,7 @@ def test_uploaded_areas_need_one() -> None:
     assert field.arm() is Result.ACCEPTED
 
 
-def test_a_driver_whose_fence_goes_blind_is_told() -> None:
+def test_losing_the_position_in_manual_reports_the_unenforced_fence() -> None:
     field = Field(FENCE_ENABLE=1, FENCE_TYPE=2)
     field.wait(6.0)
     assert field.arm() is Result.ACCEPTED

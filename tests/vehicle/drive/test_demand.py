@@ -1,4 +1,4 @@
-"""RC_CHANNELS_OVERRIDE, channel by channel: bad input 42 of the design."""
+"""RC_CHANNELS_OVERRIDE, channel by channel: bad input 42."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench, said
 
 
 def override(**channels: int) -> m.RcChannelsOverride:
-    """RC_CHANNELS_OVERRIDE as `chan3=1600`; every other channel says "ignore"."""
+    """Return RC_CHANNELS_OVERRIDE with channels as `chan3=1600`; all others are ignored."""
     raw = {f"chan{number}_raw": m.UINT16_MAX for number in range(1, 19)}
     raw |= {f"{name}_raw": value for name, value in channels.items()}
     return m.RcChannelsOverride(target_system=1, target_component=1, **raw)
@@ -28,7 +28,7 @@ def repeat(bench: Bench, seconds: float = 1.0, **channels: int) -> None:
         bench.wait(0.1)
 
 
-def test_it_drives_as_mavproxy_types_it() -> None:
+def test_mavproxys_rc_command_drives() -> None:
     bench = armed()
     repeat(bench, 0.2, chan3=1500)
     repeat(bench, chan3=1900)
@@ -45,7 +45,7 @@ def test_steering_is_channel_1() -> None:
     assert bench.throttles == pytest.approx((0.4845, -0.4845), abs=1e-3)
 
 
-def test_neutral_comes_first_here_too() -> None:
+def test_an_override_requires_neutral_first() -> None:
     bench = armed()
     repeat(bench, chan1=1500, chan3=1900)
     assert not bench.turning
@@ -57,7 +57,7 @@ def test_dead_zone() -> None:
     assert not bench.turning
 
 
-def test_42_giving_back_is_neutral_but_no_stick_at_rest() -> None:
+def test_42_a_released_channel_is_neutral_but_proves_no_stick_at_rest() -> None:
     bench = armed()
     repeat(bench, 0.2, chan3=1500)
     repeat(bench, chan3=1700)
@@ -75,7 +75,7 @@ def test_ignored_channels_refresh_nothing() -> None:
     assert not bench.turning
 
 
-def test_a_channel_that_moves_does_not_live_on_the_other_ones_repeats() -> None:
+def test_a_throttle_override_expires_while_steering_is_repeated() -> None:
     bench = armed()
     repeat(bench, 0.2, chan1=1500, chan3=1500)
     repeat(bench, chan1=1600, chan3=1700)
@@ -88,7 +88,7 @@ def test_a_channel_that_moves_does_not_live_on_the_other_ones_repeats() -> None:
 
 
 @pytest.mark.parametrize("pulse", [700, 799, 2201, 65534, 1])
-def test_42_what_is_no_pulse_is_ignored(pulse: int) -> None:
+def test_42_an_invalid_pulse_is_ignored(pulse: int) -> None:
     bench = armed()
     repeat(bench, 0.2, chan3=1500)
     assert not said(bench, "channels outside")
@@ -97,7 +97,7 @@ def test_42_what_is_no_pulse_is_ignored(pulse: int) -> None:
     assert bench.texts.count(f"GCS {DRIVER}: channels outside 800..2200 us are ignored") == 1
 
 
-def test_42_channels_9_to_18_ignore_zero_and_give_back_65534() -> None:
+def test_42_channels_9_to_18_ignore_zero_and_release_at_65534() -> None:
     bench = armed()
     repeat(bench, 0.6, chan3=1500, chan9=1600)
     repeat(bench, 0.6, chan3=1500, chan9=0)
@@ -106,7 +106,7 @@ def test_42_channels_9_to_18_ignore_zero_and_give_back_65534() -> None:
     assert bench.newest(m.RcChannels).chan9_raw == m.UINT16_MAX
 
 
-def test_of_another_ground_station_it_is_ignored() -> None:
+def test_an_override_from_another_ground_station_is_ignored() -> None:
     bench = armed()
     bench.say(override(chan3=1500), OTHER)
     bench.say(override(chan3=1900), OTHER)

@@ -1,4 +1,4 @@
-"""The station process with a bug in it, which the drive style "fail in <method>" calls up. Run as `python -m`."""
+"""The station process with a bug, triggered by the drive style "fail in <method>". Run as `python -m`."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from groundstation.station.station import Station
 ORDER = "fail in "
 
 
-class BrokenStation(Station):
-    """Raises in the method that was named, from then on."""
+class CrashingStation(Station):
+    """Raises in the named method from then on."""
 
     _bug = ""
 
@@ -31,7 +31,7 @@ class BrokenStation(Station):
 def _with_bug(name: str) -> Callable[..., Any]:
     method = getattr(Station, name)
 
-    def call(self: BrokenStation, *arguments: Any) -> Any:
+    def call(self: CrashingStation, *arguments: Any) -> Any:
         self._work(name)
         return method(self, *arguments)
 
@@ -39,8 +39,8 @@ def _with_bug(name: str) -> Callable[..., Any]:
 
 
 for _name in ("receive", "tick", "observe", "messages_to_send", "handle_sent", "snapshot"):
-    setattr(BrokenStation, _name, _with_bug(_name))
+    setattr(CrashingStation, _name, _with_bug(_name))
 
 if __name__ == "__main__":
-    vars(station_process)["Station"] = BrokenStation
+    vars(station_process)["Station"] = CrashingStation
     raise SystemExit(station_process.main())
