@@ -58,10 +58,10 @@ finally:
 
 
 def test_a_command(tree: Tree) -> None:
-    tree.insert_before("dialects/enums.py", "    NAV_WAYPOINT = rover.MAV_CMD_NAV_WAYPOINT", "    USER_1 = rover.MAV_CMD_USER_1")
+    tree.insert_before("dialects/enums.py", "    NAV_WAYPOINT = rover", "    USER_1 = rover.MAV_CMD_USER_1")
     requests = "vehicle/commands/requests.py"
     tree.insert_before(requests, "CommandSpec(Command.GET_HOME_POSITION", ROW)
     tree.insert_before(requests, "    def _get_home(self", HANDLER)
-    assert len(tree.touched) == 2
+    tree.check_recipe("a command (MAV_CMD)")
     tree.run_script(SEND_IT.replace("{port}", str(tree.port)))
     assert "a number that is at least 1" in tree.run("vehicle", "dialect")

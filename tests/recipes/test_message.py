@@ -33,6 +33,6 @@ def test_a_message(tree: Tree) -> None:
     tree.insert_before(preflight, "            InboundMessage(SetupSigning,", ROW)
     tree.insert_after(preflight, "from dialects.messages import", "from dialects.messages import PlayTune")
     tree.insert_before(preflight, "    def _handle_setup_signing(self", HANDLER)
-    assert len(tree.touched) == 2
+    tree.check_recipe("a message that the vehicle handles")
     tree.run_script(SEND_IT)
     assert "| PLAY_TUNE |" in tree.run("vehicle", "dialect")
