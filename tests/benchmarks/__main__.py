@@ -60,7 +60,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         started = time.monotonic()
         try:
             reports[name] = BENCHMARKS[name][0](options)
-        except Exception as error:  # the others still run; the exit code tells
+        except Exception as error:  # the others still run; the exit code reports it
             failures[name] = str(error)
             _tell(name, error)
         _say(f"{name}: {time.monotonic() - started:.0f} s")

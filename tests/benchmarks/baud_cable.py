@@ -88,7 +88,7 @@ class Direction:
         if self._flying:
             if now < self._due:
                 return
-            start = self._due  # the next piece follows at once, however late we look
+            start = self._due  # the next piece follows at once, however late the poll is
             self._hand_over()
         self._flying = self._next()
         self._boundary.follow(self._flying)
@@ -96,7 +96,7 @@ class Direction:
 
     def _hand_over(self) -> None:
         self.passed += len(self._flying)
-        with contextlib.suppress(BlockingIOError):  # nobody reads there: a UART would have lost it, too
+        with contextlib.suppress(BlockingIOError):  # no program reads there: a UART would have lost it, too
             os.write(self._target, self._flying)
         self._flying = b""
 
@@ -147,7 +147,7 @@ def _end(path: Path) -> int:
     tty.setraw(theirs)
     os.set_blocking(ours, False)
     path.symlink_to(os.ttyname(theirs))
-    return ours  # theirs stays open, too: programs come and go on a cable
+    return ours  # the other end stays open, too, so that programs can come and go
 
 
 def main(vehicle: str, ground: str, baud: str) -> None:

@@ -130,7 +130,7 @@ def _measure(outcome: Outcome, blast: str, argv: list[str], options: Options) ->
     seconds = QUICK_SECONDS if options.quick else SECONDS
     for together in TOGETHER:
         with _running(argv) as (program, source, target):
-            _blast(blast, "rate", source, target, together, 0.2)  # the router knows us and is warm
+            _blast(blast, "rate", source, target, together, 0.2)  # so that the router has its routes and is warm
             before = cpu_seconds(family(program.pid))
             frames, took, lost = map(float, _blast(blast, "rate", source, target, together, seconds)[0].split())
             outcome.rates.setdefault(together, []).append(frames / took)
@@ -161,7 +161,7 @@ def _blast(blast: str, what: str, source: int, target: int, together: int, secon
     return done.stdout.splitlines()
 
 
-# ---- what it says ----
+# ---- report ----
 
 
 def _report(outcomes: dict[str, Outcome], direct: list[list[float]]) -> Report:

@@ -216,7 +216,7 @@ class Flood:
 
     def __init__(self, sock: socket.socket) -> None:
         self._socket = sock
-        self._frames = mix(2560)  # a whole number of times round the sequence numbers: no gap where it starts again
+        self._frames = mix(2560)  # a multiple of the sequence numbers, so that there is no gap at the restart
         self._next = 0
 
     def send(self, watch: Watch, seconds: float) -> None:

@@ -135,7 +135,7 @@ def _decoding(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> Non
 def _channel(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> None:
     receive = Channel("bench", 0, system=255, component=190, stream=stream, wanted=ids).receive
     for number, piece in enumerate(pieces):
-        receive(piece, "peer", number * 0.01)  # 100 datagrams a second: the rate limits stay out of it
+        receive(piece, "peer", number * 0.01)  # 100 datagrams a second, below the rate limits
 
 
 # ---- sending ----

@@ -186,7 +186,7 @@ def running(contender: Contender, network: Network | None = None) -> Iterator[Ri
         yield Rig(ground, vehicle, feed, watch)
 
 
-# ---- what it says ----
+# ---- report ----
 
 
 def _report(outcomes: dict[str, Outcome]) -> Report:

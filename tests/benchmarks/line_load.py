@@ -34,7 +34,7 @@ class Asker:
 
     def _ftp(self, op: FtpOpcode, data: bytes = b"") -> Message:
         self._questions = (self._questions + 2) & 0xFFFF
-        size = 239 if op is FtpOpcode.BURST else None  # of a burst: how much each message shall bring
+        size = 239 if op is FtpOpcode.BURST else None  # of a burst: the size of each message
         return FtpPacket(self._questions, op, 0, data, size=size).message(*VEHICLE)
 
     def _frame(self, message: Message) -> bytes:

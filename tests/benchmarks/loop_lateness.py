@@ -204,7 +204,7 @@ class Driver:
         return True
 
 
-# ---- what it says ----
+# ---- report ----
 
 
 def _report(samples: Samples) -> Report:

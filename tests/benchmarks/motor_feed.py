@@ -24,7 +24,7 @@ class MotorFeed:
     def __init__(self, watch: Watch, folder: Path) -> None:
         self.path = folder / "motors"
         os.mkfifo(self.path)
-        # For writing too: without any writer a pipe counts as ended, and the vehicle opens its end later than we ours.
+        # For writing too: a pipe without a writer counts as ended, and the vehicle opens its end later.
         self._descriptor = os.open(self.path, os.O_RDWR | os.O_NONBLOCK)
         self._watch = watch
         self._rest = b""

@@ -56,7 +56,7 @@ def _parent(pid: int) -> int | None:
     try:
         return int(_fields(pid)[1])
     except OSError:
-        return None  # it has ended meanwhile
+        return None  # the process has ended
 
 
 def _cpu(pid: int) -> float:

@@ -57,7 +57,7 @@ class Program:
         )
         os.close(program_end)
         watch.add(terminal, self._read)
-        self._end = os.pidfd_open(self.process.pid)  # readable when it has ended: an end that wakes the watch
+        self._end = os.pidfd_open(self.process.pid)  # readable when the process has ended, which wakes the watch
         watch.add(self._end, lambda: False)
 
     @property

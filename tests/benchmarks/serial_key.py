@@ -56,7 +56,7 @@ class Wired:
         self.rig = rig
         self._cable = cable
         self._rate = baud / BITS_PER_BYTE
-        self._stamp = self._totals()[0]  # and bulk is on, so that both loads have happened before anything is measured
+        self._stamp = self._totals()[0]  # bulk is on now, so that both loads ran before the first measurement
         self._change()
 
     def measure(self, seen: Seen, keys: int, chance: random.Random) -> None:
@@ -124,7 +124,7 @@ def wired(baud: int) -> Iterator[Wired]:
         yield Wired(rig, cable, baud)
 
 
-# ---- what it says ----
+# ---- report ----
 
 
 def frame_sizes() -> tuple[int, int]:
