@@ -90,6 +90,16 @@ def test_commands_are_found_in_the_documents() -> None:
     assert {words[0] for doc, _, words in SHOWN if doc == "pi.md"} >= {"init", "check", "motor-test", "systemd-unit"}
 
 
-def test_ci_runs_the_test_command_of_the_readme() -> None:
-    assert ".venv/bin/pytest" in (ROOT / "README.md").read_text()
-    assert ".venv/bin/pytest" in (ROOT / ".ci/run").read_text()
+README_COMMAND = ".venv/bin/pytest -n auto --dist loadgroup -m 'not slow'"
+
+
+def test_ci_runs_the_test_command_of_the_readme_and_the_slow_tests() -> None:
+    assert README_COMMAND in (ROOT / "README.md").read_text()
+    [command] = [line for line in (ROOT / ".ci/run").read_text().splitlines() if ".venv/bin/pytest" in line]
+    assert command.endswith(".venv/bin/pytest -n 3 --dist loadgroup")
+
+
+def test_make_runs_the_test_command_of_the_readme() -> None:
+    makefile = (ROOT / "Makefile").read_text()
+    assert "$(PYTEST) $(PARALLEL) -m 'not slow'\n" in makefile
+    assert "PARALLEL = -n auto --dist loadgroup\n" in makefile

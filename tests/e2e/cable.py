@@ -35,7 +35,7 @@ class _End:
         try:
             os.write(self.far, data)
         except BlockingIOError:
-            return  # nobody reads there: an UART would have lost it, too
+            return  # no program reads there: a UART would have lost it, too
 
     def close(self) -> None:
         self.path.unlink(missing_ok=True)

@@ -31,7 +31,7 @@ class Rig:
         """Arm and hold `i` until the wheels turn, then start to watch."""
         programs.drive(self.station, self.vehicle, self.relay.armed)
         self.watch()
-        self.station.hold("i", self.vehicle.at_full)  # counting took its time: what follows, follows at once
+        self.station.hold("i", self.vehicle.at_full)  # counting took some time; the stop must follow at once
 
     def watch(self) -> None:
         """Count the delays of the machine from now on."""

@@ -193,8 +193,8 @@ class GroundStation:
 
     def end(self) -> None:
         """End the program and the processes that it started, in any state."""
-        if self.process.returncode is None:  # its number, and so its group's, is still its own
-            os.killpg(self.process.pid, signal.SIGKILL)  # a frozen one that only loses its parent stays for ever
+        if self.process.returncode is None:  # its process id, and so its group's, is not reused yet
+            os.killpg(self.process.pid, signal.SIGKILL)  # a frozen child that only loses its parent never ends
             self.process.wait(PATIENCE)
         if self._terminal >= 0:
             os.close(self._terminal)

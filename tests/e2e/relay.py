@@ -62,7 +62,7 @@ class Relay:
         self._vehicle_socket.close()
         self._ground_socket.close()
 
-    # ---- what passed ----
+    # ---- recorded frames ----
 
     def wait(self, condition: Callable[[], bool], within: float, what: str) -> float:
         """Wait until `condition`; return when it became true (monotonic). An AssertionError names `what`."""
@@ -117,7 +117,7 @@ class Relay:
         newest = self.newest(ManualControl, system=255)
         return newest is not None and not _asks_for_motion(newest)
 
-    # ---- the wire ----
+    # ---- forwarding ----
 
     def _run(self) -> None:
         watch = selectors.DefaultSelector()

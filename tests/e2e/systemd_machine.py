@@ -150,7 +150,7 @@ def _started(outer: subprocess.Popen[bytes], said: Path) -> Machine:
                 raise UnableError(f"no systemd of our own here: {_last(said)}")
     except subprocess.TimeoutExpired as error:
         told = f"it waits for {' '.join(error.cmd[-2:])}"
-    except OSError as error:  # no nsenter, or it has ended under our hands
+    except OSError as error:  # no nsenter, or the container has just ended
         raise UnableError(f"no systemd of our own here: {error} {_last(said)}".rstrip()) from error
     raise UnableError(f"no systemd of our own within {BOOT:g} s: {told} {_last(said)}".rstrip())
 
@@ -170,12 +170,12 @@ def _able(machine: Machine) -> None:
 
 def _end(outer: subprocess.Popen[bytes]) -> None:
     """End systemd, which ends everything inside; the script then cleans up."""
-    for _ in range(10):  # one that it gets before it is ready for it may be lost
+    for _ in range(10):  # a signal before systemd is ready may be lost
         outer.terminate()
         with contextlib.suppress(subprocess.TimeoutExpired):
             outer.wait(1)
             return
-    outer.kill()  # and by the kernel all that it has started
+    outer.kill()  # the kernel then ends everything that it has started
     outer.wait(30)
 
 

@@ -74,7 +74,7 @@ class TcpCable:
         try:
             other = socket.create_connection(("127.0.0.1", self._target), timeout=1.0)
         except OSError:
-            one.close()  # nobody listens there yet
+            one.close()  # no program listens there yet
             return
         self._pairs |= {one: other, other: one}
 

@@ -32,7 +32,7 @@ def test_a_key_needs_no_more_than_its_wire_time_and_30_ms_while_parameters_are_s
     with wired(SLOW) as pair:
         while not medians or (min(medians) > wire_time(SLOW) + SOFTWARE and len(medians) < ROUNDS):
             before, beside = Seen(), Seen()
-            pair.measure(before, 1, chance)  # after it the second station asks
+            pair.measure(before, 1, chance)  # then the second station starts its requests
             pair.measure(beside, KEYS, chance)
             assert beside.down[0] > FULL, "the parameter list did not flow"
             medians.append(inf if beside.keys.lost else median(chain(*beside.keys.latencies)))

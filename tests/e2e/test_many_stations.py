@@ -29,7 +29,9 @@ class Listener:
 
     def __init__(self, port: int, system: int) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)  # for as long as we are held up
+        self.socket.setsockopt(
+            socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20
+        )  # for the time in which the test is delayed
         self.socket.connect(("127.0.0.1", port))
         self.socket.setblocking(False)
         self._framer = Framer(stream=False)
@@ -47,7 +49,7 @@ class Listener:
         self._sequence = (self._sequence + 1) & 0xFF
         try:
             self.socket.send(data)
-        except ConnectionRefusedError:  # it has not opened its port yet
+        except ConnectionRefusedError:  # the vehicle has not opened its port yet
             self._beat_due = 0.0
 
     def listen(self) -> None:

@@ -38,7 +38,7 @@ async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path:
                 pressed = time.monotonic()
 
                 async def drives() -> bool:
-                    await pilot.press("i")  # again: a loop that was held up for 0.3 s has let the key go
+                    await pilot.press("i")  # again: a loop that was delayed by 0.3 s has released the key
                     with contextlib.suppress(TimeoutError):
                         await until(lambda: any(x == 600 for _, x in vehicle.demands(pressed)), 2.0)
                         return True

@@ -82,7 +82,7 @@ def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
         rig: Rig = request.param(tmp_path, stack)
         drive(rig.station, rig.vehicle, rig.station.says_armed)
         rig.waits = Waits(rig.vehicle.process.pid, rig.station.process.pid)
-        rig.station.hold("i", rig.vehicle.at_full)  # counting took its time: what follows, follows at once
+        rig.station.hold("i", rig.vehicle.at_full)  # counting took some time; the stop must follow at once
         yield rig
 
 
@@ -126,7 +126,7 @@ def test_terminal_closed(rig: Rig) -> None:
 
     def stand() -> bool:
         nonlocal granted
-        granted = rig.waits.total()  # again and again: the ground station ends meanwhile
+        granted = rig.waits.total()  # repeatedly, because the ground station ends meanwhile
         return rig.vehicle.stands()
 
     until(stand, PATIENCE)

@@ -121,7 +121,7 @@ def test_ground_station_told_to_end(rig: Build, number: signal.Signals) -> None:
     told = time.monotonic()
     os.kill(world.station.process.pid, number)
     assert_stops(world)
-    assert world.station.ended() == 128 + number  # as shells count
+    assert world.station.ended() == 128 + number  # as in a shell
     assert_said_neutral(world, told)
 
 
@@ -150,7 +150,7 @@ def test_link_cut_and_back_with_the_key_held_all_along(rig: Build) -> None:
     world.relay.cut(False)
     back = time.monotonic()
 
-    def heard_again() -> bool:  # and it asks for nothing old
+    def heard_again() -> bool:  # and requests nothing old
         return time.monotonic() > back + 3.0 and bool(world.relay.demands_since(back + 1.0))
 
     world.station.hold("i", heard_again)

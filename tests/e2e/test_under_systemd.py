@@ -85,13 +85,13 @@ class Service:
 
     def drive(self) -> int:
         """Drive until the wheels turn; return the daemon's process id inside the container."""
-        pid = int(self.property("MainPID"))  # before, for a demand is soon too old
+        pid = int(self.property("MainPID"))  # first, because a demand expires soon
         self.ground.wait(lambda: self.turning() or self._ahead(), "the wheels turn", WITHIN)
         return pid
 
     def drive_and_send(self, signal: str) -> int:
         """Send a signal to the daemon while the wheels turn; return the daemon's process id."""
-        while True:  # a watchdog with little patience may have taken the one that was there
+        while True:  # the short watchdog may have killed the process meanwhile
             pid = self.drive()
             if pid and self.machine.run("bash", "-c", f"kill -{signal} {pid}")[0] == 0:
                 return pid
@@ -217,6 +217,6 @@ def test_the_computer_does_what_a_ground_station_asks(service: Service, word: st
         return service.machine.property("ActiveState", f"{word}.target") == "active"
 
     service.ground.wait(asked, f"systemd is told to {word}", WITHIN)
-    assert service.property("ActiveState") == "failed"  # not started again
+    assert service.property("ActiveState") == "failed"  # not restarted
     for each in POWER:
         assert (service.machine.property("ActiveState", f"{each}.target") == "active") is (each == word)

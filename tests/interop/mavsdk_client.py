@@ -281,7 +281,7 @@ def main(port: str, scenario: str, folder: str, system_id: str) -> None:
     step("connect", lambda: str(sdk.add_any_connection(f"udpin://127.0.0.1:{port}")))
     system = step("discover", lambda: sdk.first_autopilot(PATIENCE))
     SCENARIOS[scenario](system, folder)
-    os._exit(0)  # its threads end when they please
+    os._exit(0)  # its threads may take long to end
 
 
 if __name__ == "__main__":

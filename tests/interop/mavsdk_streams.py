@@ -13,7 +13,7 @@ UNASKED: dict[str, Callable[[Any], bool]] = {
     "in_air": lambda value: not value,
     "landed_state": lambda value: value.name == "ON_GROUND",
     "vtol_state": lambda value: value.name == "UNDEFINED",
-    "flight_mode": lambda value: True,  # MAVSDK reads the number as PX4's, where it does not know the autopilot
+    "flight_mode": lambda value: True,  # MAVSDK reads the number as PX4's if it does not know the autopilot
     "attitude_euler": lambda value: -180 <= value.yaw_deg <= 180,
     "attitude_angular_velocity_body": lambda value: math.isfinite(value.yaw_rad_s),
     "velocity_ned": lambda value: abs(value.north_m_s) < 1,

@@ -32,7 +32,7 @@ def step(name: str, run: Callable[[], Any]) -> Any:
     except Exception as exception:
         value, error = None, f"{type(exception).__name__}: {exception}"
     took = time.monotonic() - start
-    # In one piece: callbacks come on a thread of MAVSDK's.
+    # In one write: callbacks run in a thread of MAVSDK.
     sys.stdout.write(json.dumps({"step": name, "value": shown(value), "error": error, "took": took}) + "\n")
     sys.stdout.flush()
     return value

@@ -70,7 +70,7 @@ class QGroundControl:
         """Close the port."""
         self._socket.close()
 
-    # ---- the wire ----
+    # ---- messages ----
 
     def send(self, message: m.Message) -> None:
         """Send a message to the vehicle."""
@@ -116,7 +116,7 @@ class QGroundControl:
         """Step 0: wait for a HEARTBEAT of component 1 of a vehicle."""
         beat = self.wait(m.Heartbeat, PATIENCE, lambda each: each.type not in (6, 18, 26, 27))
         assert beat is not None
-        self._beat()  # whose first one may go before it knows of a vehicle, and we answer to an address
+        self._beat()  # repeated: the first may be sent before it has found a vehicle
 
     def command(self, command: int, *params: float) -> Result:
         """Send a command, with retries."""

@@ -11,7 +11,7 @@ from typing import Any
 
 os.environ["MAVLINK20"] = "1"  # read when mavutil is imported
 
-mavftp: Any = import_module("pymavlink.mavftp")  # half typed: none of it is checked
+mavftp: Any = import_module("pymavlink.mavftp")  # partly typed, so not checked
 mavparm: Any = import_module("pymavlink.mavparm")
 mavutil: Any = import_module("pymavlink.mavutil")
 mavwp: Any = import_module("pymavlink.mavwp")

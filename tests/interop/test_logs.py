@@ -49,7 +49,7 @@ def test_mavproxy(rover: Rover, tmp_path: Path, stack: ExitStack) -> None:
         shell.say(f"log download {number} fetched-{number}")
         shell.hear(rf"Finished downloading fetched-{number} \({len(content)} bytes")
         assert (tmp_path / f"fetched-{number}").read_bytes() == content
-    shell.ask("arm throttle", "ARMED")  # it is refused until its HEARTBEAT was heard
+    shell.ask("arm throttle", "ARMED")  # refused until the vehicle has received its HEARTBEAT
     shell.say("log erase")
     shell.hear("logs not erased: disarm first")
     shell.say("disarm")

@@ -73,7 +73,7 @@ def test_pymavlink(far_rover: Rover, long_plan: bytes) -> None:
         link.param_fetch_all()
         script.insist(lambda: fetch_missing(link), lambda: len(link.params) == len(TABLE))
         script.insist(lambda: set_speed(link), lambda: link.params["SPEED_MAX"] == 1.25)
-        eventually(lambda: script.fetch("missions/mission.waypoints") == long_plan)  # it gives up after three tries
+        eventually(lambda: script.fetch("missions/mission.waypoints") == long_plan)  # mavftp gives up after three tries
         loader = mavwp.MAVWPLoader(target_system=1, target_component=1)
         for number in range(10):
             loader.add_latlonalt(HOME[0] + number * 1e-6, HOME[1], 0)
@@ -144,7 +144,9 @@ def test_mavproxy(far_rover: Rover, long_plan: bytes, tmp_path: Path) -> None:
         program.hear(rf"Received {len(TABLE)} parameters \(ftp\)")
         program.ask("param set SPEED_MAX 1.4\nparam fetch SPEED_MAX", r"SPEED_MAX = 1\.4")
         program.ask("ftp get /missions/mission.waypoints got.txt", r"Wrote", 10)
-        eventually(lambda: (tmp_path / "got.txt").read_bytes() == long_plan)  # it says so before it closes the file
+        eventually(
+            lambda: (tmp_path / "got.txt").read_bytes() == long_plan
+        )  # MAVProxy reports the end before it closes the file
         program.ask("wp load mission.txt", "TYPE_MISSION: ACCEPTED", 2)
         program.ask("wp list", "Saved 2 waypoints", 3)
         program.ask("arm throttle", "(?<!DIS)ARMED")

@@ -81,7 +81,7 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     ):
         mavproxy.say(line)
         mavproxy.hear(answer)
-    mavproxy.ask("status ESTIMATOR_STATUS", r"flags : \d\d")  # knows where it is, as some modes want
+    mavproxy.ask("status ESTIMATOR_STATUS", r"flags : \d\d")  # the position is known, which some modes need
     mavproxy.say("module load calibration")
     mavproxy.hear("Loaded module calibration")
     mavproxy.say("gyrocal")
@@ -106,7 +106,7 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     assert_no_error(mavproxy)
     mavproxy.say("velocity 0.8 0 0")
     rover.drives()
-    mavproxy.hear("setpoints lost: stopping")  # it was said once
+    mavproxy.hear("setpoints lost: stopping")  # sent once
     rover.stands()
     mavproxy.say("disarm")
     mavproxy.hear("DISARMED")
@@ -125,7 +125,7 @@ def test_relays_and_servos_do_as_they_are_told(mavproxy: Conversation, rover: Ro
     mavproxy.hear("DO_REPEAT_RELAY: ACCEPTED")
     mavproxy.say("servo repeat 10 1200 1 0.2")
     mavproxy.hear("DO_REPEAT_SERVO: ACCEPTED")
-    mavproxy.ask("status SERVO_OUTPUT_RAW", r"servo10_raw : 1500")  # there, and back at its trim
+    mavproxy.ask("status SERVO_OUTPUT_RAW", r"servo10_raw : 1500")  # moved, and back at its trim
     mavproxy.say("relay set 0 0")
     mavproxy.hear("DO_SET_RELAY: ACCEPTED")
     mavproxy.ask("status RELAY_STATUS", r"on : 0, present : 3")

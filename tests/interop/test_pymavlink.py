@@ -37,7 +37,7 @@ def test_modes_have_their_names_and_the_stick_drives(script: Script, rover: Rove
     script.until(link.motors_armed)
     script.drive(500, rover.vehicle.turning)
     assert rover.vehicle.turning()
-    rover.stands()  # because nothing comes any more
+    rover.stands()  # because no demand arrives any more
     link.arducopter_disarm()
     script.until(lambda: not link.motors_armed())
 

@@ -45,5 +45,5 @@ def test_a_failsafe(tree: Tree) -> None:
     rules = "vehicle/safety/failsafe.py"
     tree.insert_before(rules, "_LIMIT, _STOP = FailsafeStep(", CONDITION)
     tree.insert_after(rules, "RULES: dict[Failsafe, FailsafeRule] = {", ROW)
-    assert len(tree.touched) == 2
+    tree.check_recipe("a failsafe")
     tree.run_script(TURN_IT_OVER)

@@ -56,7 +56,7 @@ assert vehicle.returncode == 0, vehicle.returncode
 def test_a_link_type(tree: Tree) -> None:
     tree.write("link/transport/toy.py", TOY)
     tree.insert_after("link/endpoint.py", "SCHEMES: dict[str, Scheme] = {", ROW)
-    assert len(tree.touched) == 2
+    tree.check_recipe("a link type")
     for program in ("vehicle", "groundstation", "link.bridge"):
         assert "toy:HOST:PORT" in tree.run(program, "--help")
     tree.run_script(CALL_IT.replace("{port}", str(tree.port)))

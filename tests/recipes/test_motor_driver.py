@@ -55,7 +55,7 @@ ROW = '    "toy": DriverEntry("vehicle.motors.toy:ToyMotors", "a toy", example={
 def test_a_motor_driver(tree: Tree) -> None:
     tree.write("vehicle/motors/toy.py", TOY)
     tree.insert_after("vehicle/motors/drivers.py", "DRIVERS: dict[str, DriverEntry] = {", ROW)
-    assert len(tree.touched) == 2
+    tree.check_recipe("a motor driver")
     assert "toy" in tree.run("vehicle", "--help")
     tree.run("vehicle", "init", "rover.toml")
     template = (tree.folder / "rover.toml").read_text()

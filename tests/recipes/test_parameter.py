@@ -30,7 +30,7 @@ assert bench.newest(m.ParamValue).param_value == 7.0
 def test_a_parameter(tree: Tree) -> None:
     row = '    Parameter("TOY_LEVEL", 5, 0, 10, "%", "Level of the toy"),'
     tree.insert_after("vehicle/params.py", "TABLE: tuple[Parameter, ...] = (", row)
-    assert len(tree.touched) == 1
+    tree.check_recipe("a parameter of the vehicle")
     tree.run_script(LIST_AND_SET_IT)
     assert "| TOY_LEVEL | 5 % | 0 to 10 |" in tree.run("vehicle", "dialect")
     assert "TOY_LEVEL" in tree.run("vehicle", "schema")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -14,6 +15,12 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("dialects", "link", "vehicle", "groundstation", "tests")
 RUN_TIMEOUT = 60.0
 """s for one program in the copy."""
+
+
+def documented_counts() -> dict[str, int]:
+    """Return the recipes of CONTRIBUTING.md and the number of files that each touches."""
+    rows = re.findall(r"^\| (an? [^|]+) \| (\d) \|", (ROOT / "CONTRIBUTING.md").read_text(), re.MULTILINE)
+    return {name: int(count) for name, count in rows}
 
 
 class Tree:
@@ -55,6 +62,11 @@ class Tree:
     def append(self, path: str, text: str) -> None:
         """Add lines at the end of a file."""
         self._save(path, [*self._lines(path), text.rstrip("\n")])
+
+    def check_recipe(self, name: str) -> None:
+        """Check that as many files were touched as the row `name` of CONTRIBUTING.md says."""
+        count = documented_counts()[name]
+        assert len(self.touched) == count, f"{name}: {sorted(self.touched)}, CONTRIBUTING.md says {count}"
 
     def run(self, *words: str, fails: bool = False) -> str:
         """Run `python -m` with `words` in the copy; return its standard output and error."""
