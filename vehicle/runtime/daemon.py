@@ -118,7 +118,7 @@ async def _serve(settings: RunSettings) -> int:
             plan_keeper=plans,
             recording=recorder,
             host=host,
-            told=_journal,
+            on_text=_journal,
             rack=rack,
         )
         meter = HostMonitor(host, lambda: loop.idle_time, time.time, now)
