@@ -57,8 +57,9 @@ class Rover:
     ) -> None:
         """`now` is the monotonic time of boot.
 
-        `param_store` saves parameters and `plan_store` plans; without them both end with the program. `recording` writes
-        logs. `host` describes the computer. `on_text` is called with every STATUSTEXT. `rack` holds relays and servos.
+        `param_store` saves parameters and `plan_store` plans; without them both end with the program. `recording`
+        writes logs. `host` describes the computer. `on_text` is called with every STATUSTEXT. `rack` holds relays and
+        servos.
         """
         self._params = params
         self._boot = now
