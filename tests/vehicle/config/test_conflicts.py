@@ -27,7 +27,10 @@ def wheels(*pins: int) -> str:
             "sensors.encoders: GPIO 22 is already used by motors.safety",
         ),
         (PWM + wheels(5, 6), "sensors.encoders: GPIO 5 is already used by motors"),
-        (BOARD + '[sensors.battery]\nkind = "ina219"', "sensors.battery: address 0x40 on I2C bus 1 is already used by motors"),
+        (
+            BOARD + '[sensors.battery]\nkind = "ina219"',
+            "sensors.battery: address 0x40 on I2C bus 1 is already used by motors",
+        ),
     ],
 )
 def test_what_is_wanted_twice_is_said_before_anything_is_opened(text: str, says: str) -> None:

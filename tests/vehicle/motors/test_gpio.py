@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from msgspec.structs import astuple
 from gpiozero import Device
 from gpiozero.exc import PinUnknownPi
 from gpiozero.pins.mock import MockFactory, MockPWMPin
+from msgspec.structs import astuple
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
 from vehicle.drive.demand import Demand

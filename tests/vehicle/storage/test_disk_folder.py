@@ -17,7 +17,7 @@ from link.services.ftp.server import FtpServer
 from link.services.pacing import BulkPacer
 from tests.link.services_world import from_gcs, messages
 from vehicle.storage import disk_folder
-from vehicle.storage.disk_folder import MAX_PENDING, MAX_ENTRIES, MAX_SIZE, PIECE, DiskFolder
+from vehicle.storage.disk_folder import MAX_ENTRIES, MAX_PENDING, MAX_SIZE, PIECE, DiskFolder
 
 T = TypeVar("T")
 DATA = os.urandom(3 * PIECE + 77)
