@@ -126,30 +126,30 @@ async def _serve(settings: RunSettings) -> int:
             told=_log_status_text,
             rack=rack,
         )
-        meter = HostMonitor(host, lambda: loop.idle_time, time.time, now)
-        cycles = CycleObserver(rover, notifier, meter)
-        machine = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
-        tape = recorder.tape if recorder else None
+        host_monitor = HostMonitor(host, lambda: loop.idle_time, time.time, now)
+        cycles = CycleObserver(rover, notifier, host_monitor)
+        control_loop = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
+        log_tap = recorder.log_tap if recorder else None
         try:
-            return await _drive(machine, settings.endpoints, system, notifier, cycles, tape)
+            return await _drive(control_loop, settings.endpoints, system, notifier, cycles, log_tap)
         except BaseException as error:
-            machine.abort(error, loop.time())
+            control_loop.abort(error, loop.time())
             raise
         finally:
-            machine.close()
+            control_loop.close()
 
 
 async def _drive(
-    machine: ControlLoop,
+    control_loop: ControlLoop,
     endpoints: Sequence[str],
     system: int,
     notifier: Notifier,
     cycles: CycleObserver,
-    tape: LogTap | None,
+    log_tap: LogTap | None,
 ) -> int:
     links = open_links(endpoints, system=system, component=COMPONENT, wanted=INBOUND_IDS)
-    runner = Runner(machine, links, period=PERIOD, tape=tape)
-    shutdown = Shutdown(machine, runner, notifier.stopping)
+    runner = Runner(control_loop, links, period=PERIOD, tape=log_tap)
+    shutdown = Shutdown(control_loop, runner, notifier.stopping)
     cycles.shutdown = shutdown
     shutdown.install_handlers(asyncio.get_running_loop())
     gc.collect()
