@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from groundstation.screens import SCREENS
 from groundstation.intents import (
     AnyIntent,
     Arm,
@@ -28,6 +27,7 @@ from groundstation.intents import (
     StartSimulator,
     Stop,
 )
+from groundstation.screens import SCREENS
 
 CONFIRM_KEY = "y"
 """The second key of an action that needs one. No map may bind it."""
