@@ -42,8 +42,9 @@ class AxisMap:
     throttle_neutral: int = 0
     throttle_span: int = FULL_DEFLECTION
     reverse_flips_steering: bool = False
-    """In reverse, steering to the right turns the nose left, as with a steering wheel. ArduRover does so with every frame,
-    skid steering included (Rover/mode.cpp, get_pilot_desired_steering_and_throttle).
+    """In reverse, steering to the right turns the nose left, as with a steering wheel.
+
+    ArduRover does so with every frame, skid steering too (Rover/mode.cpp, get_pilot_desired_steering_and_throttle).
     `Axes.steering` always means the nose, so that the sign changes with the throttle."""
 
 

@@ -65,7 +65,7 @@ def base_mode(mode: Mode, *, armed: bool) -> ModeFlag:
 
 
 def mode_name(custom_mode: int, autopilot: int = Autopilot.GENERIC) -> str:
-    """The name a driver reads for a HEARTBEAT's custom_mode; "mode 99" for an unknown number."""
+    """Return the name of a HEARTBEAT's custom_mode; "mode 99" for an unknown number."""
     if autopilot == Autopilot.PX4:
         main = (custom_mode >> 16) & 0xFF
         return _PX4_MAIN.get(main, f"mode {main}")

@@ -52,13 +52,14 @@ class Rover:
         plan_store: PlanStore | None = None,
         recording: LogRecorder | None = None,
         host: HostInfo | None = None,
-        told: Callable[[Severity, str], None] = lambda severity, text: None,
+        on_text: Callable[[Severity, str], None] = lambda severity, text: None,
         rack: AccessorySet | None = None,
     ) -> None:
         """`now` is the monotonic time of boot.
 
-        `param_store` saves parameters and `plan_store` plans; without them both end with the program. `recording` writes
-        logs. `host` describes the computer. `told` is called with every STATUSTEXT. `rack` holds relays and servos.
+        `param_store` saves parameters and `plan_store` plans; without them both end with the program. `recording`
+        writes logs. `host` describes the computer. `on_text` is called with every STATUSTEXT. `rack` holds relays and
+        servos.
         """
         self._params = params
         self._boot = now
@@ -70,7 +71,7 @@ class Rover:
         """When a demand came whose telemetry is not built yet."""
         self._ticked: float | None = None
         """When the cycle ran whose messages are not built yet."""
-        self._texts = StatusTextQueue(told)
+        self._texts = StatusTextQueue(on_text)
         self._health_notices = HealthNotices(self._texts)
         self._control = Control(params, self._texts, system=int(params["MAV_SYSID"]), boot=now)
         self._drive = Drive(params, now)

@@ -63,8 +63,9 @@ class ArmingCommands:
     def messages(self) -> InboundTable:
         """Return the rows of the messages handled here."""
         return (
-            InboundMessage(m.SetMode, Access.DRIVER_OR_UNCLAIMED, "as DO_SET_MODE, without COMMAND_ACK; HOLD from anyone",
-                           self._handle_set_mode, Effect.MOTION, checks_sender=True),
+            InboundMessage(m.SetMode, Access.DRIVER_OR_UNCLAIMED,
+                           "as DO_SET_MODE, without COMMAND_ACK; to HOLD: anyone", self._handle_set_mode,
+                           Effect.MOTION, checks_sender=True),
         )  # fmt: skip
 
     def _handle_set_mode(self, received: Received, message: m.SetMode, now: float) -> None:

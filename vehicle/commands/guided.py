@@ -124,7 +124,7 @@ class GuidedCommands:
         return None
 
     def _check_age(self, message: Setpoint, now: float) -> Target | SetpointRejection | None:
-        """Return None for a setpoint that a newer one overtook. A change of mode, or arming, resets the sender clock."""
+        """Return None for a setpoint that a newer one overtook. A change of mode, or arming, resets the clock."""
         if self._mode_generation != self._safety.mode_generation:
             self._mode_generation = self._safety.mode_generation
             self._clock = SenderClock()

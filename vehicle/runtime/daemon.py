@@ -122,7 +122,7 @@ async def _serve(settings: RunSettings) -> int:
             plan_store=plan_store,
             recording=recorder,
             host=host,
-            told=_log_status_text,
+            on_text=_log_status_text,
             rack=rack,
         )
         meter = HostMonitor(host, lambda: loop.idle_time, time.time, now)

@@ -11,7 +11,7 @@ from link.transport.udp import RECEIVE_BUFFER, open_udp
 from tests.ports import free_port
 
 
-async def test_a_flood_finds_a_larger_buffer_than_the_default() -> None:
+def test_a_udp_socket_asks_for_a_larger_buffer_than_the_default() -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as usual:
         default = usual.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
     most = 2 * int(Path("/proc/sys/net/core/rmem_max").read_text())

@@ -1,7 +1,7 @@
 """The items that the mission, fence and rally plans of this vehicle may hold.
 
-To add a mission item that drives (NAV_, CONDITION_), add a row to MISSION_RULES and its task to executor.py. A DO_ item has
-its row beside its MAV_CMD handler in vehicle/commands (`DoItem`), because its command runs the same code.
+To add a mission item that drives (NAV_, CONDITION_), add a row to MISSION_RULES and its task to executor.py. A DO_ item
+has its row beside its MAV_CMD handler in vehicle/commands (`DoItem`), because its command runs the same code.
 """
 
 from __future__ import annotations
