@@ -11,6 +11,7 @@ import pytest
 
 from groundstation.cli import main as station_main
 from link.bridge import __main__ as bridge_main
+from tests.recipes.tree import documented_counts
 from vehicle.cli import options, subcommands
 from vehicle.params import PARAMETERS
 
@@ -103,3 +104,9 @@ def test_make_runs_the_test_command_of_the_readme() -> None:
     makefile = (ROOT / "Makefile").read_text()
     assert "$(PYTEST) $(PARALLEL) -m 'not slow'\n" in makefile
     assert "PARALLEL = -n auto --dist loadgroup\n" in makefile
+
+
+def test_every_recipe_of_contributing_is_followed_by_a_test() -> None:
+    tests = "".join(path.read_text() for path in (ROOT / "tests/recipes").glob("test_*.py"))
+    assert len(documented_counts()) == 11
+    assert [name for name in documented_counts() if f'check_recipe("{name}")' not in tests] == []

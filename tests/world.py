@@ -41,14 +41,14 @@ class Host:
             self.core.observe([self.channel.report()], now)
         self.core.tick(now)
 
-    def hear(self, data: bytes, address: Hashable, now: float) -> None:
+    def receive(self, data: bytes, address: Hashable, now: float) -> None:
         """Do what the runner does when data arrives."""
         if self.frozen:
             return
         for received in self.channel.receive(data, address, now):
             self.core.receive(received, now)
 
-    def speak(self, now: float) -> list[bytes]:
+    def pop_frames(self, now: float) -> list[bytes]:
         """Return the frames to send."""
         frames: list[bytes] = []
         outbox: list[Outgoing] = [] if self.frozen else self.core.messages_to_send()
@@ -120,15 +120,15 @@ class World:
 
     def _one_step(self) -> None:
         for data in self.down.receive(self.now):
-            self.near.hear(data, "far", self.now)
+            self.near.receive(data, "far", self.now)
         for data in self.up.receive(self.now):
-            self.far.hear(data, "near", self.now)
+            self.far.receive(data, "near", self.now)
         self.near.advance(self.now)
         self.far.advance(self.now)
         self._exchange()
 
     def _exchange(self) -> None:
-        for data in self.near.speak(self.now):
+        for data in self.near.pop_frames(self.now):
             self.up.send(data, self.now)
-        for data in self.far.speak(self.now):
+        for data in self.far.pop_frames(self.now):
             self.down.send(data, self.now)

@@ -44,7 +44,7 @@ class Relay:
         self.vehicle_port: int = self._vehicle_socket.getsockname()[1]
         self.ground_port = free_port()
         self._vehicle_address: tuple[str, int] | None = None
-        self._news = threading.Condition()
+        self._changed = threading.Condition()
         self._seen: list[Seen] = []
         self._delivered: list[Seen] = []
         self._running = True
@@ -67,10 +67,10 @@ class Relay:
     def wait(self, condition: Callable[[], bool], within: float, what: str) -> float:
         """Wait until `condition`; return when it became true (monotonic). An AssertionError names `what`."""
         deadline = time.monotonic() + within
-        with self._news:
+        with self._changed:
             while not condition():
                 assert time.monotonic() < deadline, f"not within {within} s: {what}; last texts: {self.texts()[-5:]}"
-                self._news.wait(STEP)
+                self._changed.wait(STEP)
         return time.monotonic()
 
     def newest(self, kind: type[Kind], system: int = 1) -> Kind | None:
@@ -133,8 +133,8 @@ class Relay:
                     self._vehicle_socket.sendto(data, self._vehicle_address)
             for data in self.down.receive(now):
                 self._ground_socket.sendto(data, ("127.0.0.1", self.ground_port))
-            with self._news:
-                self._news.notify_all()
+            with self._changed:
+                self._changed.notify_all()
 
     def _from_vehicle(self) -> None:
         data, self._vehicle_address = self._vehicle_socket.recvfrom(65536)

@@ -26,6 +26,7 @@ FULL = 45.0
 """% of the wire from the vehicle that must be in use; telemetry alone takes 37."""
 
 
+@pytest.mark.slow
 def test_a_key_needs_no_more_than_its_wire_time_and_30_ms_while_parameters_are_sent() -> None:
     medians: list[float] = []
     chance = random.Random(1)

@@ -135,6 +135,7 @@ def test_terminal_closed(rig: Rig) -> None:
     assert rig.station.process.wait(PATIENCE) is not None
 
 
+@pytest.mark.slow
 def test_unplugged_and_back_with_the_key_held_all_along(rig: Rig) -> None:
     """MAN_TIMEOUT stops the rover, the driver gets a text, and after the reconnect nothing moves until neutral and a
     new press."""

@@ -135,6 +135,7 @@ def test_quit_by_key(rig: Build) -> None:
     assert_said_neutral(world, told)
 
 
+@pytest.mark.slow
 def test_link_cut_and_back_with_the_key_held_all_along(rig: Build) -> None:
     """After 10 s without a link nothing moves by itself, neither by the old demand nor by the held key."""
     world = rig()

@@ -27,7 +27,7 @@ class Conversation:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
         )
-        self._news = threading.Condition()
+        self._changed = threading.Condition()
         self._heard = b""
         self._read = 0
         self._thread = threading.Thread(target=self._listen, name="conversation", daemon=True)
@@ -46,7 +46,7 @@ class Conversation:
     def say(self, line: str) -> None:
         """Type a line; the next `hear` searches after it."""
         assert self._process.stdin is not None
-        with self._news:
+        with self._changed:
             self._read = len(self._heard)
         self._process.stdin.write(line.encode() + b"\n")
         self._process.stdin.flush()
@@ -54,11 +54,11 @@ class Conversation:
     def hear(self, pattern: str, within: float = PATIENCE) -> re.Match[str]:
         """Wait for output that matches, since the last `say` or `hear`."""
         deadline = time.monotonic() + within
-        with self._news:
+        with self._changed:
             while not (found := re.search(pattern.encode(), self._heard[self._read :])):
                 left = deadline - time.monotonic()
                 assert left > 0, f"not within {within} s: {pattern!r}\n{self.transcript}"
-                self._news.wait(left)
+                self._changed.wait(left)
             self._read += found.end()
         match = re.search(pattern, found[0].decode())
         assert match is not None
@@ -67,11 +67,11 @@ class Conversation:
     def wait_for(self, pattern: str, within: float = PATIENCE) -> None:
         """Wait for output that matches, since the start."""
         deadline = time.monotonic() + within
-        with self._news:
+        with self._changed:
             while not re.search(pattern.encode(), self._heard):
                 left = deadline - time.monotonic()
                 assert left > 0, f"not within {within} s: {pattern!r}\n{self.transcript}"
-                self._news.wait(left)
+                self._changed.wait(left)
 
     def ask(self, line: str, pattern: str, period: float = 0.5) -> None:
         """Type a line every `period` s until the answer matches."""
@@ -92,9 +92,9 @@ class Conversation:
     def _listen(self) -> None:
         assert self._process.stdout is not None
         while data := os.read(self._process.stdout.fileno(), 65536):
-            with self._news:
+            with self._changed:
                 self._heard += data
-                self._news.notify_all()
+                self._changed.notify_all()
 
 
 def end(process: subprocess.Popen[Any], listener: threading.Thread) -> None:

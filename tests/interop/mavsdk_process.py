@@ -58,7 +58,7 @@ class Client:
         """How long the machine delays the script."""
         self.discovery = 0.0
         """s in which MAVSDK found the vehicle."""
-        self._news = threading.Condition()
+        self._changed = threading.Condition()
         self._steps: list[Step] = []
         self._ended = False
         self._thread = threading.Thread(target=self._listen, name="mavsdk", daemon=True)
@@ -67,12 +67,12 @@ class Client:
     def step(self, name: str, value: str = "", within: float = PATIENCE) -> Step:
         """Wait for a step of that name with a value that matches; each step is returned once."""
         deadline = time.monotonic() + within
-        with self._news:
+        with self._changed:
             while (found := self._find(name, value)) is None:
                 left = deadline - time.monotonic()
                 if left <= 0 or self._ended:
                     raise AssertionError(f"no {name!r} {value}\n{self._steps}\n{self._log.read_text()}")
-                self._news.wait(left)
+                self._changed.wait(left)
             self._steps.remove(found)
             return found
 
@@ -99,12 +99,12 @@ class Client:
         assert self._process.stdout is not None
         for line in self._process.stdout:
             told = json.loads(line)
-            with self._news:
+            with self._changed:
                 self._steps.append(Step(told["step"], told["value"], told["error"], told["took"]))
-                self._news.notify_all()
-        with self._news:
+                self._changed.notify_all()
+        with self._changed:
             self._ended = True
-            self._news.notify_all()
+            self._changed.notify_all()
 
 
 @contextmanager

@@ -25,7 +25,7 @@ from tests.interop.script import Script, mavparm, mavwp
 from vehicle.autonomy.mission.executor import MissionState
 from vehicle.params import TABLE
 
-pytestmark = pytest.mark.interop
+pytestmark = [pytest.mark.interop, pytest.mark.slow]
 
 NORTH, EAST = (round(degrees * 1e7) for degrees in HOME)
 WAYPOINT, LONG = 16, 200

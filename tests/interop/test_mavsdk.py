@@ -87,6 +87,7 @@ def test_home_and_the_origin_are_where_they_are_set(client: Callable[[str], Clie
     assert sdk.good("origin told").value == pytest.approx(500.0)
 
 
+@pytest.mark.slow
 def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> None:
     sdk = client("guided")
     sdk.good("speed")
@@ -110,6 +111,7 @@ def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> N
     sdk.good("disarm")
 
 
+@pytest.mark.slow
 def test_a_mission_from_upload_to_its_end(client: Callable[[str], Client], rover: Rover) -> None:
     sdk = client("mission")
     sdk.good("upload")
@@ -128,6 +130,7 @@ def test_a_mission_from_upload_to_its_end(client: Callable[[str], Client], rover
     assert sdk.good("empty").value == 0
 
 
+@pytest.mark.slow
 def test_a_mission_as_its_examples_make_it(client: Callable[[str], Client], rover: Rover) -> None:
     sdk = client("plan")
     sdk.good("refused")

@@ -68,12 +68,12 @@ class Convoy:
             for data, address, sequence in self._near.channel.send(outgoing):
                 self.station.handle_sent(outgoing.message, sequence, self.now)
                 for host in self._far[str(address)]:
-                    host.hear(data, "station", self.now)
+                    host.receive(data, "station", self.now)
         for address, hosts in self._far.items():
             for host in hosts:
                 host.advance(self.now)
-                for data in host.speak(self.now):
-                    self._near.hear(data, address, self.now)
+                for data in host.pop_frames(self.now):
+                    self._near.receive(data, address, self.now)
 
     @property
     def snapshot(self) -> Snapshot:
