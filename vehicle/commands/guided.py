@@ -115,7 +115,7 @@ class GuidedCommands:
     def _rejection(self, received: Received) -> SetpointRejection | None:
         if self._control.owner != received.system:
             return SetpointRejection(
-                self._control.denial_reason(received.system) or "nobody is in control, arm to take it"
+                self._control.denial_reason(received.system) or "no GCS is in control, arm to take it"
             )
         if self._safety.mode is not Mode.GUIDED:
             return SetpointRejection(f"mode is {self._safety.mode.name}, not GUIDED")

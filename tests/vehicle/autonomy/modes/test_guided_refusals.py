@@ -60,7 +60,7 @@ class TestRefusals:
     def test_46_setpoints_in_another_mode_disarmed_or_from_another_station_are_ignored(self) -> None:
         field = Field()
         field.twist(0.8)
-        assert said(field, "nobody is in control")
+        assert said(field, "no GCS is in control")
         field.arm()
         field.twist(0.8)
         field.wait(0.5)
