@@ -51,7 +51,7 @@ class AccessoryRequest(NamedTuple):
         if self.value is not None and (why := _unfit(self.value, outlet)):
             return why
         if self.times is not None and not (1 <= self.times <= TIMES_MAX and self.times == int(self.times)):
-            return f"times {self.times:g} is no whole number from 1 to {TIMES_MAX}"
+            return f"times {self.times:g} is not a whole number from 1 to {TIMES_MAX}"
         if not 0.0 <= self.period <= PERIOD_MAX:
             return f"period {self.period:g} s is not 0 to {PERIOD_MAX:g}"
         return None
@@ -142,7 +142,7 @@ class AccessoryCommands:
             if reason is None:
                 self._apply(outlet, request, now)
         if reason:
-            text = f"Mission: passed over {command_name(item.command)} {item.params[0]:g}: {reason}"
+            text = f"Mission: skipped {command_name(item.command)} {item.params[0]:g}: {reason}"
             self._texts.send(Severity.WARNING, text, now)
 
     def update(self, now: float) -> None:

@@ -77,7 +77,7 @@ class GyroCalibration:
         self._count, self._sum = self._count + 1, self._sum + rate
         self._least, self._most = min(self._least, rate), max(self._most, rate)
         if self._most - self._least > SPREAD_MAX:
-            return self._fail("it moves", now)
+            return self._fail("the rover moves", now)
         return None if now - self._began < SECONDS else self._finish(now)
 
     def cancel(self, now: float) -> None:
@@ -87,8 +87,8 @@ class GyroCalibration:
     def _finish(self, now: float) -> Result:
         bias = self._sum / self._count
         if not self._navigator.set_gyro_bias(bias):
-            return self._fail("it turns, or the gyro is broken", now)
-        self._send(f"Gyro calibrated: it is off by {math.degrees(bias):.2f} deg/s", now)
+            return self._fail("the rover turns, or the gyro is faulty", now)
+        self._send(f"Gyro calibrated: bias {math.degrees(bias):.2f} deg/s", now)
         return Result.ACCEPTED
 
     def _fail(self, why: str, now: float) -> Result:

@@ -132,7 +132,7 @@ class GuidedCommands:
         if age is None:
             return None
         return (
-            SetpointRejection("it is old, by its sender's clock") if age > SETPOINT_MAX_AGE else self._target(message)
+            SetpointRejection("too old by the clock of its sender") if age > SETPOINT_MAX_AGE else self._target(message)
         )
 
     def _target(self, message: Setpoint) -> Target | SetpointRejection:
@@ -191,7 +191,7 @@ class GuidedCommands:
             return Result.DENIED
         largest = self._params["SPEED_MAX"]
         if speed > largest:
-            self._texts.send(Severity.WARNING, f"Speed {speed:g} m/s cut to {largest:g} (SPEED_MAX)", now)
+            self._texts.send(Severity.WARNING, f"Speed {speed:g} m/s limited to {largest:g} (SPEED_MAX)", now)
         self._navigator.set_speed(min(speed, largest))
         return Result.ACCEPTED
 

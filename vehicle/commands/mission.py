@@ -167,7 +167,7 @@ class MissionService:
         if denial is None and not self._selected(sequence, anew=False):
             denial = f"there is no item {sequence}"
         if denial:
-            text = f"GCS {received.system}: item {sequence} not chosen: {denial}"
+            text = f"GCS {received.system}: item {sequence} not set: {denial}"
             self._texts.send(Severity.WARNING, text, now)
 
     def build_mission_current(self) -> m.MissionCurrent:
@@ -181,7 +181,7 @@ class MissionService:
         for kind in self._rules:
             damage = store.damage.get(kind)
             if damage is None and self._server.load(kind, store.plans.get(kind, ())) is not MissionResult.ACCEPTED:
-                damage = f"saved {kind.name.lower()} is not one for this version"
+                damage = f"saved {kind.name.lower()} does not fit this version"
             if damage is not None:
                 self._damage[kind] = damage
             self._apply(kind, self._server.plan(kind))
@@ -229,10 +229,10 @@ class MissionService:
         if not found:
             return []
         numbers, reasons = ", ".join(map(str, found)), ", ".join(dict.fromkeys(found.values()))
-        return [f"Mission: no accessory for items {numbers}, they will be passed over: {reasons}"]
+        return [f"Mission: no accessory for items {numbers}, will be skipped: {reasons}"]
 
     def _notify_rejected_file(self, kind: MissionType, why: str) -> None:
-        self._notices.append(f"File of the {kind.name.lower()} not taken: {why}")
+        self._notices.append(f"{kind.name.capitalize()} file rejected: {why}")
 
     def _in_use(self, kind: MissionType) -> str | None:
         if not self._safety.armed:

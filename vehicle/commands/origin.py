@@ -55,7 +55,7 @@ class OriginCommands:
             return ()
         point = message.latitude, message.longitude
         if global_to_local(*point, self._navigator.estimate) is None:
-            denial: str | None = "it is no place, or the position is not known"
+            denial: str | None = "invalid position, or the position is not known"
         else:
             denial = self._control.denial_reason(received.system) or self._rejection(*point)
         if denial:
@@ -91,7 +91,7 @@ class OriginCommands:
         return (
             None
             if distance <= MAX_ORIGIN_DISTANCE
-            else f"it is {distance / 1e3:.0f} km away, {MAX_ORIGIN_DISTANCE / 1e3:g} at most"
+            else f"{distance / 1e3:.0f} km away, limit is {MAX_ORIGIN_DISTANCE / 1e3:g} km"
         )
 
     def _move(self, latitude: float, longitude: float, altitude: float | None, system: int, now: float) -> None:

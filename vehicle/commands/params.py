@@ -113,7 +113,7 @@ class ParamService:
             if each.name in changed or each.name in run:
                 self._save_value(each.name, each.default)
         self._params.set_unannounced(changed)
-        self._texts.send(Severity.NOTICE, f"Parameters: {len(changed)} back to their defaults", now)
+        self._texts.send(Severity.NOTICE, f"Parameters: {len(changed)} reset to defaults", now)
 
     def _retry(self, now: float) -> None:
         if self._retry_due is not None and now >= self._retry_due and self._store.idle:

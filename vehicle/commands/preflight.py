@@ -49,7 +49,7 @@ class PreflightCommands:
             return None
         if self._safety.armed:
             self._pending = None
-            self._texts.send(Severity.WARNING, "Armed: no restart", now)
+            self._texts.send(Severity.WARNING, "Restart cancelled: armed", now)
         return self._pending[0] if self._pending else None
 
     def _handle_setup_signing(self, received: Received, message: SetupSigning, now: float) -> None:

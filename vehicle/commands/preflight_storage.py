@@ -73,7 +73,7 @@ class PreflightStorage:
     def _unsavable(self, params: bool, plans: bool) -> str | None:
         """Return why a requested save of parameters or plans is impossible, or None."""
         if (params and self._params.is_volatile) or (plans and self._plans.is_volatile):
-            return "nothing is kept in this run"
+            return "nothing is saved in this run"
         if params and self._params.damage:  # saving now would make an empty file valid at the next start
             return f"{self._params.damage}; set one to go on"
         return None
@@ -111,7 +111,7 @@ class SaveJob:
     def step(self, now: float) -> Result | None:
         """Return the result once all writes are done, or have failed."""
         if not all(each.idle for each in self._services):
-            return None if now - self._began < WRITE_TIMEOUT else self._reject("the disk does not answer", now)
+            return None if now - self._began < WRITE_TIMEOUT else self._reject("the disk does not respond", now)
         problem = next(filter(None, (each.problem for each in self._services)), None)
         if self._erased and self._erased.verdict is not MissionResult.ACCEPTED:
             problem = problem or "the plans could not be erased"

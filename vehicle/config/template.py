@@ -138,7 +138,7 @@ def _line(name: str, value: Any, owner: type, *, active: bool = False) -> str:
     if value is None:
         return ""
     text = f"{field_docs(owner).get(name, '')}{_default_note(owner, name)}"
-    return f"{_comment(text)}{'' if active else '#'}{name} = {_value(value)}\n"
+    return f"{_comment(text.strip())}{'' if active else '#'}{name} = {_value(value)}\n"
 
 
 def _default_note(owner: type, name: str) -> str:

@@ -26,7 +26,9 @@ class TwoInputs(
     """IN1 and IN2, PWM on one and low on the other: DRV8833, DRV8871, L9110, MX1508, TB6612 and L298N with EN high."""
 
     forward: Pin
+    """PWM input for forward, IN1."""
     backward: Pin
+    """PWM input for backward, IN2."""
 
 
 class PhaseEnable(

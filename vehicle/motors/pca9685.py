@@ -33,6 +33,7 @@ class Pca9685Settings(BoardSettings, frozen=True, forbid_unknown_fields=True, kw
 
     channels: Annotated[tuple[Pca9685Channel, ...], msgspec.Meta(min_length=1, max_length=8)]
     idle: Idle = "neutral"
+    """Output while disabled: "neutral" pulses, or none ("off")."""
 
     def __post_init__(self) -> None:
         reject_duplicates([channel.channel for channel in self.channels])

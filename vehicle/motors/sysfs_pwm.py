@@ -55,7 +55,7 @@ class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     outputs: Annotated[tuple[Output, ...], msgspec.Meta(min_length=1, max_length=4)]
     idle: Idle = "neutral"
-    """Output of servo channels while disabled: "neutral" pulses, or none ("off"). A bridge is always off then."""
+    """Output of servos while disabled: "neutral" pulses, or none ("off"). A bridge is always off then."""
 
     def __post_init__(self) -> None:
         names = [(output.device, output.channel) for output in self.outputs]

@@ -125,31 +125,31 @@ async def _serve(settings: RunSettings) -> int:
             on_text=_log_status_text,
             rack=rack,
         )
-        meter = HostMonitor(host, lambda: loop.idle_time, time.time, now)
-        cycles = CycleObserver(rover, notifier, meter)
-        machine = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
-        tape = recorder.tape if recorder else None
+        host_monitor = HostMonitor(host, lambda: loop.idle_time, time.time, now)
+        cycles = CycleObserver(rover, notifier, host_monitor)
+        control_loop = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
+        log_tap = recorder.log_tap if recorder else None
         try:
             links = open_links(settings.endpoints, system=system, component=COMPONENT, wanted=rover.message_ids)
             status = f"system {system}, {', '.join(settings.endpoints)}"
-            return await _drive(machine, links, status, notifier, cycles, tape)
+            return await _drive(control_loop, links, status, notifier, cycles, log_tap)
         except BaseException as error:
-            machine.abort(error, loop.time())
+            control_loop.abort(error, loop.time())
             raise
         finally:
-            machine.close()
+            control_loop.close()
 
 
 async def _drive(
-    machine: ControlLoop,
+    control_loop: ControlLoop,
     links: Sequence[Link],
     status: str,
     notifier: Notifier,
     cycles: CycleObserver,
-    tape: LogTap | None,
+    log_tap: LogTap | None,
 ) -> int:
-    runner = Runner(machine, links, period=PERIOD, log_tap=tape)
-    shutdown = Shutdown(machine, runner, notifier.stopping)
+    runner = Runner(control_loop, links, period=PERIOD, log_tap=log_tap)
+    shutdown = Shutdown(control_loop, runner, notifier.stopping)
     cycles.shutdown = shutdown
     shutdown.install_handlers(asyncio.get_running_loop())
     gc.collect()

@@ -105,10 +105,12 @@ def build_control_loop(
     try:
         logged = _with_motor_log(motors, settings.motor_log)
         prove = arming_check(motors)
-        machine = ControlLoop(rover, logged, sensors, stop_input=estop_reader(motors), prove=prove, completed=completed)
+        control_loop = ControlLoop(
+            rover, logged, sensors, stop_input=estop_reader(motors), prove=prove, completed=completed
+        )
         opened.callback(rack.close)
         rack.open()
-        return machine
+        return control_loop
     except BaseException:
         motors.close()
         raise

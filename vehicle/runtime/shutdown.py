@@ -27,10 +27,10 @@ SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 class Shutdown:
     """Ends the run: stops the motors, sends the last messages, and gives the exit code or the exception."""
 
-    def __init__(self, machine: ControlLoop, runner: Runner, stopping: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, control_loop: ControlLoop, runner: Runner, stopping: Callable[[], None] = lambda: None) -> None:
         """Prepare a shutdown; `stopping` is called once the motors are stopped."""
         self._stopping = stopping
-        self._machine = machine
+        self._control_loop = control_loop
         self._runner = runner
         self._reason: str | None = None
         self._fault: Exception | None = None
@@ -63,7 +63,7 @@ class Shutdown:
         self._reason = reason
         self._fault = fault or (RuntimeError(message) if message else None)
         try:
-            self._machine.shutdown(asyncio.get_running_loop().time())
+            self._control_loop.shutdown(asyncio.get_running_loop().time())
         except Exception as error:
             self._fault = MotorError(f"the motors could not be stopped, cut their power: {error}")
         self._stopping()
@@ -73,16 +73,16 @@ class Shutdown:
 class CycleObserver:
     """The daemon's work after a control cycle: feed the watchdog, update the host info, handle a reboot request."""
 
-    def __init__(self, rover: Rover, notifier: Notifier, meter: HostMonitor) -> None:
+    def __init__(self, rover: Rover, notifier: Notifier, host_monitor: HostMonitor) -> None:
         self.shutdown: Shutdown | None = None
         self._rover = rover
         self._notifier = notifier
-        self._meter = meter
+        self._host_monitor = host_monitor
 
     def handle_cycle(self, now: float) -> None:
         """Feed the watchdog, update the host info, and handle a reboot request."""
         self._notifier.alive(now)
-        self._meter.update(now)
+        self._host_monitor.update(now)
         leave = self._rover.reboot_request(now)
         if leave is not None and self.shutdown is not None:
             self.shutdown.handle_reboot_request(leave)

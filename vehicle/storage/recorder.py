@@ -14,13 +14,13 @@ LOGS = "logs"
 
 
 class VehicleRecorder:
-    """Fits `vehicle.storage.logbook.LogRecorder`; the runner writes to `tape`."""
+    """Fits `vehicle.storage.logbook.LogRecorder`; the runner writes to `log_tap`."""
 
     def __init__(self, folder: Path, *, system: int, component: int) -> None:
         self._files = LogFiles(folder)
         self._recorder = Recorder()
         self.folder = DiskFolder(folder, suffix=SUFFIX, removable=lambda name: name != self._files.current)
-        self.tape = LogTap(self._recorder.add, system=system, component=component)
+        self.log_tap = LogTap(self._recorder.add, system=system, component=component)
         self._recorder.check_writable(self._files.require_writable)
 
     @property

@@ -82,7 +82,7 @@ def test_47_setpoints_delayed_by_two_seconds_do_not_move_the_rover() -> None:
         field.twist(0.8, boot_ms=1000 + 50 * step)
         field.wait(0.01)
         assert not field.turning
-    assert said(field, "it is old, by its sender's clock")
+    assert said(field, "too old by the clock of its sender")
     for step in range(70, 90):
         field.twist(0.8, boot_ms=1000 + 50 * step)
         field.wait(0.05)

@@ -113,7 +113,7 @@ class TestRefused:
             (SET_SERVO, (10, 1500), "DO_SET_SERVO refused: there is no servo 10"),
             (SET_SERVO, (3, 1500), "DO_SET_SERVO refused: servo 3 is a motor"),
             (SET_SERVO, (9, 2500), "DO_SET_SERVO refused: servo 9: 2500 us is not 1100 to 1900"),
-            (REPEAT_SERVO, (9, 1500, 0, 1), "refused: servo 9: times 0 is no whole number from 1 to 1000"),
+            (REPEAT_SERVO, (9, 1500, 0, 1), "refused: servo 9: times 0 is not a whole number from 1 to 1000"),
             (REPEAT_RELAY, (0, 1, -1), "refused: relay 0: period -1 s is not 0 to 3600"),
         ],
     )

@@ -73,7 +73,7 @@ class TestStorage:
         told = {each.param_id: each.param_value for each in bench.all(m.ParamValue)}
         assert told == {"MAN_DEADBAND": 3.0, "WP_SPEED": pytest.approx(0.8)}
         assert bench.rover._params["DRIVE_TYPE"] == 2  # belongs to the hardware
-        assert said(bench, "Parameters: 2 back to their defaults")
+        assert said(bench, "Parameters: 2 reset to defaults")
         assert bench.command(STORAGE, 4) is Result.ACCEPTED
 
     def test_reset_reaches_what_is_kept_and_leaves_what_the_file_pins(self) -> None:
@@ -110,13 +110,13 @@ class TestStorage:
         assert bench.command(STORAGE, 2) is Result.ACCEPTED
         assert (params["FS_LOOP_TIMEOUT"], params["WP_SPEED"], params["MAN_DEADBAND"]) == (1.0, 2.0, 3.0)
         assert store.values == {"FS_LOOP_TIMEOUT": 0.2, "WP_SPEED": 0.8, "MAN_DEADBAND": 3.0}
-        assert said(bench, "Parameters: 2 back to their defaults")
+        assert said(bench, "Parameters: 2 reset to defaults")
 
     def test_what_is_set_is_kept_already(self) -> None:
         store = MemoryStore()
         bench = Bench()
         assert bench.command(STORAGE, 1) is Result.FAILED
-        assert said(bench, "PREFLIGHT_STORAGE refused: nothing is kept in this run")
+        assert said(bench, "PREFLIGHT_STORAGE refused: nothing is saved in this run")
         bench.rover = Rover(Params(), now=bench.now, param_store=store)
         bench.wait(0.1)
         assert bench.command(STORAGE, 1, NAN) is Result.ACCEPTED

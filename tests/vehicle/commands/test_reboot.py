@@ -104,7 +104,7 @@ class TestReboot:
         bench.command(Command.COMPONENT_ARM_DISARM, 0)
         bench.wait(1.0)
         assert bench.rover.reboot_request(bench.now) is None
-        assert said(bench, "Armed: no restart")
+        assert said(bench, "Restart cancelled: armed")
 
     def test_only_who_is_in_control_may(self) -> None:
         bench = Bench(REBOOT_ENABLE=2)

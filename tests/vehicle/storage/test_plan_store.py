@@ -301,7 +301,7 @@ def test_a_damaged_fence_that_does_not_count_can_only_not_be_turned_on() -> None
 
 def test_a_plan_of_another_version_is_damage() -> None:
     field = field_with(MemoryStore({MISSION: (item(command=Command.NAV_RETURN_TO_LAUNCH), item(command=22))}))
-    assert said(field, "Saved mission is not one for this version")
+    assert said(field, "Saved mission does not fit this version")
     assert field.newest(m.MissionCurrent).mission_id == 0
     assert field.set_mode(Mode.AUTO) is Result.FAILED
 

@@ -110,15 +110,13 @@ class TestItems:
     def test_items_for_missing_accessories_are_reported_and_skipped(self) -> None:
         field = ready(do(Command.DO_SET_SERVO, 5, 1500), do(Command.DO_SET_RELAY, 0, 1), way(5, 0))
         field.wait(0.2)
-        words = (
-            "Mission: no accessory for items 0, 1, they will be passed over: there is no servo 5, there is no relay 0"
-        )
+        words = "Mission: no accessory for items 0, 1, will be skipped: there is no servo 5, there is no relay 0"
         assert said(field, words)
         start(field)
         finish(field, 40.0)
         assert field.truth.distance(Point(5, 0)) < 0.7
-        assert said(field, "Mission: passed over DO_SET_SERVO 5: there is no servo 5")
-        assert said(field, "Mission: passed over DO_SET_RELAY 0: there is no relay 0")
+        assert said(field, "Mission: skipped DO_SET_SERVO 5: there is no servo 5")
+        assert said(field, "Mission: skipped DO_SET_RELAY 0: there is no relay 0")
 
     def test_a_mission_can_restore_the_default_speed(self) -> None:
         field = ready(

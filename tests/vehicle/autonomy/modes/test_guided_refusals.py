@@ -123,7 +123,7 @@ class TestRefusals:
     def test_too_high_a_speed_is_limited_and_reported(self) -> None:
         field = Field()
         assert field.command(Command.DO_CHANGE_SPEED, 1, 99) is Result.ACCEPTED
-        assert said(field, "cut to 1.5")
+        assert said(field, "limited to 1.5")
         assert field.command(Command.DO_CHANGE_SPEED, 1, -2) is Result.ACCEPTED
         assert field.rover._navigator.cruise_speed() == pytest.approx(0.8)
 
