@@ -44,7 +44,7 @@ class ToyRelay(SimulatedAccessory):
 
 
 def add_rows(set_item: Callable[[dict[str, DriverEntry], str, DriverEntry], None] = dict.__setitem__) -> None:
-    """Add a row for each toy, as the recipe in docs/architecture.md says."""
+    """Add a row for each toy, as the recipe in CONTRIBUTING.md says."""
     for table, entry in ROWS:
         set_item(table, "toy", entry)
 
