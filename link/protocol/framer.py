@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 import struct
 from enum import Enum, auto
-from typing import NamedTuple
 
 from fastcrc.crc16 import mcrf4xx
 
@@ -25,13 +24,13 @@ from dialects.codec import (
     MAGIC_V2,
     SIGNATURE_SIZE,
 )
+from link.protocol.failed_frame import FailedFrames
 from link.protocol.frame import Frame, FramerCounts, read_header
 
 PARTIAL_DEADLINE = 0.1
 """s to wait for the rest of a frame on a stream. Longer than the longest frame takes at 57600 baud (280 bytes, 49 ms),
 shorter than the vehicle waits for a demand (0.45 s): a forged header must not hide the frames behind it."""
 
-MAX_MISMATCHES = 64
 _SHORTEST = HEADER_V2 + CRC_SIZE
 _MAGIC = re.compile(b"[\xfd\xfe]")
 _HEAD = struct.Struct("<BBBxBBBI")
@@ -48,20 +47,6 @@ class _Missing(Enum):
     """Maybe a frame, but its end has not arrived yet."""
     FRAME = auto()
     """Not a frame."""
-
-
-class _Doubt(NamedTuple):
-    """A failed frame: a complete foreign one, and not noise, if the next frame starts at its claimed end."""
-
-    end: int
-    message_id: int
-    known: bool
-    noise: int = 0
-    """`resync_bytes` before the first byte of it: what to go back to where it was a whole frame of an unknown id."""
-    crc_errors: int = 0
-    """Frames inside an unknown one that failed the checksum: they count only where the outer one was none."""
-    refused: int = 0
-    """Inside an unknown one, as `FramerCounts.refused`."""
 
 
 class Framer:
@@ -81,7 +66,7 @@ class Framer:
         """The buffer starts where a frame may start: no noise before it."""
         self._buffer = b""
         self._waiting_since: float | None = None
-        self._doubt: _Doubt | None = None
+        self._failed = FailedFrames(self.counts)
 
     def feed(self, data: bytes, now: float) -> list[Frame]:
         """Return all frames that are complete now. `now` in s, monotonic.
@@ -124,13 +109,13 @@ class Framer:
     def _skip_first_byte(self) -> None:
         self._buffer = self._buffer[1:]
         self._at_border = False
-        self._drop_doubt()
+        self._failed.drop()
         self.counts.resync_bytes += 1
 
     def _take(self, now: float) -> list[Frame]:
         frames, used = self._scan(self._buffer, final=False)
         self._buffer = self._buffer[used:]
-        self._doubt = self._doubt and self._doubt._replace(end=self._doubt.end - used)
+        self._failed.shift(used)
         if not self._buffer:
             self._waiting_since = None
         elif used or self._waiting_since is None:
@@ -144,6 +129,7 @@ class Framer:
         covers all other cases.
         """
         frames: list[Frame] = []
+        failed = self._failed
         position, size = 0, len(data)
         border = 0 if self._at_border else -1
         while position < size:
@@ -155,8 +141,8 @@ class Framer:
                 if extra is not None and magic == MAGIC_V2 and not flags and end <= size:
                     raw = data[position:end]
                     if mcrf4xx(raw[1:-2] + extra) == raw[-2] | raw[-1] << 8:
-                        if self._doubt is not None:
-                            self._settle(position)
+                        if failed.newest is not None:
+                            failed.settle(position)
                         frames.append((message_id, system, component, sequence, raw))
                         position = border = end
                         continue
@@ -171,7 +157,7 @@ class Framer:
         if not final:
             self._at_border = border == position
             return frames, position
-        self._settle(size)
+        self._failed.settle(size)
         return frames, position
 
     def _slow(self, data: bytes, position: int, size: int, frames: list[Frame], border: int) -> tuple[int, int]:
@@ -183,7 +169,7 @@ class Framer:
         if found is _Missing.FRAME and position == border and self._unknown:
             found = self._unknown_at(data, position, size)
         if isinstance(found, tuple):
-            self._settle(position)
+            self._failed.settle(position)
             frames.append(found)
             end = position + len(found[4])
             return end, end
@@ -204,7 +190,7 @@ class Framer:
             return _Missing.BYTES
         if end < size and data[end] not in (MAGIC_V1, MAGIC_V2):
             return _Missing.FRAME
-        self._doubt = None
+        self._failed.forget()
         self.counts.unknown += 1
         self.counts.frames -= 1  # _scan counts it among the verified frames
         return (header.message_id, header.system, header.component, header.sequence, data[start:end])
@@ -231,15 +217,16 @@ class Framer:
         if end > size:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + extra) != data[crc_at] | data[crc_at + 1] << 8:
-            return self._bad_crc(start, end, message_id)
+            self._failed.add_bad_crc(start, end, message_id)
+            return _Missing.FRAME
         return (message_id, system, component, sequence, data[start:end])
 
     def _foreign(self, start: int, end: int, flags: int, message_id: int) -> _Missing:
         """Handle unknown incompatibility flags (the frame must be dropped), or an id outside the dialect."""
         if flags > INCOMPAT_SIGNED:
-            self._refuse(start)
+            self._failed.add_refused(start)
         else:
-            self._suspect(start, _Doubt(end, message_id, known=False))
+            self._failed.add_unknown(start, end, message_id)
         return _Missing.FRAME
 
     def _frame_v1(self, data: bytes, start: int, size: int) -> Frame | _Missing:
@@ -250,59 +237,14 @@ class Framer:
         end = crc_at + CRC_SIZE
         size_in_dialect = BASE_SIZE.get(message_id)
         if size_in_dialect is None:
-            self._suspect(start, _Doubt(end, message_id, known=False))
+            self._failed.add_unknown(start, end, message_id)
             return _Missing.FRAME
         if size_in_dialect != length:
-            self._refuse(start)
+            self._failed.add_refused(start)
             return _Missing.FRAME
         if end > size:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + CRC_EXTRA[message_id]) != data[crc_at] | data[crc_at + 1] << 8:
-            return self._bad_crc(start, end, message_id)
-        return (message_id, system, component, sequence, data[start:end])
-
-    def _bad_crc(self, start: int, end: int, message_id: int) -> _Missing:
-        if (outer := self._unknown_around(start)) is not None:
-            self._doubt = outer._replace(crc_errors=outer.crc_errors + 1)
+            self._failed.add_bad_crc(start, end, message_id)
             return _Missing.FRAME
-        self.counts.crc_errors += 1
-        self._suspect(start, _Doubt(end, message_id, known=True))
-        return _Missing.FRAME
-
-    def _refuse(self, start: int) -> None:
-        if (outer := self._unknown_around(start)) is not None:
-            self._doubt = outer._replace(refused=outer.refused + 1)
-        else:
-            self.counts.refused += 1
-
-    def _unknown_around(self, start: int) -> _Doubt | None:
-        """Return the frame of an unknown id that `start` lies inside of, if it may still prove whole."""
-        outer = self._doubt
-        return outer if outer is not None and not outer.known and start < outer.end else None
-
-    def _suspect(self, start: int, doubt: _Doubt) -> None:
-        """Remember a failed frame, unless it lies inside an earlier one that may still prove complete."""
-        if self._doubt is not None and self._doubt.end <= start:
-            self._settle(start)
-        if self._doubt is None:
-            self._doubt = doubt._replace(noise=self.counts.resync_bytes)
-
-    def _drop_doubt(self) -> None:
-        """Count what was found inside a frame that was none."""
-        doubt, self._doubt = self._doubt, None
-        if doubt is not None:
-            self.counts.crc_errors += doubt.crc_errors
-            self.counts.refused += doubt.refused
-
-    def _settle(self, position: int) -> None:
-        """Count the failed frame as foreign if it ends at `position`, where a frame starts or the data ends."""
-        doubt = self._doubt
-        if doubt is None or doubt.end != position:
-            self._drop_doubt()
-            return
-        self._doubt = None
-        if not doubt.known:
-            self.counts.unknown += 1
-            self.counts.resync_bytes = doubt.noise
-        elif doubt.message_id in self.counts.mismatches or len(self.counts.mismatches) < MAX_MISMATCHES:
-            self.counts.mismatches[doubt.message_id] = self.counts.mismatches.get(doubt.message_id, 0) + 1
+        return (message_id, system, component, sequence, data[start:end])
