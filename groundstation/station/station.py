@@ -82,8 +82,7 @@ class Station:
 
     def tick(self, now: float) -> None:
         """Send what is due and handle what has timed out."""
-        if self.operator.expire_lease(now):
-            self.log.add(now, "station", "screen not responding: neutral, control released", Severity.CRITICAL)
+        self._expire_lease(now)
         self.log.expire(now)
         self.fleet.update(now)
         self._commander.tick(now)
@@ -119,6 +118,7 @@ class Station:
 
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
+        self._expire_lease(now)
         self._intents.handle(intent, now)
 
     def set_simulator_state(self, state: str | None) -> None:
@@ -148,6 +148,11 @@ class Station:
             messages=self._message_rates.build_rates(now),
             simulator=self._simulator_state,
         )
+
+    def _expire_lease(self, now: float) -> None:
+        """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first."""
+        if self.operator.expire_lease(now):
+            self.log.add(now, "station", "screen not responding: neutral, control released", Severity.CRITICAL)
 
     def _handle_statustext(self, message: m.StatusText, system: int, now: float) -> None:
         text = self.log.handle_statustext(message, system, now)
