@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
+from groundstation.snapshot import EmergencyProgress
 from groundstation.station.arming import ArmSequence, ArmStep, send_mode
 from groundstation.station.command_results import CommandResults
 from groundstation.station.emergency import DANGEROUS, EmergencyLock
@@ -82,7 +83,7 @@ class Commander:
     def clear_emergency_stop(self, vehicle: VehicleState, now: float) -> None:
         """Release the lock; it stays until the vehicle has accepted."""
         if vehicle.system in self._locks or vehicle.emergency_stop:
-            self._locks.setdefault(vehicle.system, EmergencyLock(vehicle, now, True, True)).clear(self._client, now)
+            self._locks.setdefault(vehicle.system, _answered_lock(vehicle, now)).clear(self._client, now)
 
     # ---- queries of the station ----
 
@@ -104,6 +105,11 @@ class Commander:
     def is_locked(self, system: int) -> bool:
         """Return whether our emergency stop is active."""
         return system in self._locks
+
+    def emergency_progress(self, system: int, now: float) -> EmergencyProgress | None:
+        """Return how far our emergency stop of this vehicle is; None without one."""
+        lock = self._locks.get(system)
+        return lock.progress(now) if lock else None
 
     def is_arming(self, system: int) -> bool:
         """Return whether the vehicle is being armed; neutral demands then go out although it is disarmed."""
@@ -207,6 +213,11 @@ def _grants_control(outcome: CommandOutcome) -> bool:
         return outcome.params[0] == 1 and outcome.result is Result.ACCEPTED
     requested = outcome.command == Command.REQUEST_OPERATOR_CONTROL
     return requested and outcome.result in (Result.ACCEPTED, Result.UNSUPPORTED)
+
+
+def _answered_lock(vehicle: VehicleState, now: float) -> EmergencyLock:
+    """Return the lock of a stop that somebody else requested, so that it can be cleared."""
+    return EmergencyLock(vehicle, now, switch_answered=True, disarm_answered=True, accepted=True)
 
 
 def _released(outcome: CommandOutcome) -> bool:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.snapshot import LinkView, Snapshot, VehicleView
+from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot, VehicleView
 from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
 
@@ -68,13 +68,16 @@ def _badges(snapshot: Snapshot) -> list[Part]:
     if vehicle is None:
         return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
     parts = [(f" {vehicle.name} ", badge(BLUE)), (f" {vehicle.mode} ", badge(_MODES.get(vehicle.mode, YELLOW)))]
-    if vehicle.emergency_stop:
-        parts.append((" EMERGENCY STOP ", badge(RED)))
-    elif vehicle.armed:
-        parts.append((" ARMED ", badge(DEEP_RED)))
-    else:
-        parts.append((" DISARMED ", style(TEXT, FAINT, bold=True)))
-    return [*parts, (" ", style()), _driver(vehicle)]
+    return [*parts, *_arming(vehicle), (" ", style()), _driver(vehicle)]
+
+
+def _arming(vehicle: VehicleView) -> list[Part]:
+    """Return the badges of arming: ARMED as long as the vehicle reports that, whatever was requested."""
+    confirmed = vehicle.emergency_progress in (None, EmergencyProgress.ACCEPTED)
+    if vehicle.emergency_stop and confirmed and not vehicle.armed:
+        return [(" EMERGENCY STOP ", badge(RED))]
+    state = (" ARMED ", badge(DEEP_RED)) if vehicle.armed else (" DISARMED ", style(TEXT, FAINT, bold=True))
+    return [state, (" E-STOP SENT ", badge(RED))] if vehicle.emergency_stop else [state]
 
 
 def _driver(vehicle: VehicleView) -> Part:
