@@ -157,6 +157,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     waiting: str | None = None
     """What the station waits for while there is no vehicle, in one line."""
     vehicle: VehicleView | None = None
+    also_armed: tuple[int, ...] = ()
+    """System ids of the other vehicles that report armed."""
     operator: OperatorView = OperatorView()
     links: tuple[LinkView, ...] = ()
     texts: tuple[LogLine, ...] = ()

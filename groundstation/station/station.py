@@ -140,6 +140,7 @@ class Station:
             endpoints=self._endpoints,
             waiting=self._waiting(),
             vehicle=self._vehicle_view(selected, now) if selected else None,
+            also_armed=self.fleet.also_armed,
             operator=self.operator.build_view(
                 self._driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now
             ),

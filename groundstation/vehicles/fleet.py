@@ -30,6 +30,8 @@ class Contact:
     settings_check: ArduPilotChecks | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
+    ours: bool = False
+    """This station has armed or driven the vehicle since the vehicle was last disarmed."""
     lost_at: float | None = None
     """When the last message arrived, while the link is lost."""
 
@@ -65,6 +67,12 @@ class Fleet:
     def system_ids(self) -> tuple[int, ...]:
         """System ids of all contacts, in rising order."""
         return tuple(sorted(self._contacts))
+
+    @property
+    def also_armed(self) -> tuple[int, ...]:
+        """System ids of the vehicles that report armed besides the selected one, also of lost ones."""
+        armed = (contact.state.system for contact in self if contact is not self._selected and contact.state.armed)
+        return tuple(sorted(armed))
 
     def get(self, system: int) -> Contact | None:
         """Return the contact with this system id, or None."""

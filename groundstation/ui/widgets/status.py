@@ -68,7 +68,11 @@ def _badges(snapshot: Snapshot) -> list[Part]:
     if vehicle is None:
         return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
     parts = [(f" {vehicle.name} ", badge(BLUE)), (f" {vehicle.mode} ", badge(_MODES.get(vehicle.mode, YELLOW)))]
-    return [*parts, *_arming(vehicle), (" ", style()), _driver(vehicle)]
+    parts += [*_arming(vehicle), (" ", style()), _driver(vehicle)]
+    if snapshot.also_armed:
+        systems = ", ".join(map(str, snapshot.also_armed))
+        parts.append((f" also armed: {systems}", style(AMBER, bold=True)))
+    return parts
 
 
 def _arming(vehicle: VehicleView) -> list[Part]:

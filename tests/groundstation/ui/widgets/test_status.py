@@ -42,3 +42,9 @@ def test_an_unanswered_emergency_stop_of_a_disarmed_vehicle_is_only_sent() -> No
     line = first_line(emergency_stop=True, armed=False, emergency_progress=EmergencyProgress.UNANSWERED)
     assert "DISARMED" in line
     assert "E-STOP SENT" in line
+
+
+def test_other_armed_vehicles_are_named() -> None:
+    changes = {"name": "ArduPilot rover 1", "emergency_stop": True}
+    line = StatusBar(StatusBarValue(snapshot(vehicle=vehicle(**changes), also_armed=(2, 7)))).draw(80, 2)[0].text
+    assert "also armed: 2, 7" in line
