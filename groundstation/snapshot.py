@@ -77,6 +77,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Names of the active failsafes, e.g. "gcs loss"."""
     failsafe_in: float | None = None
     """Seconds to the next failsafe action."""
+    without_link: str | None = None
+    """What the vehicle does when it loses us, e.g. "it stops by itself"; None: not known."""
     refusal: str | None = None
     """The last refusal and its reason, e.g. "arm denied: PreArm: battery low". Cleared by the next acceptance."""
     warnings: tuple[str, ...] = ()

@@ -167,6 +167,7 @@ class Station:
             in_control=self._driving.is_in_control(contact),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
+            without_link=contact.without_link,
             refusal=commander.last_refusal(state.system),
             warnings=contact.settings_check.warnings if contact.settings_check else (),
         )

@@ -13,9 +13,6 @@ from groundstation.ui.display_state import DisplayState
 MAX_SILENCE = 99.0
 """s without a heartbeat that are still counted; after that the text is "minutes"."""
 
-GENERIC_AUTOPILOT = 0
-"""MAV_AUTOPILOT_GENERIC. With a CONTROL_STATUS it is our own vehicle, whose failsafes stop it without a heartbeat."""
-
 
 class AlertLevel(Enum):
     """Urgency of an alert."""
@@ -92,8 +89,7 @@ def _silence(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.alive:
         silence = f"{vehicle.silence:.0f} s" if vehicle.silence < MAX_SILENCE else "minutes"
-        ours = vehicle.autopilot == GENERIC_AUTOPILOT and vehicle.driver is not None
-        stops = "it stops by itself" if ours else "not known whether it stops"
+        stops = vehicle.without_link or "not known whether it stops"
         if vehicle.emergency_progress in (EmergencyProgress.SENT, EmergencyProgress.UNANSWERED):
             stops = "EMERGENCY STOP NOT acknowledged"
         yield Alert(AlertLevel.DANGER, f"no heartbeat from {vehicle.name} for {silence}: {stops}")

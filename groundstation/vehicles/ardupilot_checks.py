@@ -84,6 +84,18 @@ class ArduPilotChecks:
         """One line for each dangerous parameter."""
         return tuple(warning for warning in self._found.values() if warning)
 
+    @property
+    def without_link(self) -> str | None:
+        """What these settings make of a lost link; None until both that decide are known."""
+        override, throttle = (self._params.params.get(name) for name in ("RC_OVERRIDE_TIME", "FS_THR_ENABLE"))
+        if override is None or throttle is None:
+            return None
+        if override.value < 0:
+            return "by its settings it never stops"
+        if throttle.value == 0:
+            return "without an RC receiver it never stops"
+        return f"by its settings it drives on for {override.value:g} s"
+
     def receive(self, received: Received, now: float) -> list[str]:
         """Check a PARAM_VALUE and return new warnings; other messages and other parameters are ignored."""
         message = received.message

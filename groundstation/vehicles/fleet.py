@@ -35,6 +35,19 @@ class Contact:
     lost_at: float | None = None
     """When the last message arrived, while the link is lost."""
 
+    @property
+    def without_link(self) -> str | None:
+        """What the vehicle does when it loses us, as a text; None: not known.
+
+        Our own vehicle has failsafes for driving by hand; a foreign one does what its settings say. In an autonomous
+        mode other settings decide, which are not read.
+        """
+        if self.state.drives_itself:
+            return None
+        if self.state.has_rover_dialect:
+            return "it stops by itself"
+        return self.settings_check.without_link if self.settings_check else None
+
     def lose(self, now: float) -> None:
         """Mark the vehicle as lost since its last message."""
         self.lost_at = now - self.state.monitor.silence(now)

@@ -33,13 +33,13 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     (snapshot(vehicle=vehicle(failsafes=("gcs loss",))), {}, AlertLevel.DANGER, "failsafe: gcs loss"),
     (snapshot(vehicle=vehicle(failsafes=("a",), failsafe_in=3.4)), {}, AlertLevel.DANGER, "next step in 3 s"),
     (
-        snapshot(vehicle=vehicle(alive=False, silence=4.0)),
+        snapshot(vehicle=vehicle(alive=False, silence=4.0, without_link="it stops by itself")),
         {},
         AlertLevel.DANGER,
         "no heartbeat from Rover 1 for 4 s: it stops by itself",
     ),
     (
-        snapshot(vehicle=vehicle(alive=False, silence=math.inf)),
+        snapshot(vehicle=vehicle(alive=False, silence=math.inf, without_link="it stops by itself")),
         {},
         AlertLevel.DANGER,
         "for minutes: it stops by itself",
@@ -51,6 +51,7 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         "no heartbeat from ArduPilot rover 1 for 4 s: not known whether it stops",
     ),
     (snapshot(vehicle=vehicle(driver=None, alive=False)), {}, AlertLevel.DANGER, "s: not known whether it stops"),
+    (snapshot(vehicle=vehicle(driver=255, alive=False)), {}, AlertLevel.DANGER, "s: not known whether it stops"),
     (
         snapshot(vehicle=vehicle(emergency_stop=True, armed=False)),
         {},

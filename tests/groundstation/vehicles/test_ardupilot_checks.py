@@ -43,6 +43,25 @@ def test_each_setting(name: str, good: float, bad: float, words: str) -> None:
     assert not check.warnings
 
 
+@pytest.mark.parametrize(
+    ("override", "throttle", "words"),
+    [
+        (3.0, 1.0, "by its settings it drives on for 3 s"),
+        (0.5, 2.0, "by its settings it drives on for 0.5 s"),
+        (-1.0, 1.0, "by its settings it never stops"),
+        (3.0, 0.0, "without an RC receiver it never stops"),
+        (None, 1.0, None),
+        (3.0, None, None),
+    ],
+)
+def test_what_a_lost_link_means(override: float | None, throttle: float | None, words: str | None) -> None:
+    check = new_check()
+    for name, number in (("RC_OVERRIDE_TIME", override), ("FS_THR_ENABLE", throttle)):
+        if number is not None:
+            check.receive(value(name, number), 0.0)
+    assert check.without_link == words
+
+
 @pytest.mark.parametrize("number", [math.nan, math.inf])
 def test_no_number_is_no_setting(number: float) -> None:
     check = new_check()
