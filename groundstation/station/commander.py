@@ -8,6 +8,7 @@ from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.arming import ArmSequence, ArmStep, send_mode
+from groundstation.station.claims import Claims
 from groundstation.station.command_results import CommandResults
 from groundstation.station.emergency import DANGEROUS, EmergencyLock
 from groundstation.vehicles.message_log import MessageLog
@@ -39,7 +40,9 @@ class Commander:
         self._arming: ArmSequence | None = None
         self._disarms: dict[int, _Disarm] = {}
         self._locks: dict[int, EmergencyLock] = {}
-        self._claimed: set[int] = set()
+        self._claims = Claims()
+        self._vehicles: dict[int, VehicleState] = {}
+        """Vehicles that were sent a command, by system id."""
         self._query_outcomes: list[CommandOutcome] = []
 
     # ---- commands of the operator ----
@@ -56,6 +59,7 @@ class Commander:
             return
         self._disarms.pop(vehicle.system, None)
         self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {Mode.MANUAL.name}")
+        self._vehicles[vehicle.system] = vehicle
         self._arming = ArmSequence.start(vehicle, now)
 
     def disarm(self, vehicle: VehicleState, now: float) -> None:
@@ -120,11 +124,11 @@ class Commander:
         return self._client.is_waiting(command, vehicle.system)
 
     def is_claimed(self, system: int) -> bool:
-        """Return whether this vehicle accepted arming or a control request from us.
+        """Return whether this vehicle accepted arming or a control request from us and has not disarmed since.
 
         That counts as control of a vehicle that sends no CONTROL_STATUS.
         """
-        return system in self._claimed
+        return system in self._claims
 
     def last_refusal(self, system: int) -> str | None:
         """Return what this vehicle refused last and why; None after a command was accepted."""
@@ -133,7 +137,8 @@ class Commander:
     # ---- time and messages ----
 
     def receive(self, received: Received, now: float) -> None:
-        """Handle a COMMAND_ACK."""
+        """Handle a message of a vehicle: a COMMAND_ACK, or what its state shows of our claim."""
+        self._claims.update(now)
         self._client.receive(received, now)
         self._handle_outcomes(now)
 
@@ -143,6 +148,7 @@ class Commander:
 
     def tick(self, now: float) -> None:
         """Repeat and time out what is in progress."""
+        self._claims.update(now)
         for lock in self._locks.values():
             lock.tick(self._client, now)
         if self._arming is not None:
@@ -161,6 +167,7 @@ class Commander:
 
     def _send(self, vehicle: VehicleState, now: float, command: Command, *params: float) -> None:
         system, component = vehicle.system, vehicle.component
+        self._vehicles[system] = vehicle
         self._client.send(command, *params, target_system=system, target_component=component, now=now)
 
     def _retry_disarm(self, disarm: _Disarm, now: float) -> None:
@@ -191,7 +198,8 @@ class Commander:
     def _apply_outcome(self, outcome: CommandOutcome, now: float) -> None:
         system = outcome.target_system
         if _grants_control(outcome):
-            self._claimed.add(system)
+            by_arming = outcome.command == Command.COMPONENT_ARM_DISARM
+            self._claims.add(self._vehicles[system], now, by_arming=by_arming)
         lock = self._locks.get(system)
         if lock is not None:
             lock.handle_outcome(outcome)

@@ -12,6 +12,7 @@ from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
 from groundstation.station.driving import DrivingController
 from groundstation.station.heartbeat_sender import HeartbeatSender
+from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.message_rates import MessageRates
@@ -53,6 +54,7 @@ class Station:
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log)
         self._timesync = TimesyncClient(system)
         self._heartbeat = HeartbeatSender(now)
+        self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
         self._message_rates = MessageRates()
         self._simulator_state: str | None = None
@@ -64,6 +66,9 @@ class Station:
     def receive(self, received: Received, now: float) -> None:
         """Handle one message at once."""
         self._message_rates.count(received.message, now)
+        conflict = self._id_conflict.receive(received, now)
+        if conflict is not None:
+            self.log.add(now, "station", conflict, Severity.WARNING)
         contact = self.fleet.get_or_add(received, now)
         if contact is None:
             return
@@ -140,6 +145,7 @@ class Station:
             endpoints=self._endpoints,
             waiting=self._waiting(),
             vehicle=self._vehicle_view(selected, now) if selected else None,
+            id_conflict=self._id_conflict.text(now),
             also_armed=self.fleet.also_armed,
             operator=self.operator.build_view(
                 self._driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now

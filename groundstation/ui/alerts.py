@@ -130,6 +130,11 @@ def _limits(now: DisplayState) -> Iterator[Alert]:
                 yield Alert(AlertLevel.WARNING, LIMITS[limit])
 
 
+def _id_conflict(now: DisplayState) -> Iterator[Alert]:
+    if now.snapshot.id_conflict:
+        yield Alert(AlertLevel.WARNING, now.snapshot.id_conflict)
+
+
 def _driver(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
@@ -168,6 +173,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _question, _silence, _emergency, _failsafe, _gate, _refusal, _limits, _driver, _settings, _hint,
+    _station, _question, _silence, _emergency, _failsafe, _gate, _refusal, _id_conflict, _limits, _driver, _settings,
+    _hint,
 )  # fmt: skip
 """Most urgent first."""

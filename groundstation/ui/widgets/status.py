@@ -88,7 +88,7 @@ def _driver(vehicle: VehicleView) -> Part:
     if not vehicle.alive:
         return (f"link lost for {vehicle.silence:.0f} s", style(RED, bold=True))
     if vehicle.in_control:
-        return ("you drive", style(GREEN, bold=True))
+        return ("you drive" if vehicle.armed else "you are in control", style(GREEN, bold=True))
     if vehicle.driver:
         return (f"driven by {vehicle.driver}", style(AMBER, bold=True))
     return ("no GCS in control", style(DIM))

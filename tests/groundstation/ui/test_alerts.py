@@ -71,6 +71,12 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         "you are not in control: g asks",
     ),
     (snapshot(vehicle=vehicle(warnings=("FS_GCS_ENABLE is 0",))), {}, AlertLevel.WARNING, "FS_GCS_ENABLE is 0"),
+    (
+        snapshot(id_conflict="ground station 255/230 uses our system id: use --system"),
+        {},
+        AlertLevel.WARNING,
+        "ground station 255/230 uses our system id: use --system",
+    ),
     (snapshot(links=(PROBLEM,)), {}, AlertLevel.WARNING, "udp: messages arrive with another"),
     (snapshot(operator=helm(style="latch")), {}, AlertLevel.WARNING, "the vehicle keeps driving: k or SPACE stops"),
     (
