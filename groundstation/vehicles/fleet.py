@@ -57,6 +57,12 @@ class Contact:
         self.lost_at = None
         self.stream_requests.restart(now)
         self.dialect_probe = DialectProbe()
+        self.check_settings_again()
+
+    def check_settings_again(self) -> None:
+        """Read the settings again: after a restart they may be others."""
+        if self.settings_check is not None:
+            self.settings_check.restart()
 
 
 class Fleet:
