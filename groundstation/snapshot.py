@@ -161,6 +161,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     vehicle: VehicleView | None = None
     also_armed: tuple[int, ...] = ()
     """System ids of the other vehicles that report armed."""
+    left_armed: tuple[str, ...] = ()
+    """One line for each vehicle that this station armed and would leave armed if it ended now."""
     id_conflict: str | None = None
     """Another ground station that uses our system id, as a text for the driver."""
     operator: OperatorView = OperatorView()

@@ -15,6 +15,7 @@ from dialects.enums import Command, Severity
 from dialects.modes import Mode
 from groundstation import intents as i
 from groundstation.station.commander import Commander
+from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
 from groundstation.station.operator import OperatorSession
 from groundstation.vehicles.fleet import Fleet
@@ -39,12 +40,19 @@ class IntentHandler:
     """Applies intents to the operator's session, the selection and the selected vehicle."""
 
     def __init__(
-        self, operator: OperatorSession, fleet: Fleet, commander: Commander, driving: DrivingController, log: MessageLog
+        self,
+        operator: OperatorSession,
+        fleet: Fleet,
+        commander: Commander,
+        driving: DrivingController,
+        departure: Departure,
+        log: MessageLog,
     ) -> None:
         self._operator = operator
         self._fleet = fleet
         self._commander = commander
         self._driving = driving
+        self._departure = departure
         self._log = log
         self._emergency_at = -math.inf
 
@@ -122,6 +130,7 @@ class IntentHandler:
     def _quit(self, intent: i.Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
+        self._departure.begin(now, disarm=intent.disarm)
 
 
 def _set_mode(commander: Commander, vehicle: VehicleState, intent: i.SetMode, now: float) -> None:

@@ -10,6 +10,7 @@ from groundstation.input.style import Style
 from groundstation.intents import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
+from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.id_conflict import IdConflict
@@ -49,7 +50,10 @@ class Station:
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
         self._driving = DrivingController(self.operator, self.fleet, self._commander, system)
-        self._intents = IntentHandler(self.operator, self.fleet, self._commander, self._driving, self.log)
+        self._departure = Departure(self.fleet, self._commander, self._driving)
+        self._intents = IntentHandler(
+            self.operator, self.fleet, self._commander, self._driving, self._departure, self.log
+        )
         self._links = LinkStats()
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log)
         self._timesync = TimesyncClient(system)
@@ -97,6 +101,7 @@ class Station:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now)
         self._driving.update(now)
+        self._departure.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
@@ -132,8 +137,8 @@ class Station:
 
     @property
     def finished(self) -> bool:
-        """Quit was requested and the last neutral demand is out."""
-        return self._driving.ending and self._driving.finished
+        """Quit was requested, the last neutral demand is out, and nothing is left to disarm."""
+        return self._driving.ending and self._driving.finished and self._departure.finished
 
     def snapshot(self, now: float, wall: float) -> Snapshot:
         """Build the snapshot for the screen; `now` and `wall` are the same moment on both clocks."""
@@ -145,6 +150,7 @@ class Station:
             endpoints=self._endpoints,
             waiting=self._waiting(),
             vehicle=self._vehicle_view(selected, now) if selected else None,
+            left_armed=self._departure.left_armed(now),
             id_conflict=self._id_conflict.text(now),
             also_armed=self.fleet.also_armed,
             operator=self.operator.build_view(

@@ -14,6 +14,7 @@ from groundstation.intents import (
     Disarm,
     DriveKeyDown,
     EmergencyStop,
+    Quit,
     RenewLease,
     SetKeyGate,
     StartSimulator,
@@ -198,6 +199,38 @@ async def test_quit_needs_no_question_and_works_everywhere(key: str, first: tupl
         await screen.press(*first, key)
         assert screen.app.return_value == 0
         assert screen.station.of(SetKeyGate)[-1].reason == "quitting"
+
+
+LEAVES = snapshot(left_armed=("Rover 1 is left ARMED in MANUAL",))
+
+
+@pytest.mark.parametrize("key", ["ctrl+q", "ctrl+c"])
+async def test_quitting_armed_disarms_first_and_a_second_key_leaves_it_armed(key: str) -> None:
+    async with console(picture=LEAVES) as screen:
+        await screen.press(key)
+        assert screen.app.return_value is None
+        assert screen.station.of(Quit) == [Quit(disarm=True)]
+        assert screen.station.of(SetKeyGate)[-1].open is False
+        await screen.show(LEAVES)
+        assert "disarming in 2 s; Ctrl-Q again leaves it ARMED" in screen.text
+        await screen.press(key)
+        assert screen.app.return_value == 0
+        assert screen.station.of(Quit) == [Quit(disarm=True)], "the client sends the second one when it closes"
+
+
+async def test_after_quitting_armed_the_screen_ends_with_the_station() -> None:
+    async with console(picture=LEAVES) as screen:
+        await screen.press("ctrl+q")
+        screen.station.alive = False
+        screen.station.offer(LEAVES)
+        await until(lambda: screen.app.return_value == 0)
+
+
+async def test_without_a_station_one_key_quits() -> None:
+    async with console(picture=LEAVES) as screen:
+        screen.station.alive = False
+        await screen.press("ctrl+q")
+        assert screen.app.return_value == 0
 
 
 async def test_without_a_vehicle_enter_starts_the_simulator() -> None:
