@@ -50,6 +50,7 @@ class StationClient:
         self._lock = threading.Lock()
         self._pending: deque[AnyIntent] = deque(maxlen=MAX_PENDING)
         self._open = True
+        self._newest = Snapshot()
 
     @classmethod
     def start(
@@ -117,7 +118,14 @@ class StationClient:
                 self._open = False
                 break
             newest = packet
-        return _snapshot(newest) if newest else None
+        snapshot = _snapshot(newest) if newest else None
+        self._newest = snapshot or self._newest
+        return snapshot
+
+    @property
+    def left_armed(self) -> tuple[str, ...]:
+        """One line for each vehicle that the station armed and left armed, by its newest snapshot."""
+        return self._newest.left_armed
 
     @property
     def alive(self) -> bool:
@@ -128,6 +136,7 @@ class StationClient:
         """Let the station send neutral and exit, within about a second. Returns its exit code (negative: signal)."""
         self.send(Quit())
         code = end_process(self._process, CLOSE_TIMEOUT)
+        self.receive()
         with self._lock:
             self._open = False
             self._pipe.close()

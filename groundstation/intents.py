@@ -142,6 +142,8 @@ class Quit(Intent, frozen=True):
 
     is_input = False
     valid_when_late = True
+    disarm: bool = False
+    """Disarm before the exit what this station armed; another Quit without it meanwhile leaves that armed."""
 
 
 if TYPE_CHECKING:

@@ -5,7 +5,21 @@ Units are SI without suffix (m, s, m/s, rad, V); fractions are 0..1 or -1..1; No
 
 from __future__ import annotations
 
+from enum import Enum
+
 import msgspec
+
+
+class EmergencyProgress(Enum):
+    """How far our request for an emergency stop is, as long as the vehicle itself does not report one."""
+
+    SENT = "sent"
+    """Waiting for the first acknowledgement."""
+    UNANSWERED = "unanswered"
+    """Not acknowledged in time; it is still repeated."""
+    REFUSED = "refused"
+    ACCEPTED = "accepted"
+    """Acknowledged. Whether the motors are off is for the HEARTBEAT to report."""
 
 
 class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
@@ -28,6 +42,9 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     in_control: bool = False
     """We are in control; without CONTROL_STATUS: the vehicle accepted arming or a control request from us."""
     emergency_stop: bool = False
+    """The vehicle reports an emergency stop, or we have requested one."""
+    emergency_progress: EmergencyProgress | None = None
+    """Our request, while the vehicle does not report an emergency stop itself; else None."""
     position: tuple[float, float] | None = None
     """North, east of the origin, m."""
     home: tuple[float, float] | None = None
@@ -60,6 +77,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Names of the active failsafes, e.g. "gcs loss"."""
     failsafe_in: float | None = None
     """Seconds to the next failsafe action."""
+    without_link: str | None = None
+    """What the vehicle does when it loses us, e.g. "it stops by itself"; None: not known."""
     refusal: str | None = None
     """The last refusal and its reason, e.g. "arm denied: PreArm: battery low". Cleared by the next acceptance."""
     warnings: tuple[str, ...] = ()
@@ -140,6 +159,12 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     waiting: str | None = None
     """What the station waits for while there is no vehicle, in one line."""
     vehicle: VehicleView | None = None
+    also_armed: tuple[int, ...] = ()
+    """System ids of the other vehicles that report armed."""
+    left_armed: tuple[str, ...] = ()
+    """One line for each vehicle that this station armed and would leave armed if it ended now."""
+    id_conflict: str | None = None
+    """Another ground station that uses our system id, as a text for the driver."""
     operator: OperatorView = OperatorView()
     links: tuple[LinkView, ...] = ()
     texts: tuple[LogLine, ...] = ()

@@ -32,6 +32,7 @@ from groundstation.ipc import (
 from groundstation.sitl import SimulatorControl, free_port
 from groundstation.snapshot import LogLine, OperatorView, Snapshot
 from groundstation.station.crash_neutral import CrashNeutral
+from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.station import COMPONENT, Station
 from groundstation.vehicles.message_log import MAX_LENGTH
 from link.endpoint import EndpointError, parse_endpoint
@@ -49,6 +50,8 @@ SNAPSHOT_PERIOD = 0.1
 
 END_WITHIN = 1.0
 """s for the final neutral frames (0.25 s are needed); then the process exits in any case."""
+
+QUIT = Quit()
 
 LOG_SIZE = 1 << 20
 LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
@@ -125,7 +128,7 @@ class StationProcess:
             elif isinstance(intent, StartSimulator):
                 self.start_simulator(now)
             elif isinstance(intent, Quit):
-                self._shut_down()
+                self._quit(intent, now)
             else:
                 self._station.handle_intent(intent, now)
 
@@ -169,20 +172,29 @@ class StationProcess:
 
     # ---- shutdown ----
 
-    def _shut_down(self) -> None:
-        """Send neutral several times, then exit."""
+    def _quit(self, intent: Quit, now: float) -> None:
+        """Exit; a second request may only decide that vehicles are left armed."""
+        if not self._ending:
+            self._shut_down(intent)
+        elif not self._broken:
+            self._station.handle_intent(intent, now)
+
+    def _shut_down(self, intent: Quit = QUIT) -> None:
+        """Send neutral several times, disarm if requested, then exit."""
         if self._ending:
             return
         self._ending = True
         loop = asyncio.get_running_loop()
         self._station.handle_intent(Stop("quitting"), loop.time())
-        self._station.handle_intent(Quit(), loop.time())
+        self._station.handle_intent(intent, loop.time())
         self._runner.flush()
-        self._end_when_finished(loop.time() + END_WITHIN)
+        self._end_when_finished(loop.time() + END_WITHIN + (DISARM_AFTER + DISARM_TIMEOUT if intent.disarm else 0.0))
 
     def _end_when_finished(self, deadline: float) -> None:
         loop = asyncio.get_running_loop()
         if self._core.finished or loop.time() >= deadline:
+            if not self._broken:
+                self._send_snapshot(loop.time())  # tells the screen what is left armed
             self._runner.stop()
         else:
             loop.call_later(TICK, self._end_when_finished, deadline)

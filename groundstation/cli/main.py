@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import errno
 import shutil
 import sys
@@ -97,6 +98,14 @@ def _run(options: argparse.Namespace) -> int:
         return run(client, keymap=keymap, log_file=log_file)
     finally:
         client.close()
+        report_armed(client.left_armed)
+
+
+def report_armed(lines: Sequence[str]) -> None:
+    """Print which vehicles are left armed; the terminal may be closed."""
+    with contextlib.suppress(OSError):
+        for line in lines:
+            print(f"groundstation: {line}", file=sys.stderr, flush=True)
 
 
 def _check_endpoint(text: str) -> None:

@@ -36,6 +36,11 @@ class CommandResults:
         if outcome.result is Result.ACCEPTED:
             self._refusals.pop(outcome.target_system, None)
             self._log.add(now, "ack", f"{label} accepted", Severity.INFO)
+        elif outcome.command == Command.REQUEST_OPERATOR_CONTROL and outcome.result is Result.UNSUPPORTED:
+            self._refusals.pop(
+                outcome.target_system, None
+            )  # no refusal: ArduPilot and PX4 take demands from any station
+            self._log.add(now, "ack", "this vehicle does not manage control, you drive", Severity.INFO)
         elif outcome.number is None:
             self.add_refusal(outcome.target_system, f"{label}: no answer", now)
         else:

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
+from groundstation.snapshot import EmergencyProgress
 from groundstation.station.arming import ArmSequence, ArmStep, send_mode
+from groundstation.station.claims import Claims
 from groundstation.station.command_results import CommandResults
 from groundstation.station.emergency import DANGEROUS, EmergencyLock
 from groundstation.vehicles.message_log import MessageLog
@@ -38,7 +40,9 @@ class Commander:
         self._arming: ArmSequence | None = None
         self._disarms: dict[int, _Disarm] = {}
         self._locks: dict[int, EmergencyLock] = {}
-        self._claimed: set[int] = set()
+        self._claims = Claims()
+        self._vehicles: dict[int, VehicleState] = {}
+        """Vehicles that were sent a command, by system id."""
         self._query_outcomes: list[CommandOutcome] = []
 
     # ---- commands of the operator ----
@@ -55,6 +59,7 @@ class Commander:
             return
         self._disarms.pop(vehicle.system, None)
         self._results.set_label(vehicle.system, Command.DO_SET_MODE, f"mode {Mode.MANUAL.name}")
+        self._vehicles[vehicle.system] = vehicle
         self._arming = ArmSequence.start(vehicle, now)
 
     def disarm(self, vehicle: VehicleState, now: float) -> None:
@@ -82,7 +87,7 @@ class Commander:
     def clear_emergency_stop(self, vehicle: VehicleState, now: float) -> None:
         """Release the lock; it stays until the vehicle has accepted."""
         if vehicle.system in self._locks or vehicle.emergency_stop:
-            self._locks.setdefault(vehicle.system, EmergencyLock(vehicle, now, True, True)).clear(self._client, now)
+            self._locks.setdefault(vehicle.system, _answered_lock(vehicle, now)).clear(self._client, now)
 
     # ---- queries of the station ----
 
@@ -105,6 +110,11 @@ class Commander:
         """Return whether our emergency stop is active."""
         return system in self._locks
 
+    def emergency_progress(self, system: int, now: float) -> EmergencyProgress | None:
+        """Return how far our emergency stop of this vehicle is; None without one."""
+        lock = self._locks.get(system)
+        return lock.progress(now) if lock else None
+
     def is_arming(self, system: int) -> bool:
         """Return whether the vehicle is being armed; neutral demands then go out although it is disarmed."""
         return self._arming is not None and self._arming.vehicle.system == system
@@ -114,11 +124,11 @@ class Commander:
         return self._client.is_waiting(command, vehicle.system)
 
     def is_claimed(self, system: int) -> bool:
-        """Return whether this vehicle accepted arming or a control request from us.
+        """Return whether this vehicle accepted arming or a control request from us and has not disarmed since.
 
         That counts as control of a vehicle that sends no CONTROL_STATUS.
         """
-        return system in self._claimed
+        return system in self._claims
 
     def last_refusal(self, system: int) -> str | None:
         """Return what this vehicle refused last and why; None after a command was accepted."""
@@ -127,7 +137,8 @@ class Commander:
     # ---- time and messages ----
 
     def receive(self, received: Received, now: float) -> None:
-        """Handle a COMMAND_ACK."""
+        """Handle a message of a vehicle: a COMMAND_ACK, or what its state shows of our claim."""
+        self._claims.update(now)
         self._client.receive(received, now)
         self._handle_outcomes(now)
 
@@ -137,6 +148,7 @@ class Commander:
 
     def tick(self, now: float) -> None:
         """Repeat and time out what is in progress."""
+        self._claims.update(now)
         for lock in self._locks.values():
             lock.tick(self._client, now)
         if self._arming is not None:
@@ -155,6 +167,7 @@ class Commander:
 
     def _send(self, vehicle: VehicleState, now: float, command: Command, *params: float) -> None:
         system, component = vehicle.system, vehicle.component
+        self._vehicles[system] = vehicle
         self._client.send(command, *params, target_system=system, target_component=component, now=now)
 
     def _retry_disarm(self, disarm: _Disarm, now: float) -> None:
@@ -185,7 +198,8 @@ class Commander:
     def _apply_outcome(self, outcome: CommandOutcome, now: float) -> None:
         system = outcome.target_system
         if _grants_control(outcome):
-            self._claimed.add(system)
+            by_arming = outcome.command == Command.COMPONENT_ARM_DISARM
+            self._claims.add(self._vehicles[system], now, by_arming=by_arming)
         lock = self._locks.get(system)
         if lock is not None:
             lock.handle_outcome(outcome)
@@ -207,6 +221,11 @@ def _grants_control(outcome: CommandOutcome) -> bool:
         return outcome.params[0] == 1 and outcome.result is Result.ACCEPTED
     requested = outcome.command == Command.REQUEST_OPERATOR_CONTROL
     return requested and outcome.result in (Result.ACCEPTED, Result.UNSUPPORTED)
+
+
+def _answered_lock(vehicle: VehicleState, now: float) -> EmergencyLock:
+    """Return the lock of a stop that somebody else requested, so that it can be cleared."""
+    return EmergencyLock(vehicle, now, switch_answered=True, disarm_answered=True, accepted=True)
 
 
 def _released(outcome: CommandOutcome) -> bool:

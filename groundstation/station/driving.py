@@ -31,6 +31,7 @@ class DrivingController:
         self.update_permission(now)
         demand = self._operator.demand(now)
         for contact in self._fleet:
+            self._update_ours(contact)
             chosen = contact is self._fleet.selected
             axes = contact.demand_stream.next_due(
                 demand if chosen else NEUTRAL, chosen and self._may_stream(contact), now
@@ -105,6 +106,14 @@ class DrivingController:
         if self._commander.is_arming(state.system):
             return state.driver in (None, self._system)
         return state.armed and self.is_in_control(contact)
+
+    def _update_ours(self, contact: Contact) -> None:
+        """Note which vehicles this station has armed or drives; until the vehicle reports disarmed."""
+        state = contact.state
+        if self._commander.is_arming(state.system) or (state.armed and self.is_in_control(contact)):
+            contact.ours = True
+        elif not state.armed:
+            contact.ours = False
 
     def _queue_demand(self, contact: Contact, axes: Axes, now: float) -> None:
         state = contact.state

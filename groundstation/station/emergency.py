@@ -5,9 +5,11 @@ Two commands, because vehicles differ: the safety switch (locks our rover) and a
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from dialects.enums import Command
+from dialects.enums import Command, Result
+from groundstation.snapshot import EmergencyProgress
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.services.command.client import CommandClient, CommandOutcome
 
@@ -20,17 +22,24 @@ FORCE_DISARM = 21196
 RETRY_PERIOD = 0.5
 """s between rounds of requests; within a round the command client repeats each command (0.35 s)."""
 
+ACK_TIMEOUT = 1.0
+"""s without an acknowledgement after which the request counts as not acknowledged: three repeats of each command."""
+
 
 @dataclass(slots=True)
 class EmergencyLock:
     """One emergency stop, from the key until it is cleared."""
 
     vehicle: VehicleState
-    due: float
+    since: float
+    """When the stop was requested."""
+    due: float = -math.inf
     switch_answered: bool = False
     """The safety switch command was acknowledged, with whatever result."""
     disarm_answered: bool = False
-    """The forced disarm was acknowledged."""
+    """The forced disarm was acknowledged, with whatever result."""
+    accepted: bool = False
+    """The vehicle has accepted one of the two."""
     clearing: bool = False
     """The operator has requested the release; requesting the stop meanwhile would race with that."""
 
@@ -49,8 +58,18 @@ class EmergencyLock:
         self.clearing = True
         self._send(client, now, Command.DO_SET_SAFETY_SWITCH_STATE, DANGEROUS)
 
+    def progress(self, now: float) -> EmergencyProgress:
+        """Return how far the request is."""
+        if self.accepted:
+            return EmergencyProgress.ACCEPTED
+        if self.switch_answered and self.disarm_answered:
+            return EmergencyProgress.REFUSED
+        return EmergencyProgress.SENT if now - self.since <= ACK_TIMEOUT else EmergencyProgress.UNANSWERED
+
     def handle_outcome(self, outcome: CommandOutcome) -> None:
         """Record the acknowledgement of a command of this vehicle, or that none came after all repeats."""
+        if _requests_stop(outcome) and outcome.result is Result.ACCEPTED:
+            self.accepted = True
         if outcome.command == Command.DO_SET_SAFETY_SWITCH_STATE:
             if outcome.params[0] == DANGEROUS:
                 self.clearing = False
@@ -67,3 +86,10 @@ class EmergencyLock:
             target_component=self.vehicle.component,
             now=now,
         )
+
+
+def _requests_stop(outcome: CommandOutcome) -> bool:
+    """Return whether this is one of the two commands of the stop, and not its release."""
+    if outcome.command == Command.DO_SET_SAFETY_SWITCH_STATE:
+        return outcome.params[0] == SAFE
+    return outcome.command == Command.COMPONENT_ARM_DISARM and outcome.params[0] == 0

@@ -6,6 +6,7 @@ selected vehicle, else in HANDLERS.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -14,11 +15,15 @@ from dialects.enums import Command, Severity
 from dialects.modes import Mode
 from groundstation import intents as i
 from groundstation.station.commander import Commander
+from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
 from groundstation.station.operator import OperatorSession
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.vehicle_state import VehicleState
+
+SECOND_STOP_WITHIN = 3.0
+"""s after an emergency stop within which another one goes to every vehicle, not only to ours."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,13 +40,21 @@ class IntentHandler:
     """Applies intents to the operator's session, the selection and the selected vehicle."""
 
     def __init__(
-        self, operator: OperatorSession, fleet: Fleet, commander: Commander, driving: DrivingController, log: MessageLog
+        self,
+        operator: OperatorSession,
+        fleet: Fleet,
+        commander: Commander,
+        driving: DrivingController,
+        departure: Departure,
+        log: MessageLog,
     ) -> None:
         self._operator = operator
         self._fleet = fleet
         self._commander = commander
         self._driving = driving
+        self._departure = departure
         self._log = log
+        self._emergency_at = -math.inf
 
     def handle(self, intent: i.AnyIntent, now: float) -> None:
         """Carry out an intent; its messages are ready to be sent when this returns."""
@@ -77,6 +90,19 @@ class IntentHandler:
         if intent.reason == i.STOP_KEY and selected is not None and selected.state.drives_itself:
             self._commander.set_mode(selected.state, Mode.HOLD.name, now)  # neutral sticks do not stop a mission
 
+    def _emergency_stop(self, intent: i.EmergencyStop, now: float) -> None:
+        """Stop the selected vehicle and those that we armed or drove; the second request in a row stops all."""
+        self._operator.sticks.block(now)
+        everything, self._emergency_at = now - self._emergency_at <= SECOND_STOP_WITHIN, now
+        for contact in self._fleet:
+            if everything or contact.ours or contact is self._fleet.selected:
+                self._commander.emergency_stop(contact.state, now)
+            elif contact.state.armed:
+                text = f"{contact.state.name} is armed, too: a second emergency stop stops all vehicles"
+                self._log.add(now, "station", text, Severity.CRITICAL)
+        if self._fleet.selected is None:
+            self._log.add(now, "station", "no vehicle yet", Severity.WARNING)
+
     def _scale_limits(self, intent: i.ScaleLimits, now: float) -> None:
         self._operator.sticks.scale_limits(intent)
 
@@ -104,6 +130,7 @@ class IntentHandler:
     def _quit(self, intent: i.Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
+        self._departure.begin(now, disarm=intent.disarm)
 
 
 def _set_mode(commander: Commander, vehicle: VehicleState, intent: i.SetMode, now: float) -> None:
@@ -118,7 +145,6 @@ def _request_control(commander: Commander, vehicle: VehicleState, intent: i.Requ
 VEHICLE_COMMANDS: dict[type[i.Intent], VehicleCommand] = {
     i.Arm: VehicleCommand(lambda commander, vehicle, _, now: commander.arm(vehicle, now)),
     i.Disarm: VehicleCommand(lambda commander, vehicle, _, now: commander.disarm(vehicle, now)),
-    i.EmergencyStop: VehicleCommand(lambda commander, vehicle, _, now: commander.emergency_stop(vehicle, now)),
     i.ClearEmergencyStop: VehicleCommand(
         lambda commander, vehicle, _, now: commander.clear_emergency_stop(vehicle, now)
     ),
@@ -132,6 +158,7 @@ HANDLERS: dict[type[i.Intent], Callable[[IntentHandler, Any, float], None]] = {
     i.DriveKeyDown: IntentHandler._press,
     i.DriveKeyUp: IntentHandler._release,
     i.Stop: IntentHandler._stop,
+    i.EmergencyStop: IntentHandler._emergency_stop,
     i.ScaleLimits: IntentHandler._scale_limits,
     i.SetStyle: IntentHandler._set_style,
     i.ReportKeyReleases: IntentHandler._set_reports_releases,

@@ -43,6 +43,7 @@ class OperatorSession:
         self._session = session
         self._lease = HeartbeatMonitor(LEASE_TIMEOUT)
         self._live = False
+        self._unreported_lapse = False
         self._thawed_at = 0.0
         self._gate = SetKeyGate(open=False, reason="starting")
         self._driving_allowed = False
@@ -52,7 +53,8 @@ class OperatorSession:
     # ---- the screen ----
 
     def renew_lease(self, now: float) -> None:
-        """Extend the lease: the screen's event loop runs."""
+        """Extend the lease: the screen's event loop runs. A lease that has run out releases all keys first."""
+        self._check_lease(now)
         if not self._live:
             self._thawed_at = now + THAW if self._lease.ever_heard else now
         self._live = True
@@ -60,11 +62,9 @@ class OperatorSession:
 
     def expire_lease(self, now: float) -> bool:
         """Release all keys when the lease has run out. Returns True once each time that happens."""
-        if not self._live or self._lease.is_alive(now):
-            return False
-        self._live = False
-        self.sticks.block(now)
-        return True
+        self._check_lease(now)
+        lapsed, self._unreported_lapse = self._unreported_lapse, False
+        return lapsed
 
     @property
     def live(self) -> bool:
@@ -123,6 +123,12 @@ class OperatorSession:
         """Record the demand sent to the selected vehicle. Returns whether it differs from the one before."""
         changed, self._sent_demand = axes != self._sent_demand, axes
         return changed
+
+    def _check_lease(self, now: float) -> None:
+        """Release all keys when the lease has run out, whichever event of a thawed process comes first."""
+        if self._live and not self._lease.is_alive(now):
+            self._live, self._unreported_lapse = False, True
+            self.sticks.block(now)
 
     # ---- what others see ----
 

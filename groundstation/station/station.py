@@ -10,8 +10,10 @@ from groundstation.input.style import Style
 from groundstation.intents import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
+from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
 from groundstation.station.heartbeat_sender import HeartbeatSender
+from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.message_rates import MessageRates
@@ -48,11 +50,15 @@ class Station:
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
         self._driving = DrivingController(self.operator, self.fleet, self._commander, system)
-        self._intents = IntentHandler(self.operator, self.fleet, self._commander, self._driving, self.log)
+        self._departure = Departure(self.fleet, self._commander, self._driving)
+        self._intents = IntentHandler(
+            self.operator, self.fleet, self._commander, self._driving, self._departure, self.log
+        )
         self._links = LinkStats()
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log)
         self._timesync = TimesyncClient(system)
         self._heartbeat = HeartbeatSender(now)
+        self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
         self._message_rates = MessageRates()
         self._simulator_state: str | None = None
@@ -64,6 +70,9 @@ class Station:
     def receive(self, received: Received, now: float) -> None:
         """Handle one message at once."""
         self._message_rates.count(received.message, now)
+        conflict = self._id_conflict.receive(received, now)
+        if conflict is not None:
+            self.log.add(now, "station", conflict, Severity.WARNING)
         contact = self.fleet.get_or_add(received, now)
         if contact is None:
             return
@@ -82,8 +91,7 @@ class Station:
 
     def tick(self, now: float) -> None:
         """Send what is due and handle what has timed out."""
-        if self.operator.expire_lease(now):
-            self.log.add(now, "station", "screen not responding: neutral, control released", Severity.CRITICAL)
+        self._expire_lease(now)
         self.log.expire(now)
         self.fleet.update(now)
         self._commander.tick(now)
@@ -93,6 +101,7 @@ class Station:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now)
         self._driving.update(now)
+        self._departure.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
@@ -119,6 +128,7 @@ class Station:
 
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
+        self._expire_lease(now)
         self._intents.handle(intent, now)
 
     def set_simulator_state(self, state: str | None) -> None:
@@ -127,8 +137,8 @@ class Station:
 
     @property
     def finished(self) -> bool:
-        """Quit was requested and the last neutral demand is out."""
-        return self._driving.ending and self._driving.finished
+        """Quit was requested, the last neutral demand is out, and nothing is left to disarm."""
+        return self._driving.ending and self._driving.finished and self._departure.finished
 
     def snapshot(self, now: float, wall: float) -> Snapshot:
         """Build the snapshot for the screen; `now` and `wall` are the same moment on both clocks."""
@@ -140,6 +150,9 @@ class Station:
             endpoints=self._endpoints,
             waiting=self._waiting(),
             vehicle=self._vehicle_view(selected, now) if selected else None,
+            left_armed=self._departure.left_armed(now),
+            id_conflict=self._id_conflict.text(now),
+            also_armed=self.fleet.also_armed,
             operator=self.operator.build_view(
                 self._driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now
             ),
@@ -148,6 +161,11 @@ class Station:
             messages=self._message_rates.build_rates(now),
             simulator=self._simulator_state,
         )
+
+    def _expire_lease(self, now: float) -> None:
+        """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first."""
+        if self.operator.expire_lease(now):
+            self.log.add(now, "station", "screen not responding: neutral, control released", Severity.CRITICAL)
 
     def _handle_statustext(self, message: m.StatusText, system: int, now: float) -> None:
         text = self.log.handle_statustext(message, system, now)
@@ -160,6 +178,8 @@ class Station:
             now,
             in_control=self._driving.is_in_control(contact),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
+            emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
+            without_link=contact.without_link,
             refusal=commander.last_refusal(state.system),
             warnings=contact.settings_check.warnings if contact.settings_check else (),
         )

@@ -27,10 +27,11 @@ class VehicleQueries:
 
     def receive(self, contact: Contact, received: Received, now: float) -> None:
         """Handle a message of a vehicle."""
-        contact.stream_requests.handle_message(received.message, now)
+        own = received.component == contact.state.component  # another component has a clock of its own
+        if own and contact.stream_requests.handle_message(received.message, now):
+            contact.check_settings_again()
         if contact.settings_check is not None:
-            for warning in contact.settings_check.receive(received, now):
-                self._log.add(now, "station", f"{contact.state.name}: {warning}", Severity.WARNING)
+            self._log_warnings(contact, contact.settings_check.receive(received, now), now)
 
     def tick(self, now: float) -> None:
         """Send the queries that are due to the vehicles that are there."""
@@ -65,6 +66,11 @@ class VehicleQueries:
     def _query_settings(self, contact: Contact, now: float) -> None:
         if contact.settings_check is not None:
             self._outbox += contact.settings_check.tick(now)
+            self._log_warnings(contact, contact.settings_check.pop_missing_warning(), now)
+
+    def _log_warnings(self, contact: Contact, warnings: list[str], now: float) -> None:
+        for warning in warnings:
+            self._log.add(now, "station", f"{contact.state.name}: {warning}", Severity.WARNING)
 
     def _request_telemetry(self, contact: Contact, now: float) -> None:
         """Request telemetry, but not from our own rover: it sends what is needed and fits that to the link itself."""

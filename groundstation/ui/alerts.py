@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from groundstation.input.keymap import CONFIRM_KEY
+from groundstation.snapshot import EmergencyProgress, VehicleView
 from groundstation.ui.display_state import DisplayState
 
 MAX_SILENCE = 99.0
 """s without a heartbeat that are still counted; after that the text is "minutes"."""
-
-GENERIC_AUTOPILOT = 0
-"""MAV_AUTOPILOT_GENERIC. With a CONTROL_STATUS it is our own vehicle, whose failsafes stop it without a heartbeat."""
 
 
 class AlertLevel(Enum):
@@ -54,7 +52,32 @@ def _emergency(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if now.question is None and vehicle is not None and vehicle.emergency_stop:
         clear = f"{now.key('stop.clear')}, then {CONFIRM_KEY}, releases it"
-        yield Alert(AlertLevel.DANGER, f"EMERGENCY STOP: the motors are off and locked. {clear}")
+        yield Alert(AlertLevel.DANGER, emergency_text(vehicle, clear))
+
+
+_PROGRESS = {
+    EmergencyProgress.SENT: "sent, waiting for an answer",
+    EmergencyProgress.UNANSWERED: "sent, NOT acknowledged",
+    EmergencyProgress.REFUSED: "REFUSED by the vehicle",
+    EmergencyProgress.ACCEPTED: "acknowledged",
+}
+
+
+def emergency_text(vehicle: VehicleView, clear: str) -> str:
+    """Return what is known of an emergency stop: only what the vehicle has confirmed is claimed."""
+    progress = vehicle.emergency_progress
+    request = "on" if progress is None else _PROGRESS[progress]
+    if vehicle.armed:
+        return f"EMERGENCY STOP {request}, but the vehicle {_reports(vehicle)} ARMED"
+    if progress is None:
+        return f"EMERGENCY STOP: the motors are off and locked. {clear}"
+    if progress is EmergencyProgress.ACCEPTED:
+        return f"EMERGENCY STOP acknowledged, disarmed. {clear}"
+    return f"EMERGENCY STOP {request}; the vehicle {_reports(vehicle)} disarmed"
+
+
+def _reports(vehicle: VehicleView) -> str:
+    return "reports" if vehicle.alive else "last reported"
 
 
 def _question(now: DisplayState) -> Iterator[Alert]:
@@ -66,8 +89,9 @@ def _silence(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.alive:
         silence = f"{vehicle.silence:.0f} s" if vehicle.silence < MAX_SILENCE else "minutes"
-        ours = vehicle.autopilot == GENERIC_AUTOPILOT and vehicle.driver is not None
-        stops = "it stops by itself" if ours else "not known whether it stops"
+        stops = vehicle.without_link or "not known whether it stops"
+        if vehicle.emergency_progress in (EmergencyProgress.SENT, EmergencyProgress.UNANSWERED):
+            stops = "EMERGENCY STOP NOT acknowledged"
         yield Alert(AlertLevel.DANGER, f"no heartbeat from {vehicle.name} for {silence}: {stops}")
 
 
@@ -104,6 +128,11 @@ def _limits(now: DisplayState) -> Iterator[Alert]:
         for limit in vehicle.limits:
             if limit in LIMITS:
                 yield Alert(AlertLevel.WARNING, LIMITS[limit])
+
+
+def _id_conflict(now: DisplayState) -> Iterator[Alert]:
+    if now.snapshot.id_conflict:
+        yield Alert(AlertLevel.WARNING, now.snapshot.id_conflict)
 
 
 def _driver(now: DisplayState) -> Iterator[Alert]:
@@ -144,6 +173,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _question, _emergency, _silence, _failsafe, _gate, _refusal, _limits, _driver, _settings, _hint,
+    _station, _question, _silence, _emergency, _failsafe, _gate, _refusal, _id_conflict, _limits, _driver, _settings,
+    _hint,
 )  # fmt: skip
 """Most urgent first."""

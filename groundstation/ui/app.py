@@ -19,13 +19,13 @@ from textual.driver import Driver
 from textual.screen import Screen
 
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents import ACTIONS, AnyIntent, DriveKeyDown, OperatorAction, RenewLease
+from groundstation.intents import ACTIONS, AnyIntent, DriveKeyDown, OperatorAction, Quit, RenewLease
 from groundstation.screens import SCREENS
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import THEME
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.exit import exit_on_signals
-from groundstation.ui.key_gate import GateClosure, GateLevel, KeyGate, StationConnection
+from groundstation.ui.key_gate import STARTING, GateClosure, GateLevel, KeyGate, StationConnection
 from groundstation.ui.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.navigation import Navigator
 from groundstation.ui.palette import ActionProvider
@@ -43,6 +43,11 @@ LIT = 0.15
 
 MIN_FRAME_TIME = 0.06
 """Least time between two drawings, s. Snapshots in between are skipped: only the newest counts."""
+
+QUIT_TIMEOUT = 6.0
+"""s for a station that disarms before its exit (it needs 2 to 4); then the screen leaves in any case."""
+
+DISARMING = GateClosure("quitting, disarming in 2 s; Ctrl-Q again leaves it ARMED", GateLevel.STOPS)
 
 
 class ConsoleApp(App[int]):
@@ -66,12 +71,12 @@ class ConsoleApp(App[int]):
         self._snapshot = Snapshot()
         self._pressed: dict[str, float] = {}
         self._shown_at = 0.0
-        self._leaving = False
+        self._leaving: GateClosure | None = None
         self._own_loop: asyncio.AbstractEventLoop | None = None
         context = ScreenContext(keymap, self._send, self.perform_action)
         self.drive = DriveScreen(context)
         self._navigator = Navigator(self, context)
-        self._actions: dict[str, Callable[[], None]] = {"app.quit": self.end}
+        self._actions: dict[str, Callable[[], None]] = {"app.quit": self.request_quit}
         self._actions |= {row.action: partial(self._navigator.open, row) for row in SCREENS}
 
     # ---- start and end ----
@@ -96,9 +101,19 @@ class ConsoleApp(App[int]):
 
     def end(self, code: int = 0) -> None:
         """Close the gate, which means neutral, and leave."""
-        self.gate.close("quitting")
-        self._leaving = True
+        self._leaving = GateClosure("quitting")
+        self.gate.set_closure(self._leaving)
         self.exit(code)
+
+    def request_quit(self) -> None:
+        """Quit. What would be left armed is disarmed before; a second request quits at once and leaves it armed."""
+        if self._leaving is not None or not self._snapshot.left_armed or not self._client.alive:
+            self.end()
+            return
+        self._leaving = DISARMING
+        self.gate.set_closure(self._leaving)
+        self._send(Quit(disarm=True))
+        self.set_timer(QUIT_TIMEOUT, self.end)
 
     def end_threadsafe(self, code: int) -> None:
         """Leave from a signal handler: takes no lock."""
@@ -128,6 +143,8 @@ class ConsoleApp(App[int]):
             self._handle_snapshot(snapshot)
         if not self._client.alive:
             asyncio.get_running_loop().remove_reader(self._client.fileno())
+            if self._leaving is DISARMING:
+                self.end()
 
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
@@ -178,7 +195,7 @@ class ConsoleApp(App[int]):
         """Return why keys must not drive now, as far as the UI knows; None when they may."""
         stuck = self._terminal is not None and self._terminal.is_stuck(time.monotonic())
         checks: tuple[tuple[bool, GateClosure], ...] = (
-            (self._leaving, GateClosure("quitting")),
+            (self._leaving is not None, self._leaving or STARTING),
             (not self._client.alive, GateClosure("the station has ended")),
             (self.screen is not self.drive, GateClosure("another screen is open", GateLevel.STOPS)),
             (self.drive.question is not None, GateClosure("a question is open", GateLevel.STOPS)),
@@ -200,7 +217,7 @@ class ConsoleApp(App[int]):
                 self.gate.handle_keys([KeyEvent(event.key)])
             action = self._keys.get_action(event.key)
             if action is not None and action.id == "app.quit":
-                self.end()
+                self.request_quit()
                 return
             if not isinstance(event, KeyRepeat):  # snapshots report a key that counts as held
                 self._light(event.key)

@@ -30,8 +30,23 @@ class Contact:
     settings_check: ArduPilotChecks | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
+    ours: bool = False
+    """This station has armed or driven the vehicle since the vehicle was last disarmed."""
     lost_at: float | None = None
     """When the last message arrived, while the link is lost."""
+
+    @property
+    def without_link(self) -> str | None:
+        """What the vehicle does when it loses us, as a text; None: not known.
+
+        Our own vehicle has failsafes for driving by hand; a foreign one does what its settings say. In an autonomous
+        mode other settings decide, which are not read.
+        """
+        if self.state.drives_itself:
+            return None
+        if self.state.has_rover_dialect:
+            return "it stops by itself"
+        return self.settings_check.without_link if self.settings_check else None
 
     def lose(self, now: float) -> None:
         """Mark the vehicle as lost since its last message."""
@@ -42,6 +57,12 @@ class Contact:
         self.lost_at = None
         self.stream_requests.restart(now)
         self.dialect_probe = DialectProbe()
+        self.check_settings_again()
+
+    def check_settings_again(self) -> None:
+        """Read the settings again: after a restart they may be others."""
+        if self.settings_check is not None:
+            self.settings_check.restart()
 
 
 class Fleet:
@@ -65,6 +86,12 @@ class Fleet:
     def system_ids(self) -> tuple[int, ...]:
         """System ids of all contacts, in rising order."""
         return tuple(sorted(self._contacts))
+
+    @property
+    def also_armed(self) -> tuple[int, ...]:
+        """System ids of the vehicles that report armed besides the selected one, also of lost ones."""
+        armed = (contact.state.system for contact in self if contact is not self._selected and contact.state.armed)
+        return tuple(sorted(armed))
 
     def get(self, system: int) -> Contact | None:
         """Return the contact with this system id, or None."""

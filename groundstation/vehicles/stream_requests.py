@@ -84,14 +84,17 @@ class StreamRequests:
         self._received.clear()
         self._groups.clear()
 
-    def handle_message(self, message: m.Message, now: float) -> None:
-        """Record what arrives without a request; start again when the vehicle's clock has."""
+    def handle_message(self, message: m.Message, now: float) -> bool:
+        """Record what arrives without a request. Returns True when the vehicle's clock shows a reboot; starts again."""
         self._received.add(type(message).id)
         boot = getattr(message, "time_boot_ms", None)
-        if boot is not None:
-            if boot < self._boot - REBOOT_STEP:
-                self.restart(now)
-            self._boot = boot
+        if boot is None:
+            return False
+        rebooted = bool(boot < self._boot - REBOOT_STEP)
+        self._boot = boot
+        if rebooted:
+            self.restart(now)
+        return rebooted
 
     def next_message(self, autopilot: int, now: float) -> int | None:
         """Return the message to request next by SET_MESSAGE_INTERVAL. Call only while no request is pending."""

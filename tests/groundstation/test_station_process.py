@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from dialects import messages as m
-from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, SetKeyGate
+from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, Quit, SetKeyGate
 from groundstation.ipc import IntentBatch, encode
 from groundstation.snapshot import Snapshot
 from tests.groundstation.screen import FORWARD, Screen, running, until
@@ -57,6 +57,28 @@ def test_quit_sends_neutral_several_times_and_ends() -> None:
         at = time.monotonic()
         assert screen.client.close() == 0
         assert_said_neutral(vehicle, at)
+
+
+@pytest.mark.usefixtures("patient")
+def test_quit_names_what_it_leaves_armed() -> None:
+    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+        screen.drive(vehicle)
+        assert screen.client.close() == 0
+        assert screen.client.left_armed == ("Rover 1 is left ARMED in MANUAL",)
+        assert vehicle.core.armed
+
+
+@pytest.mark.usefixtures("patient")
+def test_quit_disarms_on_request_and_ends() -> None:
+    with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
+        screen.drive(vehicle)
+        at = time.monotonic()
+        screen.client.send(Quit(disarm=True))
+        until(lambda: not running(screen.client.pid))
+        assert_said_neutral(vehicle, at)
+        assert not vehicle.core.armed
+        assert screen.client.close() == 0
+        assert screen.client.left_armed == ()
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])

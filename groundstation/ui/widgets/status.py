@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.snapshot import LinkView, Snapshot, VehicleView
+from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot, VehicleView
 from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
 
@@ -68,20 +68,27 @@ def _badges(snapshot: Snapshot) -> list[Part]:
     if vehicle is None:
         return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
     parts = [(f" {vehicle.name} ", badge(BLUE)), (f" {vehicle.mode} ", badge(_MODES.get(vehicle.mode, YELLOW)))]
-    if vehicle.emergency_stop:
-        parts.append((" EMERGENCY STOP ", badge(RED)))
-    elif vehicle.armed:
-        parts.append((" ARMED ", badge(DEEP_RED)))
-    else:
-        parts.append((" DISARMED ", style(TEXT, FAINT, bold=True)))
-    return [*parts, (" ", style()), _driver(vehicle)]
+    parts += [*_arming(vehicle), (" ", style()), _driver(vehicle)]
+    if snapshot.also_armed:
+        systems = ", ".join(map(str, snapshot.also_armed))
+        parts.append((f" also armed: {systems}", style(AMBER, bold=True)))
+    return parts
+
+
+def _arming(vehicle: VehicleView) -> list[Part]:
+    """Return the badges of arming: ARMED as long as the vehicle reports that, whatever was requested."""
+    confirmed = vehicle.emergency_progress in (None, EmergencyProgress.ACCEPTED)
+    if vehicle.emergency_stop and confirmed and not vehicle.armed:
+        return [(" EMERGENCY STOP ", badge(RED))]
+    state = (" ARMED ", badge(DEEP_RED)) if vehicle.armed else (" DISARMED ", style(TEXT, FAINT, bold=True))
+    return [state, (" E-STOP SENT ", badge(RED))] if vehicle.emergency_stop else [state]
 
 
 def _driver(vehicle: VehicleView) -> Part:
     if not vehicle.alive:
         return (f"link lost for {vehicle.silence:.0f} s", style(RED, bold=True))
     if vehicle.in_control:
-        return ("you drive", style(GREEN, bold=True))
+        return ("you drive" if vehicle.armed else "you are in control", style(GREEN, bold=True))
     if vehicle.driver:
         return (f"driven by {vehicle.driver}", style(AMBER, bold=True))
     return ("no GCS in control", style(DIM))

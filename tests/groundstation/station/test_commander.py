@@ -66,6 +66,20 @@ def test_request_control_of_a_vehicle_that_does_not_know_the_command_claims_it()
     assert vehicle.all(m.ManualControl) == [], "an idle station must not fight another driver"
     cockpit.do(DriveKeyUp(key="i"), RequestControl())
     cockpit.run(0.5)
+    assert cockpit.view.refusal is None
+    assert "this vehicle does not manage control, you drive" in cockpit.texts
     cockpit.do(FORWARD)
     cockpit.run(0.5)
     assert vehicle.all(m.ManualControl)[-1][1].z == 600
+
+
+def test_a_refused_control_request_stays_a_refusal() -> None:
+    vehicle = FakeVehicle(driver=254)
+    vehicle.answers[Command.REQUEST_OPERATOR_CONTROL] = Result.DENIED
+    cockpit = cockpit_with(vehicle)
+    cockpit.do(RequestControl())
+    cockpit.run(0.5)
+    assert cockpit.view.refusal == "request control denied"
+    cockpit.do(SetMode(mode="HOLD"))
+    cockpit.run(0.5)
+    assert cockpit.view.refusal is None

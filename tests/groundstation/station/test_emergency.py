@@ -11,9 +11,11 @@ from groundstation.intents import (
     EmergencyStop,
     ReportKeyReleases,
 )
+from groundstation.snapshot import EmergencyProgress
 from groundstation.station.emergency import FORCE_DISARM
 from tests.groundstation.cockpits import FORWARD, armed_cockpit
-from tests.groundstation.fake_vehicle import FakeVehicle
+from tests.groundstation.fake_ardupilot import FakeArduPilot
+from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 
 ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
 
@@ -51,6 +53,49 @@ def test_emergency_stop_is_repeated_until_the_link_is_back() -> None:
     assert len(cockpit.vehicle.commands(SWITCH)) == heard, "acknowledged and true: nothing is left to ask for"
 
 
+def progress(cockpit: Cockpit) -> EmergencyProgress | None:
+    return cockpit.view.emergency_progress
+
+
+def test_an_emergency_stop_on_a_cut_link_claims_nothing() -> None:
+    cockpit = armed_cockpit()
+    cockpit.world.cut()
+    cockpit.do(EmergencyStop())
+    assert cockpit.view.emergency_stop
+    assert progress(cockpit) is EmergencyProgress.SENT
+    cockpit.run(1.2)
+    assert progress(cockpit) is EmergencyProgress.UNANSWERED
+    cockpit.run(20.0)
+    assert progress(cockpit) is EmergencyProgress.UNANSWERED
+    assert (cockpit.view.armed, cockpit.view.alive) == (True, False)
+    cockpit.world.cut(False)
+    cockpit.run(2.0)
+    assert progress(cockpit) is None, "the vehicle itself reports the stop"
+    assert cockpit.view.emergency_stop
+    assert not cockpit.view.armed
+
+
+def test_a_foreign_vehicle_confirms_by_acknowledgement_and_heartbeat() -> None:
+    vehicle = FakeArduPilot()
+    cockpit = armed_cockpit(vehicle)
+    cockpit.do(EmergencyStop())
+    cockpit.run(1.5)
+    assert (progress(cockpit), cockpit.view.armed) == (EmergencyProgress.ACCEPTED, False)
+    vehicle.armed = True  # by another ground station
+    vehicle.silent_on |= {ARM, SWITCH}
+    cockpit.run(1.5)
+    assert (progress(cockpit), cockpit.view.armed) == (EmergencyProgress.ACCEPTED, True)
+
+
+def test_a_vehicle_that_drops_commands_silently_has_not_acknowledged() -> None:
+    vehicle = FakeVehicle()
+    cockpit = armed_cockpit(vehicle)
+    vehicle.silent_on |= {ARM, SWITCH}
+    cockpit.do(EmergencyStop())
+    cockpit.run(4.0)
+    assert (progress(cockpit), cockpit.view.armed) == (EmergencyProgress.UNANSWERED, True)
+
+
 def test_emergency_stop_goes_on_while_the_vehicle_refuses_and_stays_armed() -> None:
     vehicle = FakeVehicle()
     cockpit = armed_cockpit(vehicle)
@@ -58,6 +103,7 @@ def test_emergency_stop_goes_on_while_the_vehicle_refuses_and_stays_armed() -> N
     cockpit.do(EmergencyStop())
     cockpit.run(3.0)
     assert len([command for command in vehicle.commands(ARM) if command.param2 == FORCE_DISARM]) >= 5
+    assert (progress(cockpit), cockpit.view.armed) == (EmergencyProgress.REFUSED, True)
     vehicle.answers = {SWITCH: Result.UNSUPPORTED}
     cockpit.run(1.0)
     assert not vehicle.armed

@@ -135,12 +135,60 @@ def test_commands_and_demands_go_to_the_selected_vehicle_only(convoy: Convoy) ->
     convoy.run(1.0)
     assert convoy.demands(2, start)[-1][1] == 600
     assert convoy.snapshot.operator.throttle == pytest.approx(0.6)
-    convoy.do(SetMode(mode="HOLD"), EmergencyStop(), Disarm())
+    convoy.do(SetMode(mode="HOLD"), Disarm())
     convoy.run(2.0)
     assert not convoy.vehicles[2].armed
     assert convoy.demands(1, start) == []
     assert convoy.orders(1) == before
     assert convoy.vehicles[1].armed, "it stands where it was left; its own failsafe looks after it"
+
+
+def test_the_emergency_stop_goes_to_every_vehicle_that_we_armed_or_drove(convoy: Convoy) -> None:
+    convoy.do(SelectNextVehicle())
+    convoy.run(1.0)
+    assert convoy.snapshot.also_armed == (1,)
+    assert not convoy.vehicles[2].armed
+    convoy.do(EmergencyStop())
+    convoy.run(1.5)
+    assert convoy.vehicles[1].locked
+    assert convoy.vehicles[2].locked, "the one on the screen"
+    assert not convoy.snapshot.also_armed
+
+
+def test_a_foreign_armed_vehicle_is_named_and_stopped_by_the_second_press(convoy: Convoy) -> None:
+    convoy.vehicles[2].armed, convoy.vehicles[2].driver = True, 254
+    convoy.run(1.2)
+    convoy.do(EmergencyStop())
+    convoy.run(2.0)
+    assert convoy.vehicles[1].locked
+    assert convoy.vehicles[2].armed, "not ours: it is named, not stopped"
+    assert convoy.orders(2) == 0
+    named = "Rover 2 is armed, too: a second emergency stop stops all vehicles"
+    assert named in [line.text for line in convoy.snapshot.texts]
+    assert convoy.snapshot.also_armed == (2,)
+    convoy.do(EmergencyStop())
+    convoy.run(1.5)
+    assert convoy.vehicles[2].locked
+
+
+def test_a_late_second_press_is_a_first_one(convoy: Convoy) -> None:
+    convoy.vehicles[2].armed, convoy.vehicles[2].driver = True, 254
+    convoy.run(1.2)
+    convoy.do(EmergencyStop())
+    convoy.run(3.1)
+    convoy.do(EmergencyStop())
+    convoy.run(1.5)
+    assert convoy.vehicles[2].armed
+
+
+def test_a_vehicle_that_we_armed_and_disarmed_is_no_longer_ours(convoy: Convoy) -> None:
+    convoy.do(Disarm())
+    convoy.run(1.5)
+    before = convoy.orders(1)
+    convoy.do(SelectVehicle(system=2), EmergencyStop())
+    convoy.run(2.0)
+    assert convoy.vehicles[2].locked
+    assert convoy.orders(1) == before
 
 
 def test_the_first_one_stops_although_the_second_is_driven_meanwhile(convoy: Convoy) -> None:

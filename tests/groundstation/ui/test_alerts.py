@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from groundstation.intents import ACTIONS
-from groundstation.snapshot import LinkView, Snapshot
+from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot
 from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.key_gate import GateClosure
@@ -33,13 +33,13 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     (snapshot(vehicle=vehicle(failsafes=("gcs loss",))), {}, AlertLevel.DANGER, "failsafe: gcs loss"),
     (snapshot(vehicle=vehicle(failsafes=("a",), failsafe_in=3.4)), {}, AlertLevel.DANGER, "next step in 3 s"),
     (
-        snapshot(vehicle=vehicle(alive=False, silence=4.0)),
+        snapshot(vehicle=vehicle(alive=False, silence=4.0, without_link="it stops by itself")),
         {},
         AlertLevel.DANGER,
         "no heartbeat from Rover 1 for 4 s: it stops by itself",
     ),
     (
-        snapshot(vehicle=vehicle(alive=False, silence=math.inf)),
+        snapshot(vehicle=vehicle(alive=False, silence=math.inf, without_link="it stops by itself")),
         {},
         AlertLevel.DANGER,
         "for minutes: it stops by itself",
@@ -51,7 +51,13 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         "no heartbeat from ArduPilot rover 1 for 4 s: not known whether it stops",
     ),
     (snapshot(vehicle=vehicle(driver=None, alive=False)), {}, AlertLevel.DANGER, "s: not known whether it stops"),
-    (snapshot(vehicle=vehicle(emergency_stop=True)), {}, AlertLevel.DANGER, "EMERGENCY STOP: the motors are off"),
+    (snapshot(vehicle=vehicle(driver=255, alive=False)), {}, AlertLevel.DANGER, "s: not known whether it stops"),
+    (
+        snapshot(vehicle=vehicle(emergency_stop=True, armed=False)),
+        {},
+        AlertLevel.DANGER,
+        "EMERGENCY STOP: the motors are off",
+    ),
     (
         snapshot(vehicle=vehicle(in_control=False, driver=254)),
         {},
@@ -65,6 +71,12 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         "you are not in control: g asks",
     ),
     (snapshot(vehicle=vehicle(warnings=("FS_GCS_ENABLE is 0",))), {}, AlertLevel.WARNING, "FS_GCS_ENABLE is 0"),
+    (
+        snapshot(id_conflict="ground station 255/230 uses our system id: use --system"),
+        {},
+        AlertLevel.WARNING,
+        "ground station 255/230 uses our system id: use --system",
+    ),
     (snapshot(links=(PROBLEM,)), {}, AlertLevel.WARNING, "udp: messages arrive with another"),
     (snapshot(operator=helm(style="latch")), {}, AlertLevel.WARNING, "the vehicle keeps driving: k or SPACE stops"),
     (
@@ -89,6 +101,38 @@ def test_what_is_said(picture: Snapshot, more: dict[str, Any], level: AlertLevel
     first = active_alerts(DisplayState(picture, STANDARD, **more))[0]
     assert words in first.text
     assert first.level is level
+
+
+EMERGENCY = [
+    (None, True, "EMERGENCY STOP on, but the vehicle reports ARMED"),
+    (EmergencyProgress.SENT, True, "EMERGENCY STOP sent, waiting for an answer, but the vehicle"),
+    (EmergencyProgress.UNANSWERED, True, "EMERGENCY STOP sent, NOT acknowledged, but the vehicle reports ARMED"),
+    (EmergencyProgress.REFUSED, True, "EMERGENCY STOP REFUSED by the vehicle, but the vehicle reports ARMED"),
+    (EmergencyProgress.ACCEPTED, True, "EMERGENCY STOP acknowledged, but the vehicle reports ARMED"),
+    (EmergencyProgress.SENT, False, "EMERGENCY STOP sent, waiting for an answer; the vehicle reports dis"),
+    (EmergencyProgress.UNANSWERED, False, "EMERGENCY STOP sent, NOT acknowledged; the vehicle reports disarmed"),
+    (EmergencyProgress.REFUSED, False, "EMERGENCY STOP REFUSED by the vehicle; the vehicle reports disarmed"),
+    (EmergencyProgress.ACCEPTED, False, "EMERGENCY STOP acknowledged, disarmed. t, then y, releases it"),
+]
+
+
+@pytest.mark.parametrize(("progress", "armed", "words"), EMERGENCY)
+def test_the_emergency_stop_claims_what_the_vehicle_confirmed(
+    progress: EmergencyProgress | None, armed: bool, words: str
+) -> None:
+    state = vehicle(emergency_stop=True, emergency_progress=progress, armed=armed)
+    first = active_alerts(DisplayState(snapshot(vehicle=state), STANDARD))[0]
+    assert words in first.text
+    assert "motors are off" not in first.text
+    assert first.level is AlertLevel.DANGER
+
+
+def test_silence_outranks_the_claims_of_an_emergency_stop() -> None:
+    progress = EmergencyProgress.UNANSWERED
+    state = vehicle(emergency_stop=True, emergency_progress=progress, alive=False, silence=8.0)
+    first, second, *_ = active_alerts(DisplayState(snapshot(vehicle=state), STANDARD))
+    assert first.text == "no heartbeat from Rover 1 for 8 s: EMERGENCY STOP NOT acknowledged"
+    assert second.text == "EMERGENCY STOP sent, NOT acknowledged, but the vehicle last reported ARMED"
 
 
 def test_what_needs_a_hand_comes_before_what_is_in_the_way() -> None:

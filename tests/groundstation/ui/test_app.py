@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.intents import Disarm, DriveKeyDown, EmergencyStop, RenewLease, SetKeyGate, Stop
+from groundstation.intents import Disarm, DriveKeyDown, EmergencyStop, Quit, RenewLease, SetKeyGate, Stop
 from groundstation.ui.key_gate import GateLevel
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import console, helps_pushed, type_in
@@ -88,6 +88,38 @@ async def test_quit_needs_no_question_and_works_everywhere(key: str, first: tupl
         await screen.press(*first, key)
         assert screen.app.return_value == 0
         assert screen.station.of(SetKeyGate)[-1].reason == "quitting"
+
+
+LEAVES = snapshot(left_armed=("Rover 1 is left ARMED in MANUAL",))
+
+
+@pytest.mark.parametrize("key", ["ctrl+q", "ctrl+c"])
+async def test_quitting_armed_disarms_first_and_a_second_key_leaves_it_armed(key: str) -> None:
+    async with console(picture=LEAVES) as screen:
+        await screen.press(key)
+        assert screen.app.return_value is None
+        assert screen.station.of(Quit) == [Quit(disarm=True)]
+        assert screen.station.of(SetKeyGate)[-1].open is False
+        await screen.show(LEAVES)
+        assert "disarming in 2 s; Ctrl-Q again leaves it ARMED" in screen.text
+        await screen.press(key)
+        assert screen.app.return_value == 0
+        assert screen.station.of(Quit) == [Quit(disarm=True)], "the client sends the second one when it closes"
+
+
+async def test_after_quitting_armed_the_screen_ends_with_the_station() -> None:
+    async with console(picture=LEAVES) as screen:
+        await screen.press("ctrl+q")
+        screen.station.alive = False
+        screen.station.offer(LEAVES)
+        await until(lambda: screen.app.return_value == 0)
+
+
+async def test_without_a_station_one_key_quits() -> None:
+    async with console(picture=LEAVES) as screen:
+        screen.station.alive = False
+        await screen.press("ctrl+q")
+        assert screen.app.return_value == 0
 
 
 async def test_a_dead_station_is_said() -> None:

@@ -10,7 +10,7 @@ from itertools import pairwise
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command
+from dialects.enums import Autopilot, Command
 from dialects.modes import Mode
 from groundstation.intents import (
     Arm,
@@ -25,7 +25,7 @@ from groundstation.intents import (
     Stop,
 )
 from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
-from tests.groundstation.fake_vehicle import Cockpit
+from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 
 FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 LEFT = DriveKeyDown(key="j", throttle=0, steering=-1)
@@ -186,3 +186,33 @@ def test_what_the_driver_sees_of_it() -> None:
     assert cockpit.view.name == "ArduPilot rover 1"
     assert cockpit.view.battery_voltage == pytest.approx(12.0)
     assert cockpit.view.in_control
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "words"),
+    [
+        (FakeVehicle(), "it stops by itself"),
+        (FakeVehicle(autopilot=Autopilot.PX4, driver=None), None),
+        (FakeVehicle(driver=255), None),
+        (FakeArduPilot(), "by its settings it drives on for 3 s"),
+    ],
+    ids=["own rover", "PX4", "generic with CONTROL_STATUS", "ArduPilot"],
+)
+def test_only_of_our_own_vehicle_it_is_known_that_it_stops(vehicle: FakeVehicle, words: str | None) -> None:
+    cockpit = Cockpit(vehicle)
+    cockpit.run(3.0)
+    if words == "it stops by itself":
+        vehicle.send(m.RoverDriveStatus(0, 0, 0, 0, [0] * 4, 0, 0, 0))
+        cockpit.run(0.5)
+    cockpit.world.cut()
+    cockpit.run(3.0)
+    assert not cockpit.view.alive
+    assert cockpit.view.without_link == words
+
+
+def test_in_an_autonomous_mode_it_is_not_known_whether_a_vehicle_stops() -> None:
+    vehicle = FakeArduPilot(mode=Mode.AUTO)
+    vehicle.armed = True
+    cockpit = Cockpit(vehicle)
+    cockpit.run(3.0)
+    assert cockpit.view.without_link is None

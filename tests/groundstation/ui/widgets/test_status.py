@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
+from groundstation.snapshot import EmergencyProgress
 from groundstation.ui.widgets.status import StatusBar, StatusBarValue
 from tests.groundstation.ui.examples import helm, snapshot, vehicle
 from tests.groundstation.ui.frames import texts
@@ -17,7 +20,31 @@ def test_on_two_lines_nothing_important_is_left_out(width: int) -> None:
         assert words in lines
 
 
-def test_a_vehicle_in_emergency_stop_is_not_shown_as_armed() -> None:
-    line = StatusBar(StatusBarValue(snapshot(vehicle=vehicle(emergency_stop=True, armed=True)))).draw(80, 2)[0].text
+def first_line(**changes: Any) -> str:
+    return StatusBar(StatusBarValue(snapshot(vehicle=vehicle(**changes)))).draw(80, 2)[0].text
+
+
+def test_a_disarmed_vehicle_in_emergency_stop_is_not_shown_as_armed() -> None:
+    line = first_line(emergency_stop=True, armed=False)
     assert "EMERGENCY STOP" in line
     assert "ARMED" not in line
+
+
+@pytest.mark.parametrize("progress", [None, *EmergencyProgress])
+def test_a_vehicle_that_reports_armed_is_shown_as_armed_in_emergency_stop(progress: EmergencyProgress | None) -> None:
+    line = first_line(emergency_stop=True, armed=True, emergency_progress=progress)
+    assert " ARMED " in line
+    assert "E-STOP SENT" in line
+    assert "EMERGENCY STOP" not in line
+
+
+def test_an_unanswered_emergency_stop_of_a_disarmed_vehicle_is_only_sent() -> None:
+    line = first_line(emergency_stop=True, armed=False, emergency_progress=EmergencyProgress.UNANSWERED)
+    assert "DISARMED" in line
+    assert "E-STOP SENT" in line
+
+
+def test_other_armed_vehicles_are_named() -> None:
+    changes = {"name": "ArduPilot rover 1", "emergency_stop": True}
+    line = StatusBar(StatusBarValue(snapshot(vehicle=vehicle(**changes), also_armed=(2, 7)))).draw(80, 2)[0].text
+    assert "also armed: 2, 7" in line

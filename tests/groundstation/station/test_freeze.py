@@ -1,0 +1,137 @@
+"""A station process that was frozen while a key is held: nothing resumes, whichever event is served first."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Autopilot, SystemState, VehicleType
+from dialects.modes import Mode, base_mode
+from groundstation.input.style import Style
+from groundstation.intents import AnyIntent, DriveKeyDown, DriveKeyUp, RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.station.operator import OperatorSession
+from groundstation.station.station import Station
+from link.core import Peer, Received
+
+FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
+REPEAT = DriveKeyDown(key="i", throttle=1, steering=0, repeat=True)
+LAPSE = "screen not responding: neutral, control released"
+TICK = 0.025
+
+
+class HeldKey:
+    """A station with an armed rover and `i` held; the screen, the key and the rover go on while the station sleeps."""
+
+    def __init__(self, *, releases: bool) -> None:
+        self.now = 100.0
+        self.station = Station(["memory"], now=self.now)
+        self.key: AnyIntent = REPEAT if releases else FORWARD
+        self.do(RenewLease(), SetKeyGate(open=True), *([ReportKeyReleases()] if releases else []))
+        self.beat()
+        for _ in range(20):
+            self.step()
+        self.do(DriveKeyUp(key="i"), FORWARD) if releases else self.do(FORWARD)
+        for _ in range(16):
+            self.step(self.key)
+        assert self.moves() or self.throttle > 0
+
+    def do(self, *intents: AnyIntent) -> None:
+        for intent in intents:
+            self.station.handle_intent(intent, self.now)
+
+    def beat(self) -> None:
+        flags = base_mode(Mode.MANUAL, armed=True)
+        heartbeat = m.Heartbeat(VehicleType.GROUND_ROVER, Autopilot.GENERIC, flags, Mode.MANUAL, SystemState.ACTIVE, 3)
+        for message in (heartbeat, m.ControlStatus(1, 255, [0] * 10)):
+            self.station.receive(Received(message, 1, 1, 0, Peer(0, "vehicle"), introduced=True), self.now)
+
+    def step(self, *intents: AnyIntent) -> None:
+        """One period of the station's loop."""
+        self.now += TICK
+        self.beat()
+        self.do(RenewLease(), *intents)
+        self.station.tick(self.now)
+
+    def moves(self) -> bool:
+        """Return whether a demand other than neutral was queued since the last call."""
+        sent = [each.message for each in self.station.messages_to_send()]
+        return any(isinstance(each, m.ManualControl) and each.x != 0 for each in sent)
+
+    @property
+    def throttle(self) -> float:
+        return self.station.snapshot(self.now, self.now).operator.throttle
+
+    def lapses(self) -> int:
+        lines = self.station.snapshot(self.now, self.now).texts
+        return sum(line.count for line in lines if line.text == LAPSE)
+
+
+def _tick(held: HeldKey) -> None:
+    held.station.tick(held.now)
+
+
+def _lease(held: HeldKey) -> None:
+    held.do(RenewLease())
+
+
+def _key(held: HeldKey) -> None:
+    held.do(held.key)
+
+
+def _gate(held: HeldKey) -> None:
+    held.do(SetKeyGate(open=True))
+
+
+ORDERS: tuple[tuple[Callable[[HeldKey], None], ...], ...] = (
+    (_tick, _lease, _key), (_lease, _key, _tick), (_key, _lease, _tick), (_gate, _lease, _key, _tick),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("releases", [False, True], ids=["timers", "releases"])
+@pytest.mark.parametrize("order", ORDERS, ids=["tick first", "lease first", "key first", "gate first"])
+def test_after_a_freeze_nothing_resumes_in_1000_of_1000_tries(
+    order: tuple[Callable[[HeldKey], None], ...], releases: bool
+) -> None:
+    chance = random.Random(12)
+    for _ in range(125):  # of 8 combinations
+        held = HeldKey(releases=releases)
+        held.moves()
+        held.now += chance.uniform(0.31, 8.0)
+        if chance.random() < 0.5:
+            held.beat()
+        for event in order:
+            event(held)
+            assert not held.moves()
+        for _ in range(50):
+            held.step(held.key)
+            assert not held.moves()
+        assert held.throttle == 0.0
+        assert held.lapses() == 1, "one lapse, one line"
+
+
+@pytest.mark.parametrize("event", [_lease, _key, _tick], ids=["lease", "key", "tick"])
+def test_a_new_press_after_the_freeze_drives(event: Callable[[HeldKey], None]) -> None:
+    held = HeldKey(releases=True)
+    held.now += 3.0
+    event(held)
+    for _ in range(40):
+        held.step(REPEAT)
+    held.moves()
+    held.do(DriveKeyUp(key="i"), FORWARD)
+    held.step()
+    assert held.moves()
+
+
+def test_renewing_an_expired_lease_releases_the_keys_and_is_reported_once() -> None:
+    session = OperatorSession(Style.HOLD, 0.6, 7)
+    session.renew_lease(100.0)
+    session.set_gate(SetKeyGate(open=True), 100.0)
+    session.sticks.set_reports_releases()
+    session.press(FORWARD, 100.1)
+    session.renew_lease(104.6)
+    assert session.sticks.held_keys(104.6) == ()
+    assert session.blocked_reason(104.6) == "screen was frozen"
+    assert [session.expire_lease(104.6) for _ in range(3)] == [True, False, False]
