@@ -47,7 +47,26 @@ def test_what_each_condition_comes_to_and_when_by_default(
     cause: Failsafe, steps: list[tuple[float, FailsafeAction]]
 ) -> None:
     failsafes, taken = Failsafes(Params()), list[tuple[float, FailsafeAction]]()
-    for now in (0.0, 0.49, 0.5, 0.99, 1.0, 1.49, 1.5, 1.99, 2.0, 3.99, 4.0, 9.99, 10.0, 29.99, 30.0, 59.99, 60.0, 999.0):
+    for now in (
+        0.0,
+        0.49,
+        0.5,
+        0.99,
+        1.0,
+        1.49,
+        1.5,
+        1.99,
+        2.0,
+        3.99,
+        4.0,
+        9.99,
+        10.0,
+        29.99,
+        30.0,
+        59.99,
+        60.0,
+        999.0,
+    ):
         taken += [(now, step.action) for step in failsafes.update({cause: 0.0}, now)]
         assert all(step.cause is cause for step in failsafes.update({cause: 0.0}, now))
     assert taken == steps

@@ -5,9 +5,11 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, Failsafe, Result, SystemState
+from dialects.enums import Command, Failsafe, Result, Severity, SystemState
 from dialects.modes import Mode
-from tests.vehicle.bench import CYCLE, NEUTRAL, Bench, said
+from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, OTHER, Bench, said
+from tests.vehicle.safety.rig import Rig
+from vehicle.readings import ComputerReadings
 from vehicle.safety.states import SafetyState
 
 SWITCH, TERMINATE = Command.DO_SET_SAFETY_SWITCH_STATE, Command.DO_FLIGHTTERMINATION
@@ -61,3 +63,359 @@ def test_loop_overrun_is_latched_until_the_next_arming() -> None:
     assert bench.arm() is Result.ACCEPTED
     bench.wait(1.2, NEUTRAL)
     assert not bench.newest(m.RoverFailsafeStatus).latched & Failsafe.LOOP_OVERRUN
+
+
+class TestStart:
+    def test_nothing_is_confirmed_latched_or_wrong(self) -> None:
+        safety = Rig().safety
+        assert safety.state is SafetyState.BOOT
+        assert not safety.armed
+        assert not safety.terminated
+        assert not safety.autonomy_confirmed
+        assert safety.mode_generation == 0
+        assert safety.latched == 0
+        assert (safety.estop_reason, safety.motor_fault) == (None, None)
+
+    @pytest.mark.parametrize(("number", "mode"), [(0, Mode.MANUAL), (4, Mode.HOLD)])
+    def test_the_mode_is_a_parameter(self, number: float, mode: Mode) -> None:
+        safety = Rig(INITIAL_MODE=number).safety
+        assert safety.mode is safety.intended is mode
+
+
+class TestArming:
+    def test_who_arms_takes_control_and_the_drive_begins_anew(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        rig.stick(AHEAD)
+        generation = rig.safety.mode_generation
+        rig.now += 5.0
+        assert rig.safety.arm(DRIVER, rig.now) == []
+        assert rig.control.owner == DRIVER
+        assert rig.control.demand is None
+        assert rig.safety.armed_at == rig.now
+        assert rig.safety.mode_generation > generation
+        assert not rig.safety.autonomy_confirmed
+        assert rig.severity(f"Armed by GCS {DRIVER}, mode MANUAL") is Severity.NOTICE
+        assert not rig.said("Stands until")
+
+    def test_the_demand_of_before_does_not_count(self) -> None:
+        rig = Rig().armed()
+        rig.safety.disarm("by GCS", rig.now)
+        rig.stick(NEUTRAL)
+        rig.stick(AHEAD)
+        rig.now += 60.0
+        rig.safety.arm(DRIVER, rig.now)
+        assert rig.control.demand is None
+        assert not rig.control.neutral_seen
+
+    def test_again_by_the_owner_changes_nothing(self) -> None:
+        rig = Rig().armed()
+        before = (rig.safety.mode_generation, rig.safety.armed_at, len(rig.texts))
+        rig.now += 5.0
+        assert rig.safety.arm(DRIVER, rig.now) == []
+        assert (rig.safety.mode_generation, rig.safety.armed_at, len(rig.texts)) == before
+
+    def test_by_another_is_refused_whoever_may_take_over(self) -> None:
+        rig = Rig().armed()
+        rig.control.takeover_allowed = True
+        rig.now += 60.0
+        assert len(rig.safety.arm(OTHER, rig.now, force=True)) == 1
+        assert rig.control.owner == DRIVER
+        assert rig.severity("PreArm: ") is Severity.WARNING
+
+    def test_by_another_while_disarmed_needs_control(self) -> None:
+        rig = Rig().armed()
+        rig.safety.disarm("by GCS", rig.now)
+        assert len(rig.safety.arm(OTHER, rig.now)) == 1
+        assert not rig.safety.armed
+
+    def test_what_is_wrong_is_told_and_force_skips_the_soft_checks(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        rig.safety.battery.update(1.0, rig.now)
+        rig.now += 4.0
+        (problem,) = rig.safety.arm(DRIVER, rig.now)
+        assert rig.severity(f"PreArm: {problem}") is Severity.WARNING
+        assert not rig.safety.armed
+        assert rig.control.owner == 0
+        assert rig.safety.arm(DRIVER, rig.now, force=True) == []
+
+    def test_what_was_latched_is_over(self) -> None:
+        rig = Rig().armed()
+        rig.cycle(hazards={Failsafe.TILT: rig.now - 5.0})
+        assert rig.safety.failsafes.latched == Failsafe.TILT
+        rig.safety.arm(DRIVER, rig.now)
+        assert rig.safety.failsafes.latched == 0
+
+    @pytest.mark.parametrize(
+        ("mode", "stands"), [(Mode.AUTO, True), (Mode.RTL, True), (Mode.GUIDED, False), (Mode.HOLD, False)]
+    )
+    def test_in_a_mode_that_drives_by_itself_it_stands_until_it_is_chosen_again(self, mode: Mode, stands: bool) -> None:
+        rig = Rig()
+        rig.cycle()
+        assert rig.safety.choose_mode(mode, rig.now) is None
+        assert not rig.safety.autonomy_confirmed
+        rig.safety.arm(DRIVER, rig.now)
+        assert rig.said("Stands until") is stands
+        assert not rig.safety.autonomy_confirmed
+        assert rig.safety.choose_mode(mode, rig.now) is None
+        assert rig.safety.autonomy_confirmed
+
+
+class TestProblems:
+    """What prearm_problems finds: each fact by itself."""
+
+    def only(self, rig: Rig) -> str:
+        (problem,) = rig.safety.prearm_problems(rig.now)
+        return problem
+
+    def ready(self, **params: float) -> Rig:
+        rig = Rig(**params)
+        rig.cycle()
+        assert rig.safety.prearm_problems(rig.now) == []
+        return rig
+
+    def test_mode_and_fence(self) -> None:
+        rig = self.ready()
+        rig.unready[Mode.MANUAL] = "no gyro"
+        assert "no gyro" in self.only(rig)
+        rig.unready.clear()
+        rig.unready[Mode.AUTO] = "no mission"
+        assert rig.safety.prearm_problems(rig.now) == []
+        rig.unfenced = "no fence"
+        assert self.only(rig) == "no fence"
+
+    def test_battery_low_critical_and_silent(self) -> None:
+        rig = self.ready(BATT_LOW_TIMER=10)
+        rig.safety.battery.update(9.0, rig.now)
+        rig.now += 2.9
+        assert rig.safety.prearm_problems(rig.now) == []
+        rig.now += 0.2
+        critical = self.only(rig)
+        rig.now += 2.0
+        silent = self.only(rig)
+        rig.safety.battery.update(10.2, rig.now)
+        rig.now += 5.0
+        low = self.only(rig)
+        assert len({critical, silent, low}) == 3
+
+    def test_a_stick_that_is_not_at_rest_while_it_is_fresh(self) -> None:
+        rig = self.ready(MAN_TIMEOUT=0.5)
+        rig.control.set_owner(DRIVER, rig.now)
+        rig.stick(NEUTRAL)
+        assert rig.safety.prearm_problems(rig.now) == []
+        rig.stick(AHEAD)
+        assert self.only(rig)
+        assert rig.safety.prearm_problems(rig.now, force=True) == []
+        rig.now += 0.6
+        assert rig.safety.prearm_problems(rig.now) == []
+
+    def test_a_weak_supply(self) -> None:
+        rig = self.ready()
+        rig.safety.computer.update(ComputerReadings(under_voltage=True), rig.now)
+        assert self.only(rig)
+
+
+class TestDisarming:
+    def test_it_is_told_closes_the_interlock_and_ends_what_drives_by_itself(self) -> None:
+        rig = Rig().armed()
+        rig.safety.choose_mode(Mode.GUIDED, rig.now)
+        rig.stick(NEUTRAL)
+        generation = rig.safety.mode_generation
+        rig.safety.disarm("by GCS", rig.now)
+        assert rig.safety.state is SafetyState.SAFE
+        assert not rig.control.neutral_seen
+        assert not rig.safety.autonomy_confirmed
+        assert rig.safety.mode_generation > generation
+        assert rig.severity("Disarmed: by GCS") is Severity.NOTICE
+
+    def test_again_changes_nothing(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        rig.safety.disarm("by GCS", rig.now)
+        assert rig.texts == []
+
+    def test_a_silent_owner_loses_control_at_once_and_a_present_one_keeps_it(self) -> None:
+        for silence, owner in ((4.9, DRIVER), (5.1, 0)):
+            rig = Rig(FS_GCS_TIMEOUT=5).armed()
+            rig.safety.disarm("by GCS", rig.now + silence)
+            assert rig.control.owner == owner
+
+    def test_the_end_of_a_motor_test_ends_what_was_asked_for_while_disarmed(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        generation = rig.safety.mode_generation
+        rig.safety.end_motor_test()
+        assert rig.safety.mode_generation == generation + 1
+        rig = Rig().armed()
+        rig.safety.choose_mode(Mode.GUIDED, rig.now)
+        generation = rig.safety.mode_generation
+        rig.safety.end_motor_test()
+        assert (rig.safety.mode_generation, rig.safety.autonomy_confirmed) == (generation, True)
+
+
+class TestEmergencyStop:
+    def test_it_is_told_once_and_closes_everything(self) -> None:
+        rig = Rig().armed()
+        rig.safety.choose_mode(Mode.GUIDED, rig.now)
+        rig.safety.emergency_stop("GCS 255", rig.now)
+        assert rig.safety.state is SafetyState.ESTOP
+        assert rig.safety.latched & Failsafe.ESTOP
+        assert not rig.safety.autonomy_confirmed
+        assert rig.severity("EMERGENCY STOP by GCS 255") is Severity.EMERGENCY
+        rig.safety.emergency_stop("GCS 9", rig.now)
+        assert not rig.said("GCS 9")
+        assert not rig.safety.terminated
+
+    def test_it_is_released_and_stays_disarmed(self) -> None:
+        rig = Rig().armed()
+        rig.safety.emergency_stop("GCS 255", rig.now)
+        assert rig.safety.release_estop(rig.now) is None
+        assert rig.safety.state is SafetyState.SAFE
+        assert rig.safety.latched == 0
+        assert rig.severity("released") is Severity.NOTICE
+
+    def test_without_one_a_release_does_nothing(self) -> None:
+        rig = Rig().armed()
+        texts = len(rig.texts)
+        assert rig.safety.release_estop(rig.now) is None
+        assert rig.safety.armed
+        assert len(rig.texts) == texts
+
+    def test_while_its_input_stops_the_vehicle_it_is_not_released(self) -> None:
+        rig = Rig().armed()
+        rig.safety.update_estop_input("wire broken", rig.now)
+        assert rig.safety.state is SafetyState.ESTOP
+        assert rig.said("wire broken")
+        assert rig.safety.release_estop(rig.now) == "wire broken"
+        assert rig.safety.state is SafetyState.ESTOP
+        rig.safety.update_estop_input(None, rig.now)
+        assert rig.safety.state is SafetyState.ESTOP
+        assert rig.safety.release_estop(rig.now) is None
+
+    def test_a_motor_driver_that_failed_is_failed_after_the_release(self) -> None:
+        rig = Rig().armed()
+        rig.safety.emergency_stop("GCS 255", rig.now)
+        rig.safety.motor_failed("no answer", rig.now)
+        assert rig.safety.latched == Failsafe.ESTOP | Failsafe.MOTOR_DRIVER
+        assert rig.safety.release_estop(rig.now) is None
+        assert rig.safety.state is SafetyState.FAULT
+
+
+class TestMode:
+    def test_a_choice_is_told_and_forgets_the_demand(self) -> None:
+        rig = Rig().armed()
+        rig.stick(AHEAD)
+        generation = rig.safety.mode_generation
+        assert rig.safety.choose_mode(Mode.GUIDED, rig.now) is None
+        assert rig.safety.mode is rig.safety.intended is Mode.GUIDED
+        assert rig.safety.mode_generation == generation + 1
+        assert rig.control.demand is None
+        assert rig.severity("Mode GUIDED") is Severity.INFO
+
+    def test_the_same_again_keeps_the_demand_and_begins_self_driving_anew(self) -> None:
+        rig = Rig().armed()
+        rig.stick(AHEAD)
+        generation = rig.safety.mode_generation
+        texts = len(rig.texts)
+        assert rig.safety.choose_mode(Mode.MANUAL, rig.now) is None
+        assert rig.control.neutral_seen
+        assert rig.control.demand is not None
+        assert rig.safety.mode_generation == generation + 1
+        assert len(rig.texts) == texts
+
+    def test_hold_keeps_the_demand_and_needs_neutral(self) -> None:
+        rig = Rig().armed()
+        rig.stick(AHEAD)
+        assert rig.safety.choose_mode(Mode.HOLD, rig.now) is None
+        assert rig.control.demand is not None
+        assert not rig.control.neutral_seen
+
+    def test_a_mode_that_cannot_work_is_refused(self) -> None:
+        rig = Rig().armed()
+        rig.unready[Mode.AUTO] = "no mission"
+        assert rig.safety.choose_mode(Mode.AUTO, rig.now) == "no mission"
+        assert rig.safety.mode is rig.safety.intended is Mode.MANUAL
+
+    def test_a_critical_battery_blocks_modes_that_move(self) -> None:
+        rig = Rig(FS_GCS_ENABLE=0).armed()
+        rig.safety.battery.update(9.0, rig.now)
+        rig.cycle(3.1)
+        assert rig.safety.choose_mode(Mode.MANUAL, rig.now) == "battery critical"
+        assert rig.safety.choose_mode(Mode.HOLD, rig.now) is None
+
+    def test_hold_does_not_acknowledge_a_failsafe_and_the_others_do(self) -> None:
+        for mode, latched in ((Mode.HOLD, Failsafe.BLOCKED), (Mode.MANUAL, Failsafe(0)), (Mode.GUIDED, Failsafe(0))):
+            rig = Rig().armed()
+            rig.cycle(hazards={Failsafe.BLOCKED: rig.now - 5.0})
+            assert rig.safety.latched == Failsafe.BLOCKED
+            assert rig.safety.choose_mode(mode, rig.now) is None
+            assert rig.safety.latched == latched
+
+    def test_self_driving_is_confirmed_while_armed_only(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        rig.safety.confirm_autonomy()
+        assert not rig.safety.autonomy_confirmed
+        rig.armed()
+        rig.safety.confirm_autonomy()
+        assert rig.safety.autonomy_confirmed
+
+    def test_the_end_of_self_driving_is_hold_and_told(self) -> None:
+        rig = Rig().armed()
+        rig.safety.choose_mode(Mode.GUIDED, rig.now)
+        rig.stick(NEUTRAL)
+        generation = rig.safety.mode_generation
+        rig.safety.finish_autonomy("arrived", rig.now)
+        assert rig.severity("GUIDED: arrived: HOLD") is Severity.NOTICE
+        assert rig.safety.mode is Mode.HOLD
+        assert rig.safety.intended is Mode.GUIDED
+        assert not rig.safety.autonomy_confirmed
+        assert not rig.control.neutral_seen
+        assert rig.safety.mode_generation == generation + 1
+
+
+class TestMotorDriver:
+    def test_a_failure_is_told_once_with_the_newest_reason_kept(self) -> None:
+        rig = Rig().armed()
+        rig.safety.motor_failed("no answer", rig.now)
+        rig.safety.motor_failed("wrong answer", rig.now)
+        assert rig.safety.state is SafetyState.FAULT
+        assert rig.safety.motor_fault == "wrong answer"
+        assert rig.severity("no answer") is Severity.CRITICAL
+        assert not rig.said("wrong answer")
+        assert rig.safety.latched == Failsafe.MOTOR_DRIVER
+
+    def test_its_repair_is_told_where_it_had_failed(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        rig.safety.motor_repaired(rig.now)
+        assert rig.texts == []
+        rig.safety.motor_failed("no answer", rig.now)
+        rig.safety.motor_repaired(rig.now)
+        assert rig.severity("works again") is Severity.NOTICE
+        assert rig.safety.state is SafetyState.SAFE
+        assert rig.safety.motor_fault is None
+        assert rig.safety.latched == 0
+
+
+def test_shutdown_is_the_end() -> None:
+    rig = Rig().armed()
+    rig.safety.shutdown()
+    assert rig.safety.state is SafetyState.OFF
+    assert rig.safety.arm(DRIVER, rig.now, force=True) != []
+
+
+def test_an_overrun_of_the_loop_is_told_with_its_length() -> None:
+    rig = Rig().armed()
+    rig.safety.handle_loop_overrun(0.256, rig.now)
+    assert rig.said("Disarmed: control loop was 0.26 s late")
+    assert rig.safety.latched == Failsafe.LOOP_OVERRUN
+
+
+def test_nobody_in_control_is_not_freed() -> None:
+    rig = Rig()
+    rig.cycle()
+    rig.now += 60.0
+    rig.safety.free_lost_owner(rig.now)
+    assert rig.texts == []
