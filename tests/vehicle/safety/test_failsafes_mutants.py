@@ -139,7 +139,7 @@ def test_before_its_first_step_a_condition_is_not_active() -> None:
 def test_what_takes_the_mode_or_the_arming_away_is_latched_until_acknowledged() -> None:
     failsafes = Failsafes(PARAMS)
     failsafes.update(MANUAL_LOSS, 0.0)
-    assert failsafes.latched == 0
+    assert not failsafes.latched
     failsafes.update(MANUAL_LOSS, 1.5)
     assert failsafes.latched == Failsafe.MANUAL_LOSS
     failsafes.update({Failsafe.GCS_LOSS: 5.0}, 5.0)
@@ -147,7 +147,7 @@ def test_what_takes_the_mode_or_the_arming_away_is_latched_until_acknowledged() 
     failsafes.update({}, 6.0)
     assert failsafes.latched == Failsafe.MANUAL_LOSS | Failsafe.GCS_LOSS
     failsafes.acknowledge()
-    assert failsafes.latched == 0
+    assert not failsafes.latched
 
 
 def test_returning_home_is_latched_and_so_is_one_of_several_steps() -> None:

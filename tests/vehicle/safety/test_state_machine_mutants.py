@@ -145,7 +145,7 @@ class TestArming:
         rig.cycle(hazards={Failsafe.TILT: rig.now - 5.0})
         assert rig.safety.failsafes.latched == Failsafe.TILT
         rig.safety.arm(DRIVER, rig.now)
-        assert rig.safety.failsafes.latched == 0
+        assert not rig.safety.failsafes.latched
 
     @pytest.mark.parametrize(
         ("mode", "stands"), [(Mode.AUTO, True), (Mode.RTL, True), (Mode.GUIDED, False), (Mode.HOLD, False)]
