@@ -122,7 +122,9 @@ def module_name(path: str) -> str:
 
 
 def _is_part_of_line(node: ast.AST) -> bool:
-    return isinstance(node, ast.expr | ast.comprehension) or (isinstance(node, ast.stmt) and not hasattr(node, "body"))
+    return isinstance(node, ast.expr | ast.comprehension | ast.keyword) or (
+        isinstance(node, ast.stmt) and not hasattr(node, "body")
+    )
 
 
 def build_mutants(path: str) -> list[Mutant]:

@@ -57,6 +57,10 @@ class TestManualControl:
         assert self.parse(y=y, sideways=True) == (None if side is None else Demand(None, None, 1.0, 255, 7, side))
         assert self.parse(y=y) is None
 
+    def test_a_vehicle_cannot_unless_told(self) -> None:
+        message = ManualControl(target=1, x=0, y=500, z=0, r=0, buttons=0)
+        assert from_manual_control(message, 255, 7, 1.0) == Demand(0.0, 0.0, 1.0, 255, 7)
+
 
 class TestOverride:
     def message(self, **channels: int) -> RcChannelsOverride:
