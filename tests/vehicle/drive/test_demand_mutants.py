@@ -81,6 +81,10 @@ class TestOverride:
     def test_it_speaks_of_throttle_or_steering(self, channel: str, spoken: bool, value: int) -> None:
         assert RcOverride().update(self.message(**{channel: value}), 1.0) is spoken
 
+    def test_what_is_no_pulse_speaks_of_nothing(self) -> None:
+        assert not RcOverride().update(self.message(chan1=700, chan3=700), 1.0)
+        assert RcOverride().update(self.message(chan1=1500, chan3=700), 1.0)
+
     @pytest.mark.parametrize(
         ("value", "held", "invalid"),
         [(800, True, False), (2200, True, False), (799, False, True), (2201, False, True), (1, False, True),

@@ -25,15 +25,16 @@ def demand(throttle: float | None, steering: float | None = 0.0, sideways: float
 
 
 class Rig:
-    """A drive whose time moves by 0.125 s an update."""
+    """A drive whose time moves by `step` s an update."""
 
-    def __init__(self, **params: float) -> None:
+    def __init__(self, step: float = 0.125, **params: float) -> None:
         self.params = Params(AT_ONCE | params)
+        self.step = step
         self.now = 0.0
         self.drive = Drive(self.params, self.now)
 
     def update(self, wanted: Demand | None, clearance: Clearance = CLEARED, *, limited: bool = False) -> Outputs:
-        self.now += 0.125
+        self.now += self.step
         return self.drive.update(wanted, clearance, limited=limited, now=self.now)
 
 
@@ -171,6 +172,7 @@ def test_without_a_permit_it_stands_at_once_and_begins_from_zero() -> None:
         rig.update(demand(1.0))
     assert rig.drive.wheels == (0.5, 0.5)
     assert rig.update(demand(1.0), CLEARED._replace(late=True)) == OFF
+    assert rig.drive.limits == DriveLimit(0)
     assert rig.update(demand(1.0)).throttles == (0.125, 0.125)
 
 
@@ -193,13 +195,13 @@ class TestMotorTest:
         assert rig.update(demand(1.0), self.SECOND) == Outputs((0.0, -0.25), enabled=True)
 
     def test_it_does_not_ramp_down_into_another_one(self) -> None:
-        rig = Rig(MOT_DECEL=400, MOT_SLEWRATE=100)
+        rig = Rig(step=0.03125, MOT_DECEL=400, MOT_SLEWRATE=400)
         rig.update(None, self.FIRST)
         assert rig.update(None, self.FIRST).throttles == (0.25, 0.0)
         assert rig.update(None, self.SECOND) == Outputs((0.0, -0.125), enabled=True)
 
     def test_nor_into_a_drive(self) -> None:
-        rig = Rig(MOT_DECEL=400, MOT_SLEWRATE=100)
+        rig = Rig(step=0.03125, MOT_DECEL=400, MOT_SLEWRATE=400)
         rig.update(None, self.FIRST)
         rig.update(None, self.FIRST)
         assert rig.update(demand(0.0)).throttles == (0.0, 0.0)
