@@ -50,6 +50,14 @@ def test_a_reversal_stops_at_zero_and_waits_there() -> None:
     assert (slew.limited, slew.waiting) == (True, False)
 
 
+def test_nothing_waits_that_is_to_stand() -> None:
+    slew = Slew()
+    slew.step(0.25, 0.25, DELAYED)
+    for _ in range(3):
+        slew.step(0.0, 0.125, DELAYED)
+        assert not slew.waiting
+
+
 def test_the_rest_before_a_reversal_counts_and_begins_anew_with_each_motion() -> None:
     slew = Slew()
     slew.step(0.25, 0.25, DELAYED)
@@ -93,4 +101,5 @@ def test_what_is_no_number_stays_none_and_is_not_told_as_waiting() -> None:
     slew.step(-1.0, 0.125, DELAYED)
     assert slew.waiting
     assert math.isnan(slew.step(math.nan, 0.125, DELAYED))
+    assert math.isnan(slew.value)
     assert not slew.waiting

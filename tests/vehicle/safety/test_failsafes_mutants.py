@@ -8,7 +8,7 @@ import pytest
 
 from dialects.enums import Failsafe
 from vehicle.params import Params
-from vehicle.safety.failsafe import RULES, FailsafeAction, Failsafes, FailsafeStep
+from vehicle.safety.failsafe import RULES, FailsafeAction, FailsafeRule, Failsafes, FailsafeStep
 
 WARN, LIMIT, NEUTRAL, RTL, HOLD, DISARM = FailsafeAction
 PARAMS = Params({"FS_TIMEOUT": 1.5, "FS_DISARM_T": 30.0})
@@ -169,6 +169,25 @@ def test_what_lasts_is_the_worst_up_to_neutral() -> None:
     assert failsafes.lasting_action(70.0) is WARN
     failsafes.update({}, 71.0)
     assert failsafes.lasting_action(71.0) is WARN
+
+
+@pytest.mark.parametrize("setting", [1, 2])
+def test_the_way_home_is_no_lasting_action(setting: float) -> None:
+    """It would hold the vehicle for as long as it is beyond the fence."""
+    failsafes = Failsafes(Params({"FENCE_ACTION": setting}))
+    failsafes.update({Failsafe.FENCE: 0.0}, 0.0)
+    assert failsafes.lasting_action(0.0) is WARN
+
+
+def test_of_several_steps_of_a_condition_the_worst_lasts_and_hold_is_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = (FailsafeStep(0, NEUTRAL), FailsafeStep(0, LIMIT), FailsafeStep(1, NEUTRAL), FailsafeStep(5, HOLD))
+    monkeypatch.setitem(RULES, Failsafe.TILT, FailsafeRule("tilted", steps))
+    failsafes = Failsafes(PARAMS)
+    failsafes.update({Failsafe.TILT: 0.0}, 0.0)
+    assert failsafes.lasting_action(0.0) is NEUTRAL
+    step = failsafes.next_step(0.0)
+    assert step is not None
+    assert (step.delay, step.action) == (5.0, HOLD)
 
 
 def test_the_next_step_is_the_next_hold_or_disarm() -> None:

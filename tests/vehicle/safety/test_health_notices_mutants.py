@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
+
 from dialects.enums import Severity
+from tests.vehicle.bench import said
+from tests.vehicle.field import Field
+from vehicle.navigation.estimator import GPS_LOST
 from vehicle.readings import Readings, SensorFault
 from vehicle.safety.health_notices import CLEAR_DELAY, HealthNotices, sensor_notices
 from vehicle.statustext import StatusTextQueue
@@ -37,6 +42,16 @@ def test_the_end_is_told_at_five_seconds_and_not_before() -> None:
     assert notices.since == {"GPS": 10.0}
     notices.update({}, 15.0)
     assert notices.since == {}
+
+
+@pytest.mark.parametrize("enabled", [0, 1])
+def test_a_fence_without_a_position_is_told_where_it_counts(enabled: float) -> None:
+    field = Field(FENCE_ENABLE=enabled, FENCE_TYPE=2)
+    field.wait(10.0)
+    field.texts.clear()
+    field.blind = {"gps_fix": 0, "latitude": None, "longitude": None}
+    field.wait(GPS_LOST + 2.0)
+    assert said(field, "Fence: ") == bool(enabled)
 
 
 def test_a_sensors_fault_is_named_by_its_sensor() -> None:

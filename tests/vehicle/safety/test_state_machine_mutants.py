@@ -199,6 +199,14 @@ class TestProblems:
         low = self.only(rig)
         assert len({critical, silent, low}) == 3
 
+    def test_each_kind_of_emergency_stop_has_its_own_words(self) -> None:
+        stopped, pressed, terminated = self.ready(), self.ready(), self.ready()
+        stopped.safety.emergency_stop("GCS 255", stopped.now)
+        pressed.safety.update_estop_input("pressed", pressed.now)
+        terminated.safety.emergency_stop("GCS 255", terminated.now, terminate=True)
+        assert self.only(pressed) == "pressed"
+        assert len({self.only(stopped), self.only(pressed), self.only(terminated)}) == 3
+
     def test_a_stick_that_is_not_at_rest_while_it_is_fresh(self) -> None:
         rig = self.ready(MAN_TIMEOUT=0.5)
         rig.control.set_owner(DRIVER, rig.now)
@@ -247,6 +255,7 @@ class TestDisarming:
         generation = rig.safety.mode_generation
         rig.safety.end_motor_test()
         assert rig.safety.mode_generation == generation + 1
+        assert not rig.safety.autonomy_confirmed
         rig = Rig().armed()
         rig.safety.choose_mode(Mode.GUIDED, rig.now)
         generation = rig.safety.mode_generation
@@ -411,6 +420,17 @@ def test_an_overrun_of_the_loop_is_told_with_its_length() -> None:
     rig.safety.handle_loop_overrun(0.256, rig.now)
     assert rig.said("Disarmed: control loop was 0.26 s late")
     assert rig.safety.latched == Failsafe.LOOP_OVERRUN
+
+
+def test_all_that_is_latched_is_told_together() -> None:
+    rig = Rig().armed()
+    rig.cycle(hazards={Failsafe.BLOCKED: rig.now - 5.0})
+    rig.safety.handle_loop_overrun(0.3, rig.now)
+    assert rig.safety.latched == Failsafe.BLOCKED | Failsafe.LOOP_OVERRUN
+    rig.safety.motor_failed("no answer", rig.now)
+    rig.safety.emergency_stop("GCS 255", rig.now)
+    everything = Failsafe.BLOCKED | Failsafe.LOOP_OVERRUN | Failsafe.MOTOR_DRIVER | Failsafe.ESTOP
+    assert rig.safety.latched == everything
 
 
 def test_nobody_in_control_is_not_freed() -> None:
