@@ -1,1 +1,1 @@
-"""What is said: the message set, its units and modes. The only package that touches pymavlink."""
+"""The MAVLink dialect: messages, enums, modes and codec. The only package that imports pymavlink."""

@@ -1,7 +1,8 @@
-"""What the axes of MANUAL_CONTROL mean to each kind of vehicle: Axes in -1..1 to and from the message.
+"""Axis conventions of MANUAL_CONTROL by autopilot: converts Axes in -1..1 to and from the message.
 
-The message means three things in the field: our rover reads x and r as the specification says, ArduPilot Rover reads
-z and y (z = 0 is neutral), PX4 rovers read z and y with 500 as neutral. To add a kind, add a line to AXIS_MAPS.
+Three conventions are in use: our rover reads x and r as the specification says, ArduPilot Rover reads z and y (z = 0 is
+neutral), PX4 rovers read z and y with z = 500 as neutral. To add one, add a row to AXIS_MAPS.
+Definition: https://mavlink.io/en/messages/common.html#MANUAL_CONTROL.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ class Axes:
 
     @property
     def neutral(self) -> bool:
-        """True when nothing is asked."""
+        """True if both axes are 0."""
         return self.throttle == 0.0 and self.steering == 0.0
 
 
@@ -40,30 +41,37 @@ class AxisMap:
     steering: str
     throttle_neutral: int = 0
     throttle_span: int = FULL_DEFLECTION
+    reverse_flips_steering: bool = False
+    """In reverse, steering to the right turns the nose left, as with a steering wheel.
+
+    ArduRover does so with every frame, skid steering too (Rover/mode.cpp, get_pilot_desired_steering_and_throttle).
+    `Axes.steering` always means the nose, so that the sign changes with the throttle."""
 
 
 AXIS_MAPS: dict[int, AxisMap] = {
     Autopilot.GENERIC: AxisMap(throttle="x", steering="r"),
-    Autopilot.ARDUPILOT: AxisMap(throttle="z", steering="y"),
+    Autopilot.ARDUPILOT: AxisMap(throttle="z", steering="y", reverse_flips_steering=True),
     Autopilot.PX4: AxisMap(throttle="z", steering="y", throttle_neutral=500, throttle_span=500),
 }
 """MAV_AUTOPILOT of the vehicle's HEARTBEAT -> its axes."""
 
 
 def axis_map(autopilot: int) -> AxisMap:
-    """The axes of a vehicle; those of the specification for an autopilot we do not know."""
+    """Return the axes of a vehicle; for an unknown autopilot those of the specification."""
     return AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
 
 
 def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]) -> ManualControl:
-    """The message for a demand. Values are clamped here because ArduPilot does not (z = 32766 is full ahead there).
+    """Return the message for a demand.
 
-    Axes that mean nothing to the vehicle are sent as INT16_MAX, "invalid".
+    Values are clamped here because ArduPilot does not clamp them (z = 32766 is full ahead there). Axes that the vehicle
+    does not use are sent as INT16_MAX, "invalid".
     """
     message = ManualControl(target, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, 0)
-    throttle = axis_map.throttle_neutral + round(_clamp(axes.throttle) * axis_map.throttle_span)
-    setattr(message, axis_map.throttle, throttle)
-    setattr(message, axis_map.steering, round(_clamp(axes.steering) * FULL_DEFLECTION))
+    throttle = round(_clamp(axes.throttle) * axis_map.throttle_span)
+    steering = round(_clamp(axes.steering) * FULL_DEFLECTION)
+    setattr(message, axis_map.throttle, axis_map.throttle_neutral + throttle)
+    setattr(message, axis_map.steering, -steering if axis_map.reverse_flips_steering and throttle < 0 else steering)
     return message
 
 
@@ -74,12 +82,14 @@ def _clamp(value: float) -> float:
 def parse_manual_control(
     message: ManualControl, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]
 ) -> tuple[float | None, float | None]:
-    """Throttle and steering in -1..1 of a received message; None for an axis that is invalid or out of range.
+    """Return throttle and steering of a message in -1..1; None for an axis that is not valid.
 
-    Out of range is refused and not clamped: a wild value must not become full speed.
+    Values out of range are rejected, not clamped: a wild value must not become full speed.
     """
     raw_throttle = getattr(message, axis_map.throttle)
     raw_steering = getattr(message, axis_map.steering)
     throttle = (raw_throttle - axis_map.throttle_neutral) / axis_map.throttle_span
     steering = raw_steering / FULL_DEFLECTION
+    if axis_map.reverse_flips_steering and throttle < 0:
+        steering = -steering
     return (throttle if abs(throttle) <= 1.0 else None, steering if abs(steering) <= 1.0 else None)

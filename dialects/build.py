@@ -1,10 +1,10 @@
-"""Build hook: turns rover.xml into dialects/rover.py. It runs when the project is built, never at run time.
+"""Build hook: generates dialects/rover.py from rover.xml when the project is built, never at run time.
 
 rover.xml includes the definitions of the installed pymavlink; extension fields that those lack are in additions.xml.
 
-dialects/rover.py is the module that pymavlink's mavgen writes, without what nothing here reads at run time, and below
-it, written here, a flat pair of functions a message (payload bytes <-> fields) and MAVLink 1's payload lengths.
-mavgen's own decode() reads the same definitions at run time, five times slower.
+dialects/rover.py is the module that pymavlink's mavgen writes, without what the project does not read at run time,
+followed by code from this file: two flat functions per message (payload bytes <-> fields) and MAVLink 1's payload
+lengths. mavgen's own decode() interprets the definitions at run time, five times slower.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ ADDITIONS = HERE / "additions.xml"
 MODULE = HERE / "rover.py"
 INCLUDES = ("minimal.xml", "standard.xml", "common.xml")
 TEXTS = ("description", "param", "field")
-"""Elements whose text explains and defines nothing."""
+"""Elements whose text is only documentation."""
 NAMED = ("MAV_CMD", "MAV_RESULT")
-"""Enums whose names are read at run time (enums.py); of the others only the numbers are."""
+"""Enums whose names are kept; of the others only the numbers are."""
 
 
 def generate(target: Path = MODULE) -> Path:
     """Write the message module to `target` and its byte code beside it; return the byte code's path.
 
-    The byte code is checked against the source's hash and not its time, so that it stays valid inside a wheel: without
+    The byte code is validated by the source's hash and not its time, so that it stays valid inside a wheel. Without
     it a read-only installation would compile 2 MB of Python at each start (0.5 s and 70 MB more).
     """
     installed = Path(pymavlink.__file__).parent / "dialects" / "v20"
@@ -58,16 +58,16 @@ def generate(target: Path = MODULE) -> Path:
         code = "\n".join([strip_unused(module.read_text("utf-8")), *_codec(messages), made_from]) + "\n"
     whole = target.with_suffix(".new")
     whole.write_text(code, "utf-8")
-    whole.replace(target)  # a program that starts meanwhile finds the old module or the new one, never half of it
+    whole.replace(target)  # a program that starts meanwhile reads the old module or the new one, never a part
     checked = py_compile.PycInvalidationMode.CHECKED_HASH
     return Path(str(py_compile.compile(str(target), doraise=True, invalidation_mode=checked)))
 
 
 def add_fields(additions: Path, definitions: Sequence[Path]) -> None:
-    """Put the extension fields of `additions` into the messages of `definitions`, which are rewritten.
+    """Add the extension fields of `additions` to the messages of `definitions`, which are rewritten.
 
-    Raises ValueError for a message that none of them has, and for a field that is there already: then the installed
-    definitions are newer than our list.
+    Raises ValueError for a message that none of them has, and for a field that exists already: then the installed
+    definitions are newer than the list.
     """
     trees = {path: ElementTree.parse(path) for path in definitions}
     messages = {each.get("name"): each for tree in trees.values() for each in tree.iter("message")}
@@ -91,7 +91,7 @@ def _extend(message: ElementTree.Element, fields: list[ElementTree.Element], sou
 
 
 def drop_texts(definitions: Sequence[Path]) -> None:
-    """Empty the explanations in `definitions`, which are rewritten: mavgen would put them into the module."""
+    """Remove the documentation texts in `definitions`, which mavgen would copy into the module."""
     for path in definitions:
         tree = ElementTree.parse(path)
         for name in TEXTS:
@@ -101,15 +101,18 @@ def drop_texts(definitions: Sequence[Path]) -> None:
 
 
 def strip_unused(code: str) -> str:
-    """mavgen's module without its tables of enums, but for the names of NAMED, and without the two methods a message
-    that MAVLink has for making and sending it. With the texts that is 1.6 MiB in each process that imports it."""
+    """Return mavgen's module without enum tables (except names of NAMED) and two methods of each message.
+
+    The methods build and send a message through mavgen's MAVLink class. With them and the documentation texts, each
+    process that imports the module takes 1.6 MiB more.
+    """
     named = re.compile(rf'enums\["({"|".join(NAMED)})"\](\[\d+\])? = ')
     method = re.compile(r"    def \w+_(encode|send)\(self, ")
     kept: list[str] = []
     inside = False
-    """... one of those methods."""
+    """Inside one of those methods."""
     for line in code.splitlines():
-        if line.strip() and not line.startswith("     "):  # not the body of a method
+        if line.strip() and not line.startswith("     "):  # not a method's body
             inside = method.match(line) is not None
         if not inside and (not line.startswith("enums[") or named.match(line)):
             kept.append(line)
@@ -118,7 +121,7 @@ def strip_unused(code: str) -> str:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """mavgen talks a lot; it is shown only when something goes wrong."""
+    """Hide mavgen's output unless it fails."""
     chatter = io.StringIO()
     try:
         with contextlib.redirect_stdout(chatter), contextlib.redirect_stderr(chatter):
@@ -137,7 +140,7 @@ def _mavgen(xml: Path, output: Path) -> None:
 
 
 def _messages(folder: Path) -> list[Any]:
-    """The parsed messages of our dialect and all it includes, by id."""
+    """Return the parsed messages of the dialect and its includes, by id."""
     parsed: list[Any] = []
     for name in (*INCLUDES, XML.name):
         parsed += mavparse.MAVXML(str(folder / name), mavparse.PROTOCOL_2_0).message
@@ -145,7 +148,7 @@ def _messages(folder: Path) -> list[Any]:
 
 
 def _codec(messages: list[Any]) -> Iterator[str]:
-    """Source lines: _decode_N, _encode_N for each message id N, and the tables of them."""
+    """Yield source lines: _decode_N and _encode_N for each message id N, and the tables of them."""
     yield "\n# ---- written by dialects/build.py ----\n"
     yield "_new = object.__new__"
     for message in messages:
@@ -163,7 +166,7 @@ def _class(message: Any) -> str:
 def _decoder(message: Any) -> Iterator[str]:
     cls, fields = _class(message), message.ordered_fields
     yield f"def _decode_{message.id}(payload, _unpack={cls}.unpacker.unpack):"
-    if any(field.type == "char" for field in fields):  # the class keeps text twice; let it
+    if any(field.type == "char" for field in fields):  # the class stores text twice
         yield "    v = _unpack(payload)"
         yield f"    return {cls}(" + ", ".join(f"{name}={value}" for name, value in _slices(fields)) + ")"
         return
@@ -179,7 +182,10 @@ def _decoder(message: Any) -> Iterator[str]:
 
 
 def _slices(fields: list[Any]) -> Iterator[tuple[str, str]]:
-    """Where each field lies in the unpacked tuple: a char array is one item, another array as many as it is long."""
+    """Yield where each field lies in the unpacked tuple.
+
+    A char array is one item there, another array has one item per element.
+    """
     at = 0
     for field in fields:
         if field.type == "char":
@@ -205,9 +211,10 @@ def _encoder(message: Any) -> Iterator[str]:
 
 
 class DialectBuildHook(BuildHookInterface[Any]):
-    """Hatch calls this for wheels and editable installs alike."""
+    """Generates the message module for wheels and editable installs."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Generate the module, and add it to a wheel."""
         byte_code = generate()
         if version != "editable":
             build_data["force_include"][str(MODULE)] = "dialects/rover.py"

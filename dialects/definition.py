@@ -1,4 +1,4 @@
-"""Our own messages as rover.xml defines them, for documents; the codec is generated from the same file."""
+"""Reads the private messages and enums of rover.xml for the documentation."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 FILE = Path(__file__).with_name("rover.xml")
 PRIVATE_IDS = range(46000, 46100)
-"""Ids that no public dialect uses."""
+"""Message ids that no public dialect uses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,13 +42,13 @@ class EnumValue:
 
 
 def private_messages() -> list[MessageDefinition]:
-    """Those with an id of ours, in order."""
+    """Return the messages with a private id, in order of their ids."""
     found = [_definition(each) for each in _root().iter("message") if int(each.get("id", 0)) in PRIVATE_IDS]
     return sorted(found, key=lambda each: each.id)
 
 
 def private_enums() -> dict[str, list[EnumValue]]:
-    """Enums that rover.xml defines, by name."""
+    """Return the enums that rover.xml defines, by name."""
     return {
         each.get("name", ""): [_value(entry) for entry in each.iter("entry")]
         for each in _root().iter("enum")

@@ -1,4 +1,4 @@
-"""The enums we speak, as Python enums with the official values, and the names that people read."""
+"""The MAVLink enums that the programs use, as Python enums with the official values."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dialects import rover
 
 
 class Autopilot(IntEnum):
-    """MAV_AUTOPILOT, as far as we treat one differently."""
+    """MAV_AUTOPILOT, as far as one is treated differently."""
 
     GENERIC = rover.MAV_AUTOPILOT_GENERIC
     ARDUPILOT = rover.MAV_AUTOPILOT_ARDUPILOTMEGA
@@ -18,7 +18,7 @@ class Autopilot(IntEnum):
 
 
 class VehicleType(IntEnum):
-    """MAV_TYPE, as far as we meet it."""
+    """MAV_TYPE, as far as the programs use it."""
 
     GCS = rover.MAV_TYPE_GCS
     GROUND_ROVER = rover.MAV_TYPE_GROUND_ROVER
@@ -54,15 +54,15 @@ class ModeFlag(IntFlag):
 
 
 class Result(IntEnum):
-    """MAV_RESULT: the answer to a command."""
+    """MAV_RESULT: the result of a command."""
 
     ACCEPTED = rover.MAV_RESULT_ACCEPTED
     TEMPORARILY_REJECTED = rover.MAV_RESULT_TEMPORARILY_REJECTED
-    """Wait and try again."""
+    """Not now; trying again later may work."""
     DENIED = rover.MAV_RESULT_DENIED
-    """A parameter is wrong: trying again is useless."""
+    """A parameter is wrong, or the sender may not: trying again is useless."""
     UNSUPPORTED = rover.MAV_RESULT_UNSUPPORTED
-    """The command is unknown here."""
+    """The command is unknown."""
     FAILED = rover.MAV_RESULT_FAILED
     """Something else must be put right first."""
     IN_PROGRESS = rover.MAV_RESULT_IN_PROGRESS
@@ -86,7 +86,7 @@ class Severity(IntEnum):
 
 
 class Command(IntEnum):
-    """MAV_CMD: the commands we send or answer. Any other one is answered UNSUPPORTED."""
+    """MAV_CMD: the commands that are sent or accepted. Any other one is answered with UNSUPPORTED."""
 
     NAV_WAYPOINT = rover.MAV_CMD_NAV_WAYPOINT
     NAV_LOITER_UNLIM = rover.MAV_CMD_NAV_LOITER_UNLIM
@@ -133,7 +133,7 @@ class Command(IntEnum):
 
 
 class FenceItem(IntEnum):
-    """MAV_CMD_NAV_FENCE_* and NAV_RALLY_POINT: items of the plans that are no missions."""
+    """MAV_CMD_NAV_FENCE_* and NAV_RALLY_POINT: items of fence and rally plans."""
 
     RETURN_POINT = rover.MAV_CMD_NAV_FENCE_RETURN_POINT
     POLYGON_INCLUSION = rover.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION
@@ -198,7 +198,7 @@ class DriveType(IntEnum):
 
 
 class Sensor(IntFlag):
-    """MAV_SYS_STATUS_SENSOR: the bits of SYS_STATUS that a rover may have."""
+    """MAV_SYS_STATUS_SENSOR: bits of SYS_STATUS that a rover may have."""
 
     GYRO = rover.MAV_SYS_STATUS_SENSOR_3D_GYRO
     ACCELEROMETER = rover.MAV_SYS_STATUS_SENSOR_3D_ACCEL
@@ -213,7 +213,7 @@ class Sensor(IntFlag):
 
 
 class EstimatorFlag(IntFlag):
-    """ESTIMATOR_STATUS_FLAGS, as far as a rover on flat ground has them."""
+    """ESTIMATOR_STATUS_FLAGS, as far as they apply to a rover on flat ground."""
 
     ATTITUDE = rover.ESTIMATOR_ATTITUDE
     VELOCITY = rover.ESTIMATOR_VELOCITY_HORIZ
@@ -256,7 +256,7 @@ class ParamErrorCode(IntEnum):
     DOES_NOT_EXIST = rover.MAV_PARAM_ERROR_DOES_NOT_EXIST
     VALUE_OUT_OF_RANGE = rover.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE
     PERMISSION_DENIED = rover.MAV_PARAM_ERROR_PERMISSION_DENIED
-    """Not now, or not by you."""
+    """Not now, or not for this sender."""
     READ_ONLY = rover.MAV_PARAM_ERROR_READ_ONLY
     TYPE_MISMATCH = 7  # pymavlink 2.4.50 lacks the name
 
@@ -278,7 +278,7 @@ class MissionResult(IntEnum):
     ERROR = rover.MAV_MISSION_ERROR
     UNSUPPORTED_FRAME = rover.MAV_MISSION_UNSUPPORTED_FRAME
     UNSUPPORTED = rover.MAV_MISSION_UNSUPPORTED
-    """The command, or the kind of plan, is unknown here."""
+    """The command, or the plan type, is unknown."""
     NO_SPACE = rover.MAV_MISSION_NO_SPACE
     INVALID = rover.MAV_MISSION_INVALID
     INVALID_PARAM1 = rover.MAV_MISSION_INVALID_PARAM1
@@ -294,12 +294,14 @@ class MissionResult(IntEnum):
 
 
 def command_name(command: int) -> str:
-    """`MAV_CMD` name without its prefix, e.g. "COMPONENT_ARM_DISARM"; "command 65535" for an unknown one."""
+    """Return the name of a `MAV_CMD` without its prefix; "command 65535" for an unknown one."""
+    if command in Command._value2member_map_:  # also those that pymavlink's common.xml lacks
+        return Command(command).name
     entry = rover.enums["MAV_CMD"].get(command)
     return entry.name.removeprefix("MAV_CMD_") if entry else f"command {command}"
 
 
 def result_name(result: int) -> str:
-    """`MAV_RESULT` in words a driver reads, e.g. "denied"; "result 99" for an unknown one."""
+    """Return the name of a `MAV_RESULT` in lower case, e.g. "denied"; "result 99" for an unknown one."""
     entry = rover.enums["MAV_RESULT"].get(result)
     return entry.name.removeprefix("MAV_RESULT_").replace("_", " ").lower() if entry else f"result {result}"

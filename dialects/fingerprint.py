@@ -1,6 +1,6 @@
-"""Is dialects/rover.py made from the definitions that are here? A checkout keeps it, and definitions change under it.
+"""Checks that dialects/rover.py was generated from the definitions beside it.
 
-It imports nothing of ours: dialects/build.py runs it by its path, where the project is not installed yet.
+Imports no other module of the project: dialects/build.py runs this file by its path, before the project is installed.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 INPUTS = ("rover.xml", "additions.xml", "build.py")
-REMEDY = "pip install -e . makes it anew"
+REMEDY = "run pip install -e . to generate it"
 
 
 def line(folder: Path = HERE) -> str:
-    """The last line of a generated module: a digest of what it is made from in `folder`, and of pymavlink's version."""
+    """Return the last line of a generated module: a digest of its inputs and of pymavlink's version."""
     digest = hashlib.sha256(version("pymavlink").encode())
     for name in INPUTS:
         digest.update(hashlib.sha256((folder / name).read_bytes()).digest())
@@ -23,7 +23,7 @@ def line(folder: Path = HERE) -> str:
 
 
 def fault(folder: Path = HERE) -> str | None:
-    """What is wrong with the module in `folder`, and what to do, in one line."""
+    """Return why the module in `folder` cannot be used and the remedy, in one line, or None."""
     try:
         code = (folder / "rover.py").read_bytes()
     except FileNotFoundError:

@@ -1,6 +1,7 @@
-"""Every message we speak, under a readable name: pymavlink's generated classes, nothing wrapped around them.
+"""The messages that the programs use, under short names: pymavlink's generated classes, not wrapped.
 
-To speak another message, add one line here; its fields are those of the official definition (or of rover.xml).
+To use another message, add one line here; its fields are those of the official definition (or of rover.xml). A message
+that is not plain state also needs a row in traits.py.
 """
 
 from __future__ import annotations
@@ -108,46 +109,23 @@ UINT32_MASK = 0xFFFFFFFF
 
 
 def boot_ms(seconds: float) -> int:
-    """`time_boot_ms` for a time since boot in s; wraps after 49.7 days as the field does (pymavlink raises instead)."""
+    """Return `time_boot_ms` for s since boot; wraps after 49.7 days as the field does (pymavlink raises)."""
     return int(seconds * 1000) & UINT32_MASK
 
 
 MISSION_PAUSED = rover.MISSION_STATE_PAUSED
-"""`mission_state` of MISSION_CURRENT"""
-
-ACKNOWLEDGED: frozenset[int] = frozenset(
-    message.id
-    for message in (
-        *(CommandLong, CommandInt, CommandAck, CommandCancel, SetMode, StatusText, Timesync, Ping),
-        *(ParamRequestList, ParamRequestRead, ParamSet, ParamValue, ParamError),
-        *(MissionRequestList, MissionRequestPartialList, MissionWritePartialList, MissionCount, MissionRequest),
-        *(MissionRequestInt, MissionItem, MissionItemInt, MissionAck, MissionClearAll, MissionSetCurrent),
-        *(FileTransferProtocol, LogRequestList, LogEntry, LogRequestData, LogData, LogErase, LogRequestEnd),
-        *(MissionItemReached, ComponentMetadata),
-    )
-)
-"""Messages that are repeated until answered, or said once. All others are state: only the newest counts."""
+"""`mission_state` of MISSION_CURRENT."""
 
 
 def decode_text(message: StatusText) -> str:
-    """The text as UTF-8 (the generated decoder knows only ASCII), with control characters shown and never obeyed.
+    """Return the text as UTF-8 (the generated decoder knows only ASCII), with control characters replaced.
 
-    A vehicle's text goes to a terminal: an escape sequence inside it must not reach the screen as one.
+    The text goes to a terminal: an escape sequence in it must not reach the screen as one.
     """
     raw: bytes = message._text_raw
     return printable(raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
 
 
 def printable(text: str) -> str:
-    """`text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
+    """Return `text` with every unprintable character replaced by "\N{REPLACEMENT CHARACTER}"."""
     return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)
-
-
-def is_stop(message: Message) -> bool:
-    """Is this a command that only ever stops: disarm, safety switch to SAFE, flight termination?"""
-    if not isinstance(message, CommandLong | CommandInt):
-        return False
-    if message.command == rover.MAV_CMD_DO_FLIGHTTERMINATION:
-        return bool(message.param1 > 0.5)
-    stops = (rover.MAV_CMD_COMPONENT_ARM_DISARM, rover.MAV_CMD_DO_SET_SAFETY_SWITCH_STATE)
-    return message.command in stops and bool(message.param1 == 0)

@@ -1,4 +1,4 @@
-"""Modes and their numbers: ArduRover's custom_mode, so that MAVProxy and pymavlink name them right for any rover."""
+"""Modes by ArduRover's custom_mode numbers, which MAVProxy and pymavlink name correctly for any rover."""
 
 from __future__ import annotations
 
@@ -8,28 +8,34 @@ from dialects.enums import Autopilot, ModeFlag
 
 
 class Mode(IntEnum):
-    """A drive mode; the value is ArduRover's custom_mode (ArduPilot Rover/mode.h)."""
+    """A drive mode: ArduRover's custom_mode (ArduPilot Rover/mode.h), and its flag in base_mode of HEARTBEAT."""
 
-    MANUAL = 0
-    """The driver's demand goes to the motors, open loop."""
-    ACRO = 1
-    STEERING = 3
+    flag: ModeFlag
+
+    def __new__(cls, number: int, flag: int = 0) -> Mode:
+        """Make a member of a row below."""
+        member = int.__new__(cls, number)
+        member._value_ = number
+        member.flag = ModeFlag(flag)
+        return member
+
+    MANUAL = 0, ModeFlag.MANUAL
+    """The operator's demand goes to the motors, open loop."""
+    ACRO = 1, ModeFlag.MANUAL
+    STEERING = 3, ModeFlag.MANUAL
     HOLD = 4
     """Motors neutral."""
     LOITER = 5
     FOLLOW = 6
-    SIMPLE = 7
+    SIMPLE = 7, ModeFlag.MANUAL
     DOCK = 8
     CIRCLE = 9
-    AUTO = 10
-    RTL = 11
-    SMART_RTL = 12
-    GUIDED = 15
+    AUTO = 10, ModeFlag.AUTO
+    RTL = 11, ModeFlag.AUTO
+    SMART_RTL = 12, ModeFlag.AUTO
+    GUIDED = 15, ModeFlag.GUIDED
     INITIALISING = 16
 
-
-_BASE = {Mode.GUIDED: ModeFlag.GUIDED, Mode.AUTO: ModeFlag.AUTO, Mode.RTL: ModeFlag.AUTO, Mode.SMART_RTL: ModeFlag.AUTO,
-         Mode.MANUAL: ModeFlag.MANUAL, Mode.ACRO: ModeFlag.MANUAL, Mode.STEERING: ModeFlag.MANUAL}  # fmt: skip
 
 _PX4_MAIN = {
     1: "MANUAL",
@@ -41,17 +47,25 @@ _PX4_MAIN = {
     7: "STABILIZED",
     8: "RATTITUDE",
 }
-"""PX4 keeps the main mode in bits 16-23 of custom_mode (MAVSDK px4_custom_mode.hpp)."""
+"""PX4's main mode, from bits 16-23 of custom_mode (MAVSDK px4_custom_mode.hpp)."""
+
+_PX4_DRIVABLE = frozenset({"MANUAL", "ALTCTL", "POSCTL", "ACRO", "STABILIZED"})
+
+DRIVABLE_MODES = _PX4_DRIVABLE | {mode.name for mode in Mode if mode.flag & ModeFlag.MANUAL}
+"""Names (`mode_name`) of the modes in which the driver's demand moves a rover, of ArduRover and PX4."""
+
+STANDING_MODES = frozenset({Mode.HOLD.name, Mode.INITIALISING.name})
+"""Names of the modes in which nothing moves a rover. Every mode in neither set is autonomous."""
 
 
 def base_mode(mode: Mode, *, armed: bool) -> ModeFlag:
-    """`base_mode` of HEARTBEAT for a mode."""
-    flags = ModeFlag.CUSTOM | _BASE.get(mode, ModeFlag(0))
+    """Return `base_mode` of HEARTBEAT for a mode."""
+    flags = ModeFlag.CUSTOM | mode.flag
     return flags | ModeFlag.ARMED if armed else flags
 
 
 def mode_name(custom_mode: int, autopilot: int = Autopilot.GENERIC) -> str:
-    """The name a driver reads for a HEARTBEAT's custom_mode; "mode 99" for an unknown number."""
+    """Return the name of a HEARTBEAT's custom_mode; "mode 99" for an unknown number."""
     if autopilot == Autopilot.PX4:
         main = (custom_mode >> 16) & 0xFF
         return _PX4_MAIN.get(main, f"mode {main}")
@@ -62,10 +76,10 @@ def mode_name(custom_mode: int, autopilot: int = Autopilot.GENERIC) -> str:
 
 
 def custom_mode(mode: Mode, autopilot: int = Autopilot.GENERIC) -> tuple[int, int]:
-    """Parameters 2 and 3 of DO_SET_MODE (main, sub) for a mode.
+    """Return parameters 2 and 3 of DO_SET_MODE (main mode, sub mode) for a mode.
 
-    PX4 has no HOLD of ArduRover's kind; its AUTO/LOITER (4, 3) is the one that stops a rover.
-    Raises ValueError where the autopilot has no such mode.
+    PX4 has no HOLD mode like ArduRover's; its AUTO/LOITER (4, 3) is the one that stops a rover.
+    Raises ValueError if the autopilot has no such mode.
     """
     if autopilot != Autopilot.PX4:
         return int(mode), 0

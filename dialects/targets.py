@@ -1,4 +1,4 @@
-"""Whom a frame is for, read from its raw bytes: a table of offsets, so that a router needs to decode nothing."""
+"""Reads the target system and component of a raw frame, so that a router need not decode payloads."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from dialects.codec import HEADER_V1, HEADER_V2, MAGIC_V2
 from dialects.messages import MESSAGES, ManualControl, Message
 
 BROADCAST = (0, 0)
-"""Target system and component of a message for everybody."""
+"""Target system and component of a message to all systems."""
 
 _TARGET_FIELD = {ManualControl.id: "target"}
-"""Messages whose target field has another name (mavgen treats it alike: mavparse.py, "target_system_ofs")."""
+"""Messages whose target field has another name (mavgen treats it the same: mavparse.py, "target_system_ofs")."""
 
 
 def _offsets(message: type[Message]) -> dict[str, int]:
-    """Field -> where it starts in the payload. Fields lie without gaps, in wire order."""
+    """Return the offset of each field in the payload. Fields lie without gaps, in wire order."""
     sizes = [struct.calcsize("<" + each) for each in bytes(message.native_format).decode().removeprefix("<")]
     starts: dict[str, int] = {}
     at = 0
@@ -36,11 +36,14 @@ def _targets() -> dict[int, tuple[int, int | None]]:
 
 
 TARGETS: dict[int, tuple[int, int | None]] = _targets()
-"""Message id -> offsets of target system and component in the payload (None: the message has no such field)."""
+"""Message id -> payload offsets of target system and component (None: the message has no such field)."""
 
 
 def target_of(message_id: int, raw: bytes) -> tuple[int, int]:
-    """Target system and component of a whole frame. What zero truncation cut off is 0; no field means everybody."""
+    """Return the target system and component of a whole frame.
+
+    Truncated fields are 0. A message without target fields is for all systems.
+    """
     offsets = TARGETS.get(message_id)
     if offsets is None:
         return BROADCAST

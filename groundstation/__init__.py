@@ -1,1 +1,1 @@
-"""Who commands: the terminal ground station and its command line."""
+"""Terminal ground station and its command line."""

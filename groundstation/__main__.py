@@ -1,4 +1,4 @@
-"""Runs `python -m groundstation`."""
+"""Entry point of `python -m groundstation`."""
 
 from __future__ import annotations
 

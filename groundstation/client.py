@@ -1,4 +1,4 @@
-"""The screen's end of the pipe: starts the station process, sends it intents, and takes its snapshots. Not Textual."""
+"""The screen's end of the pipe: starts the station process, sends it intents, receives its snapshots."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from groundstation.intents import AnyIntent, Quit
 from groundstation.ipc import (
     MAX_PACKET,
     SOCKET_BUFFER,
-    VALID_WHEN_LATE,
     IntentBatch,
     StationFailed,
     StationReady,
@@ -28,13 +27,13 @@ from groundstation.processes import end_process, start_module
 from groundstation.snapshot import Snapshot
 
 START_TIMEOUT = 15.0
-"""How long the station may take to open its links: Python's start on a slow Pi (3 s) and a name to resolve (10 s)."""
+"""s for the station to open its links: Python's start on a slow Pi (3 s) and a host name to resolve (10 s)."""
 
 CLOSE_TIMEOUT = 1.0
-"""How long a station may take to send its neutral frames and end, before it is killed. It needs 0.25 s."""
+"""s for the station to send its neutral frames and exit before it is killed. It needs 0.25 s."""
 
 MAX_PENDING = 256
-"""Intents kept for a station that does not read: those of NEVER_LATE. The others would be wrong when they are late."""
+"""Intents kept for a station that does not read. Only those that are `valid_when_late` are kept."""
 
 
 class StationError(RuntimeError):
@@ -87,7 +86,7 @@ class StationClient:
         return self._process.pid
 
     def send(self, *intents: AnyIntent) -> None:
-        """Hand over what the operator wants; never blocks, never raises. The intents of one call stay together."""
+        """Send intents to the station; never blocks, never raises. The intents of one call stay together."""
         with self._lock:
             if not self._open:
                 return
@@ -96,16 +95,16 @@ class StationClient:
                 self._pipe.send(encode(IntentBatch(clock(), packet)))
                 self._pending.clear()
             except BlockingIOError:
-                self._pending.extend(intent for intent in intents if isinstance(intent, VALID_WHEN_LATE))
-            except OSError:  # the station has ended; alive tells
+                self._pending.extend(intent for intent in intents if intent.valid_when_late)
+            except OSError:  # the station has exited; `alive` is False from now on
                 self._open = False
 
     def fileno(self) -> int:
-        """For the screen's loop to wait on."""
+        """Return the descriptor of the pipe, for the screen's loop to wait on."""
         return self._pipe.fileno()
 
     def receive(self) -> Snapshot | None:
-        """The newest snapshot that waits, or None. Never blocks; `alive` is False once the station has ended."""
+        """Return the newest snapshot received, or None. Never blocks; `alive` is False once the station has exited."""
         newest: bytes | None = None
         while True:
             try:
@@ -122,11 +121,11 @@ class StationClient:
 
     @property
     def alive(self) -> bool:
-        """The station is there. False from the end of its pipe on: it can no longer take intents."""
+        """The station runs. False once its end of the pipe is closed: intents can no longer be sent."""
         return self._open and self._process.poll() is None
 
     def close(self) -> int | None:
-        """Let the station send its neutral frames and end, within about a second. Its exit code (negative: signal)."""
+        """Let the station send neutral and exit, within about a second. Returns its exit code (negative: signal)."""
         self.send(Quit())
         code = end_process(self._process, CLOSE_TIMEOUT)
         with self._lock:
@@ -159,7 +158,7 @@ def _hello(pipe: socket.socket) -> StationReady:
     if isinstance(first, StationFailed):
         raise StationError(first.line)
     if not isinstance(first, StationReady):
-        raise StationError("the station process speaks another version")
+        raise StationError("the station process has a different version")
     return first
 
 

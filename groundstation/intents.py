@@ -1,53 +1,71 @@
-"""What the operator wants: the values that travel from the keys to the station, and nothing else does.
+"""What an operator can ask for: the intents sent to the station process, and the table of actions that make them.
 
-They are msgspec structs because the keys live in the terminal's process and the station in another one (station_process.py).
+A new operator action is an intent class here with its row in ACTIONS, and its handler in station/intent_handler.py.
+Intents are msgspec structs because keys are read in the screen's process and handled in the station process.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, TypeAlias, Union
+
 import msgspec
 
-LEASE_TIMEOUT = 0.3
-"""s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz and longer than its longest
-drawing (0.1 s); a frozen screen then means neutral well within 0.5 s."""
+from groundstation.screens import SCREENS
 
+LEASE_TIMEOUT = 0.3
+"""s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz, and longer than its longest
+drawing (0.1 s). A frozen screen then means neutral well within 0.5 s."""
 
 STOP_KEY = "stop key"
-"""The reason of a Stop that an operator pressed; any other is a screen that cannot drive just now."""
+"""The reason of a Stop that the operator requested with a key; other reasons mean that the screen cannot drive now."""
+
+FASTER, SLOWER = 1.1, 0.9
+"""Factors of one press of a speed key, those of teleop_twist_keyboard."""
 
 
 class Intent(msgspec.Struct, frozen=True, tag=True):
-    """Base of the union below."""
+    """Base class of all intents."""
+
+    is_input: ClassVar[bool] = True
+    """The operator did something. False for what the screen sends on its own."""
+
+    valid_when_late: ClassVar[bool] = False
+    """Handled even when older than ipc.MAX_INTENT_AGE: the intent only ever stops, or reports a state."""
 
 
 class DriveKeyDown(Intent, frozen=True):
-    """A drive key went down, or repeats: "this way", -1, 0 or +1 an axis."""
+    """A drive key went down, or repeats; -1, 0 or +1 for each axis."""
 
     key: str
     throttle: int
     steering: int
     repeat: bool = False
-    """The terminal says that this is an auto-repeat (only terminals that report key releases know)."""
+    """The terminal reports an auto-repeat (only terminals that report key releases do)."""
 
 
 class DriveKeyUp(Intent, frozen=True):
-    """A drive key went up. Only some terminals tell; elsewhere the sticks fall back by themselves."""
+    """A drive key went up. Only some terminals report it; elsewhere the sticks return to neutral by a timer."""
 
+    valid_when_late = True
     key: str
 
 
 class Stop(Intent, frozen=True):
-    """Neutral at once; also ends a latched drive. A stop key puts a vehicle that drives itself into HOLD, too."""
+    """Neutral at once; also ends latched driving. A stop key puts a vehicle in an autonomous mode into HOLD as well."""
 
+    valid_when_late = True
     reason: str = STOP_KEY
 
 
 class EmergencyStop(Intent, frozen=True):
-    """Motors off at once and locked, by command and repeated until acknowledged."""
+    """Motors off at once and locked: a command, repeated until acknowledged."""
+
+    valid_when_late = True
 
 
 class ClearEmergencyStop(Intent, frozen=True):
-    """Release the emergency stop; arming is a further step."""
+    """Release the emergency stop; arming is a separate step."""
 
 
 class ScaleLimits(Intent, frozen=True):
@@ -58,7 +76,7 @@ class ScaleLimits(Intent, frozen=True):
 
 
 class SetStyle(Intent, frozen=True):
-    """How keys drive: "hold", "latch" or "step"; "next" is the one after the present one."""
+    """Set the drive style: "hold", "latch" or "step"; "next" selects the one after the current style."""
 
     style: str
 
@@ -66,24 +84,33 @@ class SetStyle(Intent, frozen=True):
 class ReportKeyReleases(Intent, frozen=True):
     """The terminal has proved that it reports key releases: no timers are needed any more."""
 
+    is_input = False
+    valid_when_late = True
+
 
 class SetKeyGate(Intent, frozen=True):
-    """May keys drive now? Closed when another screen is on top, the focus is lost or the terminal is gone."""
+    """Open or close the key gate. It is closed under another screen, without focus and without a terminal."""
 
+    is_input = False
+    valid_when_late = True
     open: bool
     reason: str = ""
 
 
 class RenewLease(Intent, frozen=True):
-    """ "The screen lives": renewed by the UI's own loop. Without it the station goes neutral and then silent."""
+    """The screen's event loop runs. Without renewals the station sends neutral, then nothing."""
+
+    is_input = False
 
 
 class Arm(Intent, frozen=True):
-    """Arm the vehicle, after putting it into MANUAL where it is in HOLD."""
+    """Arm the vehicle, after changing to MANUAL if it is in HOLD."""
 
 
 class Disarm(Intent, frozen=True):
     """Disarm the vehicle."""
+
+    valid_when_late = True
 
 
 class SetMode(Intent, frozen=True):
@@ -93,28 +120,106 @@ class SetMode(Intent, frozen=True):
 
 
 class RequestControl(Intent, frozen=True):
-    """Ask to be the ground station in control."""
+    """Request to be the ground station in control (MAV_CMD_REQUEST_OPERATOR_CONTROL)."""
 
 
 class SelectVehicle(Intent, frozen=True):
-    """Drive the vehicle with this system id from now on."""
+    """Select the vehicle with this system id."""
 
     system: int
 
 
 class SelectNextVehicle(Intent, frozen=True):
-    """Drive the vehicle after this one from now on, by system id; after the last comes the first."""
+    """Select the vehicle with the next higher system id; after the last comes the first."""
 
 
 class StartSimulator(Intent, frozen=True):
-    """Start a simulated rover as a child of the station and let it connect to us."""
+    """Start a simulated rover as a child of the station process and let it connect to us."""
 
 
 class Quit(Intent, frozen=True):
-    """Send neutral several times and end."""
+    """Send neutral several times and exit."""
+
+    is_input = False
+    valid_when_late = True
 
 
-AnyIntent = (
-    DriveKeyDown | DriveKeyUp | Stop | EmergencyStop | ClearEmergencyStop | ScaleLimits | SetStyle | ReportKeyReleases | SetKeyGate | RenewLease | Arm
-    | Disarm | SetMode | RequestControl | SelectVehicle | SelectNextVehicle | StartSimulator | Quit
+if TYPE_CHECKING:
+    AnyIntent: TypeAlias = Intent
+else:
+    # msgspec decodes a union of tagged structs, not their base class.
+    AnyIntent = Union[tuple(Intent.__subclasses__())]  # noqa: UP007
+"""Any of the intents above."""
+
+
+@dataclass(frozen=True, slots=True)
+class OperatorAction:
+    """Something an operator can ask for with a key or in the command palette."""
+
+    id: str
+    label: str
+    """One or two words for the footer."""
+    help: str
+    group: str
+    """"drive", "stop", "speed", "vehicle" or "app"."""
+    intent: AnyIntent | None = None
+    """Sent to the station; None where the screen acts itself. The key's name is added to a DriveKeyDown."""
+    keys: tuple[str, ...] = ()
+    """Keys in every key map, by Textual's names ("i", "comma", "up", "ctrl+q"). KEYMAPS (input/keymap.py) adds more."""
+    confirm: bool = False
+    """Needs CONFIRM_KEY (input/keymap.py) after it; the screen asks and then sends `intent`."""
+    when_armed: AnyIntent | None = None
+    """Sent in place of `intent`, without confirmation, while the vehicle is armed."""
+
+
+def _drive(name: str, label: str, text: str, throttle: int, steering: int, *keys: str) -> OperatorAction:
+    intent = DriveKeyDown(key="", throttle=throttle, steering=steering)
+    return OperatorAction(f"drive.{name}", label, text, "drive", intent, keys)
+
+
+def _speed(name: str, label: str, text: str, throttle: float, steering: float) -> OperatorAction:
+    return OperatorAction(f"speed.{name}", label, text, "speed", ScaleLimits(throttle=throttle, steering=steering))
+
+
+_ROWS = (
+    _drive("forward", "Forward", "Drive forward while held", 1, 0, "up", "i"),
+    _drive("backward", "Backward", "Drive backward while held", -1, 0, "down", "comma"),
+    _drive("left", "Left", "Turn left (in place where the vehicle can)", 0, -1, "left", "j"),
+    _drive("right", "Right", "Turn right", 0, 1, "right", "l"),
+    _drive("forward_left", "Fwd left", "Drive forward and turn left", 1, -1, "u"),
+    _drive("forward_right", "Fwd right", "Drive forward and turn right", 1, 1, "o"),
+    # Backward curves negate the turn, as in teleop_twist_keyboard: the vehicle goes back on the arc that it would have
+    # driven forward, as a car does with its wheels held. A chord of two keys does not: left always turns the nose left.
+    _drive("backward_left", "Back left", "Back up to the left, as a car does", -1, 1, "m"),
+    _drive("backward_right", "Back right", "Back up to the right, as a car does", -1, -1, "full_stop"),
+    OperatorAction("drive.stop", "Stop", "Neutral at once; ends latched driving", "stop", Stop(), ("k", "space")),
+    OperatorAction("stop.emergency", "EMERGENCY STOP", "Motors off and locked, from every screen", "stop",
+                   EmergencyStop(), ("exclamation_mark", "f9")),
+    OperatorAction("stop.clear", "Clear e-stop", "Release the emergency stop; arming is a separate step", "stop",
+                   ClearEmergencyStop(), ("t",), confirm=True),
+    _speed("faster", "Faster", "Raise both limits by 10 %; never moves the vehicle", FASTER, FASTER),
+    _speed("slower", "Slower", "Lower both limits by 10 %", SLOWER, SLOWER),
+    _speed("throttle_faster", "Throttle +", "Raise the throttle limit by 10 %", FASTER, 1.0),
+    _speed("throttle_slower", "Throttle -", "Lower the throttle limit by 10 %", SLOWER, 1.0),
+    _speed("steering_faster", "Steering +", "Raise the steering limit by 10 %", 1.0, FASTER),
+    _speed("steering_slower", "Steering -", "Lower the steering limit by 10 %", 1.0, SLOWER),
+    OperatorAction("drive.style", "Style", "Next drive style: hold, latch, step", "drive", SetStyle(style="next"),
+                   ("tab",)),
+    OperatorAction("vehicle.arm", "Arm", "Arm; when armed, disarm in one key", "vehicle", Arm(), ("r",), confirm=True,
+                   when_armed=Disarm()),
+    OperatorAction("vehicle.disarm", "Disarm", "Disarm", "vehicle", Disarm()),
+    OperatorAction("vehicle.manual", "MANUAL", "Mode MANUAL: the keys drive", "vehicle", SetMode(mode="MANUAL"),
+                   ("1",)),
+    OperatorAction("vehicle.hold", "HOLD", "Mode HOLD: the vehicle stays stopped", "vehicle", SetMode(mode="HOLD"),
+                   ("2",)),
+    OperatorAction("vehicle.control", "Take control", "Request control of the vehicle", "vehicle", RequestControl(),
+                   ("g",)),
+    OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and select the next one", "vehicle",
+                   SelectNextVehicle(), ("n",)),
+    OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator(), ("f5",)),
+    *(OperatorAction(screen.action, screen.title, screen.help, "app", keys=screen.keys) for screen in SCREENS),
+    OperatorAction("app.quit", "Quit", "Stop the vehicle and quit", "app", keys=("ctrl+q", "ctrl+c")),
 )  # fmt: skip
+
+ACTIONS: dict[str, OperatorAction] = {action.id: action for action in _ROWS}
+"""Every action by id, in the order of the help screen."""

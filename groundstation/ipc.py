@@ -1,4 +1,4 @@
-"""What travels on the pipe between the screen's process and the station's: one packet a message, nothing stored."""
+"""Messages on the pipe between the screen's process and the station process, one packet each."""
 
 from __future__ import annotations
 
@@ -6,49 +6,35 @@ import time
 
 import msgspec
 
-from groundstation.intents import (
-    LEASE_TIMEOUT,
-    AnyIntent,
-    Disarm,
-    DriveKeyUp,
-    EmergencyStop,
-    Quit,
-    ReportKeyReleases,
-    SetKeyGate,
-    Stop,
-)
+from groundstation.intents import LEASE_TIMEOUT, AnyIntent
 from groundstation.snapshot import Snapshot
 
 SOCKET_BUFFER = 1 << 20
-"""Bytes asked for each way, so that a snapshot (< 60 kB) or a second of keys always fits; the kernel may give less."""
+"""Bytes requested each way, so that a snapshot (< 60 kB) or a second of keys fits; the kernel may grant less."""
 
 MAX_PACKET = 1 << 18
 
-
-VALID_WHEN_LATE = (Stop, EmergencyStop, Disarm, DriveKeyUp, SetKeyGate, ReportKeyReleases, Quit)
-"""Intents that only ever stop, or that say how things are. All others mean the moment in which they were made."""
-
 MAX_INTENT_AGE = LEASE_TIMEOUT
-"""s after which other intents are dropped: a station that was frozen must not drive, arm or call the screen alive by
-what lay in the pipe meanwhile."""
+"""s after which intents are dropped, unless they are `valid_when_late`: a station that was frozen must not drive, arm
+or count the screen as alive because of packets that waited in the pipe."""
 
 
 class IntentBatch(msgspec.Struct, frozen=True):
-    """Down: the intents of one read of keys (or of one act of the screen), and when they were made."""
+    """From the screen: the intents of one read of keys (or of one action of the screen), and when they were made."""
 
     time: float
-    """CLOCK_MONOTONIC, s: the clock of all processes, so that the station can refuse a key that lay around."""
+    """CLOCK_MONOTONIC, s: the same in all processes, so that the station can drop an old key."""
     intents: tuple[AnyIntent, ...]
 
 
 class StationReady(msgspec.Struct, frozen=True, tag=True):
-    """Up, first: the links are open."""
+    """From the station, first: the links are open."""
 
     endpoints: tuple[str, ...]
 
 
 class StationFailed(msgspec.Struct, frozen=True, tag=True):
-    """Up, first and last: the station cannot work; one line for the user."""
+    """From the station, first and last: the station could not start; one line for the user."""
 
     line: str
 
@@ -61,5 +47,5 @@ decode_from_screen = msgspec.msgpack.Decoder(IntentBatch).decode
 
 
 def clock() -> float:
-    """CLOCK_MONOTONIC, s: on Linux one clock for all processes, unlike perf_counter's promise."""
+    """Return CLOCK_MONOTONIC, s: on Linux the same in all processes, which perf_counter does not guarantee."""
     return time.monotonic()

@@ -1,4 +1,4 @@
-"""Starts our own programs as child processes, with the Python and the packages that we run on ourselves."""
+"""Starts our own programs as child processes, with the same Python and packages as this one."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ def start_module(
     new_session: bool = False,
     prepare: Callable[[], None] | None = None,
 ) -> subprocess.Popen[bytes]:
-    """`python -m module arguments`, with none of our standard streams: the terminal is the screen's alone.
+    """Start `python -m module arguments` without our standard streams: only the screen uses the terminal.
 
-    `output` takes what it prints; `prepare` runs in the child before the program. Raises OSError.
+    `output` receives what the program prints; `prepare` runs in the child before the program. Raises OSError.
     """
-    # -P: a folder named like one of our packages in the user's directory must not be imported instead of ours.
+    # -P: a folder named like one of our packages in the current directory must not be imported instead of ours.
     return subprocess.Popen(
         [sys.executable, "-P", "-m", module, *arguments],
         stdin=subprocess.DEVNULL,
@@ -39,14 +39,14 @@ def start_module(
 
 
 def _environment() -> dict[str, str]:
-    """Ours; from a checkout that is not installed, with its folder on the path, which -P takes off."""
+    """Return our environment; in a checkout that is not installed, with its folder on the path, which -P removes."""
     if not (ROOT / "pyproject.toml").exists():
         return dict(os.environ)
     return os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))}
 
 
 def end_process(process: subprocess.Popen[bytes], timeout: float) -> int:
-    """Wait up to `timeout` s, then kill. The exit code; negative for a signal."""
+    """Wait up to `timeout` s, then kill. Returns the exit code; negative for a signal."""
     try:
         return process.wait(timeout)
     except subprocess.TimeoutExpired:

@@ -1,4 +1,4 @@
-"""The simulated rover as a child process: started on request, watched, and ended with us. It shares no code with us."""
+"""Runs the simulated rover (`vehicle --sim`) as a child process that ends with this one. Imports nothing of it."""
 
 from __future__ import annotations
 
@@ -9,49 +9,53 @@ import socket
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from groundstation.processes import end_process, start_module
+from link.endpoint import Endpoint
 
 PR_SET_PDEATHSIG = 1
 """prctl(2): the kernel sends a signal when the parent dies, even by kill -9."""
 
 END_TIMEOUT = 1.0
-"""s for the simulator to stop its motors and end, before it is killed."""
+"""s for the simulator to stop its motors and exit before it is killed."""
 
-KEPT = 4000
-"""Bytes of its output that are looked at: the last words, with a traceback."""
+WILDCARD_HOSTS = ("0.0.0.0", "::")
+"""Hosts that mean "all addresses of this machine"; nothing can be sent to them."""
+
+TAIL_SIZE = 4000
+"""Bytes of its output that are read: the last lines, with a traceback."""
 
 
 def free_port() -> int:
-    """A UDP port of the loopback that nobody uses now. Should somebody take it first, the link says so."""
+    """Return a free UDP port of the loopback. If another program takes it first, opening the link fails."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 
 
 class Simulator:
-    """One `vehicle --sim`. What it prints is kept; the last line is the reason when it ends."""
+    """One `vehicle --sim`. Its output is kept; the last line is the reason when it exits."""
 
     def __init__(self, host: str, port: int) -> None:
-        """Start it, sending to an address of this machine. Raises OSError."""
-        self._output = tempfile.TemporaryFile()  # noqa: SIM115  # it has no name: nothing is left behind, come what may
+        """Start the simulator, sending to an address of this machine. Raises OSError."""
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115  # it has no name, so nothing is left behind even after a kill
         self._process: subprocess.Popen[bytes] = start_module(
             "vehicle",
             ["--sim", f"udpout:{host}:{port}"],
             output=self._output,
-            new_session=True,  # Ctrl-C in the terminal is for the screen
+            new_session=True,  # Ctrl-C in the terminal is for the screen only
             prepare=_die_with_parent(),
         )
 
     @property
     def running(self) -> bool:
-        """It has not ended."""
+        """The process has not exited."""
         return self._process.poll() is None
 
     @property
     def state(self) -> str:
-        """For the screen: "running", or how it ended."""
+        """Status for the screen: "running", or how the process ended."""
         code = self._process.poll()
         if code is None:
             return "running"
@@ -61,23 +65,62 @@ class Simulator:
 
     @property
     def output_tail(self) -> str:
-        """The end of what it printed."""
+        """The end of its output."""
         size = os.fstat(self._output.fileno()).st_size
-        return os.pread(self._output.fileno(), KEPT, max(0, size - KEPT)).decode("utf-8", "replace")
+        return os.pread(self._output.fileno(), TAIL_SIZE, max(0, size - TAIL_SIZE)).decode("utf-8", "replace")
 
     def close(self) -> None:
-        """End it."""
+        """Stop the simulator."""
         if self.running:
             self._process.terminate()
             end_process(self._process, END_TIMEOUT)
         self._output.close()
 
 
+class SimulatorControl:
+    """Starts at most one simulator at a time and reports once when it exits."""
+
+    def __init__(self) -> None:
+        self._simulator: Simulator | None = None
+        self._exit_reported = False
+
+    def start(self, endpoints: Sequence[Endpoint]) -> str | None:
+        """Start a simulator that sends to the first endpoint that listens. Returns an error text, or None."""
+        if self._simulator is not None and self._simulator.running:
+            return None
+        endpoint = next((each for each in endpoints if each.scheme == "udpin"), None)
+        if endpoint is None:
+            return "the simulator needs a link that listens, e.g. udpin:127.0.0.1:14550"
+        try:
+            host = "127.0.0.1" if endpoint.host in WILDCARD_HOSTS else endpoint.host
+            self._simulator, self._exit_reported = Simulator(host, endpoint.port), False
+        except OSError as error:
+            return f"simulator did not start: {error.strerror}"
+        return None
+
+    @property
+    def state(self) -> str | None:
+        """Status for the screen; None if no simulator was started."""
+        return None if self._simulator is None else self._simulator.state
+
+    def pop_exit(self) -> tuple[str, str] | None:
+        """Return how the simulator exited and the end of its output, once; None while it runs."""
+        if self._simulator is None or self._simulator.running or self._exit_reported:
+            return None
+        self._exit_reported = True
+        return f"simulator {self._simulator.state}", self._simulator.output_tail
+
+    def close(self) -> None:
+        """Stop the simulator, if one was started."""
+        if self._simulator is not None:
+            self._simulator.close()
+
+
 def _die_with_parent() -> Callable[[], None] | None:
-    """What the child does first: ask the kernel to be terminated with us. Only Linux has it."""
+    """Return a function for the child that makes the kernel terminate it when we die; None except on Linux."""
     if not sys.platform.startswith("linux"):
         return None
-    prctl = ctypes.CDLL(None).prctl  # looked up before the fork: after it, as little as possible may run
+    prctl = ctypes.CDLL(None).prctl  # looked up before the fork: as little as possible may run after it
 
     def prepare() -> None:
         prctl(PR_SET_PDEATHSIG, signal.SIGTERM)

@@ -1,6 +1,6 @@
-"""One frozen picture of everything the screen shows; the station makes it at 10 Hz, the UI only reads it.
+"""Snapshot of everything the screen shows: built by the station at 10 Hz, read by the UI.
 
-Units are SI without suffix (m, s, m/s, rad, V); fractions are 0..1 or -1..1; None is "not known".
+Units are SI without suffix (m, s, m/s, rad, V); fractions are 0..1 or -1..1; None means "not known".
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import msgspec
 
 
 class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
-    """The vehicle we look at."""
+    """The selected vehicle."""
 
     system: int
     name: str
@@ -20,13 +20,13 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     status: int
     """MAV_STATE."""
     alive: bool
-    """Something was heard within the heartbeat timeout."""
+    """A message arrived within the heartbeat timeout."""
     silence: float
-    """Seconds since anything was heard."""
+    """Seconds since the last message."""
     driver: int | None = None
-    """System id of the ground station in control, 0 for nobody; None where the vehicle does not tell."""
+    """System id of the ground station in control, 0 for none; None if the vehicle sends no CONTROL_STATUS."""
     in_control: bool = False
-    """We are the ground station in control (or, where the vehicle does not tell, we armed it or drive it)."""
+    """We are in control; without CONTROL_STATUS: the vehicle accepted arming or a control request from us."""
     emergency_stop: bool = False
     position: tuple[float, float] | None = None
     """North, east of the origin, m."""
@@ -47,37 +47,37 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """GPS_FIX_TYPE: 3 and more is a 3D fix."""
     gps_satellites: int | None = None
     demand: tuple[float, float] | None = None
-    """Throttle and steering that the vehicle says it obeys, -1..1."""
+    """Throttle and steering that the vehicle reports as obeyed, -1..1."""
     outputs: tuple[float, ...] = ()
-    """What each motor gets, -1..1."""
+    """Output of each motor, -1..1."""
     limits: tuple[str, ...] = ()
-    """Why outputs differ from the demand, as words: "slew", "neutral first" ..."""
+    """Why outputs differ from the demand: "slew", "neutral first" ..."""
     command_age: float | None = None
-    """Age of the demand that the motors obey, as the vehicle tells it; s."""
+    """Age of the demand that the motors obey, as reported by the vehicle; s."""
     latency: float | None = None
-    """Key to motor: from sending a changed demand to the vehicle's word that it is applied; s, newest."""
+    """Newest key-to-motor latency: from sending a changed demand to the report that it is applied; s."""
     failsafes: tuple[str, ...] = ()
-    """Active failsafes as words."""
+    """Names of the active failsafes, e.g. "gcs loss"."""
     failsafe_in: float | None = None
     """Seconds to the next failsafe action."""
     refusal: str | None = None
-    """What was refused last and why, e.g. "arm denied: PreArm: battery low". Cleared by the next acceptance."""
+    """The last refusal and its reason, e.g. "arm denied: PreArm: battery low". Cleared by the next acceptance."""
     warnings: tuple[str, ...] = ()
     """Settings of a foreign vehicle that would let it drive on."""
 
 
 class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
-    """The operator's side."""
+    """The operator's session."""
 
     style: str = "hold"
     reports_releases: bool = False
-    """Key releases are reported; else timers end a push."""
+    """The terminal reports key releases; else timers end a key press."""
     stop_bound: float = 0.0
-    """The longest a vehicle gets a demand after the key is let go, s, as it stands now.
+    """The longest time for which a demand is sent after the key is released, s, at present.
 
-    0 where releases are reported, inf where the drive goes on until the next key (latch, step)."""
+    0 if releases are reported, inf if driving goes on until the next key (latch, step)."""
     held: tuple[str, ...] = ()
-    """Keys that count as held."""
+    """Drive keys that count as held."""
     throttle: float = 0.0
     """Demand that is being sent, -1..1."""
     steering: float = 0.0
@@ -118,17 +118,17 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True):
     """"vehicle", "ack" or "station"."""
     text: str
     count: int = 1
-    """How often it came in a row."""
+    """How often the line occurred in a row."""
 
 
 class MessageRate(msgspec.Struct, frozen=True, kw_only=True):
-    """One kind of message."""
+    """Rate of one kind of message."""
 
     name: str
     rate: float
     count: int
     sent: bool = False
-    """We send it; else we receive it."""
+    """Sent by us; else received."""
 
 
 class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
@@ -138,14 +138,12 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     uptime: float = 0.0
     endpoints: tuple[str, ...] = ()
     waiting: str | None = None
-    """What is being waited for while there is no vehicle, in one line."""
+    """What the station waits for while there is no vehicle, in one line."""
     vehicle: VehicleView | None = None
-    vehicles: tuple[int, ...] = ()
-    """System ids of all vehicles heard."""
     operator: OperatorView = OperatorView()
     links: tuple[LinkView, ...] = ()
     texts: tuple[LogLine, ...] = ()
     """The newest 200, oldest first."""
     messages: tuple[MessageRate, ...] = ()
     simulator: str | None = None
-    """State of the simulator we started, e.g. "running", "ended with code 1: ..."; None where we started none."""
+    """State of the simulator that we started, e.g. "running", "ended with code 1: ..."; None without one."""

@@ -1,4 +1,4 @@
-"""The station process: joins the station with its links and the screen's pipe. It has no terminal itself."""
+"""The station process: runs the station with its links and the pipe to the screen. It has no terminal."""
 
 from __future__ import annotations
 
@@ -24,13 +24,12 @@ from groundstation.intents import Quit, RenewLease, StartSimulator, Stop
 from groundstation.ipc import (
     MAX_INTENT_AGE,
     MAX_PACKET,
-    VALID_WHEN_LATE,
     StationFailed,
     StationReady,
     decode_from_screen,
     encode,
 )
-from groundstation.sitl import Simulator, free_port
+from groundstation.sitl import SimulatorControl, free_port
 from groundstation.snapshot import LogLine, OperatorView, Snapshot
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import COMPONENT, Station
@@ -43,23 +42,20 @@ from link.transport.transport import Link, LinkError
 log = logging.getLogger(__name__)
 
 TICK = 0.025
-"""s: a held key's end and a due demand are noticed within it; half of the demands' period, so that they keep it."""
+"""s within which the end of a key hold and a due demand are noticed: half of the demands' period, which it keeps."""
 
 SNAPSHOT_PERIOD = 0.1
-"""s: what a person can read; the screen draws no faster."""
+"""s: as fast as a person can read; the screen draws no faster."""
 
 END_WITHIN = 1.0
-"""s for the last neutral frames (0.25 s are needed), then the process ends in any case."""
-
-WILDCARD_HOSTS = ("0.0.0.0", "::")
-"""Hosts that mean "all addresses of this machine" and cannot be sent to."""
+"""s for the final neutral frames (0.25 s are needed); then the process exits in any case."""
 
 LOG_SIZE = 1 << 20
 LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 
 
 class StationProcess:
-    """One station, its links, its pipe to the screen, and the simulator where it started one."""
+    """One station, its links, its pipe to the screen, and the simulator if it started one."""
 
     def __init__(self, station: Station, links: Sequence[Link], pipe: socket.socket) -> None:
         self._station = station
@@ -67,12 +63,12 @@ class StationProcess:
         self._pipe = pipe
         self._core = CrashNeutral(station)
         self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash)
-        self._simulator: Simulator | None = None
+        self._simulator = SimulatorControl()
         self._last_snapshot = Snapshot()
         self._broken = self._ending = False
 
     async def run(self) -> int:
-        """Run until the screen is gone or says so. The exit code: 1 where something broke inside."""
+        """Run until the screen quits or exits. Returns the exit code: 1 after an unhandled exception."""
         loop = asyncio.get_running_loop()
         loop.set_exception_handler(self._handle_loop_exception)
         for number in (signal.SIGTERM, signal.SIGHUP):
@@ -84,30 +80,21 @@ class StationProcess:
         finally:
             show.cancel()
             loop.remove_reader(self._pipe)
-            if self._simulator is not None:
-                self._simulator.close()
+            self._simulator.close()
         return 1 if self._broken else 0
 
     def start_simulator(self, now: float) -> None:
-        """Start a simulator that speaks to the first of our links that listens on this machine."""
-        endpoint = next((link.endpoint for link in self._links if link.endpoint.scheme == "udpin"), None)
-        if self._simulator is not None and self._simulator.running:
-            return
-        if endpoint is None:
-            self._log_warning(now, "the simulator needs a link that listens, such as udpin:127.0.0.1:14550")
-            return
-        try:
-            host = "127.0.0.1" if endpoint.host in WILDCARD_HOSTS else endpoint.host
-            self._simulator = Simulator(host, endpoint.port)
-        except OSError as error:
-            self._log_warning(now, f"the simulator did not start: {error.strerror}")
+        """Start a simulator that sends to the first of our links that listens on this machine."""
+        error = self._simulator.start([link.endpoint for link in self._links])
+        if error is not None:
+            self._log_warning(now, error)
 
     # ---- the pipe ----
 
     def _read_pipe(self) -> None:
         now = asyncio.get_running_loop().time()
         while (packet := self._packet()) is not None:
-            if not packet:  # the screen is gone, whatever became of it
+            if not packet:  # the screen's process has exited, for whatever reason
                 asyncio.get_running_loop().remove_reader(self._pipe)
                 self._shut_down()
                 break
@@ -126,14 +113,14 @@ class StationProcess:
         try:
             batch = decode_from_screen(packet)
         except msgspec.DecodeError:
-            log.exception("the screen sent what is no intent")
+            log.exception("invalid packet from the screen")
             return
         late = now - batch.time > MAX_INTENT_AGE
         for intent in batch.intents:
-            if late and not isinstance(intent, VALID_WHEN_LATE):
+            if late and not intent.valid_when_late:
                 if not isinstance(intent, RenewLease):
                     self._log_warning(
-                        now, f"{type(intent).__name__} came {now - batch.time:.1f} s late and was dropped"
+                        now, f"{type(intent).__name__} arrived {now - batch.time:.1f} s late and was dropped"
                     )
             elif isinstance(intent, StartSimulator):
                 self.start_simulator(now)
@@ -143,13 +130,13 @@ class StationProcess:
                 self._station.handle_intent(intent, now)
 
     async def _send_snapshots(self) -> None:
-        """Snapshots at absolute deadlines, and the simulator's end."""
+        """Send snapshots at absolute deadlines, and notice the simulator's end."""
         loop = asyncio.get_running_loop()
         due = loop.time()
         while not self._broken:
             try:
                 self._send_snapshot(loop.time())
-            except Exception as error:  # nobody waits for this task: it would go unseen
+            except Exception as error:  # nothing awaits this task, so the exception would be lost
                 self._handle_crash(error)
             due = max(due + SNAPSHOT_PERIOD, loop.time())
             await asyncio.sleep(due - loop.time())
@@ -160,36 +147,35 @@ class StationProcess:
         self._send(self._last_snapshot)
 
     def _send(self, message: msgspec.Struct) -> None:
-        """Now or never: a screen that does not read gets a newer picture later."""
+        """Send now or drop: a screen that does not read gets a newer snapshot later."""
         try:
             self._pipe.send(encode(message))
         except BlockingIOError:
             log.debug("the screen does not read")
         except OSError:
-            log.debug("the screen is gone")  # its end of the pipe tells _listen
+            log.debug("the screen has exited")  # _read_pipe sees the end of the pipe
 
     def _watch_simulator(self, now: float) -> None:
-        if self._simulator is None:
-            return
-        state = f"simulator {self._simulator.state}"
-        if not self._simulator.running and self._station.simulator_state != self._simulator.state:
-            self._log_warning(now, state)
-            log.error("the simulator said:\n%s", self._simulator.output_tail)
-        self._station.simulator_state = self._simulator.state
+        exited = self._simulator.pop_exit()
+        if exited is not None:
+            text, output = exited
+            self._log_warning(now, text)
+            log.error("output of the simulator:\n%s", output)
+        self._station.set_simulator_state(self._simulator.state)
 
     def _log_warning(self, now: float, text: str) -> None:
         log.warning(text)
         self._station.log.add(now, "station", text, Severity.WARNING)
 
-    # ---- the end ----
+    # ---- shutdown ----
 
     def _shut_down(self) -> None:
-        """Neutral several times, then end."""
+        """Send neutral several times, then exit."""
         if self._ending:
             return
         self._ending = True
         loop = asyncio.get_running_loop()
-        self._station.handle_intent(Stop("ending"), loop.time())
+        self._station.handle_intent(Stop("quitting"), loop.time())
         self._station.handle_intent(Quit(), loop.time())
         self._runner.flush()
         self._end_when_finished(loop.time() + END_WITHIN)
@@ -202,12 +188,12 @@ class StationProcess:
             loop.call_later(TICK, self._end_when_finished, deadline)
 
     def _handle_crash(self, error: BaseException) -> None:
-        """A bug of ours, anywhere: neutral several times, then the end. What half works must not look alive."""
+        """Send neutral several times after an unhandled exception, then exit: half a station must not look alive."""
         if self._broken:
             return
         self._broken = self._ending = True
         now = asyncio.get_running_loop().time()
-        what = printable(f"the station broke ({type(error).__name__}: {error}): neutral, and the end")
+        what = printable(f"station crashed ({type(error).__name__}: {error}): sending neutral, then exiting")
         log.critical(what, exc_info=error)
         self._core.activate(now)
         self._runner.flush()
@@ -215,23 +201,23 @@ class StationProcess:
         self._end_when_finished(now + END_WITHIN)
 
     def _handle_loop_exception(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-        """In a callback of the loop that is not the runner's."""
+        """Handle an exception in a callback of the loop that is not the runner's."""
         self._handle_crash(context.get("exception") or RuntimeError(str(context.get("message"))))
 
 
-def crash_snapshot(picture: Snapshot, what: str, wall: float) -> Snapshot:
-    """The newest picture that there is, with the reason why no other comes."""
+def crash_snapshot(last: Snapshot, what: str, wall: float) -> Snapshot:
+    """Return the last snapshot with the reason why no other follows."""
     line = LogLine(time=wall, severity=Severity.CRITICAL, label="station", text=what[:MAX_LENGTH])
     stopped = OperatorView(
-        style=picture.operator.style,
-        reports_releases=picture.operator.reports_releases,
-        gate_reason="the station broke",
+        style=last.operator.style,
+        reports_releases=last.operator.reports_releases,
+        gate_reason="station crashed",
     )
-    return msgspec.structs.replace(picture, number=picture.number + 1, operator=stopped, texts=(*picture.texts, line))
+    return msgspec.structs.replace(last, number=last.number + 1, operator=stopped, texts=(*last.texts, line))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a station for the screen at the other end of --fd. Exit code 2: it could not start, and has said why."""
+    """Run a station for the screen at the other end of --fd. Returns 2 if it could not start, after sending why."""
     options = _parser().parse_args(arguments)
     for number in (signal.SIGINT, signal.SIGTSTP):  # the terminal's keys are for the screen's process
         signal.signal(number, signal.SIG_IGN)
@@ -256,20 +242,20 @@ def _run(options: argparse.Namespace, endpoints: tuple[str, ...], links: list[Li
     station = Station(
         endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started
     )  # fmt: skip
-    helm = StationProcess(station, links, pipe)
+    process = StationProcess(station, links, pipe)
     if options.sitl:
-        helm.start_simulator(started)
+        process.start_simulator(started)
     gc.collect()
-    gc.freeze()  # what is imported lives as long as we do; without it a full pass stops the sender for 30 ms
+    gc.freeze()  # imported objects are never freed; without freezing them a full collection delays demands by 30 ms
     try:
-        return run_loop(helm.run())
+        return run_loop(process.run())
     except Exception:
-        log.exception("the station broke")
+        log.exception("station crashed")
         return 1
 
 
 def _log_to(path: Path | None) -> None:
-    """Everything that a library says goes to the file, or nowhere."""
+    """Write the log of all libraries to the file, or nowhere."""
     handler: logging.Handler = logging.NullHandler()
     if path is not None:
         handler = logging.handlers.RotatingFileHandler(path, maxBytes=LOG_SIZE, backupCount=1, encoding="utf-8")

@@ -1,1 +1,1 @@
-"""How it travels: endpoints, framing, channels, services, the one loop. Knows both ends, belongs to neither."""
+"""MAVLink for both programs: endpoints, transports, channels, routing, microservices, event loop."""

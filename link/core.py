@@ -1,4 +1,4 @@
-"""The one contract of both houses: a core takes messages and time, and gives messages. Shells do the I/O."""
+"""Interface between sans-IO cores, which take messages and time, and the runner that drives them."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from dialects.messages import Message
 
 
 class Peer(NamedTuple):
-    """The other end of a link in one conversation: which link, which address on it, and which of its conversations.
+    """The other end of a link in one conversation: link index, address on it, conversation number.
 
-    Who was gone and comes back is another peer, so that nothing of the first sticks to the second.
+    A program that restarts at the same address is another peer, so that no state of the first applies to the second.
     """
 
     link: int
@@ -22,11 +22,11 @@ class Peer(NamedTuple):
 
 
 RECORDER = Peer(-1, "recorder")
-"""The log, which hears all that there is, also where nobody else listens; no link leads there."""
+"""The log, which gets all telemetry even without any other peer; no link leads there."""
 
 
 class Received(NamedTuple):
-    """A message that was found whole, checked and counted."""
+    """A message whose frame was complete, verified and counted."""
 
     message: Message
     system: int
@@ -37,29 +37,30 @@ class Received(NamedTuple):
     """Packet sequence number, 0..255."""
     peer: Peer
     introduced: bool
-    """The peer has shown a HEARTBEAT of this system: only then may it control (a moved address must say who it is)."""
+    """The peer has sent a HEARTBEAT of this system; only then may it control. An address that changed must send it
+    again."""
     named: bool = False
-    """The user named this peer's address, as in `udpout`, or it has connected to us: what goes there goes nowhere
-    unasked."""
+    """The user gave this peer's address, as in `udpout`, or the peer has connected to us: replies reach no third
+    party."""
 
     @property
     def may_ask(self) -> bool:
-        """May it have answers longer than its questions? MAVSDK asks before its first HEARTBEAT."""
+        """Whether replies may be longer than the request. MAVSDK sends requests before its first HEARTBEAT."""
         return self.introduced or self.named
 
 
 class Outgoing(NamedTuple):
-    """A message to send: to one peer, or to some, or where neither is named to every peer that it is meant for."""
+    """A message to send: to one peer, to several, or (neither given) to every peer that it concerns."""
 
     message: Message
     peer: Peer | None = None
     among: tuple[Peer, ...] | None = None
-    """These peers, on whichever links they are; it is encoded once."""
+    """Several peers, on any links; the message is encoded once."""
 
 
 @dataclass(frozen=True, slots=True)
 class SourceCount:
-    """What one system and component has got through, since the link opened."""
+    """Frames of one system and component since the link opened."""
 
     received: int
     lost: int
@@ -67,7 +68,7 @@ class SourceCount:
 
 @dataclass(frozen=True, slots=True)
 class LinkReport:
-    """What a link says of itself, counted since it opened."""
+    """State of a link; counters run since the link opened."""
 
     name: str
     """The endpoint as the user wrote it."""
@@ -75,47 +76,47 @@ class LinkReport:
     peers: int = 0
     frames: int = 0
     bytes_received: int = 0
-    bytes_sent: int = 0
     crc_errors: int = 0
     resync_bytes: int = 0
     unknown: int = 0
-    """Frames with an id that the dialect lacks."""
+    """Frames with an id outside the dialect."""
     duplicates: int = 0
     late: int = 0
     rate_limited: int = 0
     refused_peers: int = 0
     dialect_mismatch: tuple[str, ...] = ()
-    """Names of messages that arrive whole but with another definition's checksum."""
+    """Names of messages that arrive complete but with the checksum of another definition."""
     own_id: bool = False
-    """Somebody else sends with our system and component id."""
+    """Another program sends with our system and component id."""
     down: str | None = None
     """Why the link is down, or None."""
     capacity: float | None = None
-    """What the wire takes, bytes/s; None where nobody knows (UDP, TCP). All telemetry together belongs well below."""
+    """Bytes/s that the link carries; None where unknown (UDP, TCP). All telemetry together must stay well below."""
     headroom: float = 1.0
-    """Share of the capacity that may be filled now, 0..1: a telemetry radio asks for less (RADIO_STATUS)."""
+    """Share of the capacity that may be used now, 0..1; RADIO_STATUS of a telemetry radio reduces it."""
     dropped: int = 0
-    """Frames of ours that the link had no room for."""
+    """Outgoing frames dropped because the link had no room."""
     sources: dict[tuple[int, int], SourceCount] = field(default_factory=dict)
     audience: tuple[Peer, ...] = ()
-    """Who gets what is for everybody: who has shown a HEARTBEAT, or connected, and the address that the user named."""
+    """Peers that get broadcast messages: those that sent a HEARTBEAT or connected, and the address that the user
+    named."""
 
 
 class Core(Protocol):
-    """What the runner drives. `now` is seconds of a monotonic clock and never goes back.
+    """What the runner drives. `now` is s of a monotonic clock and never goes back.
 
-    Two rules of the content: state (demands, telemetry, heartbeats) is replaced, the newest wins; commands are repeated
-    until acknowledged. And silence is an input: tick() acts on what did not arrive.
+    State (demands, telemetry, heartbeats) is replaced, the newest wins; commands are repeated until acknowledged.
+    Silence is an input as well: tick() acts on what did not arrive.
     """
 
     def receive(self, received: Received, now: float) -> None:
-        """Take one message and act on it at once."""
+        """Handle one message at once."""
 
     def tick(self, now: float) -> None:
-        """Let time pass: send what is due, act on what is overdue."""
+        """Advance to `now`: send what is due, act on what is overdue."""
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take what the links say of themselves, about once a second."""
+        """Take the state of all links, about once a second."""
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What to send now; empties what it returns."""
+        """Return the messages to send now, and remove them."""

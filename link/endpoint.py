@@ -1,14 +1,19 @@
-"""Where a link ends: "udpin:127.0.0.1:14550" and its kind. ONE table is the parser and the help text."""
+"""Endpoints: where a link ends, e.g. "udpin:127.0.0.1:14550".
+
+SCHEMES is the table of all link types: parser, help text and factory. To add a link type, write its module in
+link/transport/ and add its row here.
+"""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 
 class EndpointError(ValueError):
-    """The text of an endpoint is wrong; the message is one line that says what, where and what to do."""
+    """An endpoint cannot be parsed; the message is one line with the endpoint, the error and the remedy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,86 +34,142 @@ class Endpoint:
 
 @dataclass(frozen=True, slots=True)
 class Scheme:
-    """A kind of endpoint: how it looks, what it does, how its text is read."""
+    """One link type."""
 
-    form: str
+    syntax: str
     help: str
     parse: Callable[[str, str], Endpoint]
+    """Takes the scheme and what follows its colon."""
+    factory: str
+    """`module:function` of a TransportFactory (link/transport/transport.py), imported when the first one is opened."""
 
 
-def _host_port(scheme: str, rest: str) -> Endpoint:
+MIN_BAUD, MAX_BAUD = 300, 12_000_000
+"""From old radio modems to the fastest USB adapters; 57600 and 921600 are usual."""
+
+DEFAULT_BAUD = 57600
+"""Factory setting of telemetry radios."""
+
+ANY_ADDRESSES = ("0.0.0.0", "::")
+"""Addresses to listen on, and none to send to."""
+
+LOOPBACK = ("127.0.0.1", "::1", "localhost")
+
+
+def _parse_host_port(scheme: str, rest: str) -> Endpoint:
     text = f"{scheme}:{rest}"
     host, colon, port = rest.rpartition(":")
     host = host.removeprefix("[").removesuffix("]")
     if not colon or not host:
-        raise EndpointError(f"endpoint {text!r}: write {SCHEMES[scheme].form}, for example {scheme}:127.0.0.1:14550")
-    if not _within(port, 1, 65535):
+        raise EndpointError(f"endpoint {text!r}: write {SCHEMES[scheme].syntax}, for example {scheme}:127.0.0.1:14550")
+    if not _is_within(port, 1, 65535):
         raise EndpointError(f"endpoint {text!r}: port {port!r} is not a number from 1 to 65535")
     return Endpoint(text, scheme, host, int(port))
 
 
-def _within(digits: str, low: int, high: int) -> bool:
-    """Python's int takes other digits than 0 to 9 too, and raises for some thousands of them."""
+def _parse_destination(scheme: str, rest: str) -> Endpoint:
+    endpoint = _parse_host_port(scheme, rest)
+    if endpoint.host in ANY_ADDRESSES:
+        raise EndpointError(
+            f"endpoint {endpoint.text!r}: {endpoint.host} is not an address to send to; "
+            f"name the other end, or write udpin:{rest} to wait for it"
+        )
+    return endpoint
+
+
+def _is_within(digits: str, low: int, high: int) -> bool:
+    """Return whether `digits` is a number from `low` to `high`.
+
+    int() alone would accept other digits than 0 to 9, and raise for thousands of them.
+    """
     return digits.isascii() and digits.isdigit() and len(digits) < 20 and low <= int(digits) <= high
 
 
-def _path_baud(scheme: str, rest: str) -> Endpoint:
+def _parse_path_baud(scheme: str, rest: str) -> Endpoint:
     text = f"{scheme}:{rest}"
     path, colon, baud = rest.rpartition(":")  # names under /dev/serial/by-path hold colons, too
     if not colon or not path or not baud:
-        raise EndpointError(f"endpoint {text!r}: write {SCHEMES[scheme].form}, for example {scheme}:/dev/ttyAMA0:57600")
+        raise EndpointError(
+            f"endpoint {text!r}: write {SCHEMES[scheme].syntax}, for example {scheme}:/dev/ttyAMA0:57600"
+        )
     if not path.startswith("/"):
-        raise EndpointError(f"endpoint {text!r}: {path!r} is no path; write {scheme}:/dev/{path}:{baud}")
-    if not _within(baud, MIN_BAUD, MAX_BAUD):
+        raise EndpointError(f"endpoint {text!r}: {path!r} is not an absolute path; write {scheme}:/dev/{path}:{baud}")
+    if not _is_within(baud, MIN_BAUD, MAX_BAUD):
         raise EndpointError(f"endpoint {text!r}: baud rate {baud!r} is not a number from {MIN_BAUD} to {MAX_BAUD}")
     return Endpoint(text, scheme, path=path, baud=int(baud))
 
 
-MIN_BAUD, MAX_BAUD = 300, 12_000_000
-"""What a radio modem of old and the fastest USB adapters take; 57600 and 921600 are usual."""
+SCHEMES: dict[str, Scheme] = {
+    "udpin": Scheme(
+        "udpin:HOST:PORT",
+        "listen on this address; answer every peer that sends a heartbeat",
+        _parse_host_port,
+        "link.transport.udp:open_udp",
+    ),
+    "udpout": Scheme(
+        "udpout:HOST:PORT", "send to this address first", _parse_destination, "link.transport.udp:open_udp"
+    ),
+    "tcpin": Scheme(
+        "tcpin:HOST:PORT", "listen on this address for connections", _parse_host_port, "link.transport.tcp:open_tcpin"
+    ),
+    "tcpout": Scheme(
+        "tcpout:HOST:PORT",
+        "connect to this address; reconnect when the connection ends",
+        _parse_host_port,
+        "link.transport.tcp:open_tcpout",
+    ),
+    "serial": Scheme(
+        "serial:PATH:BAUD",
+        "serial port or USB radio; reopened after it was unplugged",
+        _parse_path_baud,
+        "link.transport.serial:open_serial",
+    ),
+}
+"""Scheme -> its link type."""
 
-DEFAULT_BAUD = 57600
-"""What telemetry radios have at first."""
 SCHEME_ALIASES = {"tcp": "tcpout", "udp": "udpin", "udpbcast": "udpout"}
 """MAVProxy's and pymavlink's names -> ours."""
 
-SCHEMES: dict[str, Scheme] = {
-    "udpin": Scheme("udpin:HOST:PORT", "wait on this address; answer whoever shows a heartbeat", _host_port),
-    "udpout": Scheme("udpout:HOST:PORT", "send to this address first", _host_port),
-    "tcpin": Scheme("tcpin:HOST:PORT", "wait on this address for connections", _host_port),
-    "tcpout": Scheme("tcpout:HOST:PORT", "connect to this address, again and again", _host_port),
-    "serial": Scheme("serial:PATH:BAUD", "serial port or USB radio; unplugged, it is waited for", _path_baud),
-}
-"""Scheme -> its parser and help. link/transport/transports.py holds what opens each."""
-
 
 def parse_endpoint(text: str) -> Endpoint:
-    """The endpoint that `text` names; `udpin://HOST:PORT` is the same as `udpin:HOST:PORT`. Raises EndpointError."""
+    """Parse one endpoint; `udpin://HOST:PORT` is the same as `udpin:HOST:PORT`. Raises EndpointError."""
     scheme, colon, rest = text.strip().partition(":")
     scheme = scheme.lower()
     if scheme not in SCHEMES or not colon:
         raise EndpointError(
             f"endpoint {text!r}: {_hint(text.strip(), scheme)}it must be one of "
-            + ", ".join(each.form for each in SCHEMES.values())
+            + ", ".join(each.syntax for each in SCHEMES.values())
         )
     return SCHEMES[scheme].parse(scheme, rest.removeprefix("//").rstrip("/"))
 
 
+def parse_endpoints(texts: Sequence[str]) -> list[Endpoint]:
+    """Parse all endpoints. Raises EndpointError, also for a socket or port that is given twice."""
+    endpoints = [parse_endpoint(text) for text in texts]
+    ends = [(each.scheme, each.host, each.port, each.path) for each in endpoints]
+    for number, endpoint in enumerate(endpoints):
+        if ends[number] in ends[:number]:
+            raise EndpointError(f"endpoint {endpoint.text!r} is given twice")
+    return endpoints
+
+
 def _hint(text: str, scheme: str) -> str:
-    """What was meant, where that can be told: a slip of the pen, or how MAVProxy writes it."""
+    """Return "did you mean ...? " for a typing error or MAVProxy's syntax, or an empty text."""
     if text.startswith("/dev/"):
         path, _, baud = text.replace(",", ":").rpartition(":")
         path, baud = (path, baud) if path and baud.isdigit() else (text, str(DEFAULT_BAUD))
         return f"did you mean serial:{path}:{baud}? "
-    near = (
-        [SCHEME_ALIASES[scheme]]
-        if scheme in SCHEME_ALIASES
-        else difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
-    )
-    return f"did you mean {near[0]}:? " if near else ""
+    near = difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
+    if scheme in SCHEME_ALIASES or near:
+        return f"did you mean {SCHEME_ALIASES.get(scheme) or near[0]}:? "
+    address = re.fullmatch(r"(localhost|[\w-]+(?:\.[\w-]+)+|\[[0-9a-fA-F:]+\]):[0-9]+", text)
+    if not address:
+        return ""
+    listen = address[1].strip("[]") in (*LOOPBACK, *ANY_ADDRESSES)
+    return f"did you mean {'udpin' if listen else 'udpout'}:{text}? "
 
 
 def endpoint_help() -> str:
-    """The table as lines for --help."""
-    width = max(len(each.form) for each in SCHEMES.values())
-    return "\n".join(f"  {each.form:<{width}}  {each.help}" for each in SCHEMES.values())
+    """Return the table of link types as lines for --help."""
+    width = max(len(each.syntax) for each in SCHEMES.values())
+    return "\n".join(f"  {each.syntax:<{width}}  {each.help}" for each in SCHEMES.values())

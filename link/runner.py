@@ -1,4 +1,4 @@
-"""The only loop: drives one core with its links. It knows sockets and time so that no core has to."""
+"""Event loop adapter: drives one core with its links, so that cores need neither sockets nor a clock."""
 
 from __future__ import annotations
 
@@ -22,47 +22,47 @@ from link.transport.transports import open_transports
 log = logging.getLogger(__name__)
 
 REPORT_PERIOD = 1.0
-"""s between two core.observe()."""
+"""s between two calls of core.observe()."""
 
 
 @runtime_checkable
 class SendListener(Protocol):
-    """A core that wants to know which packet sequence its messages got."""
+    """A core that needs the packet sequence of the messages it sent."""
 
     def handle_sent(self, message: Message, sequence: int, now: float) -> None:
-        """`message` went out under this number."""
+        """Take the sequence under which `message` was sent."""
 
 
 def open_links(
     endpoints: Sequence[str], *, system: int, component: int, wanted: frozenset[int] | None = None
 ) -> list[Link]:
-    """Open all endpoints, or none: raises EndpointError or LinkError. `wanted`: see Channel."""
+    """Open all endpoints, or none. Raises EndpointError or LinkError. `wanted`: see Channel."""
     return [
         Link(
-            wire,
+            transport,
             Channel(
-                wire.endpoint.text,
+                transport.endpoint.text,
                 index,
                 system=system,
                 component=component,
-                stream=wire.stream,
+                stream=transport.stream,
                 wanted=wanted,
-                target=wire.fixed_address,
-                capacity=wire.capacity,
+                target=transport.fixed_address,
+                capacity=transport.capacity,
             ),
         )
-        for index, wire in enumerate(open_transports(endpoints))
+        for index, transport in enumerate(open_transports(endpoints))
     ]
 
 
 class Runner:
-    """Drives `core`: messages in at once, messages out at once, a tick every `period` s at absolute deadlines.
+    """Drives a core: delivers and sends messages at once, ticks every `period` s at absolute deadlines.
 
-    With several links it also forwards between them (link/routing/router.py), as MAVLink asks of every system that has more than
-    one: two ground stations on two links of a vehicle hear each other. `route` false leaves that out.
+    With several links it also forwards between them (link/routing/router.py), as MAVLink asks of every system with more
+    than one: two ground stations on two links of a vehicle see each other. `route=False` disables that.
 
-    `broken` takes what goes wrong inside instead of run(): who names it may say last words over links that still work,
-    and then calls stop().
+    `broken` takes exceptions instead of run(): it may send final messages over links that still work, and then calls
+    stop().
     """
 
     def __init__(
@@ -73,9 +73,9 @@ class Runner:
         period: float,
         route: bool | None = None,
         broken: Callable[[Exception], None] | None = None,
-        tape: LogTap | None = None,
+        log_tap: LogTap | None = None,
     ) -> None:
-        """`tape` takes what all links hear, and what the core says, also where nobody listens."""
+        """`log_tap` records what all links receive and what the core sends, even without any peer."""
         self._core = core
         self._broken = broken
         self._links = links
@@ -84,15 +84,17 @@ class Runner:
         self._sent = core.handle_sent if isinstance(core, SendListener) else None
         self._ended: asyncio.Future[None] | None = None
         self._report_due = 0.0
-        self._troubles = LinkEvents()
+        self._events = LinkEvents()
         self._tick_due = 0.0
         self._timer: asyncio.TimerHandle | None = None
-        self._tape = tape
+        self._log_tap = log_tap
+        self._not_encoded: set[int] = set()
+        """Ids of messages whose encoding has failed and was logged: a message may be asked for 100 times a second."""
         for link in links:
-            link.channel.log_tap = tape
+            link.channel.log_tap = log_tap
 
     async def run(self) -> None:
-        """Run until stop() or until the core raises; that exception is raised here. Closes the links at the end."""
+        """Run until stop(), or until the core raises, and raise that. Closes the links at the end."""
         loop = asyncio.get_running_loop()
         self._ended = loop.create_future()
         self._tick_due = loop.time()
@@ -109,23 +111,23 @@ class Runner:
                 link.close()
 
     def stop(self) -> None:
-        """Let run() return."""
+        """End run()."""
         if self._ended and not self._ended.done():
             self._ended.set_result(None)
 
     def flush(self) -> None:
-        """Send what the core has now: for cores that are told things from elsewhere than a link."""
+        """Send the core's messages now, after it was changed by something other than a link."""
         self._guard(self._flush)
 
     def _send_remaining(self) -> None:
-        """What the core still says when it ends, also after an exception of its own."""
+        """Send the core's last messages when run() ends, also after an exception."""
         try:
             self._flush()
         except Exception as error:
             log.warning("the last messages could not be sent: %r", error)
 
     def _guard(self, step: Callable[[], None]) -> None:
-        """Callbacks of the loop have no caller to raise to: what goes wrong in one ends run()."""
+        """Run `step`; an exception ends run(), because a callback of the loop has no caller to raise to."""
         if self._ended is None or self._ended.done():
             return
         try:
@@ -136,26 +138,26 @@ class Runner:
             else:
                 self._broken(error)
 
-    def _deliver(self, index: int, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
-        self._guard(lambda: self._receive(index, pieces))
+    def _deliver(self, index: int, received: Sequence[tuple[bytes, Hashable]]) -> None:
+        self._guard(lambda: self._receive(index, received))
 
     def _handle_disconnect(self, index: int, address: Hashable) -> None:
         self._links[index].channel.handle_disconnect(address)
         if self._router:
             self._router.table.handle_disconnect(index, address)
 
-    def _receive(self, index: int, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
+    def _receive(self, index: int, received: Sequence[tuple[bytes, Hashable]]) -> None:
         now = asyncio.get_running_loop().time()
-        for data, address in pieces:
+        for data, address in received:
             self._hand_over(self._links[index].channel.receive(data, address, now), now)
         self._flush()
-        if self._router:  # after our own answers: what is for us comes first
-            self._forward(self._router.receive(index, pieces, now))
+        if self._router:  # after our own replies, which go first
+            self._forward(self._router.receive(index, received, now))
 
     def _forward(self, deliveries: Sequence[Delivery]) -> None:
-        for port, address, frames in deliveries:
+        for link, address, frames in deliveries:
             for frame in frames:
-                self._links[port].transport.send(frame, address)
+                self._links[link].transport.send(frame, address)
 
     def _hand_over(self, messages: list[Received], now: float) -> None:
         for received in messages:
@@ -164,7 +166,7 @@ class Runner:
     def _tick(self) -> None:
         self._guard(self._run_tick)
         loop = asyncio.get_running_loop()
-        # Absolute deadlines do not drift; after a pause the missed ticks are skipped, not made up for.
+        # Absolute deadlines do not drift. After a pause missed ticks are skipped.
         self._tick_due = max(self._tick_due + self._period, loop.time())
         self._timer = loop.call_at(self._tick_due, self._tick)
 
@@ -185,9 +187,9 @@ class Runner:
             link.channel.expire_peers(now)
         reports = [self._report(link, now) for link in self._links]
         for report in reports:
-            if news := self._troubles.update(report):
-                level = logging.WARNING if news.severity <= Severity.ERROR else logging.INFO
-                log.log(level, "%s: %s", report.name, news.text)
+            if event := self._events.update(report):
+                level = logging.WARNING if event.severity <= Severity.ERROR else logging.INFO
+                log.log(level, "%s: %s", report.name, event.text)
         self._core.observe(reports, now)
 
     @staticmethod
@@ -198,8 +200,14 @@ class Runner:
         for outgoing in self._core.messages_to_send():
             try:
                 self._send(outgoing)
-            except EncodeError:
-                log.exception("a message of ours could not be encoded and was not sent")
+            except EncodeError as error:
+                self._log_not_encoded(outgoing.message, error)
+
+    def _log_not_encoded(self, message: Message, error: EncodeError) -> None:
+        number = type(message).id
+        if number not in self._not_encoded:
+            self._not_encoded.add(number)
+            log.error("a message could not be encoded and was not sent: %s", error)
 
     def _send(self, outgoing: Outgoing) -> None:
         payload = encode_payload(outgoing.message)
@@ -208,8 +216,8 @@ class Runner:
                 link.transport.send(data, address)
                 if self._sent:
                     self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())
-        if self._tape:
-            self._tape.record_sent(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
+        if self._log_tap:
+            self._log_tap.record_sent(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
 
 
 def _router(links: Sequence[Link]) -> Router:

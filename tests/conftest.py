@@ -1,6 +1,4 @@
-"""Stops, with one line, where a thousand tests would fail for one reason; how hypothesis looks for examples; and where
-vehicles keep what is to be kept.
-"""
+"""Set up the suite: current generated code, repeatable hypothesis in CI, a state folder for each worker."""
 
 from __future__ import annotations
 
@@ -12,20 +10,31 @@ from hypothesis import HealthCheck, settings
 
 from dialects.fingerprint import fault
 
+LONG_TIMEOUT = 300
+"""s for a test that starts programs or simulates many minutes; a busy machine takes ten times as long."""
+LONG_MARKERS = ("slow", "e2e", "interop")
+
 settings.register_profile(
     "mavhelm",
-    deadline=None,  # a machine that pauses is no fault of the example
+    deadline=None,  # a pause of the machine must not fail an example
     suppress_health_check=[HealthCheck.too_slow],
-    derandomize="MAVHELM_CI" in os.environ,  # there the same each time: what is new is looked for at home
+    derandomize="MAVHELM_CI" in os.environ,  # CI tries the same examples each time; new ones are found on laptops
 )
 settings.load_profile("mavhelm")
 
 if reason := fault():
-    raise SystemExit(reason)  # here and not in a hook: the other conftest.py files import the dialect
+    raise SystemExit(reason)  # here and not in a hook, because other conftest.py files import the dialect
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """A folder of each worker's own, and not yours: a vehicle locks it."""
+    """Give each worker a state folder of its own, because a vehicle locks its folder."""
     state = tempfile.TemporaryDirectory(prefix="mavhelm-tests-")
     os.environ["XDG_STATE_HOME"] = state.name
     config.add_cleanup(state.cleanup)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Give LONG_TIMEOUT to the tests with one of LONG_MARKERS, unless they have a timeout of their own."""
+    for item in items:
+        if item.get_closest_marker("timeout") is None and any(map(item.get_closest_marker, LONG_MARKERS)):
+            item.add_marker(pytest.mark.timeout(LONG_TIMEOUT))

@@ -1,7 +1,7 @@
-"""Ports of loopback for tests: free now, and nobody else's before the program that they are meant for has opened them.
+"""Ports of loopback for tests: free now, and not taken before the program under test opens them.
 
 A port that the kernel chose (bind to 0) and that is closed again may go to any other socket of the machine, and several
-workers run tests. These lie below what the kernel gives away (ip_local_port_range), in a block of each process's own.
+workers run tests. These ports are below the kernel's range (ip_local_port_range), in a block for each process.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ import socket
 from collections.abc import Iterator
 
 FIRST, END, BLOCK = 16000, 32000, 200
-"""Ports that are given out, and how many of them a process has."""
+"""The range of ports, and how many a process has."""
 
 
 def free_port() -> int:
-    """A port that no UDP and no TCP socket of this machine has; not given out again for as long as possible."""
+    """Return a port that no UDP and no TCP socket of this machine has; not returned again for as long as possible."""
     return next(port for port in itertools.islice(_ours, BLOCK) if _is_free(port))
 
 
 def _block() -> Iterator[int]:
-    """The ports of this process, round and round. The block is held by a name that the kernel forgets with us."""
+    """Yield the ports of this process in turn. The kernel releases the name of the block when the process ends."""
     for first in range(FIRST, END, BLOCK):
         holder = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         try:

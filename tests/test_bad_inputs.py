@@ -1,4 +1,4 @@
-"""The bad inputs that the vehicle was designed against: each has a test, which carries its number in its name."""
+"""The bad inputs that the vehicle was designed against: each has a test with its number in the name."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ BAD_INPUTS = {
     73: "unknown FTP questions",
     74: "an FTP question said again",
 }
-"""Number -> what comes. Bytes, links, and what the system does have tests of their own in tests/link and tests/e2e."""
+"""Number -> input. Bytes, links, and system faults have tests of their own in tests/link and tests/e2e."""
 
 
 def numbered() -> dict[int, list[str]]:

@@ -1,4 +1,4 @@
-"""The station and the rover meet: what is told only to who asks for it comes as soon as they see each other."""
+"""The station and the rover meet: messages that are sent on request only arrive as soon as they see each other."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def view(drive: Drive) -> VehicleView | None:
 
 
 def complete(drive: Drive) -> bool:
-    """Who is in control, and why nothing moves, are known: CONTROL_STATUS and ROVER_DRIVE_STATUS are here."""
+    """Return whether CONTROL_STATUS and ROVER_DRIVE_STATUS have arrived: who is in control, and why nothing moves."""
     vehicle = view(drive)
     return vehicle is not None and vehicle.driver is not None and "disarmed" in vehicle.limits
 

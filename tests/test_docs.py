@@ -1,4 +1,4 @@
-"""What the docs say is there: every file, test, parameter and command that they name."""
+"""Every file, test, parameter and command that the docs name exists."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import pytest
 
 from groundstation.cli import main as station_main
 from link.bridge import __main__ as bridge_main
+from tests.recipes.tree import documented_counts
 from vehicle.cli import options, subcommands
 from vehicle.params import PARAMETERS
 
@@ -20,12 +21,12 @@ FOLDERS = ("dialects", "link", "vehicle", "groundstation", "tests", "docs", ".ci
 
 
 def quoted(text: str) -> list[str]:
-    """What stands between backticks, outside code blocks."""
+    """Return the texts between backticks, outside code blocks."""
     return re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
 
 
 def functions(path: Path) -> set[str]:
-    """Names of the functions in a test file."""
+    """Return the names of the functions in a test file."""
     return {
         node.name
         for node in ast.walk(ast.parse(path.read_text()))
@@ -59,11 +60,11 @@ def test_parameters_in_the_safety_document_have_their_defaults() -> None:
 
 
 COMMANDS = re.compile(r"(?:^|\s|bin/)(vehicle|bridge|groundstation)((?: [^#|&;]*)?)(?:[#|&;]|$)")
-"""A command of ours in a line of a shell block, and its words."""
+"""One of our commands in a line of a shell block, and its arguments."""
 
 
 def commands(text: str) -> list[tuple[str, list[str]]]:
-    """Commands of ours in the shell blocks of a document."""
+    """Return our commands in the shell blocks of a document."""
     lines = [line for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL) for line in block.splitlines()]
     found = [match for line in lines if (match := COMMANDS.search(line.partition(" #")[0]))]
     return [(match[1], shlex.split(match[2].replace("$word", "reboot"))) for match in found]
@@ -78,8 +79,10 @@ def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, w
         subcommands.build_parser(words[0]).parse_args(words[1:])
     elif program == "vehicle":
         options.build_parser().parse_intermixed_args(options.join_home_option(words))
+    elif program == "groundstation":
+        station_main._parser()[0].parse_args(words)
     else:
-        {"bridge": bridge_main, "groundstation": station_main}[program]._parser().parse_args(words)
+        bridge_main._parser().parse_args(words)
 
 
 def test_commands_are_found_in_the_documents() -> None:
@@ -88,6 +91,22 @@ def test_commands_are_found_in_the_documents() -> None:
     assert {words[0] for doc, _, words in SHOWN if doc == "pi.md"} >= {"init", "check", "motor-test", "systemd-unit"}
 
 
-def test_ci_runs_the_test_command_of_the_readme() -> None:
-    assert ".venv/bin/pytest" in (ROOT / "README.md").read_text()
-    assert ".venv/bin/pytest" in (ROOT / ".ci/run").read_text()
+README_COMMAND = ".venv/bin/pytest -n auto --dist loadgroup -m 'not slow'"
+
+
+def test_ci_runs_the_test_command_of_the_readme_and_the_slow_tests() -> None:
+    assert README_COMMAND in (ROOT / "README.md").read_text()
+    [command] = [line for line in (ROOT / ".ci/run").read_text().splitlines() if ".venv/bin/pytest" in line]
+    assert command.endswith(".venv/bin/pytest -n 3 --dist loadgroup")
+
+
+def test_make_runs_the_test_command_of_the_readme() -> None:
+    makefile = (ROOT / "Makefile").read_text()
+    assert "$(PYTEST) $(PARALLEL) -m 'not slow'\n" in makefile
+    assert "PARALLEL = -n auto --dist loadgroup\n" in makefile
+
+
+def test_every_recipe_of_contributing_is_followed_by_a_test() -> None:
+    tests = "".join(path.read_text() for path in (ROOT / "tests/recipes").glob("test_*.py"))
+    assert len(documented_counts()) == 11
+    assert [name for name in documented_counts() if f'check_recipe("{name}")' not in tests] == []

@@ -30,13 +30,13 @@ from vehicle.sim.chassis import ChassisDimensions, SkidChassis
 FALLS_WITHIN = 0.5
 NEUTRAL_WITHIN = 1.0
 AHEAD_IN_GUIDED = SetPositionTargetLocalNed(0, 1, 1, 8, 1479, 0, 0, 0, 1.0, 0, 0, 0, 0, 0, 0, 0)
-"""1 m/s along the nose, the Twist of MAVLink (body frame; position, acceleration and yaw ignored)."""
+"""1 m/s forward, as a Twist of ROS (body frame; position, acceleration and yaw ignored)."""
 REPEAT = 0.04
 """s between the auto-repeats of a held key."""
 
 
 class Drive:
-    """An operator at the keys, a station, a link and a simulated rover."""
+    """An operator with keys, a station, a link and a simulated rover."""
 
     def __init__(self, *, loss: float = 0.0, delay: float = 0.0, seed: int = 0, style: str = "hold") -> None:
         start = 100.0
@@ -66,7 +66,7 @@ class Drive:
 
     @property
     def power(self) -> float:
-        """The greatest motor output now."""
+        """The largest motor output now."""
         return max(map(abs, self.motors.outputs), default=0.0)
 
     def tell(self, *intents: i.AnyIntent) -> None:
@@ -94,7 +94,7 @@ class Drive:
         self.moved.append((now, self.power))
 
     def get_going(self) -> None:
-        """Arm, press the key, and see the wheels turn at the full demand."""
+        """Arm, press the key, and wait until the wheels turn at the full demand."""
         self.until(lambda: self.station.snapshot(self.world.now, 0).vehicle is not None)
         self.run(2.0)
         self.tell(i.Arm())
@@ -105,7 +105,7 @@ class Drive:
         assert self.rover.outputs.enabled
 
     def assert_stops(self, since: float, *, falls: float = FALLS_WITHIN, neutral: float = NEUTRAL_WITHIN) -> None:
-        """From `since` the outputs fall and become neutral in time, and stay so."""
+        """Check that from `since` the outputs fall and become neutral in time, and stay neutral."""
         power = self.power
         assert power > 0.5, "the wheels must turn, or there is nothing to stop"
         self.until(lambda: self.power < power, within=falls - (self.world.now - since) + self.world.step)
@@ -167,7 +167,7 @@ def test_killed_or_frozen_ground_station(style: str) -> None:
 @pytest.mark.parametrize("style", ["hold", "latch"])
 @pytest.mark.parametrize("seconds", [0.6, 1.2, 1.8, 2.5, 4.0, 10.0, 90.0])
 def test_link_cut_and_back(style: str, seconds: float) -> None:
-    """However long the cut: nothing moves afterwards until the key was let go and, where the mode fell back, MANUAL."""
+    """However long the cut, nothing moves afterwards until the key was released and, after HOLD, MANUAL selected."""
     drive = Drive(style=style)
     drive.get_going()
     drive.world.cut()
@@ -209,6 +209,7 @@ def test_a_hiccup_needs_the_key_let_go_once() -> None:
     drive.until(lambda: drive.power > 0.5, within=2.0)
 
 
+@pytest.mark.slow
 def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
     drive = Drive(loss=0.10, delay=0.010, seed=5)
     drive.get_going()
@@ -220,6 +221,7 @@ def test_ten_percent_loss_for_ten_minutes_drives_on() -> None:
 
 @settings(max_examples=15)
 @given(st.integers(0, 10_000))
+@pytest.mark.slow
 def test_thirty_percent_loss_never_moves_late(seed: int) -> None:
     drive = Drive(loss=0.30, delay=0.010, seed=seed)
     drive.until(lambda: drive.station.snapshot(drive.world.now, 0).vehicle is not None)
@@ -251,7 +253,8 @@ def test_emergency_stop_is_at_once_and_stays() -> None:
 
 
 def test_the_stop_key_stops_a_rover_that_drives_itself() -> None:
-    """Neutral sticks stop no mission: the key has to mean HOLD there. A closed gate does not: the mission goes on."""
+    """Neutral sticks do not stop a mission, so the key has to mean HOLD there. A closed gate does not: the mission
+    continues."""
     drive = Drive()
     drive.get_going()
     drive.held = None
@@ -283,7 +286,7 @@ def test_disarm_is_at_once() -> None:
 
 @pytest.mark.parametrize("wait", [0.0, 0.05, 0.2])
 def test_a_key_pressed_right_after_arming_drives(wait: float) -> None:
-    """The vehicle wants to see neutral first; the station says it before it lets the first key through."""
+    """The vehicle needs a neutral demand first; the station sends it before it lets the first key through."""
     drive = Drive()
     drive.run(2.0)
     drive.tell(i.Arm())

@@ -1,6 +1,6 @@
-"""What a busy machine takes: how long programs were ready to run and had no processor, as the kernel counts it.
+"""How long a busy machine delayed programs: the time that they were ready to run without a processor (Linux schedstat).
 
-A bound on a time is the programs' own; a machine that is shared adds what it made them wait, and no more is granted.
+A bound on a time is the programs' own; the delays of a shared machine are added to it, and no more.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ SECOND = 1e-9
 
 
 class Waits:
-    """Of processes, their children and this process: all their threads, from now on.
+    """The delays of processes, their children and this process: all their threads, from now on.
 
-    Ask now and then: of a thread that has ended no more is known than at the last time. Where the kernel does not
-    count (CONFIG_SCHED_INFO), it is 0.
+    Call `total` now and then: of a thread that has ended, only what was read before is known. Without CONFIG_SCHED_INFO
+    in the kernel, it is 0.
     """
 
     def __init__(self, *processes: int) -> None:
@@ -28,7 +28,7 @@ class Waits:
         self._begun = dict(self._now)
 
     def total(self) -> float:
-        """s so far, of all threads together, and what other guests of the machine took."""
+        """Return the s so far, of all threads together, and the time that other guests of the machine took."""
         for process in self._processes:
             self._look(process)
             for child in _children(process) if process != os.getpid() else ():
@@ -50,5 +50,5 @@ def _children(process: int) -> list[int]:
 
 
 def _stolen() -> float:
-    """s of all processors together (/proc/stat, the eighth number of its first line)."""
+    """Return the stolen s of all processors together (/proc/stat, the eighth number of its first line)."""
     return int(Path("/proc/stat").read_text().split(maxsplit=9)[8]) / os.sysconf("SC_CLK_TCK")

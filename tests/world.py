@@ -14,7 +14,7 @@ from link.transport.memory import LossyPipe
 
 @dataclass
 class Host:
-    """A core with its one channel, as the runner would drive it."""
+    """A core with its one channel, driven as the runner would."""
 
     core: Core
     channel: Channel
@@ -23,10 +23,15 @@ class Host:
     report_due: float = 0.0
     sent: list[tuple[float, Message]] = field(default_factory=list)
     frozen: bool = False
-    """As after SIGSTOP: it neither hears nor acts."""
+    """As after SIGSTOP: it neither receives nor acts."""
+    listener: SendListener | None = field(init=False)
+    """The core, if it wants to know what was sent. Checked once, because isinstance() of a protocol is slow."""
+
+    def __post_init__(self) -> None:
+        self.listener = self.core if isinstance(self.core, SendListener) else None
 
     def advance(self, now: float) -> None:
-        """What the runner does on time."""
+        """Do what the runner does when time passes."""
         if self.frozen or now < self.tick_due:
             return
         self.tick_due = max(self.tick_due + self.period, now)
@@ -36,23 +41,23 @@ class Host:
             self.core.observe([self.channel.report()], now)
         self.core.tick(now)
 
-    def hear(self, data: bytes, address: Hashable, now: float) -> None:
-        """What the runner does when something arrives."""
+    def receive(self, data: bytes, address: Hashable, now: float) -> None:
+        """Do what the runner does when data arrives."""
         if self.frozen:
             return
         for received in self.channel.receive(data, address, now):
             self.core.receive(received, now)
 
-    def speak(self, now: float) -> list[bytes]:
-        """Frames to put on the wire."""
+    def pop_frames(self, now: float) -> list[bytes]:
+        """Return the frames to send."""
         frames: list[bytes] = []
         outbox: list[Outgoing] = [] if self.frozen else self.core.messages_to_send()
         for outgoing in outbox:
             self.sent.append((now, outgoing.message))
             for data, _, sequence in self.channel.send(outgoing):
                 frames.append(data)
-                if isinstance(self.core, SendListener):
-                    self.core.handle_sent(outgoing.message, sequence, now)
+                if self.listener is not None:
+                    self.listener.handle_sent(outgoing.message, sequence, now)
         return frames
 
 
@@ -98,7 +103,7 @@ class World:
                 each(self.now)
 
     def run_until(self, condition: Callable[[], bool], within: float) -> float:
-        """Let time pass until `condition`; returns how long it took. AssertionError when it takes longer."""
+        """Let time pass until `condition`; return how long it took. Raises AssertionError if it takes longer."""
         start = self.now
         while not condition():
             assert self.now - start < within, f"not within {within} s"
@@ -106,7 +111,7 @@ class World:
         return self.now - start
 
     def cut(self, cut: bool = True) -> None:
-        """Cut both directions, or join them again."""
+        """Cut both directions, or connect them again."""
         self.up.cut = self.down.cut = cut
 
     def settle(self) -> None:
@@ -115,15 +120,15 @@ class World:
 
     def _one_step(self) -> None:
         for data in self.down.receive(self.now):
-            self.near.hear(data, "far", self.now)
+            self.near.receive(data, "far", self.now)
         for data in self.up.receive(self.now):
-            self.far.hear(data, "near", self.now)
+            self.far.receive(data, "near", self.now)
         self.near.advance(self.now)
         self.far.advance(self.now)
         self._exchange()
 
     def _exchange(self) -> None:
-        for data in self.near.speak(self.now):
+        for data in self.near.pop_frames(self.now):
             self.up.send(data, self.now)
-        for data in self.far.speak(self.now):
+        for data in self.far.pop_frames(self.now):
             self.down.send(data, self.now)

@@ -1,1 +1,1 @@
-"""Who obeys: the rover daemon and its simulator. Runs without Textual."""
+"""The vehicle: a rover daemon and its simulator. Does not need Textual."""

@@ -1,11 +1,11 @@
-"""The rover joined to its body: sensors in, motors out, each cycle and on each message; no input or output of its own.
+"""Runs the controller against real or simulated motors and sensors, and stops the motors on any error.
 
-It is a core like the rover inside it, so tests drive it in virtual time. Its rules:
-what the rover decides on arrival of a message goes to the motors before `receive` returns, and not at the next tick;
-a motor driver that fails is stopped first and told to the rover after;
-the emergency stop beside the motors is asked each cycle, and one that cannot be read is open;
-an exception of any kind stops the motors before it goes on;
-once closed, nothing turns again, whatever the rover still says.
+It is a core like the rover inside it, so that tests run it in virtual time. Its rules:
+- what the rover decides when a message arrives is written to the motors before `receive` returns, not at the next tick;
+- a motor driver that fails is stopped first, and reported to the rover after that;
+- the emergency-stop input is read each cycle, and one that cannot be read counts as pressed;
+- an exception of any kind stops the motors before it propagates;
+- once closed, no motor turns again, whatever the outputs of the rover are.
 """
 
 from __future__ import annotations
@@ -21,49 +21,49 @@ from vehicle.readings import Readings
 from vehicle.sensors import Sensors
 
 MOTOR_RETRY_TIME = 1.0
-"""s after a motor failure until the motors are tried again, standing still: a driver that lost its bus for a moment may
-come back, and one that did not must not be asked so often that the bus stays busy."""
+"""s after a motor failure until the motors are tested again, at neutral: a driver may recover from a short loss of its
+bus, and must not be tried so often that the bus stays busy."""
 
 
 class Controller(Core, Protocol):
-    """What decides; vehicle.rover.Rover is one."""
+    """Decides the motor outputs; vehicle.rover.Rover is one."""
 
     @property
     def outputs(self) -> Outputs:
-        """What the motors must get now."""
+        """The outputs that the motors must get now."""
 
     def sense(self, readings: Readings, now: float) -> None:
-        """Take what the sensors say, each cycle before the tick."""
+        """Take the readings of the sensors, each cycle before the tick."""
 
     def update_estop_input(self, reason: str | None, now: float) -> None:
-        """Why the emergency stop beside the motors stops them, or None while it is closed; each cycle before the tick.
+        """Take why the emergency-stop input stops the motors, or None while it is closed; each cycle before the tick.
 
-        Also at once where the motors refuse because of it; they are stopped already then.
+        Also called at once if the motors refuse outputs because of it; they are stopped by then.
         """
 
     def motor_failed(self, reason: str, now: float) -> None:
-        """The motors did not take their outputs and are stopped."""
+        """Handle a failure of the motors, which are stopped by now."""
 
     def motor_repaired(self, now: float) -> None:
-        """The motors, still stopped, obey again."""
+        """Handle a motor driver that works again; the motors are still stopped."""
 
     def shutdown(self, now: float) -> None:
-        """Prepare the last messages; the motors are stopped already."""
+        """Queue the last messages; the motors are stopped by now."""
 
 
 class Drivetrain:
-    """Motors that follow Outputs: powered and written when something changes, without power after any failure."""
+    """Writes Outputs to the motors: enabled and written when something changes, disabled after any failure."""
 
     def __init__(self, motors: Motors, prove: Callable[[], None]) -> None:
         self.prove = prove
-        """Raises MotorError as long as the motors must not be armed."""
+        """Raises MotorError while the motors must not be armed."""
         self._motors = motors
         self._neutral = (0.0,) * motors.count
         self._powered = False
         self._written: tuple[float, ...] | None = None
 
     def follow(self, outputs: Outputs, *, refresh: bool) -> None:
-        """Bring the motors to `outputs`; with `refresh` even unchanged ones. Raises MotorError; then they stand."""
+        """Write `outputs`, with `refresh` even if unchanged. Raises MotorError after stopping the motors."""
         try:
             if outputs.enabled:
                 self._power()
@@ -75,18 +75,18 @@ class Drivetrain:
             raise
 
     def self_test(self) -> None:
-        """Write neutral to motors without power. Raises MotorError."""
+        """Write neutral to disabled motors. Raises MotorError."""
         self._unpower()
         self.prove()
         self._motors.set(self._neutral)
 
     def close(self) -> None:
-        """Neutral, disabled, let go; each step is tried even where the one before raised.
+        """Set neutral, disable and close the motors; each step is tried even if the one before raised.
 
-        Raises what `disable` or `close` raise: then the motors may still turn. A driver that does not even take neutral
-        any more is no matter as long as it gives up the power.
+        Raises what `disable` or `close` raise: the motors may still turn then. A failure to set neutral is ignored,
+        because disabled motors do not turn.
         """
-        with contextlib.ExitStack() as steps:  # last in, first out
+        with contextlib.ExitStack() as steps:  # runs last in, first out
             steps.callback(self._motors.close)
             steps.callback(self._motors.disable)
             with contextlib.suppress(Exception):
@@ -107,18 +107,18 @@ class Drivetrain:
             self._written = throttles
 
     def _stop(self) -> None:
-        """After a failure. Where even this fails they count as powered, so that each cycle tries again."""
+        """Disable the motors after a failure. If that fails they count as enabled, so that each cycle tries again."""
         self._powered, self._written = True, None
         with contextlib.suppress(MotorError):
             self._unpower()
 
 
 class ControlLoop:
-    """A `link.core.Core` that owns its motors."""
+    """A `link.core.Core` that owns the motors."""
 
     def __init__(
         self,
-        mind: Controller,
+        controller: Controller,
         motors: Motors,
         sensors: Sensors,
         *,
@@ -126,16 +126,16 @@ class ControlLoop:
         prove: Callable[[], None] = lambda: None,
         completed: Callable[[float], None] = lambda now: None,
     ) -> None:
-        """`stop_input` asks the emergency stop beside the motors (vehicle.motors.stop_input), `prove` if they may be
-        armed (vehicle.motors.proof); `completed` is told the time of each control cycle that came to its end, down to
-        the motors.
+        """Check that the driver has as many motors as the DRIVE_TYPE of the rover, or raise MotorError.
 
-        Raises MotorError where the driver has another number of motors than the rover's kind of drive.
+        `stop_input` reads the emergency-stop input (vehicle.motors.estop_reader), `prove` checks that the motors may be
+        armed (vehicle.motors.arming_check). `completed` is called with the time of each control cycle after the motors
+        are written.
         """
-        wanted = len(mind.outputs.throttles)
-        if motors.count != wanted:
-            raise MotorError(f"the motor driver has {motors.count} motors, this drive needs {wanted}")
-        self._mind = mind
+        needed = len(controller.outputs.throttles)
+        if motors.count != needed:
+            raise MotorError(f"the motor driver has {motors.count} motors, this drive needs {needed}")
+        self._controller = controller
         self._drivetrain = Drivetrain(motors, prove)
         self._proven = False
         self._sensors = sensors
@@ -146,45 +146,45 @@ class ControlLoop:
 
     def receive(self, received: Received, now: float) -> None:
         """Act on one message, down to the motors."""
-        self._guard(lambda: self._mind.receive(received, now), now)
+        self._guard(lambda: self._controller.receive(received, now), now)
 
     def tick(self, now: float) -> None:
-        """One control cycle: sense, decide, drive.
+        """Run one control cycle: read the sensors, decide, write the motors.
 
-        Motors with power are written each cycle, changed or not: a driver with a timeout of its own then stops by
-        itself when the cycles end.
+        Enabled motors are written each cycle, changed or not: a driver with a timeout of its own stops by itself when
+        the cycles end.
         """
         self._guard(lambda: self._cycle(now), now, refresh=True)
         if not self._closed:
             self._completed(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Act on what the links say of themselves."""
-        self._guard(lambda: self._mind.observe(reports, now), now)
+        """Take the reports of the links."""
+        self._guard(lambda: self._controller.observe(reports, now), now)
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What the rover says; empties what it returns."""
+        """Return what the rover sends now and forget it."""
         try:
-            return self._mind.messages_to_send()
+            return self._controller.messages_to_send()
         except BaseException:
             self.close()
             raise
 
     def close(self) -> None:
-        """Stop the motors for good. May come twice. Raises where they may still turn, after every step was tried."""
+        """Stop the motors for good. May be called twice. Raises if they may still turn, after trying every step."""
         if not self._closed:
             self._closed = True
             self._drivetrain.close()
 
     def shutdown(self, now: float) -> None:
-        """Close, then let the rover prepare its last messages."""
+        """Close, then let the rover queue its last messages."""
         try:
             self.close()
         finally:
-            self._mind.shutdown(now)
+            self._controller.shutdown(now)
 
     def abort(self, error: BaseException, now: float) -> None:
-        """Shut down because of `error`, which goes on after this: it gets a note where the motors may still turn."""
+        """Shut down because of `error`, which propagates after this; it gets a note if the motors may still turn."""
         if self._closed:
             return
         try:
@@ -201,16 +201,16 @@ class ControlLoop:
             raise
 
     def _cycle(self, now: float) -> None:
-        self._mind.update_estop_input(self._stop_reason(), now)
-        self._mind.sense(self._sensors.read(now), now)
-        self._mind.tick(now)
+        self._controller.update_estop_input(self._stop_reason(), now)
+        self._controller.sense(self._sensors.read(now), now)
+        self._controller.tick(now)
         if not self._proven:
             self._prove(now)
         if self._retry_due is not None and now >= self._retry_due and not self._closed:
             self._retry(now)
 
     def _prove(self, now: float) -> None:
-        """Once, in the first cycle; then it belongs to the test after each failure."""
+        """Check once, in the first cycle, that the motors may be armed; the self-test repeats it after a failure."""
         self._proven = True
         try:
             self._drivetrain.prove()
@@ -219,7 +219,7 @@ class ControlLoop:
 
     def _handle_motor_failure(self, reason: str, now: float) -> None:
         self._retry_due = now + MOTOR_RETRY_TIME
-        self._mind.motor_failed(reason, now)
+        self._controller.motor_failed(reason, now)
 
     def _stop_reason(self) -> str | None:
         try:
@@ -231,11 +231,11 @@ class ControlLoop:
         if self._closed:
             return
         try:
-            self._drivetrain.follow(self._mind.outputs, refresh=refresh)
-        except StopPressedError as error:  # pressed since this cycle asked
-            self._mind.update_estop_input(str(error), now)
+            self._drivetrain.follow(self._controller.outputs, refresh=refresh)
+        except StopPressedError as error:  # pressed after the input was read in this cycle
+            self._controller.update_estop_input(str(error), now)
         except MotorError as error:
-            if self._retry_due is None:  # told once, not each cycle until it is repaired
+            if self._retry_due is None:  # reported once, not in each cycle until it is repaired
                 self._handle_motor_failure(str(error), now)
 
     def _retry(self, now: float) -> None:
@@ -245,4 +245,4 @@ class ControlLoop:
             self._retry_due = now + MOTOR_RETRY_TIME
         else:
             self._retry_due = None
-            self._mind.motor_repaired(now)
+            self._controller.motor_repaired(now)

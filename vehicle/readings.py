@@ -1,6 +1,6 @@
-"""What the sensors say, raw, as one value a cycle; reading them is vehicle/sensors' and vehicle/sim's work.
+"""The raw sensor readings of one cycle, from vehicle/sensors or vehicle/sim.
 
-What is believed of them is vehicle/navigation/estimator.py's.
+The estimator (vehicle/navigation/estimator.py) decides which of them it uses.
 """
 
 from __future__ import annotations
@@ -10,55 +10,55 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class ComputerReadings:
-    """How the computer on board is; for ONBOARD_COMPUTER_STATUS and for what follows from a weak supply or heat."""
+    """State of the companion computer, for ONBOARD_COMPUTER_STATUS and the overheat failsafe."""
 
     temperature: float | None = None
-    """Degrees Celsius of the processor."""
+    """Temperature of the processor in degrees Celsius."""
     load: float | None = None
-    """Processes that want to run, a processor each: 1 is busy, more is too much. Mean of a minute."""
+    """Load average of 1 min divided by the number of cores: 1 is fully busy, more is overloaded."""
     memory_used: int | None = None
-    """bytes"""
+    """Bytes."""
     memory_total: int | None = None
     uptime: float | None = None
-    """s"""
+    """s since the computer booted."""
     under_voltage: bool | None = None
-    """The supply is too weak now."""
+    """The supply voltage is too low now."""
     throttled: bool | None = None
-    """The processor is slowed down now, by heat or by a weak supply."""
+    """The processor is throttled now, because of heat or low voltage."""
 
 
 @dataclass(frozen=True, slots=True)
 class SensorFault:
-    """Why a sensor gives nothing."""
+    """Why a sensor gives no readings."""
 
     sensor: str
-    """As the driver calls it: battery, gps."""
+    """Its name: battery, gps."""
     reason: str
     """One line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Readings:
-    """The newest of every sensor; None where there is none. Units are SI; angles in rad, yaw clockwise from north."""
+    """The newest readings of all sensors; None without one. SI units; angles in rad, yaw clockwise from north."""
 
     roll: float | None = None
     pitch: float | None = None
     yaw: float | None = None
-    """What the compass says."""
+    """Heading of the compass."""
     yaw_rate: float | None = None
-    """rad/s, clockwise positive; what the gyro says."""
+    """rad/s of the gyro, clockwise positive."""
     velocity_north: float | None = None
-    """m/s over ground by GPS."""
+    """m/s over ground, from GPS."""
     velocity_east: float | None = None
     speed: float | None = None
-    """m/s along the nose by wheels, negative backwards."""
+    """m/s forwards, from wheel encoders; negative backwards."""
     latitude: float | None = None
     """Degrees."""
     longitude: float | None = None
     altitude: float | None = None
-    """m above mean sea level."""
+    """m above mean sea level, from GPS."""
     gps_fix: int | None = None
-    """GPS_FIX_TYPE: 3 and more is a 3D fix."""
+    """GPS_FIX_TYPE: 3 and above is a 3D fix."""
     gps_satellites: int | None = None
     gps_hdop: float | None = None
     battery_voltage: float | None = None
@@ -69,9 +69,9 @@ class Readings:
     """m/s of each wheel, in motor order."""
     computer: ComputerReadings | None = None
     configured: tuple[str, ...] = ()
-    """Sensors that there should be, whether they answer or not, by the name that SensorFault has."""
+    """Names of the configured sensors, whether they respond or not, as in SensorFault."""
     faults: tuple[SensorFault, ...] = ()
-    """Of the sensors that give nothing now; for the driver to read."""
+    """Faults of the sensors that give no readings now."""
 
 
 NO_READINGS = Readings()

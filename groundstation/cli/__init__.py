@@ -1,1 +1,1 @@
-"""The command line of `groundstation`."""
+"""Command line of `groundstation`."""

@@ -1,4 +1,4 @@
-"""The command line of the ground station: judges what the user typed before the screen opens, then hands over."""
+"""Command line of the ground station: checks the arguments before the screen opens, then runs the UI."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from pathlib import Path
 
 from platformdirs import user_log_path
 
+from groundstation.cli.unknown_options import describe_unknown
 from groundstation.client import StationClient, StationError
 from groundstation.input.keymap import KEYMAPS, KeymapError
 from groundstation.input.keymap_file import load_keymap
@@ -21,7 +22,7 @@ from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
 
 DEFAULT_ENDPOINT = "udpin:127.0.0.1:14550"
-"""The port that vehicles and simulators send to by custom; of this machine only, because MAVLink has no password."""
+"""The port that vehicles and simulators usually send to; this machine only, because MAVLink has no password."""
 
 MIN_TERMINAL_SIZE = (40, 10)
 """Columns and rows below which not even the message fits that the terminal is too small."""
@@ -31,13 +32,13 @@ examples:
   groundstation --sitl                     start a simulated rover and drive it
   groundstation                            wait for a vehicle on {DEFAULT_ENDPOINT}
   groundstation udpin:0.0.0.0:14550        the same, from any machine of the network
-  groundstation udpout:192.168.1.20:14550  speak first, to a vehicle that waits
-  groundstation --style latch --speed 0.3  the article's way of driving, slowly
+  groundstation udpout:192.168.1.20:14550  send first, to a vehicle that listens
+  groundstation --style latch --speed 0.3  a key drives until the next key, slowly
   groundstation --keys teleop              the keys of teleop_twist_keyboard
-  groundstation --keys my.toml             your own; see below
+  groundstation --keys my.toml             your own keys; see below
 
-first drive: `r` then `y` arms, hold `i` (or w, or the up arrow) to drive, let go to stop,
-`r` disarms. Space stops, `!` is the emergency stop everywhere, `?` shows all keys, Ctrl-Q leaves.
+first drive: `r` then `y` arms, hold `i` (or w, or the up arrow) to drive, release to stop,
+`r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
 
 endpoints:
 {endpoint_help()}
@@ -46,18 +47,28 @@ key map file (--keys my.toml): replaces the keys of the actions it names
   base = "standard"            # or "teleop"
   [keys]
   "drive.forward" = ["e", "up"]
+
+status line: loss: lost frames; rtt: round trip to the vehicle; sent: demands per second;
+cmd: age of the demand that the motors obey; key→motor: latency; tty: round trip to the terminal
+
+key release: terminals with the kitty keyboard protocol report it, and driving ends with the key.
+In others, and inside tmux, driving ends when the key has stopped repeating; the screen shows the time.
+
+exit codes: 0 after a session, 1 if the station crashed, 2 for wrong arguments
 """
 
 
 class UsageError(Exception):
-    """The user's mistake, in one line."""
+    """A mistake on the command line; the message is one line for the user."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the ground station. 0 after a session, 2 after a mistake of the user's, 1 when the station broke."""
+    """Run the ground station. Returns 0 after a session, 2 for wrong arguments, 1 when the station crashed."""
     stdio.ensure_open()
-    parser = _parser()
-    options = parser.parse_args(parser.reject_empty(sys.argv[1:] if arguments is None else arguments))
+    parser, names = _parser()
+    options, unknown = parser.parse_known_args(parser.reject_empty(sys.argv[1:] if arguments is None else arguments))
+    if unknown:
+        parser.error(describe_unknown(unknown, names))
     try:
         return _run(options)
     except (UsageError, EndpointError, KeymapError, StationError) as error:
@@ -69,7 +80,7 @@ def _run(options: argparse.Namespace) -> int:
     keymap = load_keymap(options.keys)
     endpoints = options.endpoints or ([] if options.sitl else [DEFAULT_ENDPOINT])
     for endpoint in endpoints:
-        parse_endpoint(endpoint)
+        _check_endpoint(endpoint)
     _check_terminal()
     log_file = _log_file(options.log_file)
     client = StationClient.start(
@@ -81,36 +92,48 @@ def _run(options: argparse.Namespace) -> int:
         log_file=log_file,
     )
     try:
-        from groundstation.ui.app import run  # half a second that a mistake need not wait for
+        from groundstation.ui.app import run  # takes half a second, so only after the arguments are checked
 
         return run(client, keymap=keymap, log_file=log_file)
     finally:
         client.close()
 
 
+def _check_endpoint(text: str) -> None:
+    if ":" not in text and "/" not in text:
+        raise UsageError(f"{text!r} is not an endpoint such as {DEFAULT_ENDPOINT} (groundstation --help lists them)")
+    parse_endpoint(text)
+
+
 def _check_terminal() -> None:
     for name, stream in (("input", sys.stdin), ("output", sys.stdout)):
         if stream is None or not stream.isatty():
-            raise UsageError(f"standard {name} is not a terminal: run it in one, without a pipe or redirection")
+            raise UsageError(
+                f"standard {name} is not a terminal: run groundstation in one, without a pipe or redirection"
+            )
     columns, rows = shutil.get_terminal_size()
-    if columns < MIN_TERMINAL_SIZE[0] or rows < MIN_TERMINAL_SIZE[1]:
+    least_columns, least_rows = MIN_TERMINAL_SIZE
+    if columns < least_columns or rows < least_rows:
         raise UsageError(
-            f"the terminal is {columns}x{rows}: make it at least {MIN_TERMINAL_SIZE[0]}x{MIN_TERMINAL_SIZE[1]}, better 80x24"
+            f"the terminal is {columns}x{rows}: make it at least {least_columns}x{least_rows}, better 80x24"
         )
 
 
-def _log_file(wanted: Path | None) -> Path | None:
-    """The user's file, which must work, or the default one, without which we can live (a read-only home)."""
-    path = wanted or user_log_path("mavhelm") / "groundstation.log"
+def _log_file(requested: Path | None) -> Path | None:
+    """Return the requested log file, or the default one, or None if the default cannot be written.
+
+    Raises UsageError if the requested file cannot be written.
+    """
+    path = requested or user_log_path("mavhelm") / "groundstation.log"
     try:
-        if wanted is None:
+        if requested is None:
             path.parent.mkdir(parents=True, exist_ok=True)
         if path.is_fifo():
-            raise OSError(errno.EINVAL, "a pipe; name a file")  # a reader is waited for, without a word
+            raise OSError(errno.EINVAL, "a pipe; name a file")  # opening it would block until a reader comes
         with path.open("a", encoding="utf-8"):
             return path.absolute()
     except OSError as error:
-        if wanted is None:
+        if requested is None:
             return None
         raise UsageError(f"log file {path}: {error.strerror}") from error
 
@@ -131,7 +154,8 @@ def _speed(text: str) -> float:
     return value
 
 
-def _parser() -> CommandLineParser:
+def _parser() -> tuple[CommandLineParser, list[str]]:
+    """Return the parser and the names of all options."""
     parser = CommandLineParser(
         prog="groundstation",
         description="Drive a MAVLink rover from the terminal.",
@@ -139,16 +163,19 @@ def _parser() -> CommandLineParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
-    add("endpoints", nargs="*", metavar="ENDPOINT", help=f"where vehicles are (default: {DEFAULT_ENDPOINT})")
-    add("--sitl", action="store_true", help="start a simulated rover, and end it with the ground station")
-    add("--keys", default="standard", metavar="NAME|FILE", help=f"key map: {', '.join(KEYMAPS)} or a TOML file")
-    add("--style", choices=[style.value for style in Style], default=Style.HOLD.value,
-        help="hold: drive while a key is held (default); latch: until the next key; step: 10 %% a press")  # fmt: skip
-    add("--speed", type=_speed, default=0.6, metavar="FRACTION", help="limit of the sticks, 0.1 to 1 (default: 0.6)")
-    add("--system", type=_system_id, default=255, metavar="ID", help="our MAVLink system id (default: 255)")
-    add("--log-file", type=Path, metavar="FILE", help=f"default: {user_log_path('mavhelm') / 'groundstation.log'}")
-    add("--version", action="version", version=f"%(prog)s {version('mavhelm')}")
-    return parser
+    actions = (
+        add("endpoints", nargs="*", metavar="ENDPOINT", help=f"where vehicles are (default: {DEFAULT_ENDPOINT})"),
+        add("--sitl", action="store_true", help="start a simulated rover, and end it with the ground station"),
+        add("--keys", default="standard", metavar="NAME|FILE", help=f"key map: {', '.join(KEYMAPS)} or a TOML file"),
+        add("--style", choices=[style.value for style in Style], default=Style.HOLD.value,
+            help="hold: drive while a key is held (default); latch: until the next key; step: 10 %% a press"),
+        add("--speed", type=_speed, default=0.6, metavar="FRACTION",
+            help="limit of the sticks, 0.1 to 1 (default: 0.6)"),
+        add("--system", type=_system_id, default=255, metavar="ID", help="our MAVLink system id (default: 255)"),
+        add("--log-file", type=Path, metavar="FILE", help=f"default: {user_log_path('mavhelm') / 'groundstation.log'}"),
+        add("--version", action="version", version=f"%(prog)s {version('mavhelm')}"),
+    )  # fmt: skip
+    return parser, [name for action in actions for name in action.option_strings]
 
 
 if __name__ == "__main__":

@@ -1,1 +1,1 @@
-"""From keys to stick positions: key map, key repeat, control styles."""
+"""Keyboard input: key maps, key repeat, drive styles, stick positions."""

@@ -1,13 +1,14 @@
-"""Finds a key map by name, or reads one from a TOML file; the only place that judges a user's key map."""
+"""Loads a key map by name or from a TOML file, and checks it."""
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from pathlib import Path
 
-from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, KEYMAPS, Keymap, KeymapError
+from groundstation.input.keymap import CONFIRM_KEY, KEYMAPS, Keymap, KeymapError
+from groundstation.intents import ACTIONS
 from link.runtime.toml_file import TomlError, read_toml
 
 PUNCTUATION = {
@@ -19,7 +20,7 @@ PUNCTUATION = {
     "_": "underscore", "`": "grave_accent", "{": "left_curly_bracket", "|": "vertical_line",
     "}": "right_curly_bracket", "~": "tilde", " ": "space",
 }  # fmt: skip
-"""Character -> Textual's name for its key. A file may use either."""
+"""Character -> Textual's name of its key. A file may use either."""
 
 NAMED_KEYS = frozenset(
     {
@@ -42,16 +43,13 @@ NAMED_KEYS = frozenset(
 )
 
 REQUIRED_ACTIONS = ("drive.stop", "stop.emergency", "app.quit")
-"""Actions that no key map may leave without a key. Escape does not count: a plain terminal tells it 0.1 s late."""
+"""Actions that need a key in every key map. Escape does not count: a plain terminal reports it 0.1 s late."""
 
 _MODIFIERS = re.compile(r"^(?:(?:ctrl|alt|shift|super)\+)+")
 
-FILE_HELP = """A key map file is TOML: base = "standard" or "teleop", and a table [keys] with lines such as
-"drive.forward" = ["e", "up"], which replace all keys of that action."""
-
 
 def load_keymap(name_or_path: str) -> Keymap:
-    """The key map of a name in KEYMAPS or of a TOML file. Raises KeymapError."""
+    """Return the key map of a name in KEYMAPS or of a TOML file. Raises KeymapError."""
     if name_or_path in KEYMAPS:
         return Keymap(name_or_path, KEYMAPS[name_or_path])
     path = Path(os.path.expanduser(name_or_path))
@@ -65,7 +63,7 @@ def load_keymap(name_or_path: str) -> Keymap:
 
 
 def parse_keymap(content: Mapping[str, object], name: str, where: str) -> Keymap:
-    """The key map that a TOML file's content describes. Raises KeymapError with `where` in its line."""
+    """Return the key map that a TOML file's content describes. Raises KeymapError with `where` in its line."""
     unknown = set(content) - {"base", "keys"}
     if unknown:
         raise KeymapError(f"key map {where}: unknown entry {min(unknown)!r}: choose base, keys")
@@ -75,13 +73,13 @@ def parse_keymap(content: Mapping[str, object], name: str, where: str) -> Keymap
     keys = content.get("keys", {})
     if not isinstance(keys, dict):
         raise KeymapError(f"key map {where}: 'keys' must be a table")
-    bindings = _rebind(KEYMAPS[base], _rebindings(keys, where))
+    bindings = _rebind(KEYMAPS[base], _parse_keys(keys, where), changed=set(keys))
     _check(bindings, where)
     return Keymap(name, bindings)
 
 
-def _rebindings(keys: Mapping[str, object], where: str) -> dict[str, str]:
-    """Key -> action id for everything the file binds."""
+def _parse_keys(keys: Mapping[str, object], where: str) -> dict[str, str]:
+    """Return key -> action id for everything that the file binds."""
     bound: dict[str, str] = {}
     for action_id, value in keys.items():
         if action_id not in ACTIONS:
@@ -90,20 +88,17 @@ def _rebindings(keys: Mapping[str, object], where: str) -> dict[str, str]:
             name = parse_key(key, where)
             if bound.setdefault(name, action_id) != action_id:
                 raise KeymapError(f"key map {where}: key {key!r} is bound to {bound[name]} and to {action_id}")
-    for action_id in keys:
-        bound.setdefault(f"nothing for {action_id}", action_id)  # an empty list takes all keys away
     return bound
 
 
-def _rebind(base: Mapping[str, str], bound: Mapping[str, str]) -> dict[str, str]:
-    """The base map, in which each action of the file has the file's keys only."""
-    changed = set(bound.values())
+def _rebind(base: Mapping[str, str], bound: Mapping[str, str], changed: Set[str]) -> dict[str, str]:
+    """Return the base map, in which each action in `changed` has the keys of `bound` only."""
     kept = {key: action_id for key, action_id in base.items() if action_id not in changed and key not in bound}
-    return kept | {key: action_id for key, action_id in bound.items() if not key.startswith("nothing for ")}
+    return kept | dict(bound)
 
 
 def parse_key(key: object, where: str) -> str:
-    """Textual's name of a key as a user may write it: "e", ",", "comma", "ctrl+x", "f9". Raises KeymapError."""
+    """Return Textual's name of a key in any accepted spelling: "e", ",", "comma", "ctrl+x". Raises KeymapError."""
     if not isinstance(key, str) or not key:
         raise KeymapError(f"key map {where}: a key must be a string, not {key!r}")
     match = _MODIFIERS.match(key)
@@ -121,7 +116,7 @@ def parse_key(key: object, where: str) -> str:
 
 def _check(bindings: Mapping[str, str], where: str) -> None:
     if CONFIRM_KEY in bindings:
-        raise KeymapError(f"key map {where}: key {CONFIRM_KEY!r} confirms and cannot be bound")
+        raise KeymapError(f"key map {where}: key {CONFIRM_KEY!r} confirms actions and cannot be bound")
     for action_id in REQUIRED_ACTIONS:
         keys = {key for key, bound in bindings.items() if bound == action_id}
         if not keys - {"escape"}:

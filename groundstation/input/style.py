@@ -1,12 +1,14 @@
-"""How keys drive, and how hard: what the command line and the sticks both know. The screen's process loads it, too, and
-must stay free of the dialect (13 MB that only the station process needs)."""
+"""Drive styles and the range of the stick limits, shared by the command line, the screen and the sticks.
+
+The screen's process imports this module, so it must not import the dialect (13 MB that only the station process needs).
+"""
 
 from __future__ import annotations
 
 from enum import StrEnum
 
 LOWEST_LIMIT, HIGHEST_LIMIT = 0.1, 1.0
-"""The speed keys stay in here: below 10 % a rover does not overcome its friction and looks broken."""
+"""Range of the stick limits: below 10 % a rover does not overcome its friction and looks broken."""
 
 
 class Style(StrEnum):
@@ -15,7 +17,7 @@ class Style(StrEnum):
     HOLD = "hold"
     """While a key is held."""
     LATCH = "latch"
-    """Until the next key, as the article's teleop does."""
+    """Until the next key, as teleop_twist_keyboard does."""
     STEP = "step"
     """Each press adds 10 %; until the stop key."""
 

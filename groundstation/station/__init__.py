@@ -1,1 +1,1 @@
-"""The ground station without a screen: operator, commands, arming, emergency stop."""
+"""Ground station core without a screen: operator, commands, arming, emergency stop."""

@@ -1,10 +1,12 @@
-"""The way to an armed vehicle, step by step; each step waits for the answer of the one before. Not the refusal texts.
+"""Arming sequence of one vehicle: neutral demands, mode MANUAL, arm, confirmation by the heartbeat.
 
-NEUTRAL --frames sent--> MODE --accepted--> ARM --accepted--> CONFIRM --heartbeat says armed--> DONE
+NEUTRAL --frames sent--> MODE --accepted--> ARM --accepted--> CONFIRM --heartbeat: armed--> DONE
    |                       |                 |                   |
-   |  already drivable     |  refused        |  refused          |  3 s without it
+   |  mode is drivable     |  refused        |  refused          |  3 s without it
    +---------------------->ARM               +-> DONE            +-> DONE
                            +-> DONE
+
+The texts of refusals are made in commander.py.
 """
 
 from __future__ import annotations
@@ -13,58 +15,58 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from dialects.enums import Autopilot, Command, ModeFlag, Result
-from dialects.modes import Mode, custom_mode
+from dialects.modes import STANDING_MODES, Mode, custom_mode
 from groundstation.vehicles.vehicle_state import VehicleState
-from link.services.command.server import CommandClient, CommandOutcome
+from link.services.command.client import CommandClient, CommandOutcome
 
 NEUTRAL_FIRST = 0.12
 """s of neutral demands before the commands: three frames. ArduPilot refuses to arm with the throttle off neutral."""
 
 CONFIRM_WITHIN = 3.0
-"""s for the heartbeat to say what the acknowledgement said: three heartbeats."""
+"""s for the heartbeat to report what was acknowledged: three heartbeats."""
 
 
 class ArmStep(Enum):
-    """Where the arming stands."""
+    """Step of the arming sequence."""
 
     NEUTRAL = auto()
-    """Neutral demands are being sent."""
+    """Sending neutral demands."""
     MODE = auto()
-    """Waiting for the answer to DO_SET_MODE."""
+    """Waiting for the acknowledgement of DO_SET_MODE."""
     ARM = auto()
-    """Waiting for the answer to COMPONENT_ARM_DISARM."""
+    """Waiting for the acknowledgement of COMPONENT_ARM_DISARM."""
     CONFIRM = auto()
-    """Acknowledged; the heartbeat has to say so too."""
+    """Acknowledged; waiting for a heartbeat that reports armed."""
     DONE = auto()
 
 
 @dataclass(slots=True)
 class ArmSequence:
-    """One try to arm one vehicle."""
+    """One attempt to arm one vehicle."""
 
     vehicle: VehicleState
     due: float
-    """When the step of now ends by itself."""
+    """When the current step ends."""
     step: ArmStep = ArmStep.NEUTRAL
     failure: str | None = None
-    """What went wrong besides a refusal."""
+    """Why arming failed, other than a refusal."""
 
     @classmethod
     def start(cls, vehicle: VehicleState, now: float) -> ArmSequence:
-        """Start with neutral demands, where it takes any before arming (driver 0: it obeys nobody yet)."""
+        """Start with neutral demands, unless the vehicle takes none before arming (driver 0: nobody in control)."""
         return cls(vehicle, now if vehicle.driver == 0 else now + NEUTRAL_FIRST)
 
     def tick(self, client: CommandClient, now: float) -> None:
-        """Go on when it is time."""
+        """Take the next step when it is due."""
         if self.step is ArmStep.NEUTRAL and now >= self.due:
             self._mode_or_arm(client, now)
         elif self.step is ArmStep.CONFIRM and self.vehicle.armed:
             self.step = ArmStep.DONE
         elif self.step is ArmStep.CONFIRM and now >= self.due:
-            self.step, self.failure = ArmStep.DONE, "the vehicle acknowledged arming, but its heartbeat says disarmed"
+            self.step, self.failure = ArmStep.DONE, "arming acknowledged, but the heartbeat reports disarmed"
 
     def handle_outcome(self, outcome: CommandOutcome, client: CommandClient, now: float) -> None:
-        """An answer of this vehicle came."""
+        """Take the next step after the acknowledgement of a command, or end the sequence."""
         waited_for = {ArmStep.MODE: Command.DO_SET_MODE, ArmStep.ARM: Command.COMPONENT_ARM_DISARM}.get(self.step)
         if outcome.command != waited_for:
             return
@@ -94,14 +96,14 @@ class ArmSequence:
 
 
 def _needs_manual(vehicle: VehicleState) -> bool:
-    """A driver who arms wants to drive. Modes that drive by themselves are left as the operator chose them."""
+    """Return whether to change to MANUAL before arming. An autonomous mode was chosen on purpose and is kept."""
     if vehicle.autopilot == Autopilot.PX4:
-        return vehicle.mode != "MANUAL"
-    return vehicle.mode in (Mode.HOLD.name, Mode.INITIALISING.name)
+        return vehicle.mode != Mode.MANUAL.name
+    return vehicle.mode in STANDING_MODES
 
 
 def send_mode(client: CommandClient, vehicle: VehicleState, mode: Mode, now: float) -> None:
-    """Ask for a mode. Raises ValueError where the autopilot has none of the kind."""
+    """Send DO_SET_MODE. Raises ValueError if the autopilot has no such mode."""
     main, sub = custom_mode(mode, vehicle.autopilot)
     client.send(
         Command.DO_SET_MODE,

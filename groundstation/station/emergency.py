@@ -1,6 +1,6 @@
-"""The emergency stop of one vehicle: asked for until the vehicle has answered AND its heartbeat says disarmed.
+"""Emergency stop of one vehicle: requested until acknowledged AND the heartbeat reports disarmed.
 
-Two commands, because vehicles differ: the safety switch (ours locks itself by it) and a forced disarm (ArduPilot, PX4).
+Two commands, because vehicles differ: the safety switch (locks our rover) and a forced disarm (ArduPilot, PX4).
 """
 
 from __future__ import annotations
@@ -9,16 +9,16 @@ from dataclasses import dataclass
 
 from dialects.enums import Command
 from groundstation.vehicles.vehicle_state import VehicleState
-from link.services.command.server import CommandClient, CommandOutcome
+from link.services.command.client import CommandClient, CommandOutcome
 
 SAFE, DANGEROUS = 0, 1
 """SAFETY_SWITCH_STATE: motors off and locked; motors may run."""
 
 FORCE_DISARM = 21196
-"""Parameter 2 of COMPONENT_ARM_DISARM: also while it moves (common.xml)."""
+"""Parameter 2 of COMPONENT_ARM_DISARM: disarm even while moving (common.xml)."""
 
-AGAIN = 0.5
-"""s between rounds of asking; each command is repeated in between by the command client (0.35 s)."""
+RETRY_PERIOD = 0.5
+"""s between rounds of requests; within a round the command client repeats each command (0.35 s)."""
 
 
 @dataclass(slots=True)
@@ -28,29 +28,29 @@ class EmergencyLock:
     vehicle: VehicleState
     due: float
     switch_answered: bool = False
-    """The safety switch command was answered, with whatever result."""
+    """The safety switch command was acknowledged, with whatever result."""
     disarm_answered: bool = False
-    """The forced disarm was answered."""
+    """The forced disarm was acknowledged."""
     clearing: bool = False
-    """The operator has asked to release it; asking for the opposite meanwhile would race with that."""
+    """The operator has requested the release; requesting the stop meanwhile would race with that."""
 
     def tick(self, client: CommandClient, now: float) -> None:
-        """Ask again for what is not answered, or answered and not true."""
+        """Repeat what is not acknowledged, or acknowledged but not done."""
         if self.clearing or now < self.due:
             return
-        self.due = now + AGAIN
+        self.due = now + RETRY_PERIOD
         if not self.switch_answered:
             self._send(client, now, Command.DO_SET_SAFETY_SWITCH_STATE, SAFE)
         if not self.disarm_answered or self.vehicle.armed:
             self._send(client, now, Command.COMPONENT_ARM_DISARM, 0, FORCE_DISARM)
 
     def clear(self, client: CommandClient, now: float) -> None:
-        """Ask the vehicle to release the lock."""
+        """Request the release of the lock."""
         self.clearing = True
         self._send(client, now, Command.DO_SET_SAFETY_SWITCH_STATE, DANGEROUS)
 
     def handle_outcome(self, outcome: CommandOutcome) -> None:
-        """An answer of this vehicle came, or none after all repeats."""
+        """Record the acknowledgement of a command of this vehicle, or that none came after all repeats."""
         if outcome.command == Command.DO_SET_SAFETY_SWITCH_STATE:
             if outcome.params[0] == DANGEROUS:
                 self.clearing = False

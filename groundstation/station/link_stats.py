@@ -1,4 +1,4 @@
-"""What the links say of themselves, as the screen shows it: rates and losses out of counters."""
+"""Link statistics for the screen: rates and losses computed from the counters of the links."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from link.core import LinkReport, SourceCount
 from link.protocol.link_events import link_problem
 
 LOSS_WINDOW = 5.0
-"""s over which the loss is counted: 27 messages/s of ArduPilot's defaults make that one lost frame = 0.7 %."""
+"""s over which the loss is counted: at the 27 messages/s of ArduPilot's defaults one lost frame is 0.7 %."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class LinkStats:
         self._samples: dict[int, deque[_Sample]] = {}
 
     def update(self, reports: Sequence[LinkReport], system: int | None, now: float) -> None:
-        """Take the reports; `system` is the vehicle whose loss is meant."""
+        """Add the reports; `system` is the vehicle whose loss is counted."""
         for report in reports:
             samples = self._samples.setdefault(report.index, deque())
             samples.append(_Sample(now, report, _count(report, system)))
@@ -36,18 +36,18 @@ class LinkStats:
                 samples.popleft()
 
     def build_views(self, round_trip: float | None) -> tuple[LinkView, ...]:
-        """The links as the screen shows them."""
+        """Build the links' part of the snapshot."""
         return tuple(_view(samples, round_trip) for _, samples in sorted(self._samples.items()))
 
     def capacity(self, link: int) -> float | None:
-        """Bytes/s that a link takes now; None where nobody knows."""
+        """Return how many bytes/s a link takes now; None if unknown."""
         samples = self._samples.get(link)
         report = samples[-1].report if samples else None
         return None if report is None or report.capacity is None else report.capacity * report.headroom
 
     @property
     def has_traffic(self) -> bool:
-        """Did any link receive anything in the window?"""
+        """Any link received bytes within the window."""
         return any(_delta(samples, "bytes_received") > 0 for samples in self._samples.values())
 
 
@@ -65,15 +65,15 @@ def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
     newest, oldest = samples[-1], samples[0]
     seconds = newest.time - oldest.time
     received = newest.vehicle.received - oldest.vehicle.received
-    # Frames of ids that we do not know (a quarter of ArduPilot's) arrive, and leave gaps in the numbers all the same.
+    # Frames with unknown message ids (a quarter of ArduPilot's) do arrive, but leave gaps in the sequence numbers.
     unknown = newest.report.unknown - oldest.report.unknown
     gaps = newest.vehicle.lost - oldest.vehicle.lost
     lost = max(0, gaps - unknown)
-    carries = newest.vehicle.received > 0
+    carries_vehicle = newest.vehicle.received > 0
     return LinkView(
         name=newest.report.name,
         loss=lost / (lost + received) if received > 0 and gaps >= 0 else None,
-        round_trip=round_trip if carries else None,
+        round_trip=round_trip if carries_vehicle else None,
         rate=max(0.0, _delta(samples, "frames") / seconds) if seconds else 0.0,
         bytes_per_second=max(0.0, _delta(samples, "bytes_received") / seconds) if seconds else 0.0,
         crc_errors=newest.report.crc_errors,

@@ -1,4 +1,4 @@
-"""How many messages of each kind come and go."""
+"""Counts and rates of the messages of each kind, received and sent."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ class _Kind:
 
 
 class MessageRates:
-    """Rates by message name and direction; as many rows as the dialect has messages, at most."""
+    """Rates by message name and direction; at most as many rows as the dialect has messages."""
 
     def __init__(self) -> None:
         self._kinds: dict[tuple[str, bool], _Kind] = {}
 
     def count(self, message: Message, now: float, *, sent: bool = False) -> None:
-        """One more message."""
+        """Count a message."""
         kind = self._kinds.setdefault((message.msgname, sent), _Kind())
         kind.meter.add(now)
         kind.count += 1
 
     def build_rates(self, now: float) -> tuple[MessageRate, ...]:
-        """By name, received before sent."""
+        """Return all rates, by name, received before sent."""
         return tuple(
             MessageRate(name=name, rate=kind.meter.rate(now), count=kind.count, sent=sent)
             for (name, sent), kind in sorted(self._kinds.items())

@@ -1,7 +1,8 @@
-"""The person at the keys: is the screen alive, do keys drive, what do they ask for, and the proof of life we send.
+"""The operator's session: screen lease, key gate, sticks, and ROVER_OPERATOR_PRESENCE.
 
-The station runs apart from the screen, so that the dead-man of "no program, no demand" is gone. The lease replaces it:
-the screen's own loop renews it, and without it keys drive nothing and the station stops claiming control.
+The station process keeps running when the screen's process freezes, so a frozen screen alone would not stop the
+vehicle. The lease does: the screen's own event loop renews it, and without it keys drive nothing and the station
+stops sending heartbeats.
 """
 
 from __future__ import annotations
@@ -19,27 +20,26 @@ from link.protocol.heartbeat import HeartbeatMonitor
 from link.protocol.rate import RateMeter
 
 THAW = 0.5
-"""s for which a screen that came back must renew before keys drive: what was typed while it froze comes in a heap."""
+"""s for which a screen that was frozen must renew before keys drive: keys typed meanwhile arrive all at once."""
 
 NEUTRAL_LEAD = 0.15
-"""s of neutral demands (three frames or four) before keys drive: the vehicle wants to see neutral after arming, a new
-mode or driver, and a key pressed in that very moment would otherwise have to be let go and pressed again."""
+"""s of neutral demands (three frames or four) before keys drive: the vehicle requires neutral after arming, a new mode
+or a new driver, and a key pressed in that moment would otherwise have to be released and pressed again."""
 
 OLDEST_AGE = 0xFFFF
-"""last_input_age_ms: older, or none."""
+"""Largest last_input_age_ms: older, or no input yet."""
 
 
 class OperatorSession:
-    """One person at one screen. `session` is a random number that tells this session from others."""
+    """One operator at one screen. `session` is a random number that distinguishes this session from others."""
 
     def __init__(self, style: Style, speed: float, session: int) -> None:
         self.sticks = Sticks(style, speed)
-        self.sent_demand = NEUTRAL
-        """The demand that went out last to the selected vehicle."""
         self.demand_rate = RateMeter()
         """Demands sent."""
-        self.input_count = 0
-        """Real input events so far."""
+        self._sent_demand = NEUTRAL
+        """The last demand sent to the selected vehicle."""
+        self._input_count = 0
         self._session = session
         self._lease = HeartbeatMonitor(LEASE_TIMEOUT)
         self._live = False
@@ -52,14 +52,14 @@ class OperatorSession:
     # ---- the screen ----
 
     def renew_lease(self, now: float) -> None:
-        """The screen lives."""
+        """Extend the lease: the screen's event loop runs."""
         if not self._live:
             self._thawed_at = now + THAW if self._lease.ever_heard else now
         self._live = True
         self._lease.update(now)
 
     def expire_lease(self, now: float) -> bool:
-        """True once when the screen has stopped renewing; keys are let go then."""
+        """Release all keys when the lease has run out. Returns True once each time that happens."""
         if not self._live or self._lease.is_alive(now):
             return False
         self._live = False
@@ -72,40 +72,40 @@ class OperatorSession:
         return self._live
 
     def set_gate(self, gate: SetKeyGate, now: float) -> None:
-        """The screen opens or closes the way from keys to sticks."""
+        """Open or close the gate between keys and sticks."""
         self._gate = gate
         if not gate.open:
             self.sticks.block(now)
 
     def blocked_reason(self, now: float) -> str | None:
-        """Why keys cannot drive, as far as the screen goes; None when they can."""
+        """Return why the screen keeps keys from driving; None when it does not."""
         if not self._live:
-            return "the screen does not answer"
+            return "screen not responding"
         if now < self._thawed_at:
-            return "the screen was frozen"
-        return None if self._gate.open else self._gate.reason or "the drive screen is not in front"
+            return "screen was frozen"
+        return None if self._gate.open else self._gate.reason or "Drive screen not in front"
 
     # ---- the keys ----
 
     def record_input(self, now: float) -> None:
-        """A real input event came."""
-        self.input_count += 1
+        """Count an input of the operator."""
+        self._input_count += 1
         self._last_input_at = now
 
     def press(self, push: DriveKeyDown, now: float) -> None:
-        """A drive key; with the screen in the way it must not drive later either."""
+        """Handle a drive key. One pressed while the screen blocks driving must not drive later either."""
         if self.blocked_reason(now) is None:
             self.sticks.press(push, now)
         else:
             self.sticks.reject(push, now)
 
     def reset_demand(self, now: float) -> None:
-        """Another vehicle is looked at: what the old one was told is not what this one is told."""
+        """Go neutral for another vehicle; the demand of the previous vehicle is not that of the new one."""
         self.sticks.block(now)
-        self.sent_demand = NEUTRAL
+        self._sent_demand = NEUTRAL
 
     def set_driving_allowed(self, allowed: bool, now: float) -> bool:
-        """May keys drive from now on? True when they begin to; those that are held must be pressed anew."""
+        """Set whether keys may drive. Returns True when they begin to; keys held now must be pressed again."""
         begins = allowed and not self._driving_allowed
         if begins:
             self.sticks.block(now)
@@ -114,36 +114,41 @@ class OperatorSession:
         return begins
 
     def demand(self, now: float) -> Axes:
-        """What the keys ask for, where they may."""
+        """Return the demand of the keys, or neutral while they may not drive."""
         if not self._driving_allowed or now - self._allowed_at < NEUTRAL_LEAD:
             return NEUTRAL
         return self.sticks.axes(now)
 
-    # ---- what is told ----
+    def record_demand(self, axes: Axes) -> bool:
+        """Record the demand sent to the selected vehicle. Returns whether it differs from the one before."""
+        changed, self._sent_demand = axes != self._sent_demand, axes
+        return changed
+
+    # ---- what others see ----
 
     def build_presence(self, target: tuple[int, int], echo: int | None, now: float) -> RoverOperatorPresence:
-        """The message that goes before a demand. `echo` is the newest time_boot_ms of the vehicle."""
+        """Build the message that precedes a demand. `echo` is the newest time_boot_ms of the vehicle."""
         return RoverOperatorPresence(
             target_system=target[0],
             target_component=target[1],
             time_boot_ms=boot_ms(now),
             echo_time_boot_ms=echo or 0,
             session_id=self._session,
-            input_count=self.input_count & 0xFFFFFFFF,
+            input_count=self._input_count & 0xFFFFFFFF,
             last_input_age_ms=self._age_ms(now),
             flags=self._flags(now),
         )
 
     def build_view(self, reason: str | None, sending: bool, now: float) -> OperatorView:
-        """For the screen. `reason`: why keys do not drive, or None."""
+        """Build the operator's part of the snapshot. `reason`: why keys do not drive, or None."""
         sticks = self.sticks
         return OperatorView(
             style=sticks.style.value,
             reports_releases=sticks.reports_releases,
             stop_bound=sticks.stop_bound,
             held=sticks.held_keys(now),
-            throttle=self.sent_demand.throttle,
-            steering=self.sent_demand.steering,
+            throttle=self._sent_demand.throttle,
+            steering=self._sent_demand.steering,
             throttle_limit=sticks.throttle_limit,
             steering_limit=sticks.steering_limit,
             gate_open=reason is None,
@@ -157,7 +162,7 @@ class OperatorSession:
 
     def _flags(self, now: float) -> Flag:
         flags = Flag(0)
-        if self.sticks.held_keys(now) or not self.sent_demand.neutral:
+        if self.sticks.held_keys(now) or not self._sent_demand.neutral:
             flags |= Flag.DEADMAN
         if self._gate.open:
             flags |= Flag.FOCUSED

@@ -1,6 +1,6 @@
-"""What the station asks each vehicle by itself: what it is, telemetry, dangerous settings. Not the operator's orders.
+"""Queries that the station sends on its own: the vehicle's dialect, its telemetry streams, its dangerous settings.
 
-Nothing here moves anything, and the operator hears of bad news only.
+Nothing here moves a vehicle. Only bad news is logged.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from groundstation.station.link_stats import LinkStats
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.stream_requests import stream_rate
-from link.core import Outgoing
+from link.core import Outgoing, Received
 
 
 class VehicleQueries:
-    """Asks one thing at a time, because commands of a kind are answered one at a time."""
+    """Queries each vehicle, one command of a kind at a time, because they are acknowledged one at a time."""
 
     def __init__(self, fleet: Fleet, commander: Commander, links: LinkStats, log: MessageLog) -> None:
         self._fleet = fleet
@@ -25,24 +25,24 @@ class VehicleQueries:
         self._log = log
         self._outbox: list[Outgoing] = []
 
-    def handle_message(self, contact: Contact, message: m.Message, now: float) -> None:
-        """Take a message of a vehicle."""
-        contact.stream_requests.handle_message(message, now)
-        if isinstance(message, m.ParamValue) and contact.settings_check:
-            warning = contact.settings_check.handle_param(message)
-            if warning:
+    def receive(self, contact: Contact, received: Received, now: float) -> None:
+        """Handle a message of a vehicle."""
+        contact.stream_requests.handle_message(received.message, now)
+        if contact.settings_check is not None:
+            for warning in contact.settings_check.receive(received, now):
                 self._log.add(now, "station", f"{contact.state.name}: {warning}", Severity.WARNING)
 
     def tick(self, now: float) -> None:
-        """Ask who is there for what is due."""
+        """Send the queries that are due to the vehicles that are there."""
         self._handle_outcomes(now)
         for contact in self._fleet:
             if contact.lost_at is None:
-                self._ask(contact, now)
+                self._query_dialect(contact, now)
+                self._query_settings(contact, now)
                 self._request_telemetry(contact, now)
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What to send now; empties what it returns."""
+        """Return the messages to send now and clear the queue."""
         outbox, self._outbox = self._outbox, []
         return outbox
 
@@ -56,16 +56,18 @@ class VehicleQueries:
             else:
                 contact.dialect_probe.handle_outcome(outcome, now)
 
-    def _ask(self, contact: Contact, now: float) -> None:
+    def _query_dialect(self, contact: Contact, now: float) -> None:
         state = contact.state
-        asking = self._commander.is_pending(Command.REQUEST_MESSAGE, state)
-        if not asking and contact.dialect_probe.is_due(state.autopilot, state.sends_drive_status(now), now):
+        pending = self._commander.is_pending(Command.REQUEST_MESSAGE, state)
+        if not pending and contact.dialect_probe.is_due(state.autopilot, state.sends_drive_status(now), now):
             self._commander.request_message(state, m.RoverDriveInfo.id, now)
+
+    def _query_settings(self, contact: Contact, now: float) -> None:
         if contact.settings_check is not None:
-            self._outbox += [Outgoing(message) for message in contact.settings_check.tick(now)]
+            self._outbox += contact.settings_check.tick(now)
 
     def _request_telemetry(self, contact: Contact, now: float) -> None:
-        """Never of our own rover: it tells what is needed, and sizes that to the link itself."""
+        """Request telemetry, but not from our own rover: it sends what is needed and fits that to the link itself."""
         if contact.state.has_rover_dialect:
             return
         capacity = self._links.capacity(contact.link)

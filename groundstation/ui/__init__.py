@@ -1,1 +1,1 @@
-"""The screen of the ground station. The only package that knows Textual; it reads snapshots and sends intents."""
+"""User interface of the ground station, the only package that imports Textual. Reads snapshots and sends intents."""

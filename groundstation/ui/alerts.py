@@ -1,4 +1,4 @@
-"""The one line that a driver must not miss: what is wrong, else what to do next. A table of rules."""
+"""Alert rules: what is wrong, else what to do next, most urgent first."""
 
 from __future__ import annotations
 
@@ -6,112 +6,99 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from groundstation.input.keymap import CONFIRM_KEY, Keymap, OperatorAction
-from groundstation.snapshot import Snapshot
-from groundstation.ui.key_gate import GateClosure
-from groundstation.ui.keynames import format_key, main_key
+from groundstation.input.keymap import CONFIRM_KEY
+from groundstation.ui.display_state import DisplayState
 
 MAX_SILENCE = 99.0
-"""s of silence that are still counted; after that it is simply gone."""
+"""s without a heartbeat that are still counted; after that the text is "minutes"."""
+
+GENERIC_AUTOPILOT = 0
+"""MAV_AUTOPILOT_GENERIC. With a CONTROL_STATUS it is our own vehicle, whose failsafes stop it without a heartbeat."""
 
 
 class AlertLevel(Enum):
-    """How loud a line is."""
+    """Urgency of an alert."""
 
     HINT = auto()
     """What to do next."""
     WARNING = auto()
-    """Something is in the way."""
+    """Something keeps the vehicle from driving."""
     DANGER = auto()
-    """A hand is needed now."""
+    """The operator must act now."""
     QUESTION = auto()
-    """An answer is awaited."""
+    """A question waits for its answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Alert:
-    """One line."""
+    """One line of text."""
 
     level: AlertLevel
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class AlertContext:
-    """All that the rules look at."""
-
-    snapshot: Snapshot
-    keymap: Keymap
-    closure: GateClosure | None = None
-    question: OperatorAction | None = None
-    station_alive: bool = True
-
-    def key(self, action: str) -> str:
-        """The key of an action, as it is written."""
-        key = main_key(self.keymap, action)
-        return "?" if key is None else format_key(key)
+Rule = Callable[[DisplayState], Iterator[Alert]]
 
 
-Rule = Callable[[AlertContext], Iterator[Alert]]
+def active_alerts(now: DisplayState) -> list[Alert]:
+    """Return every alert that applies now, most urgent first; never empty."""
+    return [alert for rule in RULES for alert in rule(now)]
 
 
-def active_alerts(situation: AlertContext) -> list[Alert]:
-    """Every line that holds now, the most urgent first; never empty."""
-    return [alert for rule in RULES for alert in rule(situation)]
-
-
-def _station(now: AlertContext) -> Iterator[Alert]:
+def _station(now: DisplayState) -> Iterator[Alert]:
     if not now.station_alive:
         yield Alert(AlertLevel.DANGER, f"the station process has ended, nothing is sent: {now.key('app.quit')} quits")
 
 
-def _emergency(now: AlertContext) -> Iterator[Alert]:
+def _emergency(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if now.question is None and vehicle is not None and vehicle.emergency_stop:
         clear = f"{now.key('stop.clear')}, then {CONFIRM_KEY}, releases it"
         yield Alert(AlertLevel.DANGER, f"EMERGENCY STOP: the motors are off and locked. {clear}")
 
 
-def _question(now: AlertContext) -> Iterator[Alert]:
+def _question(now: DisplayState) -> Iterator[Alert]:
     if now.question is not None:
         yield Alert(AlertLevel.QUESTION, f"{now.question.label}? {CONFIRM_KEY} = yes, any other key = no")
 
 
-def _silence(now: AlertContext) -> Iterator[Alert]:
+def _silence(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.alive:
         silence = f"{vehicle.silence:.0f} s" if vehicle.silence < MAX_SILENCE else "minutes"
-        yield Alert(AlertLevel.DANGER, f"no word from {vehicle.name} for {silence}: it stops by itself")
+        ours = vehicle.autopilot == GENERIC_AUTOPILOT and vehicle.driver is not None
+        stops = "it stops by itself" if ours else "not known whether it stops"
+        yield Alert(AlertLevel.DANGER, f"no heartbeat from {vehicle.name} for {silence}: {stops}")
 
 
-def _failsafe(now: AlertContext) -> Iterator[Alert]:
+def _failsafe(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.failsafes and not vehicle.emergency_stop:
         soon = "" if vehicle.failsafe_in is None else f", next step in {vehicle.failsafe_in:.0f} s"
         yield Alert(AlertLevel.DANGER, f"failsafe: {', '.join(vehicle.failsafes)}{soon}")
 
 
-def _gate(now: AlertContext) -> Iterator[Alert]:
+def _gate(now: DisplayState) -> Iterator[Alert]:
     if now.closure is not None and now.question is None:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
 
 
-def _refusal(now: AlertContext) -> Iterator[Alert]:
+def _refusal(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.refusal:
         yield Alert(AlertLevel.WARNING, vehicle.refusal)
 
 
 LIMITS = {
-    "neutral first": "neutral first: let go of all drive keys, then press again",
-    "stale": "stale: the vehicle has no fresh command and stands",
+    "neutral first": "neutral first: release all drive keys, then press again",
+    "stale": "stale: the vehicle has no recent command and has stopped",
     "fence": "the fence stops the vehicle here",
-    "battery": "slowed down to spare the battery",
+    "battery": "speed reduced: battery low",
 }
-"""Limits of the vehicle that a driver must know, in words; others (slew, saturated) are everyday driving."""
+"""Limits of the vehicle that a driver must know -> their text. The others (slew, saturated) are normal driving."""
 
 
-def _limits(now: AlertContext) -> Iterator[Alert]:
+def _limits(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.armed:
         for limit in vehicle.limits:
@@ -119,14 +106,14 @@ def _limits(now: AlertContext) -> Iterator[Alert]:
                 yield Alert(AlertLevel.WARNING, LIMITS[limit])
 
 
-def _driver(now: AlertContext) -> Iterator[Alert]:
+def _driver(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
         yield Alert(AlertLevel.WARNING, f"{who}: {now.key('vehicle.control')} asks for control")
 
 
-def _settings(now: AlertContext) -> Iterator[Alert]:
+def _settings(now: DisplayState) -> Iterator[Alert]:
     for link in now.snapshot.links:
         if link.problem:
             yield Alert(AlertLevel.WARNING, f"{link.name}: {link.problem}")
@@ -134,8 +121,8 @@ def _settings(now: AlertContext) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, warning)
 
 
-def _hint(now: AlertContext) -> Iterator[Alert]:
-    vehicle, helm = now.snapshot.vehicle, now.snapshot.operator
+def _hint(now: DisplayState) -> Iterator[Alert]:
+    vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
     if vehicle is None:
         yield Alert(
             AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves"
@@ -146,12 +133,12 @@ def _hint(now: AlertContext) -> Iterator[Alert]:
         yield Alert(
             AlertLevel.HINT, f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
         )
-    elif not helm.gate_open and now.closure is None:
-        yield Alert(AlertLevel.WARNING, f"keys do not drive: {helm.gate_reason}")
-    elif helm.style == "latch" and (helm.throttle or helm.steering):
-        yield Alert(AlertLevel.WARNING, f"it drives on by itself: {now.key('drive.stop')} or SPACE stops")
+    elif not operator.gate_open and now.closure is None:
+        yield Alert(AlertLevel.WARNING, f"keys do not drive: {operator.gate_reason}")
+    elif operator.style == "latch" and (operator.throttle or operator.steering):
+        yield Alert(AlertLevel.WARNING, f"latched, the vehicle keeps driving: {now.key('drive.stop')} or SPACE stops")
     else:
-        verb = "hold" if helm.style == "hold" else "press"
+        verb = "hold" if operator.style == "hold" else "press"
         stops = f"SPACE stops, {now.key('stop.emergency')} cuts the motors"
         yield Alert(AlertLevel.HINT, f"{verb} {now.key('drive.forward')} to drive · {stops}")
 
@@ -159,4 +146,4 @@ def _hint(now: AlertContext) -> Iterator[Alert]:
 RULES: tuple[Rule, ...] = (
     _station, _question, _emergency, _silence, _failsafe, _gate, _refusal, _limits, _driver, _settings, _hint,
 )  # fmt: skip
-"""The most urgent first."""
+"""Most urgent first."""

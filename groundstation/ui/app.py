@@ -1,4 +1,4 @@
-"""The app: joins the station's pipe, the keys' gate and the screens, and renews the lease while it lives."""
+"""ConsoleApp: joins the pipe to the station, the key gate and the screens, and renews the lease while its loop runs."""
 
 from __future__ import annotations
 
@@ -7,36 +7,42 @@ import gc
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
 from textual import events
-from textual.app import App
+from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
+from textual.screen import Screen
 
-from groundstation.input.keymap import KeyEvent, Keymap, OperatorAction
-from groundstation.intents import AnyIntent, RenewLease
+from groundstation.input.keymap import KeyEvent, Keymap
+from groundstation.intents import ACTIONS, AnyIntent, DriveKeyDown, OperatorAction, RenewLease
+from groundstation.screens import SCREENS
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import THEME
+from groundstation.ui.display_state import DisplayState
 from groundstation.ui.exit import exit_on_signals
 from groundstation.ui.key_gate import GateClosure, GateLevel, KeyGate, StationConnection
+from groundstation.ui.key_parser import KeyRepeat, KeyUp
+from groundstation.ui.navigation import Navigator
 from groundstation.ui.palette import ActionProvider
 from groundstation.ui.screens.drive import DriveScreen
-from groundstation.ui.screens.help import HelpScreen
-from groundstation.ui.terminal import PING, ConsoleDriver, KeyRepeat, KeyUp, TerminalClosed
+from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.terminal import PING, ConsoleDriver, TerminalClosed
 from groundstation.ui.tty_output import TerminalFile, redirect_output
 from groundstation.ui.tty_ping import PERIOD
 
 TICK = 0.1
-"""s between renewals of the lease: a third of what the station allows."""
+"""s between renewals of the lease: a third of LEASE_TIMEOUT, what the station allows."""
 
 LIT = 0.15
-"""s for which a cap stays lit after a press; by then a snapshot (10 Hz) has told what is held."""
+"""s for which a cap stays lit after a press; by then a snapshot (10 Hz) has reported which keys are held."""
 
-FASTEST_PICTURE = 0.06
-"""s between two pictures at least: what comes faster is skipped, only the newest counts."""
+MIN_FRAME_TIME = 0.06
+"""Least time between two drawings, s. Snapshots in between are skipped: only the newest counts."""
 
 
 class ConsoleApp(App[int]):
@@ -62,46 +68,50 @@ class ConsoleApp(App[int]):
         self._shown_at = 0.0
         self._leaving = False
         self._own_loop: asyncio.AbstractEventLoop | None = None
-        self.drive = DriveScreen(keymap, self._send, self.perform_action)
+        context = ScreenContext(keymap, self._send, self.perform_action)
+        self.drive = DriveScreen(context)
+        self._navigator = Navigator(self, context)
+        self._actions: dict[str, Callable[[], None]] = {"app.quit": self.end}
+        self._actions |= {row.action: partial(self._navigator.open, row) for row in SCREENS}
 
-    # ---- life ----
+    # ---- start and end ----
 
     def on_mount(self) -> None:
-        """The Drive screen first; the garbage collector's long passes never while somebody drives."""
+        """Open the Drive screen, connect the station and start the timers."""
         self.register_theme(THEME)
         self.theme = THEME.name
         self.push_screen(self.drive)
         self._own_loop = asyncio.get_running_loop()
         self._own_loop.add_reader(self._client.fileno(), self._readable)
-        # In this loop and in no thread: a screen that hangs must lose its lease.
+        # In this loop and not in a thread: a UI that hangs must lose its lease.
         self.set_interval(TICK, self._tick)
         self.set_interval(PERIOD, self._ping)
         if self._terminal is not None:
             self.call_after_refresh(_freeze)
 
     def on_unmount(self) -> None:
-        """Neutral before anything else ends."""
+        """Close the gate, which means neutral, before anything else ends."""
         self.gate.close("quitting")
         asyncio.get_running_loop().remove_reader(self._client.fileno())
 
     def end(self, code: int = 0) -> None:
-        """Leave; neutral at once."""
+        """Close the gate, which means neutral, and leave."""
         self.gate.close("quitting")
         self._leaving = True
         self.exit(code)
 
     def end_threadsafe(self, code: int) -> None:
-        """The same from a signal handler: takes no lock."""
+        """Leave from a signal handler: takes no lock."""
         if self._own_loop is None:
             raise SystemExit(code)
         self._own_loop.call_soon_threadsafe(self.end, code)
 
     def on_terminal_closed(self, event: TerminalClosed) -> None:
-        """Nobody can see or type any more: the same as a hang-up."""
+        """End as after a hang-up: there is no input and no output any more."""
         self.end(128 + signal.SIGHUP)
 
     def push_screen(self, screen: Any, *arguments: Any, **options: Any) -> Any:
-        """Another screen on top is neutral at once, before it is even made."""
+        """Close the gate, which means neutral, before another screen is even made; then push it."""
         if screen is not self.drive:
             self.gate.set_closure(GateClosure("another screen is open", GateLevel.STOPS))
         return super().push_screen(screen, *arguments, **options)
@@ -112,7 +122,7 @@ class ConsoleApp(App[int]):
         self._client.send(intent)
 
     def _readable(self) -> None:
-        """A snapshot waits. Many may: only the newest is shown, and not faster than an eye can follow."""
+        """Take the newest snapshot; several may wait."""
         snapshot = self._client.receive()
         if snapshot is not None:
             self._handle_snapshot(snapshot)
@@ -121,42 +131,52 @@ class ConsoleApp(App[int]):
 
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
-        vehicle, helm = snapshot.vehicle, snapshot.operator
-        driving = bool(helm.throttle or helm.steering or helm.held)
+        vehicle, operator = snapshot.vehicle, snapshot.operator
+        driving = bool(operator.throttle or operator.steering or operator.held)
         self.gate.update(armed=vehicle is not None and vehicle.armed, driving=driving)
-        if self._clock() - self._shown_at >= FASTEST_PICTURE:
-            self._show_snapshot()
+        if self._clock() - self._shown_at >= MIN_FRAME_TIME:
+            self._show()
 
-    def _show_snapshot(self) -> None:
+    def _show(self) -> None:
         self._shown_at = self._clock()
+        now = self._display_state()
         if self.drive.is_mounted:
-            self.drive.show_snapshot(
-                self._snapshot,
-                pressed=frozenset(self._pressed),
-                shut=self.gate.closure,
-                terminal=self.gate.ping.round_trip,
-                alive=self._client.alive,
-            )
+            self.drive.show_state(now)
+        top = self.screen
+        if top is not self.drive and isinstance(top, ConsoleScreen) and top.is_mounted:
+            top.show_state(now)
 
-    # ---- the beat ----
+    def _display_state(self) -> DisplayState:
+        return DisplayState(
+            self._snapshot,
+            self._keys,
+            closure=self.gate.closure,
+            question=self.drive.question,
+            station_alive=self._client.alive,
+            pressed=frozenset(self._pressed),
+            terminal_round_trip=self.gate.ping.round_trip,
+        )
+
+    # ---- timers ----
 
     def _tick(self) -> None:
         if not self.screen_stack:
-            return  # the app has taken its screens down, and timers live a little longer
+            return  # the app has removed its screens, and timers live a little longer
         now = self._clock()
         self._client.send(RenewLease())
         self.gate.set_closure(self._gate_closure(now))
         for key in [key for key, until in self._pressed.items() if now >= until]:
             del self._pressed[key]
         if now - self._shown_at >= TICK:
-            self._show_snapshot()
+            self._show()
 
     def _ping(self) -> None:
         if isinstance(self._driver, ConsoleDriver) and self.gate.ping.next_due(self._clock()):
             self._driver.write(PING)
 
     def _gate_closure(self, now: float) -> GateClosure | None:
-        """Why keys must not drive now, as far as the screen knows; None when they may."""
+        """Return why keys must not drive now, as far as the UI knows; None when they may."""
+        stuck = self._terminal is not None and self._terminal.is_stuck(time.monotonic())
         checks: tuple[tuple[bool, GateClosure], ...] = (
             (self._leaving, GateClosure("quitting")),
             (not self._client.alive, GateClosure("the station has ended")),
@@ -165,19 +185,16 @@ class ConsoleApp(App[int]):
             (not self.app_focus, GateClosure("this window does not have the focus")),
             (self.drive.too_small, GateClosure("the terminal is too small")),
             (self.gate.ping.is_silent(now), GateClosure("the terminal does not answer")),
-            (
-                self._terminal is not None and self._terminal.is_stuck(time.monotonic()),
-                GateClosure("the terminal is stuck"),
-            ),
+            (stuck, GateClosure("the terminal accepts no output")),
         )
-        return next((shut for holds, shut in checks if holds), None)
+        return next((closure for holds, closure in checks if holds), None)
 
     # ---- keys ----
 
     async def on_event(self, event: events.Event) -> None:
-        """Before any widget: quit works everywhere, and where no driver of ours took the key, it is taken here."""
+        """Handle a key before any widget: quit works everywhere. Without our driver the gate gets the key here."""
         if isinstance(event, events.Key) and not self.screen_stack:
-            return  # it was on its way when the app took its screens down, and Textual would fail over it
+            return  # it arrived while the app removed its screens, and Textual would raise
         if isinstance(event, events.Key) and not event.is_forwarded:
             if not isinstance(self._driver, ConsoleDriver):
                 self.gate.handle_keys([KeyEvent(event.key)])
@@ -185,14 +202,24 @@ class ConsoleApp(App[int]):
             if action is not None and action.id == "app.quit":
                 self.end()
                 return
-            if not isinstance(event, KeyRepeat):  # of a key that counts as held the snapshot tells
+            if not isinstance(event, KeyRepeat):  # snapshots report a key that counts as held
                 self._light(event.key)
         await super().on_event(event)
         if isinstance(event, (events.Key, events.AppBlur, events.AppFocus)) and self.screen_stack:
             self.gate.set_closure(self._gate_closure(self._clock()))
 
+    def on_key(self, event: events.Key) -> None:
+        """Handle a key that the screen on top of Drive did not take: another screen's key, and Escape."""
+        if self.screen is self.drive or not isinstance(self.screen, ConsoleScreen):
+            return
+        action = self._keys.get_action(event.key)
+        if action is not None:
+            self.perform_action(action)
+        elif event.key == "escape":
+            self._navigator.go_back()
+
     def on_key_up(self, event: KeyUp) -> None:
-        """Dark again."""
+        """Switch the key cap off."""
         self._pressed.pop(event.key, None)
         self.drive.light_keycaps(frozenset(self._pressed))
 
@@ -204,15 +231,19 @@ class ConsoleApp(App[int]):
     # ---- actions ----
 
     def perform_action(self, action: OperatorAction) -> None:
-        """Do an action by its name: what the app does itself, and what was chosen in the palette."""
-        if action.id == "app.quit":
-            self.end()
-        elif action.id == "app.help" and not any(isinstance(each, HelpScreen) for each in self.screen_stack):
-            # Of several keys in one read each asks for it, before the first one's screen takes the rest.
-            self.push_screen(HelpScreen(self._keys))
+        """Perform an action of the app itself; the others are intents, and the gate has sent them."""
+        perform = self._actions.get(action.id)
+        if perform is not None:
+            perform()
+
+    def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
+        """Return the palette's commands: all actions but the drive keys, because driving means holding a key."""
+        for action in ACTIONS.values():
+            if not isinstance(action.intent, DriveKeyDown):
+                yield SystemCommand(action.label, action.help, partial(self.choose_action, action))
 
     def choose_action(self, action: OperatorAction) -> None:
-        """An action from the palette: no key has sent its intent."""
+        """Perform an action from the palette: no key has sent its intent."""
         vehicle = self._snapshot.vehicle
         if vehicle is not None and vehicle.armed and action.when_armed is not None:
             self._send(action.when_armed)
@@ -223,20 +254,22 @@ class ConsoleApp(App[int]):
 
 
 def run(client: StationConnection, *, keymap: Keymap, log_file: Path | None = None) -> int:
-    """Show the screen until its person leaves or is gone. 0 after a quit, 128 + n after signal n, 1 when it broke."""
+    """Run the UI to its end. Return 0 after a quit, 128 + n after signal n, 1 after an internal error."""
     with redirect_output(log_file) as terminal:
         app = ConsoleApp(client, keymap, terminal=terminal)
         with exit_on_signals(app.end_threadsafe, terminal):
-            # No mouse: each move of it would wake the loop, and people want to select text.
+            # No mouse events for widgets: mouse.py captures the mouse and discards its reports.
             code = app.run(mouse=False)
     if code is None:
-        sys.stderr.write(f"groundstation: the screen failed; {log_file or 'run with --log-file: the log'} tells why\n")
+        sys.stderr.write(
+            f"groundstation: internal error: {log_file or 'run with --log-file: the log'} has the details\n"
+        )
         return 1
     return code
 
 
 def _freeze() -> None:
-    """What is there now stays: the collector need not walk it again (28-61 ms a pass when it did)."""
+    """Exempt the objects that exist now from garbage collection: a pass over them took 28-61 ms."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(50_000, 20, 20)

@@ -1,4 +1,8 @@
-"""The colours of the console, by meaning: green is well, amber wants a look, red wants a hand."""
+"""Colours of the console by meaning: green is good, amber a warning, red needs action.
+
+Over SSH and in tmux COLORTERM is often missing, and Textual then uses 256 colours; some terminals have 16. The greys
+are chosen so that the nearest of 256 colours is a grey, too, and that text and background differ with 16 colours.
+"""
 
 from __future__ import annotations
 
@@ -12,14 +16,18 @@ PANEL = "#10151f"
 LINE = "#3a4350"
 TEXT = "#c9d1d9"
 DIM = "#6b7684"
-FAINT = "#2b3440"
+FAINT = "#2f353d"
+MUTED = "#8f99a6"
+"""Text on FAINT that is out of use: DIM and FAINT are one colour of 16."""
+WARNING = "#302c24"
+"""Background of warnings."""
 BLUE = "#58b6ff"
 GREEN = "#4ed07e"
 AMBER = "#ffb04d"
 YELLOW = "#ffd75f"
 RED = "#ff5f5f"
 DEEP_RED = "#b3261e"
-SKY, GROUND = "#2b7cb8", "#573a20"
+SKY, GROUND = "#2b7cb8", "#875f2f"
 WHITE = "#ffffff"
 BLACK = "#0b0e14"
 
@@ -41,10 +49,10 @@ THEME = Theme(
 
 @cache
 def style(colour: str = TEXT, on: str = BACKGROUND, *, bold: bool = False) -> Style:
-    """A ready-made style: making one anew for each segment is what costs. Textual fills no ground, so it is said."""
+    """Return a cached style, because creating one per segment is expensive. Textual fills no background by itself."""
     return Style(color=colour, bgcolor=on, bold=bold or None)
 
 
 def badge(colour: str) -> Style:
-    """Dark bold letters on a colour; white ones on a dark red."""
-    return style(WHITE if colour == DEEP_RED else BLACK, colour, bold=True)
+    """Return dark text on a colour, or white bold text on dark red. Bold black is grey where there are 16 colours."""
+    return style(WHITE, colour, bold=True) if colour == DEEP_RED else style(BLACK, colour)

@@ -1,4 +1,4 @@
-"""How the screen ends when it is told to from outside: in order where it can, and in any case soon."""
+"""Exit of the UI on a signal: orderly where possible, and soon in any case."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ from groundstation.ui.tty_output import TerminalFile
 SIGNALS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 
 EXIT_TIMEOUT = 1.0
-"""s for an orderly end; after it a terminal that takes no output is given up, after as much again everything.
+"""s for an orderly exit. Then a terminal that accepts no output is abandoned; after as long again the process exits.
 
-The vehicle does not wait for either: a screen that hangs loses its lease within 0.3 s (groundstation/station/operator.py).
+The vehicle stops sooner: a UI that hangs loses its lease within 0.3 s (groundstation/station/operator.py).
 """
 
 
 @contextlib.contextmanager
 def exit_on_signals(end: Callable[[int], None], terminal: TerminalFile) -> Iterator[None]:
-    """While it lasts, each of SIGNALS calls `end` with the exit code of that signal.
+    """Within the block, call `end` with the exit code of the signal on each of SIGNALS.
 
-    `end` is called inside a signal handler of the main thread, which may stop any line: it must take no lock.
+    `end` runs in a signal handler, which may interrupt the main thread at any line: it must take no lock.
     """
     overdue = 0
 
-    def told(number: int, frame: FrameType | None) -> None:
+    def handle_signal(number: int, frame: FrameType | None) -> None:
         signal.setitimer(signal.ITIMER_REAL, EXIT_TIMEOUT, EXIT_TIMEOUT)
         end(128 + number)
 
-    def late(number: int, frame: FrameType | None) -> None:
+    def handle_overdue(number: int, frame: FrameType | None) -> None:
         nonlocal overdue
         overdue += 1
         if overdue > 1:
-            os._exit(1)  # the station sees the end of its pipe, sends neutral and ends too
+            os._exit(1)  # the station notices the end of its pipe, sends neutral and exits, too
         terminal.abandon()
 
-    before = {number: signal.signal(number, told) for number in SIGNALS}
-    before[signal.SIGALRM] = signal.signal(signal.SIGALRM, late)
+    before = {number: signal.signal(number, handle_signal) for number in SIGNALS}
+    before[signal.SIGALRM] = signal.signal(signal.SIGALRM, handle_overdue)
     try:
         yield
     finally:

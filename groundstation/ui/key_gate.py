@@ -1,4 +1,4 @@
-"""Between the keys and the station: which intents may pass now. Called by the input thread and the loop alike."""
+"""Key gate: which intents of keys may pass to the station now. Called by the input thread and the event loop."""
 
 from __future__ import annotations
 
@@ -23,31 +23,34 @@ from groundstation.ui.tty_ping import TerminalPing
 
 
 class StationConnection(Protocol):
-    """The station as the screen sees it; groundstation.client.StationClient is one."""
+    """The connection to the station: StationClient in the program.
+
+    A protocol because the tests of the UI put a recorder in its place, without a station process behind it.
+    """
 
     def send(self, *intents: AnyIntent) -> None:
-        """Hand over intents; from any thread, never blocks."""
+        """Send intents; from any thread, never blocks."""
 
     def receive(self) -> Snapshot | None:
-        """The newest snapshot that waits."""
+        """Return the newest snapshot that waits."""
 
     def fileno(self) -> int:
-        """Readable when a snapshot waits."""
+        """Return a descriptor that is readable when a snapshot waits."""
 
     @property
     def alive(self) -> bool:
-        """The station is there."""
+        """The station process runs."""
 
 
 class GateLevel(Enum):
-    """How far the gate is open."""
+    """What passes the gate."""
 
     OPEN = auto()
     """Keys drive."""
     COMMANDS = auto()
-    """Keys command (disarm, mode) but do not drive: the vehicle's screen is there, its driver perhaps not."""
+    """Commands (disarm, mode) but no drive keys: the Drive screen is shown, but its driver may be absent."""
     STOPS = auto()
-    """Only what stops: something else is on top and keys are text or answers there."""
+    """Only stops: keys are text or answers of what is on top."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,10 +65,10 @@ STARTING = GateClosure("starting")
 
 
 class KeyGate:
-    """Turns the keys of one read into intents and sends them at once, as far as the gate is open.
+    """Turns the keys of one read into intents and sends those that pass at once.
 
-    The station holds the same gate (`SetKeyGate` travels on the same pipe, in order) and is the one that keeps the sticks
-    neutral; here is decided what else keys may ask for.
+    The station has the same gate (`SetKeyGate` travels on the same pipe, in order) and keeps the sticks neutral while
+    it is closed; this class decides on all other intents.
     """
 
     def __init__(self, client: StationConnection, keymap: Keymap, clock: Callable[[], float]) -> None:
@@ -86,11 +89,11 @@ class KeyGate:
         return self._closure
 
     def update(self, *, armed: bool, driving: bool) -> None:
-        """What the newest snapshot says; it decides what one key means (arm or disarm, nothing or stop)."""
+        """Set what the newest snapshot reports; it decides what some keys mean (arm or disarm, stop or not)."""
         self._armed, self._driving = armed, driving
 
     def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
-        """The keys of one read. In the input thread."""
+        """Handle the keys of one read, in the input thread."""
         with self._lock:
             intents = self.keymap.build_intents(
                 self._drop_stray_repeats(batch), armed=self._armed, driving=self._driving
@@ -100,35 +103,35 @@ class KeyGate:
                 self._client.send(*passing)
 
     def handle_release_support(self) -> None:
-        """The terminal tells repeats and releases."""
+        """Note that the terminal reports repeats and releases."""
         with self._lock:
             if not self._exact:
                 self._exact = True
                 self._client.send(ReportKeyReleases())
 
     def close(self, reason: str) -> None:
-        """Close at once, from any thread. The loop opens again when its own conditions hold."""
+        """Close at once, from any thread. The event loop opens again when its own conditions hold."""
         self.set_closure(GateClosure(reason))
 
-    def set_closure(self, shut: GateClosure | None) -> None:
-        """Open (None) or close. Closing is neutral at once, and a key held over it does not count afterwards."""
+    def set_closure(self, closure: GateClosure | None) -> None:
+        """Open (None) or close. Closing means neutral at once, and a key held meanwhile does not count afterwards."""
         with self._lock:
-            if shut == self._closure:
+            if closure == self._closure:
                 return
-            self._closure = shut
-            if shut is None:
+            self._closure = closure
+            if closure is None:
                 self._client.send(SetKeyGate(open=True))
                 return
             self._down.clear()
-            # The gate first: it makes the station remember which keys are held, and the stop forgets them.
-            self._client.send(SetKeyGate(open=False, reason=shut.reason), Stop(shut.reason))
+            # The gate first: it makes the station record which keys are held, and the stop clears them.
+            self._client.send(SetKeyGate(open=False, reason=closure.reason), Stop(closure.reason))
 
     def handle_pong(self) -> None:
-        """The terminal answered."""
+        """Note the answer to a ping."""
         self.ping.handle_answer(self._clock())
 
     def _drop_stray_repeats(self, batch: Sequence[KeyEvent]) -> list[KeyEvent]:
-        """Without repeats of keys that are not down: kitty sends some after the focus is lost."""
+        """Drop repeats of keys that are not down: kitty sends some after the focus is lost."""
         live: list[KeyEvent] = []
         for press in batch:
             if press.release:
@@ -141,7 +144,7 @@ class KeyGate:
         return live
 
     def _passes(self, intent: AnyIntent) -> bool:
-        """Drive keys always pass: the station knows of the closed gate, and a key pressed now must not drive later."""
+        """Return whether to send it. Drive keys always pass: the station must know them to ignore them later, too."""
         if self._closure is None or isinstance(intent, (Stop, EmergencyStop, DriveKeyDown, DriveKeyUp)):
             return True
         return self._closure.level is GateLevel.COMMANDS

@@ -1,4 +1,4 @@
-"""How keys are written on the screen: "," and not "comma"."""
+"""Names of keys as printed on the screen: "," instead of "comma"."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ _PLACES = frozenset({"u", "i", "o", "j", "k", "l", "m", "comma", "full_stop"})
 
 
 def format_key(key: str) -> str:
-    """A key as people write it: "i", ",", "^q", "F9"."""
+    """Return a key as it is commonly written: "i", ",", "^q", "F9"."""
     *modifiers, last = key.split("+")
     shown = _MARKS.get(last) or (last.upper() if last[:1] == "f" and last[1:].isdigit() else last)
     return "".join("^" if modifier == "ctrl" else f"{modifier}+" for modifier in modifiers) + shown
 
 
 def main_key(keymap: Keymap, action_id: str) -> str | None:
-    """The key to name for an action that has several: one that is a letter or mark, as on a keyboard's cap.
+    """Return the key to print for an action that has several: a letter or mark, as on a key cap.
 
-    Where the place around `k` is free to choose, it is chosen, so that the caps look like the block on the keyboard.
+    Keys around `k` are preferred, so that the caps look like the block on the keyboard.
     """
     keys = keymap.get_keys(action_id)
     place = [key for key in keys if key in _PLACES]

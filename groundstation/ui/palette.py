@@ -1,42 +1,27 @@
-"""The command palette's entries: every action of the table, by name."""
+"""Command palette: every action but the drive keys, found by label or help text."""
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Protocol, cast
-
+from textual.app import SystemCommand
 from textual.command import DiscoveryHit, Hit, Hits, Provider
-
-from groundstation.input.keymap import ACTIONS, OperatorAction
-from groundstation.intents import DriveKeyDown
-
-
-class ActionChooser(Protocol):
-    """The app."""
-
-    def choose_action(self, action: OperatorAction) -> None:
-        """Do what was chosen."""
 
 
 class ActionProvider(Provider):
-    """All actions but the drive keys: driving is held, not chosen."""
+    """The app's commands, see ConsoleApp.get_system_commands. The stock provider searches labels only."""
 
     @property
-    def _choices(self) -> list[OperatorAction]:
-        return [action for action in ACTIONS.values() if not isinstance(action.intent, DriveKeyDown)]
-
-    def _chosen(self, action: OperatorAction) -> partial[None]:
-        return partial(cast(ActionChooser, self.app).choose_action, action)
+    def _commands(self) -> list[SystemCommand]:
+        return list(self.app.get_system_commands(self.screen))
 
     async def discover(self) -> Hits:
-        """All of them, before anything is typed."""
-        for action in self._choices:
-            yield DiscoveryHit(action.label, self._chosen(action), help=action.help)
+        """Yield all of them, before anything is typed."""
+        for command in self._commands:
+            yield DiscoveryHit(command.title, command.callback, help=command.help)
 
     async def search(self, query: str) -> Hits:
-        """Those whose name or help is like the text."""
+        """Yield those whose label or help matches the text."""
         matcher = self.matcher(query)
-        for action in self._choices:
-            score = max(matcher.match(action.label), matcher.match(action.help) / 2)
+        for command in self._commands:
+            score = max(matcher.match(command.title), matcher.match(command.help) / 2)
             if score > 0:
-                yield Hit(score, matcher.highlight(action.label), self._chosen(action), help=action.help)
+                yield Hit(score, matcher.highlight(command.title), command.callback, help=command.help)

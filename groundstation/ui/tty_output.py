@@ -1,4 +1,4 @@
-"""The way out to the terminal, kept for the screen alone: what anything else prints goes to the log."""
+"""Terminal output reserved for the UI: what anything else prints goes to the log."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from pathlib import Path
 _KEYBOARD, _STANDARD = 0, (1, 2)
 
 FLUSH_POLL = 0.1
-"""s between looks whether a terminal that takes nothing was given up."""
+"""s between checks whether a terminal that accepts no output was abandoned."""
 
 MAX_FLUSH = 0.5
-"""s that a terminal may take for a frame (one is 10 kB): as long as it may be silent, see tty_ping.py."""
+"""s that a terminal may take for a frame (10 kB): as long as it may leave a ping unanswered, see tty_ping.py."""
 
 
 class TerminalFile:
-    """The file that Textual draws into. A terminal that has gone away swallows the rest instead of raising."""
+    """The file that Textual draws into. Output to a terminal that is gone is discarded instead of raising."""
 
     def __init__(self, descriptor: int, keyboard: int) -> None:
         self.keyboard = keyboard
@@ -31,16 +31,16 @@ class TerminalFile:
         self._flushing_since: float | None = None
 
     def fileno(self) -> int:
-        """Of the terminal."""
+        """Return the descriptor of the terminal."""
         return self._descriptor
 
     def write(self, text: str) -> int:
-        """Keep text for the next flush."""
+        """Buffer text for the next flush."""
         self._buffer.append(text)
         return len(text)
 
     def flush(self) -> None:
-        """Write what was kept. Waits while the terminal takes nothing; the screen stands still and `stuck` says so."""
+        """Write the buffer. Blocks while the terminal accepts no output; `is_stuck` then becomes true."""
         data = "".join(self._buffer).encode("utf-8", "replace")
         self._buffer.clear()
         self._flushing_since = time.monotonic()
@@ -54,26 +54,26 @@ class TerminalFile:
         self._flushing_since = None
 
     def is_stuck(self, now: float) -> bool:
-        """It takes nothing for a while: nobody sees what the vehicle does. `now` is of time.monotonic."""
+        """Return whether a flush takes too long: the operator sees an old frame. `now` is of time.monotonic."""
         since = self._flushing_since
         return since is not None and now - since > MAX_FLUSH
 
     def isatty(self) -> bool:
-        """Textual asks."""
+        """Return whether this is a terminal, for Textual."""
         return not self.gone and os.isatty(self._descriptor)
 
     def abandon(self) -> None:
-        """Give up a terminal that takes nothing any more; a flush that waits for it ends within PATIENCE."""
+        """Give up a terminal that accepts no output; a flush that waits for it ends within FLUSH_POLL."""
         self.gone = True
 
 
 @contextlib.contextmanager
 def redirect_output(log_file: Path | None) -> Iterator[TerminalFile]:
-    """While it lasts, descriptors 1 and 2 lead to the log, and only the file given leads to the terminal."""
+    """Within the block, descriptors 1 and 2 lead to the log, and only the yielded file leads to the terminal."""
     sys.stdout.flush()
     sys.stderr.flush()
     saved = [os.dup(descriptor) for descriptor in _STANDARD]
-    terminal = _opened_anew(next((descriptor for descriptor in saved if os.isatty(descriptor)), saved[-1]))
+    terminal = _reopen(next((descriptor for descriptor in saved if os.isatty(descriptor)), saved[-1]))
     log = os.open(log_file or os.devnull, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o600)
     try:
         for descriptor in _STANDARD:
@@ -89,10 +89,10 @@ def redirect_output(log_file: Path | None) -> Iterator[TerminalFile]:
         os.close(terminal)
 
 
-def _opened_anew(descriptor: int) -> int:
-    """The same terminal without blocking. Our shell shares the open file, so its own must not be changed.
+def _reopen(descriptor: int) -> int:
+    """Open the same terminal again without blocking: the shell shares the open file, whose mode must not change.
 
-    Where that is refused (a terminal of another user, after su) it blocks, and the end may be less kind (ending.py).
+    Where that is refused (a terminal of another user, after su) output blocks, and the exit may be forced (exit.py).
     """
     try:
         return os.open(os.ttyname(descriptor), os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)

@@ -1,4 +1,4 @@
-"""Is the line to the person alive? Pings of the terminal, counted. No input, no output, no clock."""
+"""Terminal pings: whether the line to the user works. Without input, output and clock."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ PERIOD = 0.25
 """s between pings."""
 
 MISSES = 2
-"""Pings unanswered until the terminal counts as silent: 0.5 s, the same as a lost link to the vehicle (MAN_TIMEOUT)."""
+"""Unanswered pings until the terminal counts as silent: 0.5 s, as long as MAN_TIMEOUT of the vehicle."""
 
 
 class TerminalPing:
-    """One terminal. A terminal that never answered is never called silent: it may not know the question."""
+    """Pings of one terminal. One that never answered never counts as silent: it may not support the request."""
 
     def __init__(self) -> None:
         self._unanswered: deque[float] = deque(maxlen=8)
@@ -20,10 +20,10 @@ class TerminalPing:
         self._waiting_since: float | None = None
         self._ever = False
         self.round_trip: float | None = None
-        """s, of the newest answer."""
+        """Round trip of the newest answer, s."""
 
     def next_due(self, now: float) -> bool:
-        """True when a ping is to be sent now; it then counts as sent."""
+        """Return whether a ping is due now; it then counts as sent."""
         if self._sent is not None and now - self._sent < PERIOD:
             return False
         self._sent = now
@@ -35,13 +35,13 @@ class TerminalPing:
         return True
 
     def handle_answer(self, now: float) -> None:
-        """The terminal answered."""
+        """Record an answer of the terminal."""
         self._ever = True
         self._waiting_since = None
         if self._unanswered:
             self.round_trip = now - self._unanswered.popleft()
 
     def is_silent(self, now: float) -> bool:
-        """It used to answer and now has missed too many."""
+        """Return whether a terminal that used to answer has missed too many pings."""
         waited = 0.0 if self._waiting_since is None else now - self._waiting_since
         return self._ever and waited > MISSES * PERIOD

@@ -1,1 +1,1 @@
-"""What the ground station knows of each vehicle, and what it asks of it."""
+"""State of each vehicle, and what the ground station requests from it."""

@@ -1,4 +1,4 @@
-"""When to send the demand: at once on change, steadily while driving, several neutrals at the end, else silence.
+"""When to send a demand: at once on change, steadily while driving, several neutrals at the end, else never.
 
 A demand is state: only the newest is ever sent, nothing is queued and nothing is made up for.
 """
@@ -13,21 +13,21 @@ DRIVING_PERIOD = 0.05
 """s between demands while driving and just after: nine of them in the vehicle's MAN_TIMEOUT of 0.45 s."""
 
 NEUTRAL_PERIOD = 0.2
-"""s between neutral demands while nothing is asked: the vehicle knows that its driver is there, and ArduPilot, which
-latches a demand for 3 s, is kept neutral."""
+"""s between neutral demands while no key is held: they show the vehicle that its driver is there, and keep ArduPilot,
+which holds a demand for 3 s, neutral."""
 
 SETTLE = 1.0
-"""s for which neutral is sent at the DRIVING rate after the last movement: a stop must get through a bad link."""
+"""s for which neutral is sent at the driving rate after the last movement: a stop must get through a bad link."""
 
 FINAL_NEUTRALS = 5
-"""Neutral frames at the end of a drive, DRIVING apart: all five are lost once in 400 at 30 % loss."""
+"""Neutral frames at the end of a drive, DRIVING_PERIOD apart: all five are lost once in 400 at 30 % loss."""
 
 CLOSEST = 0.008
-"""Least s between two changed demands. The vehicle takes 200 demand messages/s; hands do less. Neutral is exempt."""
+"""Least s between two changed demands. The vehicle takes 200 demands/s; hands make fewer. Neutral is exempt."""
 
 
 class DemandStream:
-    """Decides for one moment whether a demand goes out. Times in s."""
+    """Decides whether a demand goes out at a given moment. Times in s."""
 
     def __init__(self) -> None:
         self._sent = NEUTRAL
@@ -44,11 +44,11 @@ class DemandStream:
 
     @property
     def finished(self) -> bool:
-        """Nothing is sent and nothing is left to be said."""
+        """No demand is being sent and no final neutral is left to send."""
         return not self._streaming and not self._neutrals_left
 
     def next_due(self, demand: Axes, streaming: bool, now: float) -> Axes | None:
-        """The demand to send now, or None. `streaming`: may we send; when that ends, neutral goes out a few times."""
+        """Return the demand to send now, or None. `streaming`: demands may be sent; when it ends, neutrals follow."""
         if self._streaming and not streaming:
             self._neutrals_left, self._due = FINAL_NEUTRALS, now
         self._streaming = streaming
@@ -60,7 +60,7 @@ class DemandStream:
         return self._send(demand, now, self._due) if now >= self._due else None
 
     def resume(self, now: float) -> None:
-        """Go on at the DRIVING rate, beginning now."""
+        """Go on at the driving rate, starting now."""
         self._moved_at = self._due = now
 
     def _final_neutral(self, now: float) -> Axes | None:
@@ -71,7 +71,7 @@ class DemandStream:
         return self._send(NEUTRAL, now, self._due)
 
     def _send(self, demand: Axes, now: float, due: float) -> Axes:
-        """Send, and count the period from when it was `due`: a tick that comes late must not lower the rate."""
+        """Send, and count the period from when the demand was `due`: a late tick must not lower the rate."""
         if not demand.neutral or not self._sent.neutral:
             self._moved_at = now
         period = DRIVING_PERIOD if now - self._moved_at < SETTLE else NEUTRAL_PERIOD

@@ -1,38 +1,44 @@
-"""Is a vehicle one of ours? It tells ROVER_* and CONTROL_STATUS only to who has asked for one of them, so we ask.
+"""Finds out whether a vehicle speaks our dialect, by requesting ROVER_DRIVE_INFO.
 
-UNASKED --no ROVER_DRIVE_STATUS comes--> ASKED --accepted, or it comes--> TELLING (or asked again, ever more seldom)
-   ^                                       |                                  |
-   |                                       +--refused--> FOREIGN              |
-   +------------ lost and back, whatever it was -----------+------------------+
+Our rover sends ROVER_* and CONTROL_STATUS only to ground stations that have requested one of them.
+
+UNKNOWN --no ROVER_DRIVE_STATUS--> REQUESTED --accepted, or it arrives--> SENDING (else requested ever less often)
+   ^                                  |                                     |
+   |                                  +--refused--> FOREIGN                 |
+   +---------- lost and back, from any state ----------+--------------------+
 """
 
 from __future__ import annotations
 
 from dialects.enums import Autopilot, Result
-from link.services.command.server import CommandOutcome
+from link.services.command.client import CommandOutcome
 
 FOREIGN_AUTOPILOTS = frozenset({Autopilot.ARDUPILOT, Autopilot.PX4})
-"""They say in each HEARTBEAT that they are not ours."""
+"""Autopilots whose HEARTBEAT shows that the vehicle is not one of ours."""
 
 FIRST_RETRY, LONGEST_RETRY = 0.3, 60.0
-"""s between two questions, at first and at last: it may not have heard our HEARTBEAT yet, or its answer was lost."""
+"""First and longest time between requests, s: the vehicle may not have received our HEARTBEAT yet, or its answer got
+lost."""
 
 
 class DialectProbe:
-    """When to ask one vehicle for ROVER_DRIVE_INFO. Repeats of one question are the command protocol's matter."""
+    """When to request ROVER_DRIVE_INFO from one vehicle. Repeats of one request are made by the command protocol."""
 
     def __init__(self) -> None:
         self._due = 0.0
         self._pause = FIRST_RETRY
         self._refused = False
 
-    def is_due(self, autopilot: int, telling: bool, now: float) -> bool:
-        """Is it time to ask? `telling`: its ROVER_DRIVE_STATUS comes. To be called while no question is under way."""
-        if telling:
+    def is_due(self, autopilot: int, sending: bool, now: float) -> bool:
+        """Return whether to send a request now. `sending`: ROVER_DRIVE_STATUS is arriving.
+
+        Call only while no request is pending.
+        """
+        if sending:
             self._due, self._pause = now, FIRST_RETRY
-        return not (telling or self._refused or autopilot in FOREIGN_AUTOPILOTS or now < self._due)
+        return not (sending or self._refused or autopilot in FOREIGN_AUTOPILOTS or now < self._due)
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
-        """What became of the question. Whoever says yes and tells nothing is asked again, and so is who is mute."""
+        """Record how a request ended. Without an answer, or accepted without effect, it is sent again later."""
         self._refused = outcome.result not in (None, Result.ACCEPTED, Result.TEMPORARILY_REJECTED)
         self._due, self._pause = now + self._pause, min(LONGEST_RETRY, self._pause * 2)

@@ -1,4 +1,4 @@
-"""All vehicles that were heard, and which one the operator looks at. It sees them come, go silent and come back."""
+"""All vehicles found, and the selected one. Notices when a vehicle appears, is lost and comes back."""
 
 from __future__ import annotations
 
@@ -16,64 +16,80 @@ from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Received
 
 MAX_VEHICLES = 16
-"""More would not fit on the screen; a flood of invented ids must not grow a table."""
+"""More would not fit on the screen, and a flood of invented system ids must not grow a table."""
 
 
 @dataclass(slots=True)
 class Contact:
-    """A vehicle and what the station keeps beside its picture."""
+    """A vehicle's state and what the station tracks for it."""
 
     state: VehicleState
     stream_requests: StreamRequests
     link: int
-    """Index of the link on which it was heard last."""
+    """Index of the link on which the newest message of the vehicle arrived."""
     settings_check: ArduPilotChecks | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
-    lost_at: float | None = None
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
+    lost_at: float | None = None
+    """When the last message arrived, while the link is lost."""
+
+    def lose(self, now: float) -> None:
+        """Mark the vehicle as lost since its last message."""
+        self.lost_at = now - self.state.monitor.silence(now)
+
+    def restore(self, now: float) -> None:
+        """Mark the vehicle as back. It may have restarted and forgotten everything that was requested of it."""
+        self.lost_at = None
+        self.stream_requests.restart(now)
+        self.dialect_probe = DialectProbe()
 
 
 class Fleet:
-    """The contacts by system id. `system` is ours."""
+    """The contacts by system id. `system` and `component` are our ids."""
 
-    def __init__(self, log: MessageLog, system: int) -> None:
-        self.selected: Contact | None = None
+    def __init__(self, log: MessageLog, system: int, component: int) -> None:
         self._log = log
-        self._system = system
+        self._own_id = (system, component)
         self._contacts: dict[int, Contact] = {}
+        self._selected: Contact | None = None
 
     def __iter__(self) -> Iterator[Contact]:
         return iter(self._contacts.values())
 
     @property
+    def selected(self) -> Contact | None:
+        """The vehicle that the operator sees and drives."""
+        return self._selected
+
+    @property
     def system_ids(self) -> tuple[int, ...]:
-        """System ids of all of them, in rising order."""
+        """System ids of all contacts, in rising order."""
         return tuple(sorted(self._contacts))
 
     def get(self, system: int) -> Contact | None:
-        """The contact with this system id."""
+        """Return the contact with this system id, or None."""
         return self._contacts.get(system)
 
     def select(self, system: int, now: float) -> None:
-        """Look at this one from now on, where it is known."""
+        """Select the vehicle with this system id, if there is one."""
         contact = self._contacts.get(system)
         if contact is None:
-            self._log.add(now, "station", f"there is no vehicle {system}", Severity.WARNING)
-        elif contact is not self.selected:
-            self.selected = contact
+            self._log.add(now, "station", f"no vehicle with system id {system}", Severity.WARNING)
+        elif contact is not self._selected:
+            self._selected = contact
             self._log.add(now, "station", f"{contact.state.name} selected", Severity.NOTICE)
 
     def select_next(self, now: float) -> None:
-        """Look at the one with the next higher system id, or again at the first."""
-        systems = sorted(self._contacts)
-        if len(systems) < 2 or self.selected is None:
-            self._log.add(now, "station", "there is no other vehicle", Severity.NOTICE)
+        """Select the vehicle with the next higher system id; after the last comes the first."""
+        systems = self.system_ids
+        if len(systems) < 2 or self._selected is None:
+            self._log.add(now, "station", "no other vehicle", Severity.NOTICE)
             return
-        at = systems.index(self.selected.state.system)
+        at = systems.index(self._selected.state.system)
         self.select(systems[(at + 1) % len(systems)], now)
 
     def get_or_add(self, received: Received, now: float) -> Contact | None:
-        """The contact that a message belongs to; a vehicle's HEARTBEAT makes a new one."""
+        """Return the contact that sent a message; the HEARTBEAT of a new vehicle adds one."""
         contact = self._contacts.get(received.system)
         if contact is not None:
             contact.link = received.peer.link
@@ -85,25 +101,23 @@ class Fleet:
         contact = Contact(state, StreamRequests(target, now), received.peer.link)
         self._contacts[received.system] = contact
         if ArduPilotChecks.applies_to(state.autopilot):
-            contact.settings_check = ArduPilotChecks(self._system, target)
-        self.selected = self.selected or contact
+            contact.settings_check = ArduPilotChecks(*self._own_id, target=target)
+        self._selected = self._selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact
 
     def update(self, now: float) -> None:
-        """Notice who went silent and who came back."""
+        """Notice which vehicles are lost and which are back."""
         for contact in self._contacts.values():
             monitor, name = contact.state.monitor, contact.state.name
             if contact.lost_at is None and not monitor.is_alive(now):
-                contact.lost_at = now - monitor.silence(now)
-                self._log.add(now, "station", f"{name} lost: silent for {monitor.timeout:g} s", Severity.CRITICAL)
+                contact.lose(now)
+                self._log.add(now, "station", f"{name}: link lost for {monitor.timeout:g} s", Severity.CRITICAL)
             elif contact.lost_at is not None and monitor.is_alive(now):
-                self._log.add(now, "station", f"{name} is back after {now - contact.lost_at:.1f} s", Severity.NOTICE)
-                contact.lost_at = None
-                contact.stream_requests.restart(now)
-                contact.dialect_probe = DialectProbe()
+                self._log.add(now, "station", f"{name}: link back after {now - contact.lost_at:.1f} s", Severity.NOTICE)
+                contact.restore(now)
 
 
 def is_vehicle(message: Message) -> bool:
-    """Is this the HEARTBEAT of something that drives, and not of a ground station, a camera or a radio?"""
+    """Return whether this is the HEARTBEAT of a vehicle, not of a ground station, a camera or a radio."""
     return isinstance(message, Heartbeat) and message.type != VehicleType.GCS and message.autopilot != Autopilot.INVALID

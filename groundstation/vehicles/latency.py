@@ -1,4 +1,4 @@
-"""Key to motor: from sending a changed demand to the vehicle's word (ROVER_DRIVE_STATUS) that the motors obey it."""
+"""Key-to-motor latency: from sending a changed demand until ROVER_DRIVE_STATUS reports that the motors obey it."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ MEMORY = 64
 """Demands remembered: a quarter of the sequence numbers, so that an old one is never taken for a new one."""
 
 TOO_OLD = 2.0
-"""s after which the word for a demand says nothing any more: the number may be that of another lap."""
+"""s after which a report on a demand is ignored: its sequence number may have been used again."""
 
 
 class LatencyMeter:
-    """Packet sequences of changed demands against the vehicle's answers. Steady demands are not answered at once."""
+    """Matches packet sequences of changed demands with the vehicle's reports; steady demands get none at once."""
 
     def __init__(self) -> None:
         self.latest: float | None = None
@@ -20,16 +20,16 @@ class LatencyMeter:
         self._sent: OrderedDict[int, float] = OrderedDict()
 
     def record_sent(self, sequence: int, now: float) -> None:
-        """A changed demand went out under this number."""
+        """Record that a changed demand was sent under this packet sequence number."""
         self._sent.pop(sequence, None)
         self._sent[sequence] = now
         while len(self._sent) > MEMORY:
             self._sent.popitem(last=False)
 
     def record_applied(self, sequence: int, now: float, age: float) -> None:
-        """The vehicle says that it obeys the demand with this number. Only the first word for it counts.
+        """Record that the vehicle obeys the demand with this sequence number. Only the first report counts.
 
-        `age` is that of the demand when the vehicle spoke, s: it may have waited for the next turn of its telemetry.
+        `age` is that of the demand when the report was sent, s: a report may wait for its turn in the telemetry.
         """
         sent = self._sent.pop(sequence, None)
         if sent is not None and now - sent <= TOO_OLD:

@@ -1,4 +1,4 @@
-"""The message log: what the vehicle said, what it answered, what the station noticed. Bounded; repeats are counted."""
+"""Message log: STATUSTEXT of vehicles, results of commands, events of the station. Bounded; repeats are counted."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ CHUNK = 50
 """Bytes of text in one STATUSTEXT (common.xml)."""
 
 MAX_CHUNKS = 8
-"""Chunks joined to one text; a vehicle that sends more is cut."""
+"""Chunks joined to one text; longer texts are cut."""
 
 CHUNK_TIMEOUT = 2.0
-"""s after which the chunks of a text that have come are shown without the missing ones."""
+"""s after which an incomplete text is shown without its missing chunks."""
 
 
 @dataclass(slots=True)
@@ -34,7 +34,7 @@ class _Line:
 
 @dataclass(slots=True)
 class _Chunks:
-    """A long text under way."""
+    """An incomplete text."""
 
     started: float
     severity: int
@@ -51,14 +51,14 @@ class _Chunks:
 
 
 class MessageLog:
-    """Texts in the order of arrival; times are of the monotonic clock and become wall clock in `lines`."""
+    """Texts in the order of arrival. Times are of the monotonic clock; `build_lines` converts them to wall clock."""
 
     def __init__(self) -> None:
         self._lines: deque[_Line] = deque(maxlen=MAX_LINES)
         self._chunks: dict[tuple[int, int], _Chunks] = {}
 
     def add(self, now: float, label: str, text: str, severity: int = Severity.INFO) -> None:
-        """Add a line, or count it where it says again what the last one of its label said."""
+        """Add a line, or count it if it repeats the last line."""
         text = printable(text)[:MAX_LENGTH]
         last = self._lines[-1] if self._lines else None
         if last is not None and (last.label, last.severity, last.text) == (label, severity, text):
@@ -68,9 +68,9 @@ class MessageLog:
             self._lines.append(_Line(now, severity, label, text))
 
     def handle_statustext(self, message: StatusText, system: int, now: float) -> str | None:
-        """Take a vehicle's text; returns it when it is whole."""
+        """Handle a STATUSTEXT. Returns the text when all its chunks have arrived."""
         severity = int(message.severity)
-        if message.id == 0:  # the field is an extension: 0 says "not one of several chunks"
+        if message.id == 0:  # an extension field: 0 means "not one of several chunks"
             self.add(now, "vehicle", decode_text(message), severity)
             return decode_text(message)
         key = (system, int(message.id))
@@ -88,14 +88,14 @@ class MessageLog:
         return chunks.text
 
     def expire(self, now: float, *, everything: bool = False) -> None:
-        """Show what came of long texts whose rest is lost."""
+        """Log the incomplete texts whose other chunks are overdue."""
         for key, chunks in list(self._chunks.items()):
             if everything or now - chunks.started > CHUNK_TIMEOUT:
                 del self._chunks[key]
                 self.add(now, "vehicle", chunks.text + " ...", chunks.severity)
 
     def build_lines(self, now: float, wall: float) -> tuple[LogLine, ...]:
-        """All lines, oldest first; `now` and `wall` are the same moment on both clocks."""
+        """Return all lines, oldest first; `now` and `wall` are the same moment on both clocks."""
         return tuple(
             LogLine(
                 time=wall - (now - line.time),

@@ -1,21 +1,21 @@
-"""Where the vehicle was: a thinned line of positions, and degrees of latitude and longitude as metres. Bounded."""
+"""The vehicle's track: a thinned line of positions, and latitude and longitude as metres. Bounded."""
 
 from __future__ import annotations
 
 import math
 
 MAX_POINTS = 500
-"""More does not fit into a snapshot, nor does a terminal have the dots."""
+"""More do not fit into a snapshot, and a terminal cannot draw more."""
 
 SPACING = 0.1
 """Least distance of two points at first, m: half the length of a small rover."""
 
 METRES_PER_DEGREE = 111_319.5
-"""Of latitude, m (WGS 84 at the equator; the error over a driving ground is below what is drawn)."""
+"""Of latitude, m (WGS 84 at the equator; the error over a driving area is below what can be drawn)."""
 
 
 class Track:
-    """Positions (north, east) in m; when full, every second point is dropped and points come half as often."""
+    """Positions (north, east) in m. When full, every second point is dropped and the spacing doubles."""
 
     def __init__(self) -> None:
         self._points: list[tuple[float, float]] = []
@@ -27,7 +27,7 @@ class Track:
         return tuple(self._points)
 
     def add(self, position: tuple[float, float]) -> None:
-        """The vehicle is here now."""
+        """Add the current position, if it is far enough from the last one."""
         if self._points and math.dist(self._points[-1], position) < self._spacing:
             return
         if len(self._points) >= MAX_POINTS:
@@ -37,13 +37,13 @@ class Track:
 
 
 class LocalFrame:
-    """Latitude and longitude as metres from the first position seen."""
+    """Converts latitude and longitude to metres from the first position."""
 
     def __init__(self) -> None:
         self._origin: tuple[float, float] | None = None
 
     def to_local(self, latitude: float, longitude: float) -> tuple[float, float]:
-        """North and east of the origin; degrees in."""
+        """Return metres north and east of the origin; degrees in."""
         if self._origin is None:
             self._origin = (latitude, longitude)
         north = (latitude - self._origin[0]) * METRES_PER_DEGREE

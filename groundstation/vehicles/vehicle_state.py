@@ -1,6 +1,6 @@
-"""What each message does to our picture of one vehicle; it sends nothing and decides nothing.
+"""State of one vehicle, updated by its messages. Sends nothing and decides nothing.
 
-To understand another message, write a method and add a line to _TABLE.
+To handle another message, add a method and a row in _HANDLERS.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 
 from dialects import messages as m
 from dialects.enums import Autopilot, DriveLimit, Failsafe, ModeFlag, SystemState, VehicleType
-from dialects.modes import mode_name
+from dialects.modes import DRIVABLE_MODES, STANDING_MODES, mode_name
 from groundstation.snapshot import VehicleView
 from groundstation.vehicles.latency import LatencyMeter
 from groundstation.vehicles.track import LocalFrame, Track
@@ -19,21 +19,21 @@ from link.core import Received
 from link.protocol.heartbeat import HeartbeatMonitor
 
 LOST_AFTER = 2.5
-"""Silence after which a vehicle counts as lost, s: two and a half heartbeats, so that one lost one is no alarm."""
+"""s without a message after which the link counts as lost: two and a half heartbeats, so that one may get lost."""
 
 FRESH_TIMEOUT = 1.5
-"""s for which a reading is preferred to the same one from a coarser message, and a ROVER_DRIVE_STATUS is shown."""
+"""s for which a reading is preferred to that of a coarser message, and for which a ROVER_DRIVE_STATUS is shown."""
 
 UNKNOWN_U16 = 0xFFFF
 
 _AUTOPILOTS: dict[int, str] = {Autopilot.ARDUPILOT: "ArduPilot ", Autopilot.PX4: "PX4 "}
 _KINDS: dict[int, str] = {VehicleType.GROUND_ROVER: "rover", VehicleType.SURFACE_BOAT: "boat"}
 _MOTOR_CHANNELS: dict[int, tuple[str, ...]] = {Autopilot.ARDUPILOT: ("servo1_raw", "servo3_raw")}
-"""Steering and throttle of ArduRover's default outputs, for vehicles that tell nothing better."""
+"""Steering and throttle of ArduRover's default outputs, for vehicles that send nothing better."""
 
 
 class VehicleState:
-    """One vehicle as its messages tell it. `system` and `component` are those of its HEARTBEAT."""
+    """One vehicle as reported by its messages. `system` and `component` are those of its HEARTBEAT."""
 
     def __init__(self, system: int, component: int) -> None:
         self.system = system
@@ -48,7 +48,7 @@ class VehicleState:
         self.driver: int | None = None
         self.drive_info: m.RoverDriveInfo | None = None
         self.boot_time: int | None = None
-        """Newest time_boot_ms that the vehicle told."""
+        """Newest time_boot_ms of the vehicle."""
         self._times: dict[type[m.Message], float] = {}
         self._drive: m.RoverDriveStatus | None = None
         self._failsafe: m.RoverFailsafeStatus | None = None
@@ -58,42 +58,47 @@ class VehicleState:
         self._ground_speed: float | None = None
         self._motors: tuple[float, ...] = ()
         self._values: dict[str, Any] = {}
-        """Fields of VehicleView that are one reading and no more."""
+        """Fields of VehicleView that are a reading without further logic."""
 
     def receive(self, received: Received, now: float) -> None:
-        """Take a message of this system."""
+        """Handle a message of this system."""
         self.monitor.update(now)
         message = received.message
         if received.component != self.component:
             return
         self.boot_time = getattr(message, "time_boot_ms", self.boot_time)
-        method = _TABLE.get(type(message))
+        method = _HANDLERS.get(type(message))
         if method is not None:
             method(self, message, now)
             self._times[type(message)] = now
 
     @property
     def has_rover_dialect(self) -> bool:
-        """It knows the private messages of our dialect."""
+        """The vehicle sends the private messages of our dialect (rover.xml)."""
         return self._drive is not None or self.drive_info is not None
 
     def sends_drive_status(self, now: float) -> bool:
-        """ROVER_DRIVE_STATUS comes."""
+        """Return whether ROVER_DRIVE_STATUS is arriving."""
         return self._fresh(m.RoverDriveStatus, now)
 
     @property
     def emergency_stop(self) -> bool:
-        """The vehicle says that its motors are locked."""
+        """The vehicle reports that its motors are locked."""
         return self.status == SystemState.EMERGENCY or bool(self._drive and self._drive.limits & DriveLimit.ESTOP)
 
     @property
+    def drives_itself(self) -> bool:
+        """Armed in an autonomous mode: the vehicle, or a computer on board, decides where it goes."""
+        return self.armed and self.mode not in DRIVABLE_MODES | STANDING_MODES
+
+    @property
     def name(self) -> str:
-        """What a driver calls it."""
+        """Name for the driver, e.g. "Rover 1", "ArduPilot rover 1"."""
         text = f"{_AUTOPILOTS.get(self.autopilot, '')}{_KINDS.get(self.kind, 'vehicle')} {self.system}"
         return text[0].upper() + text[1:]
 
     def build_view(self, now: float, **station: Any) -> VehicleView:
-        """The picture now; `station` are the fields that only the station knows."""
+        """Build the vehicle's part of the snapshot; `station` are the fields that only the station knows."""
         drive = self._drive if self._fresh(m.RoverDriveStatus, now) else None
         return VehicleView(
             system=self.system,
@@ -118,7 +123,7 @@ class VehicleState:
             **station,
         )
 
-    # ---- one method a message ----
+    # ---- one method for each message ----
 
     def _heartbeat(self, message: m.Heartbeat, now: float) -> None:
         self.autopilot = message.autopilot
@@ -215,7 +220,7 @@ class VehicleState:
 
 
 def flag_words(flags: type[DriveLimit] | type[Failsafe], value: int) -> tuple[str, ...]:
-    """The names of the flags in `value`, as words; unknown bits are left out."""
+    """Return the names of the flags in `value`, e.g. "neutral first"; unknown bits are left out."""
     return tuple(str(flag.name).replace("_", " ").lower() for flag in flags if value & flag)
 
 
@@ -229,7 +234,7 @@ def _outputs(drive: m.RoverDriveStatus, info: m.RoverDriveInfo | None) -> tuple[
 
 
 def _pulse(microseconds: int) -> float:
-    """1000 to 2000 us as -1..1. An output that is not used (0), or that the vehicle does not know, moves nothing."""
+    """Convert 1000..2000 us to -1..1. An unused (0) or unknown output is 0."""
     return _within((microseconds - 1500) / 500) if microseconds not in (0, UNKNOWN_U16) else 0.0
 
 
@@ -241,7 +246,7 @@ def _finite(*values: float) -> bool:
     return all(math.isfinite(value) for value in values)
 
 
-_TABLE: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
+_HANDLERS: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
     m.Heartbeat: VehicleState._heartbeat,
     m.ControlStatus: VehicleState._control_status,
     m.RoverDriveStatus: VehicleState._drive_status,
@@ -257,4 +262,4 @@ _TABLE: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
     m.BatteryStatus: VehicleState._battery_status,
     m.ServoOutputRaw: VehicleState._servos,
 }
-"""Message -> what it changes."""
+"""Message -> the method that handles it."""

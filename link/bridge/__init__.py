@@ -1,1 +1,1 @@
-"""The bridge: joins any number of endpoints, for the Pi between an autopilot's serial port and the network."""
+"""The bridge joins endpoints, e.g. on a Pi between an autopilot's serial port and the network."""

@@ -1,4 +1,4 @@
-"""The command line of the bridge: words in, wires joined. It only reads and refuses; bridge.py does the work."""
+"""Command line of the bridge: parses and checks the arguments, opens the transports, runs bridge.py."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from link.bridge.bridge import Bridge
 from link.bridge.recorder import RecorderError, open_recorder
 from link.bridge.screens import StatusLogger, StatusWriter, print_json
 from link.bridge.status import BridgeStatus
-from link.endpoint import EndpointError, endpoint_help, parse_endpoint
+from link.endpoint import EndpointError, endpoint_help, parse_endpoint, parse_endpoints
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
 from link.tlog.recorder import Recorder
@@ -28,22 +28,22 @@ log = logging.getLogger(__name__)
 
 EXAMPLES = """\
 examples:
-  bridge serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550        an autopilot, for every ground station that comes
+  bridge serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550        an autopilot, for any number of ground stations
   bridge serial:/dev/ttyACM0:921600 udpout:192.168.1.20:14550 udpin:127.0.0.1:14551
   bridge udpin:0.0.0.0:14550 tcpin:0.0.0.0:5760 --json --tlog logs
 
 endpoints (two or more):
 {endpoints}
 
-exit codes: 0 asked to stop (SIGTERM, Ctrl-C, SIGHUP), 2 a mistake on the command line.
+exit codes: 0 stopped by a signal (SIGTERM, Ctrl-C, SIGHUP), 2 usage error.
 """
 
 SWITCH_INTERVAL = 0.0005
-"""s that the table's thread may hold up the loop at a time; Python's own 5 ms would show in the latency."""
+"""s that the table's thread may hold up the loop at a time; Python's default of 5 ms would show in the latency."""
 
 
 class _Version(argparse.Action):
-    """Looks the version up only when asked."""
+    """Looks the version up only on request."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         from importlib.metadata import version
@@ -53,63 +53,63 @@ class _Version(argparse.Action):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the bridge; the exit code."""
+    """Run the bridge; return the exit code."""
     stdio.ensure_open()
     parser = _parser()
-    asked = parser.parse_args(parser.reject_empty(sys.argv[1:] if argv is None else argv))
-    _check(asked.endpoints, parser)
+    options = parser.parse_args(parser.reject_empty(sys.argv[1:] if argv is None else argv))
+    _check(options.endpoints, parser)
     logging.basicConfig(level=logging.INFO, format="bridge: %(message)s", stream=sys.stderr)
     try:
         with ExitStack() as stack:
-            asyncio.run(_serve(asked, stack))
+            asyncio.run(_serve(options, stack))
     except (LinkError, RecorderError) as error:
         parser.exit(2, f"bridge: {error}\n")
-    except KeyboardInterrupt:  # before the loop takes signals
+    except KeyboardInterrupt:  # before the loop handles signals
         return 0
     return 0
 
 
-async def _serve(asked: argparse.Namespace, stack: ExitStack) -> None:
-    wires = open_transports(asked.endpoints)
-    recorder = _recorder(asked.tlog, wires, stack)
-    bridge = Bridge(wires, _screen(asked, stack), recorder=recorder, join=not asked.one_frame)
+async def _serve(options: argparse.Namespace, stack: ExitStack) -> None:
+    transports = open_transports(options.endpoints)
+    recorder = _recorder(options.tlog, transports, stack)
+    bridge = Bridge(transports, _screen(options, stack), recorder=recorder, join=not options.one_frame)
     loop = asyncio.get_running_loop()
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         loop.add_signal_handler(number, bridge.stop)
     sys.setswitchinterval(SWITCH_INTERVAL)
     gc.collect()
-    gc.freeze()  # a full collection would hold frames up for 20 ms
-    log.info("ready, %s", " + ".join(asked.endpoints))
+    gc.freeze()  # a full collection would delay frames by 20 ms
+    log.info("ready, %s", " + ".join(options.endpoints))
     await bridge.run()
     log.info("stopped")
 
 
-def _recorder(folder: Path | None, wires: Sequence[Transport], stack: ExitStack) -> Recorder | None:
+def _recorder(folder: Path | None, transports: Sequence[Transport], stack: ExitStack) -> Recorder | None:
     if folder is None:
         return None
     try:
         path, recorder = open_recorder(folder)
     except RecorderError:
-        for wire in wires:
-            wire.close()
+        for transport in transports:
+            transport.close()
         raise
     stack.callback(recorder.close)
     log.info("recording to %s", path)
     return recorder
 
 
-def _screen(asked: argparse.Namespace, stack: ExitStack) -> Callable[[BridgeStatus], None]:
-    """Where the status goes: a table on a terminal, else what goes wrong to the log, with --json every line as well."""
-    if sys.stdout.isatty() and not asked.quiet and not asked.json:
+def _screen(options: argparse.Namespace, stack: ExitStack) -> Callable[[BridgeStatus], None]:
+    """Return the status output: a table on a terminal, else a log of problems, with --json also JSON."""
+    if sys.stdout.isatty() and not options.quiet and not options.json:
         return StatusWriter(_live_table(stack)).update
-    teller = StatusLogger()
-    if not asked.json:
-        return teller.update
+    logger = StatusLogger()
+    if not options.json:
+        return logger.update
     screen = StatusWriter(print_json)
 
     def both(status: BridgeStatus) -> None:
         screen.update(status)
-        teller.update(status)
+        logger.update(status)
 
     return both
 
@@ -126,10 +126,11 @@ def _live_table(stack: ExitStack) -> Callable[[BridgeStatus], None]:
 
 def _check(endpoints: Sequence[str], parser: CommandLineParser) -> None:
     if len(endpoints) < 2:
-        parser.error("a bridge has two ends or more, for example serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550")
-    for endpoint in endpoints:
-        if endpoints.count(endpoint) > 1:
-            parser.error(f"{endpoint} is named twice")
+        parser.error("two endpoints or more are needed, for example serial:/dev/ttyAMA0:57600 udpin:0.0.0.0:14550")
+    try:
+        parse_endpoints(endpoints)
+    except EndpointError as error:
+        parser.error(str(error))
 
 
 def _endpoint(text: str) -> str:
@@ -150,12 +151,12 @@ def _parser() -> CommandLineParser:
     parser.add_argument("endpoints", nargs="*", metavar="ENDPOINT", type=_endpoint, help="one end of the bridge")
     shown = parser.add_mutually_exclusive_group()
     shown.add_argument("--json", action="store_true", help="print the status as one line of JSON a second")
-    shown.add_argument("--quiet", action="store_true", help="no table; log only what goes wrong")
+    shown.add_argument("--quiet", action="store_true", help="no table; log problems only")
     parser.add_argument("--tlog", metavar="DIR", type=Path, help="record all frames to a telemetry log in DIR")
     parser.add_argument(
         "--one-frame",
         action="store_true",
-        help="never join waiting frames in a datagram, for receivers that read only the first",
+        help="send each frame in its own datagram, for receivers that read only the first frame",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     return parser

@@ -1,4 +1,4 @@
-"""The bridge's telemetry log: one file a session, named by its first moment."""
+"""The bridge's telemetry log: one file per session, named by its start time."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from link.tlog.recorder import RawFile, Recorder
 
 
 class RecorderError(Exception):
-    """There is nowhere to record to; the message is one line."""
+    """The log cannot be written; the message is one line."""
 
 
 def open_recorder(folder: Path) -> tuple[Path, Recorder]:
-    """A recorder with a new file in `folder`, and where that is. Raises RecorderError."""
+    """Open a recorder with a new file in `folder`; return the file's path and it. Raises RecorderError."""
     stamp = datetime.datetime.now().astimezone().strftime("%Y-%m-%dT%H-%M-%S")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         path, file = _new_file(folder, stamp)
     except (FileExistsError, NotADirectoryError):
-        raise RecorderError(f"--tlog {folder}: there is a file of that name; name a folder") from None
+        raise RecorderError(f"--tlog {folder}: a file of that name exists; name a directory") from None
     except OSError as error:
         raise RecorderError(f"--tlog {folder}: {error.strerror}") from error
     recorder = Recorder()
@@ -29,7 +29,7 @@ def open_recorder(folder: Path) -> tuple[Path, Recorder]:
 
 
 def _new_file(folder: Path, stamp: str) -> tuple[Path, RawFile]:
-    """A file that was not there before: two sessions in one second are two files."""
+    """Create a file that did not exist: two sessions in one second get two files."""
     number = 1
     while True:
         path = folder / (f"{stamp}.tlog" if number == 1 else f"{stamp}-{number}.tlog")

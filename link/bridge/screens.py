@@ -1,6 +1,6 @@
-"""Where the status goes: a live table on a terminal, a line of JSON a second, or only what goes wrong into the log.
+"""Status outputs: a live table on a terminal, JSON lines, or a log of problems.
 
-A terminal or a pipe may block as long as it likes: a thread writes, and only the newest status waits for it.
+A terminal or a pipe may block for any time, so a thread writes, and only the newest status waits for it.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ log = logging.getLogger(__name__)
 
 
 class StatusWriter:
-    """Hands each status to `draw` in a thread of its own; `draw` may block, and ends the screen by OSError."""
+    """Passes each status to `draw` in a thread; `draw` may block, and ends the output with an OSError."""
 
     def __init__(self, draw: Callable[[BridgeStatus], None]) -> None:
         self._draw = draw
@@ -31,7 +31,7 @@ class StatusWriter:
         threading.Thread(target=self._run, name="screen", daemon=True).start()
 
     def update(self, status: BridgeStatus) -> None:
-        """Replace what waits to be drawn."""
+        """Replace the status that waits to be drawn."""
         with contextlib.suppress(queue.Empty):
             self._mailbox.get_nowait()
         with contextlib.suppress(queue.Full):
@@ -42,25 +42,25 @@ class StatusWriter:
             while True:
                 self._draw(self._mailbox.get())
         except OSError:
-            log.warning("nobody reads the status any more; the bridge goes on")
+            log.warning("the status output was closed; the bridge continues")
 
 
 def print_json(status: BridgeStatus) -> None:
-    """One line on stdout. Raises OSError when nobody reads."""
+    """Print one line on stdout. Raises OSError when it was closed."""
     line = json.dumps({"time": round(time.time(), 3), **status.to_dict()})
     os.write(sys.stdout.fileno(), line.encode() + b"\n")
 
 
 class StatusLogger:
-    """Logs what goes wrong and when it is right again, once each."""
+    """Logs each problem once when it begins and once when it is over."""
 
     def __init__(self) -> None:
         self._links = UpDownEvents()
 
     def update(self, status: BridgeStatus) -> None:
-        """Say what has changed."""
+        """Log what has changed."""
         for link in status.links:
             why = link.problem and link.problem.removeprefix(f"{link.endpoint}: ")
-            if news := self._links.update(link.endpoint, why):
-                level = logging.WARNING if news.severity <= Severity.ERROR else logging.INFO
-                log.log(level, "%s: %s", link.endpoint, news.text)
+            if event := self._links.update(link.endpoint, why):
+                level = logging.WARNING if event.severity <= Severity.ERROR else logging.INFO
+                log.log(level, "%s: %s", link.endpoint, event.text)

@@ -1,4 +1,4 @@
-"""What the bridge tells once a second: links and routes, as rates of the last second and totals."""
+"""The bridge's status, once a second: links and routes, with rates of the last second and totals."""
 
 from __future__ import annotations
 
@@ -24,71 +24,72 @@ class LinkStatus:
     frames_out_per_s: float
     bytes_out_per_s: float
     loss: float
-    """Share of frames that did not arrive here in the last second, by their numbers."""
+    """Share of frames lost in the last second, by their sequence numbers."""
     lost: int
     crc_errors: int
     noise_bytes: int
     unknown: int
-    """Frames of ids that we do not know, forwarded all the same."""
+    """Frames with an id outside the dialect, which are forwarded as well."""
     dropped: int
-    """Frames that this link had no room for."""
+    """Frames dropped because this link had no room."""
 
 
 @dataclass(frozen=True, slots=True)
 class RouteStatus:
-    """One system and component, where it was heard."""
+    """One system and component, and the peer behind which it was seen."""
 
     system: int
     component: int
     endpoint: str
     address: str
     silence: float
-    """s since it was last heard there."""
+    """s since the last frame from there."""
     frames_per_s: float
     lost: int
 
 
 @dataclass(frozen=True, slots=True)
 class BridgeStatus:
-    """All of it."""
+    """The whole status."""
 
     links: tuple[LinkStatus, ...]
     routes: tuple[RouteStatus, ...]
     duplicates: int
-    """Frames that redundant links brought again."""
+    """Repeats that redundant links brought."""
     refused_peers: int
     recorder_problem: str | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return the status for JSON."""
         return asdict(self)
 
 
 class StatusMeter:
-    """Makes rates of two readings."""
+    """Computes rates from two readings."""
 
-    def __init__(self, wires: Sequence[Transport], router: Router) -> None:
-        self._wires = wires
+    def __init__(self, transports: Sequence[Transport], router: Router) -> None:
+        self._transports = transports
         self._router = router
-        self._ports = router.table.transport_reports()
+        self._reports = router.table.transport_reports()
         self._received: dict[tuple[int, int, int, Hashable], int] = {}
         self._at: float | None = None
 
     def read(self, now: float, recorder_problem: str | None = None) -> BridgeStatus:
-        """The status, with the rates since the last reading."""
+        """Return the status, with the rates since the last reading."""
         period = now - self._at if self._at is not None and now > self._at else 1.0
-        ports, before = self._router.table.transport_reports(), self._ports
+        reports, before = self._router.table.transport_reports(), self._reports
         routes = self._router.table.route_reports(now)
         status = BridgeStatus(
             links=tuple(
-                _link(wire, port, past, period) for wire, port, past in zip(self._wires, ports, before, strict=True)
+                _link(transport, report, past, period)
+                for transport, report, past in zip(self._transports, reports, before, strict=True)
             ),
             routes=tuple(self._route(route, period) for route in routes),
             duplicates=self._router.duplicates,
             refused_peers=self._router.table.refused_peers,
             recorder_problem=recorder_problem,
         )
-        self._at, self._ports = now, ports
+        self._at, self._reports = now, reports
         self._received = {_key(route): route.received for route in routes}
         return status
 
@@ -96,7 +97,7 @@ class StatusMeter:
         return RouteStatus(
             system=route.system,
             component=route.component,
-            endpoint=self._wires[route.port].endpoint.text,
+            endpoint=self._transports[route.link].endpoint.text,
             address=address_text(route.address),
             silence=round(route.silence, 3),
             frames_per_s=round((route.received - self._received.get(_key(route), 0)) / period, 1),
@@ -105,32 +106,32 @@ class StatusMeter:
 
 
 def address_text(address: Hashable) -> str:
-    """`HOST:PORT` of a socket's address; the name of a fixed one."""
+    """Return `HOST:PORT` of a socket's address, or a fixed address as it is."""
     if isinstance(address, tuple) and len(address) >= 2:
         return f"{address[0]}:{address[1]}"
     return str(address)
 
 
 def _key(route: RouteReport) -> tuple[int, int, int, Hashable]:
-    return route.system, route.component, route.port, route.address
+    return route.system, route.component, route.link, route.address
 
 
-def _link(wire: Transport, port: TransportReport, past: TransportReport, period: float) -> LinkStatus:
-    name = wire.endpoint.text
-    hint = noise_hint(name, port.bytes_in, port.frames_in) if wire.capacity is not None else None
-    received, lost = port.received - past.received, port.lost - past.lost
+def _link(transport: Transport, report: TransportReport, past: TransportReport, period: float) -> LinkStatus:
+    name = transport.endpoint.text
+    hint = noise_hint(name, report.bytes_in, report.frames_in) if transport.capacity is not None else None
+    received, lost = report.received - past.received, report.lost - past.lost
     return LinkStatus(
         endpoint=name,
-        problem=wire.problem or hint,
-        peers=port.peers,
-        frames_in_per_s=round((port.frames_in - past.frames_in) / period, 1),
-        bytes_in_per_s=round((port.bytes_in - past.bytes_in) / period, 1),
-        frames_out_per_s=round((port.frames_out - past.frames_out) / period, 1),
-        bytes_out_per_s=round((port.bytes_out - past.bytes_out) / period, 1),
+        problem=transport.problem or hint,
+        peers=report.peers,
+        frames_in_per_s=round((report.frames_in - past.frames_in) / period, 1),
+        bytes_in_per_s=round((report.bytes_in - past.bytes_in) / period, 1),
+        frames_out_per_s=round((report.frames_out - past.frames_out) / period, 1),
+        bytes_out_per_s=round((report.bytes_out - past.bytes_out) / period, 1),
         loss=round(max(0, lost) / (received + lost), 4) if received > 0 and lost > 0 else 0.0,
-        lost=port.lost,
-        crc_errors=port.crc_errors,
-        noise_bytes=port.noise_bytes,
-        unknown=port.unknown,
-        dropped=wire.dropped,
+        lost=report.lost,
+        crc_errors=report.crc_errors,
+        noise_bytes=report.noise_bytes,
+        unknown=report.unknown,
+        dropped=transport.dropped,
     )

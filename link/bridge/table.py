@@ -1,4 +1,4 @@
-"""The live table of links and routes on a terminal."""
+"""Live table of links and routes on a terminal."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ LINK_COLUMNS = (
 ROUTE_COLUMNS = ("system", "component", "link", "address", "/s", "lost", "silent")
 NAMED = ("link", "address")
 NAME_WIDTH = 14
-"""What a name has at least, in as many lines as it takes: with it all columns fit a terminal of 80."""
+"""Least width of a name, which may take several lines: so all columns fit into 80."""
 QUIET_AFTER = 3.0
-"""s of silence that deserve a look: three missing heartbeats."""
+"""s of silence that are highlighted: three missing heartbeats."""
 
 
 class LiveTable:
@@ -28,16 +28,16 @@ class LiveTable:
         self._live.start()
 
     def update(self, status: BridgeStatus) -> None:
-        """Replace the picture."""
+        """Draw a new status."""
         self._live.update(build_tables(status), refresh=True)
 
     def close(self) -> None:
-        """Leave the last picture and give the terminal back."""
+        """Leave the last table on the screen and restore the terminal."""
         self._live.stop()
 
 
 def build_tables(status: BridgeStatus) -> Group:
-    """Both tables, and what is wrong below them."""
+    """Build both tables, with the problems below them."""
     problems = [link.problem for link in status.links] + [status.recorder_problem]
     lines = [Text(problem, style="red") for problem in problems if problem]
     return Group(_links(status), _routes(status), *lines)
@@ -58,7 +58,7 @@ def _link(link: LinkStatus) -> list[Text]:
 
 
 def format_count(number: float) -> str:
-    """At most five characters up to 10^13: 98765, 123k, 45.6M."""
+    """Format a count in at most five characters up to 10^13: 98765, 123k, 45.6M."""
     for unit, suffix in ((1.0, ""), (1e3, "k"), (1e6, "M"), (1e9, "G")):
         size = number / unit
         if size < 9999.5 or (not suffix and size < 99999.5):
@@ -71,7 +71,7 @@ def _routes(status: BridgeStatus) -> Table:
     for route in status.routes:
         table.add_row(*_route(route), style="yellow" if route.silence > QUIET_AFTER else None)
     if status.duplicates:
-        table.caption = f"{status.duplicates} frames came again over a redundant link"
+        table.caption = f"{status.duplicates} duplicate frames over redundant links"
     return table
 
 

@@ -1,1 +1,1 @@
-"""MAVLink framing, sequence numbers, peers and the channel that joins them."""
+"""MAVLink frames, sequence numbers, peers, and the channel that joins them."""

@@ -1,8 +1,8 @@
-"""One live conversation: bytes of peers to messages and back, with sequence, loss, peers and rate limits. No I/O here.
+"""MAVLink channel of one link: bytes to messages and back, with peers, sequence numbers, rate limits.
 
-Rules: nothing without a right frame makes a peer; nobody is sent telemetry before they have shown a HEARTBEAT; a frame
-is never answered with more than was asked; every table has a cap. A repeated frame has no second effect, and of state
-messages (all but dialects.messages.ACKNOWLEDGED) one that was overtaken is dropped: the newest wins.
+Rules: only a valid frame creates a peer; a peer gets no telemetry before its first HEARTBEAT; a reply is never longer
+than the request allows; every table is bounded. A repeated frame has no second effect. Of state messages (all but
+dialects.traits.ACKED) one that a newer one has overtaken is dropped.
 """
 
 from __future__ import annotations
@@ -11,19 +11,8 @@ from collections.abc import Hashable, Iterator
 from itertools import count
 
 from dialects import codec
-from dialects.messages import (
-    ACKNOWLEDGED,
-    MESSAGES,
-    CommandInt,
-    CommandLong,
-    Heartbeat,
-    ManualControl,
-    RadioStatus,
-    RcChannelsOverride,
-    RoverOperatorPresence,
-    SetMode,
-    is_stop,
-)
+from dialects.messages import MESSAGES, Heartbeat, RadioStatus
+from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
 from link.core import LinkReport, Outgoing, Peer, Received, SourceCount
 from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, FramerCounts, noise_hint, payload_of
@@ -33,25 +22,25 @@ from link.protocol.peer import PeerState
 from link.protocol.sequence import NEW, FrameOrder
 
 MAX_PEERS = 24
-"""Sixteen ground stations on one port, and room for half of them to restart: a program that comes back has a new port,
-and its old place is not free before PEER_SILENCE. More are no more expensive than they look: its tables are capped, and
-what the vehicle streams to all peers of a link has one budget (vehicle/telemetry/telemetry.py)."""
+"""Sixteen ground stations on one port, and room for half of them to restart: a restarted program has a new port, and
+its old place is not free before PEER_SILENCE. More cost little: their tables are bounded, and what the vehicle streams
+to all peers of a link has one budget (vehicle/telemetry/telemetry.py)."""
 PEER_SILENCE = 10.0
-"""s after which a silent peer gives up its place; twice the longest usual heartbeat timeout."""
+"""s without a frame after which a peer gives up its place; twice the longest usual heartbeat timeout."""
 MISMATCH_AFTER = 3
-"""So many whole frames with a foreign checksum are another dialect; one may be an accident."""
+"""Complete frames with a foreign checksum that prove another dialect; a single one may be an accident."""
 
 _RADIO_STATUS: int = RadioStatus.id
-_DEMANDS = frozenset(each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence))
-_COMMANDS = frozenset(each.id for each in (CommandLong, CommandInt, SetMode))
+_RATE_CLASS = {**dict.fromkeys(DEMANDS, "demand"), **dict.fromkeys(COMMANDS, "command")}
+"""Message id -> the token bucket that limits it; all other messages share one."""
 
 
 class Channel:
-    """Turns what arrives on one link into Received, and Outgoing into bytes.
+    """Turns received bytes into Received, and Outgoing into bytes.
 
-    `system` and `component` (1..255) are ours; `stream` says that bytes have no datagram borders; `wanted` are the
-    message ids that the core reads (None: all), others are counted and not decoded; `target` is the address that the
-    user named, for links that speak first; `capacity` is what the wire takes in bytes/s, where that is known.
+    `system` and `component` (1..255) are ours. `stream`: bytes have no datagram boundaries. `wanted`: message ids that
+    the core handles (None: all); others are counted and not decoded. `target`: the address that the user named, for
+    links that send first. `capacity`: bytes/s that the link carries, where known.
     """
 
     def __init__(
@@ -70,7 +59,7 @@ class Channel:
         self.index = index
         self.ids = (system, component)
         self.log_tap: LogTap | None = None
-        """Takes every frame that arrives."""
+        """Records every frame that arrives."""
         self._capacity = capacity
         self._flow = FlowControl()
         self._stream = stream
@@ -79,7 +68,7 @@ class Channel:
         self._peers: dict[Hashable, PeerState] = {}
         self._conversations = count()
         self._past_counts = FramerCounts()
-        self._bytes_received = self._bytes_sent = 0
+        self._bytes_received = 0
         self._duplicates = self._late = self._rate_limited = self._refused_peers = 0
         self._own_id = False
         if target is not None:
@@ -88,7 +77,7 @@ class Channel:
     # ---- receiving ----
 
     def receive(self, data: bytes, address: Hashable, now: float) -> list[Received]:
-        """The messages in `data` from `address`; a new connection comes without any. `now` in s, monotonic."""
+        """Return the messages in `data` from `address`; a new connection comes with empty `data`."""
         self._bytes_received += len(data)
         state = self._peers.get(address)
         if state is not None:
@@ -103,7 +92,7 @@ class Channel:
         return self._accept(state, state.framer.feed(data, now) if self._stream else frames, now)
 
     def tick(self, now: float) -> list[Received]:
-        """Give up overdue partial frames; returns what was hidden behind them."""
+        """Give up overdue partial frames and return the messages found behind them."""
         if not self._stream:
             return []
         found: list[Received] = []
@@ -112,11 +101,11 @@ class Channel:
         return found
 
     def _admit(self, address: Hashable, now: float) -> PeerState | None:
-        """A place for a new address: a free one, or that of a peer who is silent or never introduced itself."""
+        """Make room for a new address: a free place, or that of a silent peer or one without HEARTBEAT."""
         if len(self._peers) >= MAX_PEERS:
             leaving = min(
                 (each for each in self._peers.values() if not each.fixed and self._is_evictable(each, now)),
-                key=lambda each: each.last_heard,
+                key=lambda each: each.last_seen,
                 default=None,
             )
             if leaving is None:
@@ -127,23 +116,26 @@ class Channel:
         return state
 
     def _is_evictable(self, state: PeerState, now: float) -> bool:
-        return not state.systems or now - state.last_heard > PEER_SILENCE
+        return not state.systems or now - state.last_seen > PEER_SILENCE
 
     def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
-        return PeerState(self._name(address), Framer(stream=self._stream), now, fixed, silent=fixed)
+        return PeerState(self._new_conversation(address), Framer(stream=self._stream), now, fixed, silent=fixed)
 
-    def _name(self, address: Hashable) -> Peer:
-        """Of a new conversation."""
+    def _new_conversation(self, address: Hashable) -> Peer:
+        """Return the peer of a new conversation."""
         return Peer(self.index, address, next(self._conversations))
 
     def handle_disconnect(self, address: Hashable) -> None:
-        """The connection to `address` has ended: half a frame is lost, and who comes next must introduce itself."""
+        """Handle the end of the connection to `address`.
+
+        A partial frame is lost, and the next peer there must send its HEARTBEAT.
+        """
         state = self._peers.get(address)
         if state is None:
             return
         self._forget(state)
         if state.fixed:
-            successor = self._peers[address] = self._new_peer(address, state.last_heard, fixed=True)
+            successor = self._peers[address] = self._new_peer(address, state.last_seen, fixed=True)
             successor.sequence = state.sequence
 
     def _forget(self, state: PeerState) -> None:
@@ -157,10 +149,10 @@ class Channel:
         for frame in frames:
             number, system, component, sequence, _ = frame
             sender = (system, component)
-            if not system or sender == self.ids:  # component 0 is what pymavlink sends unless told otherwise
+            if not system or sender == self.ids:  # component 0 is valid: pymavlink sends it by default
                 self._own_id |= sender == self.ids
                 continue
-            state.last_heard, state.silent = now, False
+            state.last_seen, state.silent = now, False
             source = state.sources.get(sender)
             order = source.accept(sequence, number) if source else state.add_source(frame)
             if order is not NEW and self._is_old(order, number):
@@ -176,12 +168,12 @@ class Channel:
             self._flow.handle_radio_status(status.txbuf, now)
 
     def _is_old(self, order: FrameOrder, number: int) -> bool:
-        """A repeated frame, or state that a newer one has overtaken; what must be acknowledged is never too old."""
+        """Count a repeated or overtaken frame; return whether to drop it. ACKED messages are never too old."""
         if order is FrameOrder.DUPLICATE:
             self._duplicates += 1
             return True
         self._late += 1
-        return number not in ACKNOWLEDGED
+        return number not in ACKED
 
     def _decode(self, state: PeerState, frame: Frame, now: float) -> Received | None:
         number, system, component, sequence, raw = frame
@@ -189,13 +181,13 @@ class Channel:
             self._handle_radio_status(raw, now)
         if self._wanted is not None and number not in self._wanted:
             return None
-        kind = "demand" if number in _DEMANDS else "command" if number in _COMMANDS else "rest"
+        kind = _RATE_CLASS.get(number, "rest")
         room = state.buckets[kind].consume(now)
         if not room and kind != "command":
             self._rate_limited += 1
             return None
         message = codec.decode(number, payload_of(raw))
-        if not room and not is_stop(message):  # a stop passes however much noise its sender makes
+        if not room and not is_stop(message):  # a stop passes whatever else its sender floods us with
             self._rate_limited += 1
             return None
         if number == Heartbeat.id:
@@ -205,9 +197,11 @@ class Channel:
     # ---- sending ----
 
     def send(self, outgoing: Outgoing, payload: bytes | None = None) -> Iterator[tuple[bytes, Hashable, int]]:
-        """The frames to put on the wire: bytes, address, packet sequence. Each peer has its own sequence, so that what
-        one of them does not get is no loss to it. `payload` is the message's where it is encoded already, as for
-        another link. Raises codec.EncodeError."""
+        """Yield the frames to send: bytes, address, packet sequence.
+
+        Each peer has its own sequence, so that a frame for one is no loss to the others. `payload` is the encoded
+        message, where it exists already, as for another link. Raises codec.EncodeError.
+        """
         message = outgoing.message
         number = type(message).id
         payload = codec.encode_payload(message) if payload is None else payload
@@ -215,7 +209,6 @@ class Channel:
             sequence = state.sequence
             state.sequence = (sequence + 1) & 0xFF
             data = codec.frame(number, payload, sequence, *self.ids)
-            self._bytes_sent += len(data)
             yield data, state.peer.address, sequence
 
     def _recipients(self, outgoing: Outgoing) -> list[PeerState]:
@@ -228,7 +221,7 @@ class Channel:
         return [state for state in self._peers.values() if state.accepts_target(target)]
 
     def _known(self, peers: tuple[Peer, ...]) -> list[PeerState]:
-        """Those that are on this link, in the conversation that is meant."""
+        """Return those of `peers` on this link whose conversation is still the same."""
         found = []
         for peer in peers:
             state = self._peers.get(peer.address) if peer.link == self.index else None
@@ -236,21 +229,23 @@ class Channel:
                 found.append(state)
         return found
 
-    # ---- telling ----
+    # ---- reporting ----
 
     def expire_peers(self, now: float) -> None:
-        """Drop peers that have been silent for PEER_SILENCE; the one the user named stays, and connections do, for a
-        new conversation."""
+        """Drop peers that have been silent for PEER_SILENCE.
+
+        The peer that the user named and connections stay, and begin a new conversation.
+        """
         for state in list(self._peers.values()):
-            if state.silent or now - state.last_heard <= PEER_SILENCE:
+            if state.silent or now - state.last_seen <= PEER_SILENCE:
                 continue
             if state.is_expected:
-                state.peer, state.silent = self._name(state.peer.address), True
+                state.peer, state.silent = self._new_conversation(state.peer.address), True
             else:
                 self._forget(state)
 
     def report(self, down: str | None = None, *, now: float = 0.0, dropped: int = 0) -> LinkReport:
-        """What this channel has counted. `down` and `dropped` come from the shell."""
+        """Return the counters of this channel. `down` and `dropped` come from the transport."""
         counts = FramerCounts()
         for each in (
             self._past_counts,
@@ -264,7 +259,6 @@ class Channel:
             peers=sum(1 for state in self._peers.values() if state.systems),
             frames=counts.frames,
             bytes_received=self._bytes_received,
-            bytes_sent=self._bytes_sent,
             crc_errors=counts.crc_errors,
             resync_bytes=counts.resync_bytes,
             unknown=counts.unknown,

@@ -1,4 +1,4 @@
-"""What a framer hands back: frames, and counts of what it has seen."""
+"""What a framer returns: frames, and counters."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from typing import NamedTuple
 from dialects.codec import CRC_SIZE, HEADER_V1, HEADER_V2, INCOMPAT_SIGNED, MAGIC_V1, MAGIC_V2, SIGNATURE_SIZE
 
 NOISE_HINT_BYTES = 512
-"""Bytes without a single frame after which somebody should be told: half a second of telemetry at 57600 baud is more,
-a boot message or ModemManager's "AT" is less."""
+"""Bytes without a valid frame after which the user is told. Half a second of telemetry at 57600 baud is more, a boot
+message or ModemManager's "AT" is less."""
 
 
 Frame = tuple[int, int, int, int, bytes]
-"""A whole frame with a right checksum, or (Framer(unknown=True)) one of an id that nobody here can check: message id,
-system, component, sequence number, and all of it as received. No names: a NamedTuple takes five times as long to make,
-and a router makes half a million a second."""
+"""A complete frame with a valid checksum, or (Framer(unknown=True)) one with an id outside the dialect: message id,
+system, component, sequence, and the whole frame as received. A plain tuple: a NamedTuple takes five times as long to
+create, and a router creates half a million a second."""
 
 
 def payload_of(raw: bytes) -> bytes:
-    """The payload of a whole frame as received, its trailing zeros cut by the sender or not."""
+    """Return the payload of a whole frame as received, with or without its trailing zeros."""
     start = HEADER_V2 if raw[0] == MAGIC_V2 else HEADER_V1
     return raw[start : start + raw[1]]
 
@@ -36,7 +36,7 @@ class Header(NamedTuple):
 
 
 def read_header(data: bytes, start: int = 0) -> Header | None:
-    """The header at `start`; None where there is none, or one with flags that we do not know."""
+    """Return the header at `start`; None where there is none, or one with unknown flags."""
     if data[start] == MAGIC_V1 and len(data) - start >= HEADER_V1 + CRC_SIZE:
         length, sequence, system, component, message_id = data[start + 1 : start + HEADER_V1]
         return Header(message_id, system, component, sequence, HEADER_V1 + length + CRC_SIZE)
@@ -51,21 +51,21 @@ def read_header(data: bytes, start: int = 0) -> Header | None:
 
 @dataclass(slots=True)
 class FramerCounts:
-    """What a framer has seen so far."""
+    """What a framer has counted so far."""
 
     frames: int = 0
     crc_errors: int = 0
     resync_bytes: int = 0
-    """Bytes that belonged to no frame."""
+    """Bytes outside of any frame."""
     unknown: int = 0
-    """Whole frames with an id outside the dialect."""
+    """Complete frames with an id outside the dialect."""
     refused: int = 0
-    """Frames with flags we do not know, or MAVLink 1 frames of the wrong length."""
+    """Frames with unknown flags, or MAVLink 1 frames of the wrong length."""
     mismatches: dict[int, int] = field(default_factory=dict)
-    """Known ids that arrive whole but with another definition's checksum -> how often."""
+    """Known id -> how many complete frames had the checksum of another definition."""
 
     def add(self, more: FramerCounts) -> None:
-        """Count what another framer has seen, too."""
+        """Add the counts of another framer."""
         self.frames += more.frames
         self.crc_errors += more.crc_errors
         self.resync_bytes += more.resync_bytes
@@ -76,7 +76,7 @@ class FramerCounts:
 
 
 def noise_hint(name: str, received: int, frames: int) -> str | None:
-    """What to tell of a wire that has brought `received` bytes, when none of them made a frame."""
+    """Return a warning when `received` bytes have held no valid frame, or None."""
     if received < NOISE_HINT_BYTES or frames:
         return None
-    return f"{name}: bytes and no MAVLink frame among them; wrong baud rate?"
+    return f"{name}: bytes arrive, but no MAVLink frame; wrong baud rate?"

@@ -1,8 +1,8 @@
-"""Bytes -> frames: finds them, checks length and checksum, resynchronises by one byte, drops and counts the rest.
+"""Splits bytes into frames: checks length and checksum, resynchronises byte by byte, counts errors.
 
-Rules: a frame counts only when its id is in the dialect and its checksum is right; anything else moves the search on by
-ONE byte, so that a stray start byte costs nothing (pymavlink throws the whole claimed length away: 12 frames, 0.65 s at
-20 Hz). Input from the wire never raises. Payloads are not decoded here.
+A frame counts only when its id is in the dialect and its checksum is right. Anything else moves the search on by ONE
+byte, so that a stray start byte costs nothing (pymavlink discards the whole claimed length: 12 frames, 0.65 s at 20
+Hz). Received bytes never raise. Payloads are not decoded here. Format: https://mavlink.io/en/guide/serialization.html.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 import struct
 from enum import Enum, auto
-from typing import NamedTuple
 
 from fastcrc.crc16 import mcrf4xx
 
@@ -25,46 +24,38 @@ from dialects.codec import (
     MAGIC_V2,
     SIGNATURE_SIZE,
 )
+from link.protocol.failed_frame import FailedFrames
 from link.protocol.frame import Frame, FramerCounts, read_header
 
 PARTIAL_DEADLINE = 0.1
-"""s that a stream may owe the rest of a frame. Longer than the longest frame takes at 57600 baud (280 bytes, 49 ms),
-shorter than the vehicle's patience with a driver (0.45 s): a forged header must not hide the frames behind it."""
+"""s to wait for the rest of a frame on a stream. Longer than the longest frame takes at 57600 baud (280 bytes, 49 ms),
+shorter than the vehicle waits for a demand (0.45 s): a forged header must not hide the frames behind it."""
 
-MAX_MISMATCHES = 64
 _SHORTEST = HEADER_V2 + CRC_SIZE
 _MAGIC = re.compile(b"[\xfd\xfe]")
 _HEAD = struct.Struct("<BBBxBBBI")
-"""Start byte, length, flags that must be known, sequence, system, component, and the id's three bytes with one more."""
+"""Start byte, length, incompatibility flags, sequence, system, component, and the id's three bytes with one more."""
 _ID = 0xFFFFFF
 
 
 class _Missing(Enum):
-    """Why there is no frame at a place."""
+    """Why there is no frame at a position."""
 
     MAGIC = auto()
-    """No start byte here."""
+    """No start byte."""
     BYTES = auto()
-    """It may be one, but its end has not come yet."""
+    """Maybe a frame, but its end has not arrived yet."""
     FRAME = auto()
-    """It cannot be one."""
-
-
-class _Doubt(NamedTuple):
-    """A failed frame whose claimed end may yet prove that it was a whole one: then it was foreign and not noise."""
-
-    end: int
-    message_id: int
-    known: bool
+    """Not a frame."""
 
 
 class Framer:
-    """Frames of one sender's bytes.
+    """Finds the frames in one sender's bytes.
 
-    With `stream` false each feed() is one datagram: a frame never goes on in the next one. With `stream` true bytes
-    are kept until a frame is whole, but no longer than PARTIAL_DEADLINE. With `unknown` true it also gives frames of
-    ids outside the dialect, for routers: where a sound frame ended one may start, and it must end where the bytes end
-    or another one starts.
+    With `stream=False` each feed() is one datagram, and no frame continues in the next. With `stream=True` bytes are
+    kept until a frame is complete, but no longer than PARTIAL_DEADLINE. With `unknown=True`, for routers, frames with
+    ids outside the dialect are returned as well: such a frame must start where a valid frame ended, and end where the
+    bytes end or another frame starts.
     """
 
     def __init__(self, *, stream: bool, unknown: bool = False) -> None:
@@ -72,15 +63,15 @@ class Framer:
         self._stream = stream
         self._unknown = unknown
         self._at_border = True
-        """The buffer starts where a frame may start: nothing before it was noise."""
+        """The buffer starts where a frame may start: no noise before it."""
         self._buffer = b""
         self._waiting_since: float | None = None
-        self._doubt: _Doubt | None = None
+        self._failed = FailedFrames(self.counts)
 
     def feed(self, data: bytes, now: float) -> list[Frame]:
-        """All frames that are whole now. `now` in s, monotonic.
+        """Return all frames that are complete now. `now` in s, monotonic.
 
-        The usual case first, found fast: a datagram that is one unsigned MAVLink 2 frame and nothing else.
+        The usual case comes first: a datagram that is exactly one unsigned MAVLink 2 frame.
         """
         if self._stream:
             return self._feed_stream(data, now)
@@ -90,7 +81,7 @@ class Framer:
         if length + _SHORTEST == len(data) and magic == MAGIC_V2 and not flags:
             message_id = number & _ID
             extra = CRC_EXTRA.get(message_id)
-            if extra is None and not self._unknown:  # by its borders one frame: it is not looked into
+            if extra is None and not self._unknown:  # one frame by its boundaries: not searched for others
                 self.counts.unknown += 1
                 return []
             if extra is not None and mcrf4xx(data[1:-2] + extra) == data[-2] | data[-1] << 8:
@@ -99,14 +90,14 @@ class Framer:
         return self._scan(data, final=True)[0]
 
     def expire(self, now: float) -> list[Frame]:
-        """Give up a partial frame that is overdue and look behind its first byte; call it when nothing arrives, too."""
+        """Give up an overdue partial frame and search behind its first byte; call it also in silence."""
         frames: list[Frame] = []
         while self._waiting_since is not None and now - self._waiting_since >= PARTIAL_DEADLINE:
             self._skip_first_byte()
             found = self._take(now)
             frames += found
             if not found and self._waiting_since is not None:
-                self._waiting_since = now - PARTIAL_DEADLINE  # what follows has waited as long
+                self._waiting_since = now - PARTIAL_DEADLINE  # the bytes behind it have waited as long
         return frames
 
     def _feed_stream(self, data: bytes, now: float) -> list[Frame]:
@@ -118,13 +109,13 @@ class Framer:
     def _skip_first_byte(self) -> None:
         self._buffer = self._buffer[1:]
         self._at_border = False
-        self._doubt = None
+        self._failed.drop()
         self.counts.resync_bytes += 1
 
     def _take(self, now: float) -> list[Frame]:
         frames, used = self._scan(self._buffer, final=False)
         self._buffer = self._buffer[used:]
-        self._doubt = self._doubt and self._doubt._replace(end=self._doubt.end - used)
+        self._failed.shift(used)
         if not self._buffer:
             self._waiting_since = None
         elif used or self._waiting_since is None:
@@ -132,12 +123,13 @@ class Framer:
         return frames
 
     def _scan(self, data: bytes, *, final: bool) -> tuple[list[Frame], int]:  # noqa: C901 - calls cost more here
-        """Frames in `data` and how many bytes are done with. `final`: no more bytes will come.
+        """Return the frames in `data` and how many bytes are used up. `final`: no more bytes will come.
 
-        The hot path of all reception: a sound unsigned MAVLink 2 frame costs no call here but the checksum's (the rest
-        is in _frame_at, which knows every case).
+        The hot path of all reception: for a valid unsigned MAVLink 2 frame the only call is the checksum's. _frame_at
+        covers all other cases.
         """
         frames: list[Frame] = []
+        failed = self._failed
         position, size = 0, len(data)
         border = 0 if self._at_border else -1
         while position < size:
@@ -149,15 +141,15 @@ class Framer:
                 if extra is not None and magic == MAGIC_V2 and not flags and end <= size:
                     raw = data[position:end]
                     if mcrf4xx(raw[1:-2] + extra) == raw[-2] | raw[-1] << 8:
-                        if self._doubt is not None:
-                            self._settle(position)
+                        if failed.newest is not None:
+                            failed.settle(position)
                         frames.append((message_id, system, component, sequence, raw))
                         position = border = end
                         continue
             after, border = self._slow(data, position, size, frames, border)
             if after == position:
                 if not final:
-                    break  # the rest of the frame may still come
+                    break  # the rest of the frame may still arrive
                 self.counts.resync_bytes += 1
                 after += 1
             position = after
@@ -165,17 +157,19 @@ class Framer:
         if not final:
             self._at_border = border == position
             return frames, position
-        self._settle(size)
+        self._failed.settle(size)
         return frames, position
 
     def _slow(self, data: bytes, position: int, size: int, frames: list[Frame], border: int) -> tuple[int, int]:
-        """Any case at `position`; returns where to go on, `position` itself where a frame's end has not come yet, and
-        where the last frame ended."""
+        """Handle any case at `position`; return where to continue and where the last frame ended.
+
+        The first is `position` itself while the end of a frame has not arrived.
+        """
         found = self._frame_at(data, position, size)
         if found is _Missing.FRAME and position == border and self._unknown:
             found = self._unknown_at(data, position, size)
         if isinstance(found, tuple):
-            self._settle(position)
+            self._failed.settle(position)
             frames.append(found)
             end = position + len(found[4])
             return end, end
@@ -187,7 +181,7 @@ class Framer:
         return position + 1, border
 
     def _unknown_at(self, data: bytes, start: int, size: int) -> Frame | _Missing:
-        """The frame of an id outside the dialect at `start`, as far as its borders can tell."""
+        """Return the frame with an id outside the dialect at `start`, judged by its boundaries alone."""
         header = read_header(data, start)
         if header is None or header.message_id in CRC_EXTRA or not header.system:
             return _Missing.FRAME
@@ -196,9 +190,9 @@ class Framer:
             return _Missing.BYTES
         if end < size and data[end] not in (MAGIC_V1, MAGIC_V2):
             return _Missing.FRAME
-        self._doubt = None
+        self._failed.forget()
         self.counts.unknown += 1
-        self.counts.frames -= 1  # _scan counts it with those it has checked
+        self.counts.frames -= 1  # _scan counts it among the verified frames
         return (header.message_id, header.system, header.component, header.sequence, data[start:end])
 
     def _next_magic(self, data: bytes, position: int, size: int) -> int:
@@ -208,7 +202,7 @@ class Framer:
         return end
 
     def _frame_at(self, data: bytes, start: int, size: int) -> Frame | _Missing:
-        """The frame at `start`, or what it lacks."""
+        """Return the frame at `start`, or why there is none."""
         if data[start] != MAGIC_V2:
             return self._frame_v1(data, start, size) if data[start] == MAGIC_V1 else _Missing.MAGIC
         if size - start < HEADER_V2 + CRC_SIZE:
@@ -223,51 +217,34 @@ class Framer:
         if end > size:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + extra) != data[crc_at] | data[crc_at + 1] << 8:
-            return self._bad_crc(start, end, message_id)
+            self._failed.add_bad_crc(start, end, message_id)
+            return _Missing.FRAME
         return (message_id, system, component, sequence, data[start:end])
 
     def _foreign(self, start: int, end: int, flags: int, message_id: int) -> _Missing:
-        """Flags that we may not ignore (MAVLink serialization: drop it), or an id outside the dialect."""
+        """Handle unknown incompatibility flags (the frame must be dropped), or an id outside the dialect."""
         if flags > INCOMPAT_SIGNED:
-            self.counts.refused += 1
+            self._failed.add_refused(start)
         else:
-            self._suspect(start, _Doubt(end, message_id, known=False))
+            self._failed.add_unknown(start, end, message_id)
         return _Missing.FRAME
 
     def _frame_v1(self, data: bytes, start: int, size: int) -> Frame | _Missing:
         if size - start < HEADER_V1 + CRC_SIZE:
             return _Missing.BYTES
         length, sequence, system, component, message_id = data[start + 1 : start + HEADER_V1]
-        if BASE_SIZE.get(message_id) != length:
-            self.counts.refused += message_id in BASE_SIZE
-            return _Missing.FRAME
         crc_at = start + HEADER_V1 + length
         end = crc_at + CRC_SIZE
+        size_in_dialect = BASE_SIZE.get(message_id)
+        if size_in_dialect is None:
+            self._failed.add_unknown(start, end, message_id)
+            return _Missing.FRAME
+        if size_in_dialect != length:
+            self._failed.add_refused(start)
+            return _Missing.FRAME
         if end > size:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + CRC_EXTRA[message_id]) != data[crc_at] | data[crc_at + 1] << 8:
-            return self._bad_crc(start, end, message_id)
+            self._failed.add_bad_crc(start, end, message_id)
+            return _Missing.FRAME
         return (message_id, system, component, sequence, data[start:end])
-
-    def _bad_crc(self, start: int, end: int, message_id: int) -> _Missing:
-        self.counts.crc_errors += 1
-        self._suspect(start, _Doubt(end, message_id, known=True))
-        return _Missing.FRAME
-
-    def _suspect(self, start: int, doubt: _Doubt) -> None:
-        """Remember a failed frame, unless it lies inside an earlier one that may still prove whole."""
-        if self._doubt is not None and self._doubt.end <= start:
-            self._settle(start)
-        if self._doubt is None:
-            self._doubt = doubt
-
-    def _settle(self, position: int) -> None:
-        """A frame starts, or the datagram ends, at `position`: was the failed frame before it a whole foreign one?"""
-        doubt = self._doubt
-        self._doubt = None
-        if doubt is None or doubt.end != position:
-            return
-        if not doubt.known:
-            self.counts.unknown += 1
-        elif doubt.message_id in self.counts.mismatches or len(self.counts.mismatches) < MAX_MISMATCHES:
-            self.counts.mismatches[doubt.message_id] = self.counts.mismatches.get(doubt.message_id, 0) + 1

@@ -1,4 +1,7 @@
-"""Is the other end alive? Any accepted message counts as life: heartbeats alone gave false alarms on lossy links."""
+"""Liveness of a source: any accepted message counts.
+
+Heartbeats alone gave false alarms on lossy links.
+"""
 
 from __future__ import annotations
 
@@ -6,25 +9,25 @@ import math
 
 
 class HeartbeatMonitor:
-    """Silence of one source, in s."""
+    """Time since the last message of one source, s."""
 
     def __init__(self, timeout: float) -> None:
         self.timeout = timeout
-        self._heard: float | None = None
+        self._last_seen: float | None = None
 
     def update(self, now: float) -> None:
-        """Something of the source was accepted."""
-        self._heard = now
+        """Record that a message of the source was accepted."""
+        self._last_seen = now
 
     @property
     def ever_heard(self) -> bool:
-        """Was it ever heard?"""
-        return self._heard is not None
+        """Whether any message was accepted so far."""
+        return self._last_seen is not None
 
     def silence(self, now: float) -> float:
-        """Seconds since it was heard; infinite when it never was."""
-        return math.inf if self._heard is None else now - self._heard
+        """Return the s since the last message; infinite when there was none."""
+        return math.inf if self._last_seen is None else now - self._last_seen
 
     def is_alive(self, now: float) -> bool:
-        """Was it heard within the timeout?"""
+        """Return whether a message was accepted within the timeout."""
         return self.silence(now) <= self.timeout

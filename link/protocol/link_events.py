@@ -1,4 +1,4 @@
-"""What is wrong with a link, in words, and what of it is news: for a screen, a log, whoever looks after the link."""
+"""Link problems as text, reported once when they begin and once when a link is back."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from dialects.enums import Severity
 from link.core import LinkReport
 
 CONNECTING = "connecting"
-"""Why a link does not work that was only just begun: no news, because it is the usual way."""
+"""State of a link before its first connection; not reported, because every connection starts so."""
 
 
 def link_problem(report: LinkReport) -> str | None:
-    """What is wrong with a link, in one line."""
+    """Return what is wrong with a link, in one line, or None."""
     if report.down:
         return report.down.removeprefix(f"{report.name}: ")
     if report.own_id:
-        return "another program sends with our system and component id: give one of us another --system"
+        return "another program sends with our system and component id: change --system of one of them"
     if report.dialect_mismatch:
         names = ", ".join(report.dialect_mismatch[:5])
         return f"messages arrive with another dialect's checksum and are dropped: {names}"
@@ -25,21 +25,21 @@ def link_problem(report: LinkReport) -> str | None:
 
 
 class LinkEvent(NamedTuple):
-    """A line to tell."""
+    """One line to report."""
 
     text: str
     severity: Severity
 
 
 class UpDownEvents:
-    """Which links are down, and why: what has changed is told once, and "back" is only what was there before."""
+    """Returns only changes of which links are down and why; "back" only for links that worked before."""
 
     def __init__(self) -> None:
         self._down: dict[Hashable, str] = {}
         self._worked: set[Hashable] = set()
 
     def update(self, link: Hashable, why: str | None) -> LinkEvent | None:
-        """What is to be told of this link, which is down because of `why`, or works."""
+        """Return the event of a link that is down because of `why`, or works (None)."""
         before = self._down.pop(link, None)
         if why:
             self._down[link] = why
@@ -50,17 +50,17 @@ class UpDownEvents:
 
 
 class LinkEvents:
-    """What was told of the links' problems: a link that is down and comes back may go down again, and that is news."""
+    """Reports the problems of all links once each; a link that goes down again is reported again."""
 
     def __init__(self) -> None:
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._links = UpDownEvents()
 
     def update(self, report: LinkReport) -> LinkEvent | None:
-        """What is to be told of this link now."""
-        trouble = link_problem(report)
-        change = self._links.update(report.index, trouble if report.down else None)
-        if change or report.down or not trouble or trouble in self._told:
+        """Return the event of this link, if any."""
+        problem = link_problem(report)
+        change = self._links.update(report.index, problem if report.down else None)
+        if change or report.down or not problem or problem in self._reported:
             return change
-        self._told.add(trouble)
-        return LinkEvent(trouble, Severity.ERROR)
+        self._reported.add(problem)
+        return LinkEvent(problem, Severity.ERROR)

@@ -1,8 +1,7 @@
-"""What a host hears and says, as frames for a recorder: each frame that arrives, and each message of ours once.
+"""Passes each frame that arrives, and each message of ours once, to a recorder.
 
-Our own are numbered for the log, as for one more peer that loses nothing, so tools that count losses count none. Left
-out are keys (SETUP_SIGNING), and files and logs on their way to somebody: a log that is read while it is written would
-grow by what it is read.
+Our own messages are numbered for the log as those of one peer that loses nothing, so that tools that count losses count
+none. Left out are messages with the traits SECRET and UNLOGGED (dialects/traits.py).
 """
 
 from __future__ import annotations
@@ -10,16 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from dialects import codec
-from dialects import messages as m
+from dialects.traits import SECRET, UNLOGGED
 from link.protocol.frame import Frame
-
-SETUP_SIGNING = 256
-NOT_LOGGED = frozenset(each.id for each in (m.FileTransferProtocol, m.LogData, m.LogEntry)) | {SETUP_SIGNING}
-"""Of our own messages."""
 
 
 class LogTap:
-    """Hands frames and their times to `add`."""
+    """Passes frames and their times to `add`."""
 
     def __init__(self, add: Callable[[float, Sequence[bytes]], None], *, system: int, component: int) -> None:
         self._add = add
@@ -27,11 +22,11 @@ class LogTap:
         self._sequence = 0
 
     def record_received(self, frames: Sequence[Frame], now: float) -> None:
-        """Frames that were found whole, of anybody."""
-        self._add(now, [raw for message_id, _, _, _, raw in frames if message_id != SETUP_SIGNING])
+        """Record complete frames of any sender."""
+        self._add(now, [raw for message_id, _, _, _, raw in frames if message_id not in SECRET])
 
     def record_sent(self, message_id: int, payload: bytes, now: float) -> None:
-        """A message of ours."""
-        if message_id not in NOT_LOGGED:
+        """Record one of our own messages."""
+        if message_id not in UNLOGGED:
             self._add(now, (codec.frame(message_id, payload, self._sequence, *self._ids),))
             self._sequence = (self._sequence + 1) & 0xFF

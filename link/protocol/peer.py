@@ -1,4 +1,4 @@
-"""What a channel knows of one address: who is behind it, how its frames are numbered, how much it may send."""
+"""State of one address on a channel: systems behind it, sequence numbers, rate limits."""
 
 from __future__ import annotations
 
@@ -11,47 +11,47 @@ from link.protocol.rate import TokenBucket
 from link.protocol.sequence import FrameOrder, SequenceTracker
 
 MAX_SOURCES = 64
-"""Systems and components counted behind one peer."""
+"""Systems and components tracked behind one peer."""
 
 
 def _buckets() -> dict[str, TokenBucket]:
-    # Demands come at 50 Hz at most. Commands come by hand, and from scripts that ask for the rates of all messages at
-    # once; more than these would take a whole control cycle. The rest has room for ArduPilot's 1240 messages/s.
+    # Demands come at 50 Hz at most. Commands come from people, and from scripts that request the rates of all messages
+    # at once; more than these would take a whole control cycle. The rest has room for ArduPilot's 1240 messages/s.
     return {"demand": TokenBucket(200, 50), "command": TokenBucket(200, 100), "rest": TokenBucket(2500, 1000)}
 
 
 @dataclass(slots=True)
 class PeerState:
-    """What we know of one address."""
+    """State of one address."""
 
     peer: Peer
     framer: Framer
-    last_heard: float
+    last_seen: float
     fixed: bool = False
-    """The user named this address: it is sent to before it has spoken."""
+    """The user named this address: it is sent to before its first frame."""
     connected: bool = False
-    """A connection that somebody made: it is sent to before it has spoken, too, while it lasts."""
+    """A connection: it is sent to before its first frame as well, while it lasts."""
     silent: bool = False
-    """It has not spoken yet in this conversation; only one that the user named is kept all the same."""
+    """No frame yet in this conversation; such a peer is kept only if it is fixed or connected."""
     sequence: int = 0
     systems: set[int] = field(default_factory=set)
-    """Systems whose HEARTBEAT came from here."""
+    """Systems whose HEARTBEAT came from this address."""
     sources: dict[tuple[int, int], SequenceTracker] = field(default_factory=dict)
     buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
 
     @property
     def is_expected(self) -> bool:
-        """Does somebody wait for what we say, though he has said nothing himself?"""
+        """Whether the peer is sent to before its first frame."""
         return self.fixed or self.connected
 
     def accepts_target(self, target: int) -> bool:
-        """Should a message for system `target` (0: for all) go here?"""
+        """Return whether a message for system `target` (0: all) goes to this peer."""
         if not self.systems:
             return self.is_expected
         return target == 0 or target in self.systems
 
     def add_source(self, frame: Frame) -> FrameOrder:
-        """The first frame of a source that is new here; of too many sources no numbers are kept."""
+        """Track a new source from its first frame; with too many sources no numbers are kept."""
         if len(self.sources) < MAX_SOURCES:
             message_id, system, component, sequence, _ = frame
             self.sources[system, component] = SequenceTracker(sequence, message_id)

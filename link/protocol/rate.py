@@ -1,4 +1,4 @@
-"""How much is too much, and how much it was: a token bucket and a rate meter."""
+"""Token bucket and rate meter."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import deque
 
 
 class TokenBucket:
-    """Lets `rate` a second through, and `burst` at once."""
+    """Allows `rate` per s on average, and bursts of `burst`."""
 
     def __init__(self, rate: float, burst: float) -> None:
         self._rate = rate
@@ -15,12 +15,12 @@ class TokenBucket:
         self._at: float | None = None
 
     def set_rate(self, rate: float, burst: float) -> None:
-        """Another rate from now on; what was left stays, as far as it fits."""
+        """Change the rate; the tokens that are left stay, as far as they fit."""
         self._rate, self._burst = rate, burst
         self._tokens = min(burst, self._tokens)
 
     def consume(self, now: float, cost: float = 1.0) -> bool:
-        """True when there was room for `cost`; nothing is taken otherwise."""
+        """Take `cost` tokens and return True, or take none and return False."""
         if self._at is not None:
             self._tokens = min(self._burst, self._tokens + (now - self._at) * self._rate)
         self._at = now
@@ -31,7 +31,7 @@ class TokenBucket:
 
 
 class RateMeter:
-    """Events a second over the last `window` s."""
+    """Events per s over the last `window` s."""
 
     def __init__(self, window: float = 1.0) -> None:
         self._window = window
@@ -39,13 +39,13 @@ class RateMeter:
         self._sum = 0.0
 
     def add(self, now: float, amount: float = 1.0) -> None:
-        """`amount` events happened now."""
+        """Count `amount` events now."""
         self._events.append((now, amount))
         self._sum += amount
         self._forget(now)
 
     def rate(self, now: float) -> float:
-        """Events a second."""
+        """Return the events per s."""
         self._forget(now)
         return self._sum / self._window
 

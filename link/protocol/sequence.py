@@ -1,7 +1,7 @@
-"""The numbering of one sender's frames: which are lost, repeated, or overtaken by a newer one of their kind.
+"""Sequence numbers of one sender: which frames are lost, repeated, or overtaken by a newer one.
 
-A slow link lets control frames overtake telemetry (link/transport/priority_queue.py), so that numbers arrive out of order on purpose.
-Only within one message id does the order say which state is the newest.
+On a slow link urgent frames overtake telemetry (link/transport/priority_queue.py), so that numbers arrive out of order
+on purpose. Only within one message id does the order tell which state is the newest.
 """
 
 from __future__ import annotations
@@ -11,28 +11,28 @@ from enum import Enum, auto
 LATE_WINDOW = 32
 """Frames up to this much older than the newest are late; further back, the sender has restarted."""
 RESTART_AFTER = 4
-"""So many old frames in a row are a sender that restarted just behind its old number."""
+"""Old frames in a row after which the sender has restarted just behind its old number."""
 
 _WINDOW_BITS = (1 << LATE_WINDOW + 1) - 1
 
 
 class FrameOrder(Enum):
-    """What the number of a frame says."""
+    """What the sequence number of a frame tells."""
 
     NEW = auto()
-    """The newest of its kind."""
+    """The newest of its message."""
     LATE = auto()
-    """A newer one of its kind was here already."""
+    """A newer one of its message was received before."""
     DUPLICATE = auto()
-    """This very number was here already."""
+    """This number was received before."""
 
 
 NEW = FrameOrder.NEW
-"""The usual case by a short way: a lookup in an enum costs as much as the rest of accept()."""
+"""Shortcut of the usual case: a lookup in an enum costs as much as the rest of accept()."""
 
 
 class SequenceTracker:
-    """One system and component, as heard from one address. `sequence` is the number of its first frame, 0..255."""
+    """Frames of one system and component from one address. `sequence` is that of the first frame, 0..255."""
 
     __slots__ = ("_kinds", "_newest", "_old_run", "_seen", "lost", "received")
 
@@ -41,13 +41,13 @@ class SequenceTracker:
         self.lost = 0
         self._newest = sequence
         self._seen = 1
-        """Bit n: the number n before the newest was received."""
+        """Bit n: number n before the newest was received."""
         self._kinds = {message_id: sequence}
         """Message id -> its newest number."""
         self._old_run = 0
 
     def accept(self, sequence: int, message_id: int) -> FrameOrder:
-        """Count a frame and say what it is."""
+        """Count a frame and return its order."""
         ahead = (sequence - self._newest) & 0xFF
         if ahead == 0:
             return FrameOrder.DUPLICATE

@@ -1,32 +1,29 @@
-"""What a router tells of its work: counts of each wire, and the table of routes."""
+"""What a router reports: the traffic of each link, and the table of routes."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from link.routing.routes import RoutedPeer
+from dataclasses import dataclass, fields, replace
 
 
 @dataclass(frozen=True, slots=True)
 class RouteReport:
-    """One line of the table of routes."""
+    """One row of the table of routes."""
 
     system: int
     component: int
-    port: int
+    link: int
+    """Index of the link."""
     address: Hashable
     silence: float
-    """s since it was last heard there."""
+    """s since the last frame from there."""
     received: int
     lost: int
 
 
 @dataclass(slots=True)
 class TransportReport:
-    """What one wire has carried since the start."""
+    """What one transport, or one peer on it, has carried since the start."""
 
     peers: int = 0
     frames_in: int = 0
@@ -34,26 +31,18 @@ class TransportReport:
     frames_out: int = 0
     bytes_out: int = 0
     received: int = 0
-    """Frames whose numbers were followed; with `lost` they give the loss."""
+    """Frames with a tracked sequence; with `lost` they give the loss."""
     lost: int = 0
     crc_errors: int = 0
     noise_bytes: int = 0
     unknown: int = 0
-    """Frames of ids that we do not know, forwarded all the same."""
+    """Frames with an id outside the dialect, which are forwarded as well."""
 
     def copy(self) -> TransportReport:
-        """Another one with the same counts."""
+        """Return a report with the same counts."""
         return replace(self)
 
-    def add(self, peer: RoutedPeer) -> None:
-        """Count what one peer has carried."""
-        self.bytes_in += peer.bytes_in
-        self.frames_out += peer.frames_out
-        self.bytes_out += peer.bytes_out
-        self.received += sum(each.received for each in peer.sources.values())
-        self.lost += sum(each.lost for each in peer.sources.values())
-        counts = peer.framer.counts
-        self.frames_in += counts.frames + counts.unknown
-        self.crc_errors += counts.crc_errors
-        self.noise_bytes += counts.resync_bytes
-        self.unknown += counts.unknown
+    def add(self, more: TransportReport) -> None:
+        """Add the counts of another report."""
+        for each in fields(self):
+            setattr(self, each.name, getattr(self, each.name) + getattr(more, each.name))

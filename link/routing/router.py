@@ -1,9 +1,9 @@
-"""Frames between wires by system and component id, as MAVLink's routing rules say, without decoding or changing one.
+"""Forwards frames between links by system and component id, without decoding or changing them.
 
-Rules (mavlink.io/en/guide/routing.html): a frame for everybody goes to every other peer, a frame for one system only
-where that system was heard; never back to where it came from, nor to where its sender is at home; SETUP_SIGNING and
-RADIO_STATUS stay where they are; what cannot be verified (unknown ids, signatures) is forwarded all the same, but only
-verified frames teach routes. A frame that arrives over two redundant links goes on once. Every table has a cap.
+Rules (https://mavlink.io/en/guide/routing.html): a broadcast goes to every other peer, a frame for one system only
+where that system was seen. No frame goes back to its origin, nor to a peer behind which its sender was seen. Messages
+with the trait LOCAL are not forwarded. Frames that cannot be verified (unknown ids, signatures) are forwarded, but only
+verified frames teach routes. A frame that arrives over two redundant links is forwarded once. Every table is bounded.
 """
 
 from __future__ import annotations
@@ -12,63 +12,64 @@ from collections.abc import Hashable, Sequence
 from typing import NamedTuple
 
 from dialects.codec import CRC_EXTRA, CRC_SIZE, HEADER_V2, MAGIC_V2
-from dialects.messages import RadioStatus, SystemTime
+from dialects.messages import SystemTime
 from dialects.targets import TARGETS, target_of
+from dialects.traits import LOCAL
 from link.protocol.frame import Frame, payload_of
 from link.routing.routes import RecentFrames, RoutedPeer, RoutedSource, RouteTable, SourceId
 
-SETUP_SIGNING = 256
-NOT_FORWARDED = frozenset({SETUP_SIGNING, RadioStatus.id})
-"""Never forwarded: a key, and what concerns one radio only."""
-
 REDUNDANCY_WINDOW = 1.0
-"""s in which the same frame over another link is the same frame: more than the slowest radio adds, and less than 256
+"""s in which an equal frame over another link is a repeat: longer than the slowest radio's delay, and shorter than 256
 frames of one sender take, unless it sends more of them than redundant links carry."""
+MAX_RECENT_UNTRACKED = 512
+"""Frames of untracked sources that are remembered for REDUNDANCY_WINDOW: without them, one frame with an unknown id
+circles for ever in a ring of bridges, because it teaches no route and has no entry to compare it with."""
 MAX_TRACKED_SOURCES = 256
 """Systems and components whose frames are compared between redundant links."""
 MAX_TARGETS = 256
-"""Targets of one source whose destinations are remembered."""
+"""Targets of one source whose destinations are cached."""
 
 _EVERYBODY: SourceId = (0, 0)
-_INSPECTED = NOT_FORWARDED | {SystemTime.id}
+_INSPECTED = LOCAL | {SystemTime.id}
 _NOT_FOR_ALL = _INSPECTED | TARGETS.keys()
-"""Any other message goes to everybody, whatever is in it."""
+"""Any other message is a broadcast, whatever its payload."""
 
 
 class Delivery(NamedTuple):
-    """Frames to send to one address of one wire, in this order."""
+    """Frames to send to one address of one link, in this order."""
 
-    port: int
+    link: int
     address: Hashable
     frames: list[bytes]
 
 
 class Router:
-    """What the table decides for each frame. `ports`: see RouteTable.
+    """Decides where each frame goes. `links`: see RouteTable.
 
-    `own` are the ids of the host that routes beside its own work: what is for it alone ends here, and its own frames
-    that come back are dropped.
+    `own`: ids of a host that also routes. Frames for it alone end here, and its own frames that come back are dropped.
     """
 
-    def __init__(self, ports: Sequence[tuple[bool, Hashable | None]], *, own: SourceId | None = None) -> None:
-        self.table = RouteTable(ports)
+    def __init__(self, links: Sequence[tuple[bool, Hashable | None]], *, own: SourceId | None = None) -> None:
+        self.table = RouteTable(links)
         self.duplicates = 0
-        """Frames that redundant links brought again."""
+        """Repeats that redundant links brought."""
         self.captured: list[bytes] | None = None
-        """Where it is a list: every frame that arrives, in order, for a recorder to take away."""
+        """If a list: every frame that arrives, in order, for a recorder to take away."""
         self._own = own
         self._recent: dict[SourceId, RecentFrames] = {}
-        """One for all peers of a source, so that they can be compared."""
+        """One per source, shared by all peers, so that their frames can be compared."""
+        self._untracked: dict[bytes, float] = {}
+        """Frames of sources without `recent`, without their signatures -> when each arrived first; the oldest first."""
         self._boot_times: dict[SourceId, int] = {}
         self._loaded: list[RoutedPeer] = []
 
-    def receive(self, port: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
-        """Take what arrived on a wire; returns what to send where. `now` in s, monotonic."""
-        peers = self.table.peers_of(port)
+    def receive(self, link: int, pieces: Sequence[tuple[bytes, Hashable]], now: float) -> list[Delivery]:
+        """Take what arrived on a link; return what to send where. `now` in s, monotonic."""
+        peers = self.table.peers_of(link)
         for data, address in pieces:
             peer = peers.get(address)
             if peer is None:
-                self._receive_from_new_peer(port, data, address, now)
+                self._receive_from_new_peer(link, data, address, now)
                 continue
             peer.bytes_in += len(data)
             frames = peer.framer.feed(data, now)
@@ -77,7 +78,7 @@ class Router:
         return self._collect()
 
     def tick(self, now: float) -> list[Delivery]:
-        """Give up half frames that are overdue (call it every 50 ms or so) and forget who is silent."""
+        """Give up overdue partial frames and forget silent peers. Call it every 50 ms or so."""
         for peer in list(self.table.all_peers()):
             frames = peer.framer.expire(now)
             if frames:
@@ -89,24 +90,27 @@ class Router:
                 del followed[key]
         return self._collect()
 
-    # ---- the way of a frame ----
+    # ---- one frame ----
 
-    def _receive_from_new_peer(self, port: int, data: bytes, address: Hashable, now: float) -> None:
-        """Noise makes no peer: on UDP only a verified frame does. A connection is one as it is."""
-        peer = self.table.new_peer(port, address, now)
+    def _receive_from_new_peer(self, link: int, data: bytes, address: Hashable, now: float) -> None:
+        """Add a peer: on UDP only for a verified frame, on a stream for any connection."""
+        peer = self.table.new_peer(link, address, now)
         if peer is None:
             return
         peer.bytes_in += len(data)
         frames = peer.framer.feed(data, now)
-        if self.table.is_stream(port) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
+        if self.table.is_stream(link) or any(message_id in CRC_EXTRA for message_id, *_ in frames):
             self.table.add_peer(peer, now)
             self._forward(peer, frames, now)
         else:
             self.table.reject_peer(peer)
 
     def _forward(self, peer: RoutedPeer, frames: list[Frame], now: float) -> None:  # noqa: C901 - calls cost more here
-        """The hot path: a usual frame of a known source costs no call here but list.append, dict.get and target_of."""
-        peer.heard = now
+        """Forward frames, on the hot path.
+
+        A frame of a known source costs no call here but list.append, dict.get and target_of.
+        """
+        peer.last_seen = now
         sources, loaded, table = peer.sources, self._loaded, self.table
         known: RoutedSource | None = None
         if self.captured is not None:
@@ -120,7 +124,7 @@ class Router:
                 continue
             if sequence == source.next:
                 source.received += 1
-                source.heard, source.next = now, (sequence + 1) & 0xFF
+                source.last_seen, source.next = now, (sequence + 1) & 0xFF
             else:
                 source.count_frame(sequence, now)
             recent = source.recent
@@ -129,6 +133,8 @@ class Router:
                 if before is not None and before[1] is not peer and self._is_redundant(before, raw, now):
                     continue
                 recent[sequence] = (now, peer, raw)
+            elif self._is_untracked_copy(raw, now):
+                continue
             target = _EVERYBODY
             if message_id in _NOT_FOR_ALL:
                 if message_id in _INSPECTED and self._is_link_local(source, message_id, raw):
@@ -141,28 +147,41 @@ class Router:
                 destination.waiting.append(raw)
 
     def _learn(self, peer: RoutedPeer, frame: Frame, now: float) -> RoutedSource | None:
-        """The entry of a source that is new here; None for frames that go nowhere."""
+        """Return the entry of a source that is new on this peer; None for frames that go nowhere."""
         message_id, system, component, sequence, _ = frame
         key = (system, component)
-        if not system or key == self._own:  # component 0 is what pymavlink sends unless told otherwise
+        if not system or key == self._own:  # component 0 is valid: pymavlink sends it by default
             return None
         source = RoutedSource(key, sequence, now)
         source.recent = self._recent.get(key)
         if message_id not in CRC_EXTRA or not self.table.add_source(peer, source):
-            return source  # this frame goes its way, but it teaches nothing
+            return source  # the frame is forwarded, but teaches no route
         if source.recent is None and len(self._recent) < MAX_TRACKED_SOURCES:
             source.recent = self._recent[key] = [None] * 256
         return source
 
     def _is_redundant(self, before: tuple[float, RoutedPeer, bytes], raw: bytes, now: float) -> bool:
-        """Is it one that another link has brought already?"""
+        """Return whether another link has brought this frame already."""
         again = now - before[0] < REDUNDANCY_WINDOW and _same(before[2], raw)
         self.duplicates += again
         return again
 
+    def _is_untracked_copy(self, raw: bytes, now: float) -> bool:
+        """Return whether this frame of an untracked source went on less than REDUNDANCY_WINDOW ago, on any link."""
+        key = _without_signature(raw)
+        at = self._untracked.get(key)
+        if at is not None and now - at < REDUNDANCY_WINDOW:
+            self.duplicates += 1
+            return True
+        self._untracked.pop(key, None)
+        if len(self._untracked) >= MAX_RECENT_UNTRACKED:
+            del self._untracked[next(iter(self._untracked))]
+        self._untracked[key] = now
+        return False
+
     def _is_link_local(self, source: RoutedSource, message_id: int, raw: bytes) -> bool:
-        """Messages that are more than freight: two stay here, SYSTEM_TIME tells of a restart and goes on."""
-        if message_id in NOT_FORWARDED:
+        """Handle messages that the router reads: return True for LOCAL ones; SYSTEM_TIME reveals a restart."""
+        if message_id in LOCAL:
             return True
         boot_time = int.from_bytes(payload_of(raw)[8:12], "little")
         if boot_time < self._boot_times.get(source.key, 0):
@@ -172,7 +191,7 @@ class Router:
         return False
 
     def _destinations(self, origin: RoutedPeer, source: RoutedSource, target: SourceId) -> tuple[RoutedPeer, ...]:
-        """Where a frame for `target` goes; remembered until the table changes."""
+        """Return the peers that a frame for `target` goes to; cached until the table changes."""
         if source.epoch != self.table.epoch or len(source.destinations) > MAX_TARGETS:
             source.destinations, source.epoch = {}, self.table.epoch
         found = source.destinations.get(target)
@@ -190,14 +209,15 @@ class Router:
             frames, peer.waiting = peer.waiting, []
             peer.frames_out += len(frames)
             peer.bytes_out += sum(map(len, frames))
-            deliveries.append(Delivery(peer.port, peer.address, frames))
+            deliveries.append(Delivery(peer.link, peer.address, frames))
         self._loaded = []
         return deliveries
 
 
 def _same(one: bytes, other: bytes) -> bool:
-    """Are two frames the same but for their signatures, which differ from link to link?"""
-    if one == other:
-        return True
-    end = HEADER_V2 + one[1] + CRC_SIZE
-    return one[0] == MAGIC_V2 and one[:end] == other[:end]
+    """Return whether two frames are equal but for their signatures, which differ between links."""
+    return one == other or _without_signature(one) == _without_signature(other)
+
+
+def _without_signature(raw: bytes) -> bytes:
+    return raw[: HEADER_V2 + raw[1] + CRC_SIZE] if raw[0] == MAGIC_V2 else raw

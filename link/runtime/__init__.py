@@ -1,1 +1,1 @@
-"""What all programs share: command line, standard streams, journal, TOML files, threads, event loop."""
+"""Program plumbing: command line, standard streams, journal, TOML files, worker thread, event loop."""

@@ -1,4 +1,4 @@
-"""What the command lines of all programs have in common: a mistake is one line, and an empty word is a mistake."""
+"""Command line parser of all programs: an error is one line, and an empty argument is an error."""
 
 from __future__ import annotations
 
@@ -10,32 +10,35 @@ from typing import NoReturn
 from link.runtime import journald
 
 USAGE_ERROR = 2
-"""Exit code of a user's mistake."""
+"""Exit code of a usage error."""
 EMPTY_VALUE = "has nothing behind it: give it a value, or leave it out"
 
 
 class CommandLineParser(argparse.ArgumentParser):
-    """Says a mistake in one line."""
+    """Reports an error in one line."""
 
     def error(self, message: str) -> NoReturn:
-        """Leave with exit code 2. What the user wrote may hold line breaks; the line does not."""
+        """Exit with code 2. User input may contain line breaks; the printed line does not."""
         self.exit(USAGE_ERROR, f"{self.prog}: {' '.join(message.split())} ({self.prog} --help shows how)\n")
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
-        """Leave; in the journal a complaint is marked as one."""
+        """Exit; in the journal the message is marked as an error."""
         if message and status:
             message = journald.priority_prefix(journald.ERROR) + message
         super().exit(status, message)
 
-    def reject_empty(self, words: Sequence[str]) -> list[str]:
-        """The words, none of which is empty: that is most often a variable of a script that nobody has set, and as the
-        name of a folder it would mean that nothing is kept."""
-        for before, word in pairwise(["", *words]):
-            option, given, value = word.partition("=")
-            if not word:
+    def reject_empty(self, arguments: Sequence[str]) -> list[str]:
+        """Return the arguments; exit if one of them is empty.
+
+        An empty argument is most often an unset variable of a script, and as the name of a folder it would mean that
+        nothing is saved.
+        """
+        for before, argument in pairwise(["", *arguments]):
+            option, given, value = argument.partition("=")
+            if not argument:
                 self.error(
                     f"{before} {EMPTY_VALUE}" if before.startswith("-") else "an argument is empty: leave it out"
                 )
-            if given and option.startswith("-") and value in ("", "--"):  # argparse takes -- for a sign of its own
+            if given and option.startswith("-") and value in ("", "--"):  # argparse gives -- a meaning of its own
                 self.error(f"{option} {EMPTY_VALUE}")
-        return list(words)
+        return list(arguments)

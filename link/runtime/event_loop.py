@@ -1,9 +1,8 @@
 """The event loop of both programs: asyncio's, with timers as exact as the kernel's.
 
-asyncio waits in epoll, whose timeout is whole milliseconds, and rounds up: a control cycle comes up to 1 ms late, and a
-frame that is paced to a serial wire leaves a gap behind it. select() takes microseconds. It looks at no descriptor
-above 1023, and costs more with many; both programs have a few dozen (the bridge, which may have more and has no
-deadlines, stays with epoll).
+asyncio waits in epoll, whose timeout is in whole ms, and rounds up: a control cycle comes up to 1 ms late, and a paced
+serial line idles after a frame. select() takes us. It cannot watch descriptors above 1023, and costs more with many;
+both programs have a few dozen (the bridge, which may have more and has no deadlines, keeps epoll).
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ T = TypeVar("T")
 
 
 class _TimedSelector(selectors.SelectSelector):
-    """Knows how long it has waited."""
+    """Measures how long it has waited."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -33,7 +32,7 @@ class _TimedSelector(selectors.SelectSelector):
 
 
 class TimedEventLoop(asyncio.SelectorEventLoop):
-    """Says how much of its time nothing was to do."""
+    """Measures its idle time."""
 
     def __init__(self) -> None:
         self._waits = _TimedSelector()
@@ -41,12 +40,12 @@ class TimedEventLoop(asyncio.SelectorEventLoop):
 
     @property
     def idle_time(self) -> float:
-        """s so far."""
+        """Time without work so far, s."""
         return self._waits.waited
 
 
 def running_loop() -> TimedEventLoop:
-    """Inside of `run_loop`. Raises RuntimeError elsewhere."""
+    """Return the running loop of `run_loop`. Raises RuntimeError in any other loop."""
     loop = asyncio.get_running_loop()
     if not isinstance(loop, TimedEventLoop):
         raise RuntimeError("this is not a loop of run_loop")
@@ -54,6 +53,6 @@ def running_loop() -> TimedEventLoop:
 
 
 def run_loop(main: Coroutine[Any, Any, T]) -> T:
-    """As asyncio.run."""
+    """Run `main` as asyncio.run does, on a TimedEventLoop."""
     with asyncio.Runner(loop_factory=TimedEventLoop) as runner:
         return runner.run(main)

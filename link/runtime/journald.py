@@ -1,23 +1,23 @@
-"""Severities for systemd's journal, which takes them from `<N>` in front of a line (sd-daemon(3)); none elsewhere."""
+"""Log levels for systemd's journal, which reads them from `<N>` before a line (sd-daemon(3))."""
 
 from __future__ import annotations
 
 import os
 
 CRITICAL, ERROR, WARNING, INFO, DEBUG = 2, 3, 4, 6, 7
-"""syslog(3)"""
+"""syslog(3)."""
 STDERR = 2
 
 
 def priority_prefix(severity: int) -> str:
-    """What stands in front of a line on stderr."""
+    """Return the text to print before a line on stderr; empty without a journal."""
     return f"<{severity}>" if _stderr_is_journal() else ""
 
 
 def _stderr_is_journal() -> bool:
-    """Whether stderr goes to the journal.
+    """Return whether stderr goes to the journal.
 
-    The variable alone does not say so, because all children inherit it, a terminal of a desktop among them; so it names
+    The variable alone does not prove that: all child processes inherit it, a desktop's terminal among them. So it holds
     the device and inode of the stream (systemd.exec(5)).
     """
     try:

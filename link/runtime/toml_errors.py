@@ -1,4 +1,4 @@
-"""msgspec's words on a bad table of settings, as the person who wrote it needs them: where, what, and what to do."""
+"""Rewords msgspec's validation errors for the user: key, error, remedy."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ KINDS = {
     "array": "a list in [brackets]",
     "object": "a table",
 }
-"""msgspec's word for a type -> what to write in TOML."""
+"""msgspec's name of a type -> what to write in TOML."""
 BOUNDS = {">=": "at least", "<=": "at most", ">": "more than", "<": "less than"}
 
 
 def suggest(word: str, known: Iterable[str]) -> str:
-    """What may have been meant."""
+    """Return "did you mean ...?", or the known words."""
     known = list(known)
     near = difflib.get_close_matches(word, known, n=2, cutoff=0.6)
     return (
@@ -34,19 +34,19 @@ def suggest(word: str, known: Iterable[str]) -> str:
 
 
 def explain_error(error: msgspec.ValidationError, kind: Any, at: str, also: Iterable[str] = ()) -> str:
-    """One line. `kind` is what the table should have been, `at` where it stands, `also` more keys it may have."""
+    """Return one line. `kind`: expected type; `at`: key of the table; `also`: more keys it may have."""
     what, _, path = str(error).partition(" - at `$")
     path = path.removesuffix("`")
-    for pattern, say in _SAYINGS.items():
+    for pattern, reword in _REWORDINGS.items():
         found = re.fullmatch(pattern, what)
         if found:
-            path, what = say(found, _Place(kind, path, tuple(also)))
+            path, what = reword(found, _Place(kind, path, tuple(also)))
             break
     return f"{_joined(at, path)}: {what}"
 
 
 class _Place:
-    """Where in the table, and what the types know of it."""
+    """A position in the table, and what the types allow there."""
 
     def __init__(self, kind: Any, path: str, also: tuple[str, ...]) -> None:
         self.path = path
@@ -54,13 +54,13 @@ class _Place:
         self._also = also
 
     def keys(self) -> list[str]:
-        """Keys of the table here."""
+        """Return the keys of the table here."""
         structs = [each for each in self._walk(self._steps()) if isinstance(each, inspect.StructType)]
         names = [name for struct in structs for name in _keys(struct)]
         return list(dict.fromkeys(names + ([] if self._steps() else list(self._also))))
 
     def choices(self, key: str | None = None) -> list[str]:
-        """Values that may stand here, or at `key` here, where they can be listed."""
+        """Return the allowed values here, or at `key` here, where they can be listed."""
         steps = self._steps() if key is None else [*self._steps(), key]
         parents = [each for each in self._walk(steps[:-1]) if isinstance(each, inspect.StructType)]
         tags = [str(each.tag) for each in parents if each.tag_field == steps[-1]]
@@ -121,7 +121,7 @@ def _unlisted(found: re.Match[str], place: _Place) -> tuple[str, str]:
     return place.path, f"{found[1]} is not known; {suggest(found[1].strip(chr(39)), place.choices())}"
 
 
-_SAYINGS: dict[str, Callable[[re.Match[str], _Place], tuple[str, str]]] = {
+_REWORDINGS: dict[str, Callable[[re.Match[str], _Place], tuple[str, str]]] = {
     r"Object contains unknown field `(.+)`": _unknown,
     r"Object missing required field `(.+)`": _missing,
     r"Expected `(.+)`, got `(.+)`": _mistaken,
@@ -129,7 +129,7 @@ _SAYINGS: dict[str, Callable[[re.Match[str], _Place], tuple[str, str]]] = {
     r"Expected `[^`]+` of length ([<>]=?) (\d+)": _counted,
     r"Invalid (?:enum )?value (.+)": _unlisted,
 }
-"""What msgspec says -> where it is and what we say. Anything else, a ValueError of a __post_init__ for one, stays."""
+"""msgspec's message -> position and text. Other messages, e.g. of a ValueError in __post_init__, stay as they are."""
 
 
 def _joined(at: str, path: str) -> str:

@@ -1,4 +1,4 @@
-"""A TOML file as it stands there, whatever is in it: what cannot be read is one line. What it means is its reader's."""
+"""Reads TOML files; any error is one line. The caller interprets the content."""
 
 from __future__ import annotations
 
@@ -9,58 +9,58 @@ from pathlib import Path
 from typing import Any
 
 MAX_INTEGER = 2**63 - 1
-"""TOML's own bound for whole numbers, which Python does not keep."""
+"""TOML's own limit for integers, which Python does not enforce."""
 MAX_DEPTH = 32
-"""Tables and lists in each other. No file of ours has more than four; without a bound a dotted key goes as deep as it
-is long, and whoever walks down it ends with a RecursionError."""
-TOO_DEEP = "brackets in brackets, or tables in tables, too deep to be meant"
+"""Nested tables and lists. No settings file has more than four levels; without a limit a dotted key is as deep as it is
+long, and code that walks it ends with a RecursionError."""
+TOO_DEEP = "lists or tables are nested too deep"
 
 TWICE = re.compile(r"Cannot declare \((?P<names>.*?)\) twice \((?P<where>at line \d+)")
 OVERWRITES = "Cannot overwrite a value"
 
 
 class TomlError(Exception):
-    """The file cannot be read. The text is one line: file, what is wrong, what to do."""
+    """The file cannot be read. The text is one line: file, error, remedy."""
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
-    """The tables of a file. Raises TomlError."""
+    """Return the tables of a file. Raises TomlError."""
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")  # some editors begin a file with a mark
+        text = Path(path).read_text(encoding="utf-8-sig")  # some editors begin a file with a byte order mark
     except IsADirectoryError:
-        raise TomlError(f"{path}: is a folder; name a file in it") from None
+        raise TomlError(f"{path}: is a directory; name a file in it") from None
     except OSError as error:
         raise TomlError(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        what = f"byte {error.start + 1} is no text in UTF-8"
+        what = f"byte {error.start + 1} is not UTF-8 text"
         raise TomlError(f"{path}: {what}; save the file as UTF-8, or name another one") from error
     return parse_toml(text, str(path))
 
 
 def parse_toml(text: str, name: str) -> dict[str, Any]:
-    """The tables of a file's text. Raises TomlError."""
+    """Return the tables of a TOML text. Raises TomlError."""
     try:
         found = tomllib.loads(text)
     except RecursionError:
         raise TomlError(f"{name}: {TOO_DEEP}") from None
     except tomllib.TOMLDecodeError as error:
-        raise TomlError(f"{name}: {_in_words(error)}") from error
+        raise TomlError(f"{name}: {_explain(error)}") from error
     except ValueError:  # of int()
-        raise TomlError(f"{name}: a number of thousands of digits, which nothing takes") from None
+        raise TomlError(f"{name}: a number with thousands of digits") from None
     if _too_deep(found):
         raise TomlError(f"{name}: {TOO_DEEP}")
     return found
 
 
-def _in_words(error: tomllib.TOMLDecodeError) -> str:
-    """What tomllib says, and what to do where somebody has put a table of a guide at the end of a file."""
-    words = str(error)
-    if twice := TWICE.match(words):
+def _explain(error: tomllib.TOMLDecodeError) -> str:
+    """Return tomllib's error, with a remedy for tables that were pasted twice."""
+    text = str(error)
+    if twice := TWICE.match(text):
         table = ".".join(re.findall(r"'([^']*)'", twice["names"]))
-        return f"[{table}] is there already, and again {twice['where']}; put its lines below the first one"
-    if words.startswith(OVERWRITES):
-        return f"a key that is set already, {words.removeprefix(OVERWRITES).strip(' ()')}; leave one out"
-    return words
+        return f"[{table}] exists already, and again {twice['where']}; move its lines below the first one"
+    if text.startswith(OVERWRITES):
+        return f"the key is set already, {text.removeprefix(OVERWRITES).strip(' ()')}; remove one of them"
+    return text
 
 
 def _too_deep(table: dict[str, Any]) -> bool:
@@ -72,7 +72,7 @@ def _too_deep(table: dict[str, Any]) -> bool:
 
 
 def find_unsupported(value: Any, at: str = "") -> Iterator[str]:
-    """What TOML can say and nothing takes: numbers of more than 64 bits, and NUL in a text. A line each."""
+    """Yield a line for each value that TOML allows and no setting accepts: over 64 bits, or with NUL."""
     if isinstance(value, dict):
         for key, inside in value.items():
             yield from find_unsupported(inside, f"{at}.{key}" if at else key)
@@ -80,6 +80,6 @@ def find_unsupported(value: Any, at: str = "") -> Iterator[str]:
         for index, inside in enumerate(value):
             yield from find_unsupported(inside, f"{at}[{index}]")
     elif isinstance(value, str) and "\0" in value:
-        yield f"{at}: holds the character NUL; leave it out"
+        yield f"{at}: contains the character NUL; remove it"
     elif isinstance(value, int) and abs(value) > MAX_INTEGER:
-        yield f"{at}: a number too large to be meant"
+        yield f"{at}: the number is too large"

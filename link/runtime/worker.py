@@ -1,4 +1,4 @@
-"""A thread for what may take long, such as a disk: jobs go in, in order, and whoever hands them over never waits."""
+"""Worker thread for slow jobs such as disk writes: jobs run in order, and the caller never waits."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ WorkItem = Callable[[], None]
 
 
 class Worker:
-    """Runs jobs one after the other. The thread begins with the first job and does not keep the program from ending."""
+    """Runs jobs in order. The thread starts with the first job and does not keep the program alive."""
 
     def __init__(self, name: str, limit: int) -> None:
         """`limit`: jobs that may wait; 0: any number, where the caller bounds them."""
@@ -22,7 +22,7 @@ class Worker:
         self._thread: threading.Thread | None = None
 
     def submit(self, job: WorkItem) -> bool:
-        """Have it run; False where too much waits already."""
+        """Queue `job`; return False if the queue is full."""
         try:
             self._jobs.put_nowait(job)
         except queue.Full:
@@ -33,7 +33,7 @@ class Worker:
         return True
 
     def close(self, patience: float) -> None:
-        """Run what waits and end, for at most `patience` s; a disk that takes longer is broken."""
+        """Run what waits and end the thread, within `patience` s; a slower disk is broken."""
         if self._thread is None:
             return
         try:

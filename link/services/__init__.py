@@ -1,1 +1,1 @@
-"""Microservices of MAVLink, the server and the client half of each; all of them are cores."""
+"""MAVLink microservices (https://mavlink.io/en/services/), server and client halves, all sans-IO."""

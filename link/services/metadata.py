@@ -1,7 +1,7 @@
-"""Component metadata: the files that tell a ground station what this vehicle's parameters mean, and where they are.
+"""Component metadata: files that describe this vehicle's parameters to a ground station.
 
-Built once, from the parameter table. Schemas: mavlink/component_metadata/{general,parameter}.schema.json; their
-version is 1 because QGroundControl refuses every other. Source: mavlink.io/en/services/component_information.html.
+Built once, from the parameter table. Source: https://mavlink.io/en/services/component_information.html. Schemas:
+mavlink/component_metadata/{general,parameter}.schema.json; version 1, because QGroundControl rejects any other.
 """
 
 from __future__ import annotations
@@ -21,29 +21,29 @@ PARAMETER_TYPE = 1
 """COMP_METADATA_TYPE_PARAMETER."""
 VERSION = 1
 DICTIONARY = 1 << 16
-"""Bytes of the compressor's window: the files are smaller, and the usual 8 MB window takes 94 MB to compress with."""
+"""Bytes of the compressor's window: the files are smaller, and compressing with the default 8 MB window takes 94 MB."""
 DECIMALS = 3
 
 
 @dataclass(frozen=True, slots=True)
 class Metadata:
-    """The files as they are served at the root of MAVLink FTP."""
+    """The files, as served in the root of MAVLink FTP."""
 
     general: bytes
     parameters: bytes
 
     @property
     def files(self) -> dict[str, bytes]:
-        """By name."""
+        """The files by name."""
         return {GENERAL_FILE: self.general, PARAMETER_FILE: self.parameters}
 
     def message(self, time_boot_ms: int) -> m.ComponentMetadata:
-        """COMPONENT_METADATA: where the general file is, and the checksum by which it may be kept for later."""
+        """Return COMPONENT_METADATA: the URI of the general file, and the checksum by which it may be cached."""
         return m.ComponentMetadata(time_boot_ms, crc32(self.general), _uri(GENERAL_FILE).encode())
 
 
 def build_metadata(table: Sequence[ParamDefinition], *, vendor: str, model: str, version: str) -> Metadata:
-    """All files. `version` is that of the vehicle's program: three numbers with points between."""
+    """Build all files. `version` is that of the vehicle's software: three numbers separated by dots."""
     parameters = _compressed({"version": VERSION, "parameters": [_parameter(setting) for setting in table]})
     general = {
         "version": VERSION,
@@ -75,7 +75,7 @@ def _parameter(setting: ParamDefinition) -> dict[str, Any]:
 
 
 def _compressed(content: dict[str, Any]) -> bytes:
-    """With the checksum that even the smallest decompressor knows (xz-embedded, in QGroundControl and MAVSDK)."""
+    """Compress with CRC-32, the one checksum of xz-embedded (QGroundControl and MAVSDK)."""
     plain = json.dumps(content, separators=(",", ":")).encode()
     filters = [{"id": lzma.FILTER_LZMA2, "preset": 6, "dict_size": DICTIONARY}]
     return lzma.compress(plain, format=lzma.FORMAT_XZ, check=lzma.CHECK_CRC32, filters=filters)

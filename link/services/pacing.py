@@ -1,6 +1,6 @@
-"""How fast bulk answers go out: a share of each peer's link, so that lists, files and logs never crowd out the rest.
+"""Paces lists, files and logs to a share of each peer's link, so that they do not crowd out the rest.
 
-The services that send more than one answer to a question (parameter lists, file bursts, logs) take from one Pacer.
+All services that send more than one reply to a request (parameter lists, file bursts, logs) share one BulkPacer.
 """
 
 from __future__ import annotations
@@ -12,26 +12,27 @@ from link.core import Peer
 from link.protocol.rate import TokenBucket
 
 DEFAULT_RATE = 400_000.0
-"""bytes/s to a peer on a network: 1600 file frames a second, two thirds of what link/protocol/channel.py takes from a peer."""
+"""bytes/s to a peer on a network: 1600 file frames a second, two thirds of what link/protocol/channel.py accepts from a
+peer."""
 MAX_FRAME_RATE = 1600.0
-"""frames/s to any peer, however short: what decodes them takes as long for a short one. MAVProxy lost one in six of
-3700 LOG_DATA a second, which its socket could not hold."""
+"""frames/s to any peer, however short: decoding a short one takes as long. MAVProxy lost one in six of 3700 LOG_DATA a
+second, which its socket buffer could not hold."""
 BURST_TIME = 0.05
-"""s of the rate that may go at once: two and a half control cycles, so that a late cycle loses nothing."""
+"""s of the rate that may go at once: two and a half control cycles, so that a late cycle costs no throughput."""
 MAX_PEERS = 32
 MAVLINK2_OVERHEAD = 12
 """Bytes of a MAVLink 2 frame around its payload."""
 
 
 class BulkPacer:
-    """Says when the next bulk frame may go to a peer. `rate` gives the bytes/s for one."""
+    """Decides when the next bulk frame may go to a peer. `rate` returns the bytes/s for one."""
 
     def __init__(self, rate: Callable[[Peer], float] = lambda peer: DEFAULT_RATE) -> None:
         self._rate = rate
         self._buckets: dict[Peer, tuple[float, TokenBucket]] = {}
 
     def consume(self, peer: Peer, size: int, now: float) -> bool:
-        """True when a frame of `size` bytes may go to `peer` now."""
+        """Return whether a frame of `size` bytes may go to `peer` now, and count it."""
         rate = self._rate(peer)
         known = self._buckets.get(peer)
         if known is None or known[0] != rate:

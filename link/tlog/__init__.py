@@ -1,1 +1,1 @@
-"""Telemetry logs (tlog): format, and a recorder that writes them in a thread."""
+"""Telemetry logs (tlog): the format, and a recorder that writes in a thread."""

@@ -1,7 +1,7 @@
-"""Writes frames into telemetry logs, in a thread of its own: a slow card must not hold up a frame.
+"""Writes frames into telemetry logs in a thread, because a slow card must not delay a frame.
 
-Frames come together for a moment and then go to the thread in one piece: what a killed program had not handed over is
-at most PERIOD old, and the file is whole up to there. Where the disk does not follow, frames are left out and counted.
+Frames are collected for PERIOD and then passed to the thread in one batch: a killed program loses no more than that,
+and the file is complete up to there. When the disk is too slow, frames are left out and counted.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from link.tlog.tlog import encode_record
 log = logging.getLogger(__name__)
 
 PERIOD = 0.5
-"""s between two hand-overs: two wake-ups a second cost nothing, and half a second is what a crash may take."""
+"""s between two batches: two wake-ups a second cost nothing, and a crash may lose half a second."""
 MAX_BATCH = 256 * 1024
-"""Bytes of frames that may come together."""
+"""Bytes of frames in one batch."""
 PENDING = 32
 """Batches that may wait for the disk: 16 s, and at most 8 MB."""
 CLOSE_TIMEOUT = 2.0
@@ -32,54 +32,56 @@ Batch = list[tuple[float, Sequence[bytes]]]
 
 
 class LogFile(Protocol):
-    """A file that is open. It is used in the recorder's thread only."""
+    """An open file, used only in the recorder's thread."""
 
     def write(self, data: bytes) -> None:
-        """Write whole records, all of them. Raises OSError."""
+        """Write whole records completely. Raises OSError."""
 
     def close(self) -> None:
-        """The end. Raises OSError."""
+        """Close the file. Raises OSError."""
 
 
 def unix_offset() -> int:
-    """us from the monotonic clock to Unix time."""
+    """Return the us to add to the monotonic clock for Unix time."""
     return time.time_ns() // 1000 - time.monotonic_ns() // 1000
 
 
 class RawFile:
-    """A file as the system has it: what was written is in it, also when the program is killed."""
+    """An unbuffered file: written data survives a kill of the program."""
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
 
     def write(self, data: bytes) -> None:
-        """Raises OSError; on a disk that became full a part is written."""
+        """Write all of `data`. Raises OSError; on a full disk a part may be written."""
         rest = memoryview(data)
         while rest:
             rest = rest[os.write(self._descriptor, rest) :]
 
     def sync(self) -> None:
-        """Bring it to the disk, for a power cut. Raises OSError."""
+        """Write the file's data to the disk, against a power cut. Raises OSError."""
         os.fdatasync(self._descriptor)
 
     def is_removed(self) -> bool:
-        """Has somebody taken it out of its folder?"""
+        """Return whether the file was removed from its directory."""
         return os.fstat(self._descriptor).st_nlink == 0
 
     def close(self) -> None:
-        """Raises OSError."""
+        """Close the file. Raises OSError."""
         os.close(self._descriptor)
 
 
 class Recorder:
-    """Takes frames with their times (monotonic, s); each file's times are Unix time as known when it was begun, and go
-    on evenly from there, whatever somebody does to the clock."""
+    """Takes frames with their times (monotonic, s).
+
+    A file's times are Unix time as known when it was started, and continue evenly from there, even if the clock is set.
+    """
 
     def __init__(self, *, offset: Callable[[], int] = unix_offset) -> None:
         self.lost = 0
-        """Frames that the disk had no time for, since the last begin()."""
+        """Frames left out because the disk was too slow, since the last start()."""
         self.recording = False
-        """Is there a file, or will there be one?"""
+        """A file is open, or will be."""
         self._failure: str | None = None
         self._offset = offset
         self._since = 0
@@ -91,11 +93,11 @@ class Recorder:
 
     @property
     def problem(self) -> str | None:
-        """Why it does not record, or not all, in one line."""
+        """Why frames are not recorded, or not all, in one line."""
         return self._failure or (SLOW if self.lost else None)
 
     def start(self, open_file: Callable[[], LogFile]) -> None:
-        """A new file, opened in the thread; the frames of the last moment are its first. What went wrong is over."""
+        """Start a new file, opened in the thread; it begins with the current batch. Clears errors."""
         self.lost, self._failure, self.recording = 0, None, True
         if not self._worker.submit(lambda: self._open(open_file)):
             self._failure = SLOW
@@ -106,28 +108,28 @@ class Recorder:
             self._hand_over()
             self._worker.submit(
                 self._close
-            )  # where it finds no room, the next begin() or the end of the program closes
+            )  # if the queue is full, the next start() or the end of the program closes the file
             self.recording = False
 
     def add(self, now: float, frames: Sequence[bytes]) -> None:
-        """Frames of this moment. Costs the hot path no more than a list."""
+        """Add frames of this moment; costs the hot path no more than a list."""
         self._batch.append((now, frames))
         self._size += sum(map(len, frames))
         if self._size >= MAX_BATCH:
             self._hand_over()
 
     def tick(self, now: float) -> None:
-        """Call it often: hands over what has come together, each PERIOD s."""
+        """Pass what was collected to the thread, every PERIOD s. Call it often."""
         if now - self._handed_over >= PERIOD:
             self._handed_over = now
             self._hand_over()
 
     def check_writable(self, probe: Callable[[], None]) -> None:
-        """Have the thread see whether it could record: `probe` raises OSError where not."""
+        """Let the thread test whether it could record: `probe` raises OSError if not."""
         self._worker.submit(lambda: self._try(probe))
 
     def close(self) -> None:
-        """Write the rest and end."""
+        """Write the rest and end the thread."""
         self.stop()
         self._worker.close(CLOSE_TIMEOUT)
 
@@ -140,7 +142,7 @@ class Recorder:
 
     def _open(self, open_file: Callable[[], LogFile]) -> None:
         self._close()
-        self._failure, self._since = None, self._offset()  # what the file before it met is over
+        self._failure, self._since = None, self._offset()  # errors of the file before are over
 
         def opening() -> None:
             self._file = open_file()
@@ -160,7 +162,7 @@ class Recorder:
             self._try(file.close)
 
     def _try(self, step: Callable[[], None]) -> None:
-        """A disk that fails ends the file and nothing else."""
+        """Run `step`; an OSError ends the recording and nothing else."""
         try:
             step()
         except OSError as error:

@@ -1,7 +1,7 @@
-"""Telemetry logs: each frame behind its time, as MAVProxy, QGroundControl and pymavlink's tools read and write them.
+"""Telemetry log format: time and frame, as MAVProxy, QGroundControl and pymavlink read and write it.
 
-A record is 8 bytes, Unix time in us, big-endian, then the frame as it was on the wire. There is no header and no
-index: a file that was cut off is whole up to there, and a damaged one is read on from the next sound frame.
+A record is 8 bytes of Unix time in us, big-endian, then the frame as it was sent. There is no header and no index: a
+truncated file is complete up to there, and a damaged one is read on from the next valid frame.
 """
 
 from __future__ import annotations
@@ -11,18 +11,21 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from dialects.codec import CRC_EXTRA, MAGIC_V1, MAGIC_V2
+from dialects.traits import SECRET
 from link.protocol.frame import read_header
 from link.protocol.framer import Framer
 
 STAMP = 8
 _STAMP = struct.Struct(">Q")
-_MAGIC_V2, _SETUP_SIGNING = bytes([MAGIC_V2]), (256).to_bytes(3, "little")
-_LEAST = STAMP + 8  # and the shortest frame
+_MAGIC_V2 = bytes([MAGIC_V2])
+_SECRET = frozenset(number.to_bytes(3, "little") for number in SECRET)
+"""Ids as in a MAVLink 2 header."""
+_LEAST = STAMP + 8  # with the shortest frame
 _DAY = 86_400_000_000
 
 
 class Record(NamedTuple):
-    """One frame and when it was on the wire."""
+    """One frame and the time it was recorded."""
 
     microseconds: int
     """Unix time."""
@@ -30,14 +33,14 @@ class Record(NamedTuple):
 
 
 def encode_record(microseconds: int, raw: bytes) -> bytes:
-    """The bytes of one record; none for SETUP_SIGNING, because its key belongs into no file."""
-    if raw[:1] == _MAGIC_V2 and raw[7:10] == _SETUP_SIGNING:
+    """Return the bytes of one record; none for a message with the trait SECRET."""
+    if raw[:1] == _MAGIC_V2 and raw[7:10] in _SECRET:
         return b""
     return _STAMP.pack(microseconds) + raw
 
 
 def read_records(data: bytes) -> Iterator[Record]:
-    """All whole records of a log, in order. What is damaged is skipped and never raises."""
+    """Yield all whole records of a log, in order. Damaged parts are skipped and never raise."""
     at, last, sure = 0, 0, True
     while at + _LEAST <= len(data):
         raw = _frame_at(data, at + STAMP, trust_unknown=sure)
@@ -46,13 +49,16 @@ def read_records(data: bytes) -> Iterator[Record]:
             continue
         (stamp,) = _STAMP.unpack_from(data, at)
         if not sure and not last <= stamp <= last + _DAY:
-            stamp = last  # the frame is sound, but the damage reached its time
+            stamp = last  # the frame is valid, but the damage reached its time
         yield Record(stamp, raw)
         at, last, sure = at + STAMP + len(raw), stamp, True
 
 
 def _frame_at(data: bytes, start: int, *, trust_unknown: bool) -> bytes | None:
-    """The frame there. One that nobody can check counts only right behind a sound record, and before another."""
+    """Return the frame at `start`, or None.
+
+    A frame with an unknown id counts only right behind a valid record and before another frame.
+    """
     if data[start] not in (MAGIC_V1, MAGIC_V2):
         return None
     header = read_header(data, start)

@@ -1,1 +1,1 @@
-"""UDP, TCP, serial and in-memory transports, and their send queues."""
+"""Transports: UDP, TCP, serial ports and an in-memory pipe, with their transmit queues."""

@@ -1,4 +1,4 @@
-"""Names to addresses, and what the system says of an address that cannot be had, for UDP and TCP alike."""
+"""Host name lookup, and the error texts of socket addresses, for UDP and TCP."""
 
 from __future__ import annotations
 
@@ -10,25 +10,29 @@ from link.transport.transport import LinkError
 
 
 def resolve(endpoint: Endpoint, kind: socket.SocketKind) -> tuple[tuple[str, int], socket.AddressFamily]:
-    """The address that `endpoint` names. Raises LinkError."""
+    """Look up the address of `endpoint`. Raises LinkError."""
     try:
         found = socket.getaddrinfo(endpoint.host, endpoint.port, type=kind)
     except (OSError, UnicodeError) as error:
         raise LinkError(
-            f"{endpoint.text}: host {endpoint.host!r} is not known; check its name or use its number"
+            f"{endpoint.text}: host {endpoint.host!r} is not known; check the name or use its IP address"
         ) from error
     family, _, _, _, address = found[0]
     return (str(address[0]), int(address[1])), family
 
 
 def bind_error_text(endpoint: Endpoint, error: OSError) -> str:
-    """Why a socket could not be had, in one line."""
+    """Return why a socket could not be opened, in one line."""
     if error.errno == errno.EADDRINUSE:
         return (
-            f"{endpoint.text}: port {endpoint.port} is in use; stop the other program (`ss -lnp`) or take another port"
+            f"{endpoint.text}: port {endpoint.port} is in use; "
+            "stop the other program (`ss -lnp` lists it) or choose another port"
         )
     if error.errno == errno.EADDRNOTAVAIL:
-        return f"{endpoint.text}: {endpoint.host} is no address of this machine; use one of its own, or 0.0.0.0 for all"
+        return (
+            f"{endpoint.text}: {endpoint.host} is not an address of this machine; "
+            "use one of its own, or 0.0.0.0 for all of them"
+        )
     if error.errno in (errno.EACCES, errno.EPERM):
-        return f"{endpoint.text}: not allowed; ports below 1024 belong to root, take a higher one"
+        return f"{endpoint.text}: not allowed; ports below 1024 need root, choose a higher one"
     return f"{endpoint.text}: {error.strerror}"

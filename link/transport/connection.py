@@ -1,4 +1,4 @@
-"""One open TCP connection: a stream both ways that never blocks, and notices when the other end is gone."""
+"""One open TCP connection: never blocks, and detects a dead peer by keepalive."""
 
 from __future__ import annotations
 
@@ -11,38 +11,44 @@ from link.transport.stream_writer import StreamWriter
 from link.transport.transport import ReceiveCallback
 
 BULK = 65536
-"""Bytes of telemetry that may wait for one connection, then the oldest is dropped."""
+"""Bytes of telemetry that may wait for one connection; then the oldest is dropped."""
 SEND_BUFFER = 32768
-"""Bytes that the kernel keeps, where nothing can overtake; its own default grows to megabytes."""
+"""Bytes that the kernel buffers, where nothing can overtake; its own default grows to megabytes."""
 READ = 65536
 DEAD_AFTER = 10
-"""s without an acknowledgement after which the other end counts as gone; twice the vehicle's patience with its GCS."""
+"""s without an acknowledgement after which the other end counts as gone; twice the vehicle's GCS timeout."""
 
 
 class Connection:
-    """One open connection. `ended` hears why it ended; whoever calls close() knows it already."""
+    """One open connection. `on_end` gets the reason when it ends, but not after close()."""
 
     def __init__(
-        self, sock: socket.socket, address: Hashable, arrived: ReceiveCallback, ended: Callable[[Connection, str], None]
+        self,
+        sock: socket.socket,
+        address: Hashable,
+        on_receive: ReceiveCallback,
+        on_end: Callable[[Connection, str], None],
     ) -> None:
         _prepare(sock)
         self.address = address
         self.queue = TransmitQueue(BULK)
         self._socket = sock
-        self._arrived = arrived
-        self._ended = ended
-        self._outlet = StreamWriter(sock.fileno(), self.queue, sock.send, self._failed)
+        self._on_receive = on_receive
+        self._on_end = on_end
+        self._writer = StreamWriter(sock.fileno(), self.queue, sock.send, self._failed)
         self._loop = asyncio.get_running_loop()
+        self.last_received = self._loop.time()
+        """When the last bytes came, or else when the connection was opened; time of the event loop."""
         self._loop.add_reader(sock, self._readable)
 
     def send(self, data: bytes) -> None:
-        """One frame, now or soon."""
-        self._outlet.send(data)
+        """Send one frame, now or soon."""
+        self._writer.send(data)
 
     def close(self) -> None:
-        """Hand over what is taken at once, and end it."""
-        self._ended = lambda *_: None
-        self._outlet.flush_and_close()
+        """Send what the socket accepts at once, and end the connection."""
+        self._on_end = lambda *_: None
+        self._writer.flush_and_close()
         self._release()
 
     def _readable(self) -> None:
@@ -54,7 +60,8 @@ class Connection:
             self._failed(error)
             return
         if data:
-            self._arrived([(data, self.address)])
+            self.last_received = self._loop.time()
+            self._on_receive([(data, self.address)])
         else:
             self._end("closed by the other end")
 
@@ -62,9 +69,9 @@ class Connection:
         self._end(error.strerror or str(error))
 
     def _end(self, why: str) -> None:
-        self._outlet.close()
+        self._writer.close()
         self._release()
-        self._ended(self, why)
+        self._on_end(self, why)
 
     def _release(self) -> None:
         if self._socket.fileno() >= 0:

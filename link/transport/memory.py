@@ -1,4 +1,4 @@
-"""A pipe in memory that delays, drops and cuts: two cores joined by a pair of them need no network and no clock."""
+"""In-memory link with delay, jitter, loss and cuts, for tests without a network or a clock."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections import deque
 
 
 class LossyPipe:
-    """One direction of a link. Nothing overtakes: jitter delays what is behind it, as a radio does.
+    """One direction of a link. Frames stay in order: jitter delays those behind as well, as on a radio.
 
-    `delay` and `jitter` in s (one way, jitter uniform in +-jitter), `loss` 0..1, `seed` makes it repeatable.
+    `delay` and `jitter` in s (one way, jitter uniform in +-jitter), `loss` 0..1; `seed` makes the losses repeatable.
     """
 
     def __init__(self, *, delay: float = 0.0, jitter: float = 0.0, loss: float = 0.0, seed: int = 0) -> None:
@@ -17,14 +17,14 @@ class LossyPipe:
         self.jitter = jitter
         self.loss = loss
         self.cut = False
-        """While true all is lost, also what is under way."""
+        """While True everything is lost, also frames under way."""
         self.lost = 0
-        """How many were lost by chance or by a cut, those under way not counted."""
+        """Frames lost by chance or sent during a cut; those under way when it began are not counted."""
         self._random = random.Random(seed)
         self._under_way: deque[tuple[float, bytes]] = deque()
 
     def send(self, data: bytes, now: float) -> None:
-        """Put `data` on its way, or lose it."""
+        """Send `data`, or lose it."""
         if self.cut or self._random.random() < self.loss:
             self.lost += 1
             return
@@ -34,7 +34,7 @@ class LossyPipe:
         self._under_way.append((arrival, data))
 
     def receive(self, now: float) -> list[bytes]:
-        """What has arrived by now."""
+        """Return what has arrived by now."""
         if self.cut:
             self._under_way.clear()
         arrived: list[bytes] = []

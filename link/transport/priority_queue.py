@@ -1,7 +1,8 @@
-"""What waits for a slow wire, and who goes first: frames that control overtake telemetry. No I/O here.
+"""Transmit queue of a slow link: urgent frames overtake telemetry. Sans-IO.
 
-Rules: control before bulk, each in its own order; of demands and heartbeats only the newest waits; when bulk is full
-the oldest is dropped; what has waited too long is dropped, because an old demand is a wrong one; a stop never is.
+Urgent frames (dialects/traits.py) go before bulk, each class in its own order. Of urgent state, e.g. demands and
+heartbeats, only the newest waits. When bulk is full its oldest frame is dropped. A frame that has waited longer than
+STALE is dropped, because an old demand is a wrong one; a stop is never dropped for its age.
 """
 
 from __future__ import annotations
@@ -9,38 +10,18 @@ from __future__ import annotations
 from collections import deque
 
 from dialects import codec
-from dialects.messages import (
-    CommandAck,
-    CommandInt,
-    CommandLong,
-    Heartbeat,
-    ManualControl,
-    RcChannelsOverride,
-    RoverOperatorPresence,
-    SetAttitudeTarget,
-    SetMode,
-    SetPositionTargetGlobalInt,
-    SetPositionTargetLocalNed,
-    is_stop,
-)
 from dialects.targets import target_of
+from dialects.traits import COMMANDS, NEWEST_ONLY, URGENT, is_stop
 from link.protocol.frame import read_header
 
-SETPOINTS = (SetPositionTargetLocalNed, SetPositionTargetGlobalInt, SetAttitudeTarget)
-NEWEST_ONLY = frozenset(
-    each.id for each in (ManualControl, RcChannelsOverride, RoverOperatorPresence, Heartbeat, *SETPOINTS)
-)
-"""State that control depends on: a newer frame of the same sender and target replaces the one that waits."""
-URGENT = NEWEST_ONLY | {each.id for each in (CommandLong, CommandInt, CommandAck, SetMode)}
-"""Frames that overtake all others."""
 STALE = 0.5
-"""s after which a waiting frame is worth less than none: about the vehicle's own patience with a demand (0.45 s)."""
+"""s after which a waiting frame does more harm than good: about as long as the vehicle uses a demand (0.45 s)."""
 MAX_URGENT = 64
-"""Control frames that may wait: 0.4 s of them at 57600 baud."""
+"""Urgent frames that may wait: 0.4 s of them at 57600 baud."""
 MAX_DRIVER_BACKLOG = 0.020
-"""s of wire time that may lie in the driver's buffer, where nothing can overtake."""
+"""s of transmission time that may lie in the driver's buffer, where nothing can overtake."""
 MIN_DRIVER_BACKLOG = 0.004
-"""s: below this any frame may go, however long it is, or the wire would run dry."""
+"""s: below this any frame may go, however long it is, or the line would idle."""
 
 
 class _Entry:
@@ -53,11 +34,11 @@ class _Entry:
 
 
 class TransmitQueue:
-    """Frames on their way to one wire. `limit` is how many bytes of bulk may wait."""
+    """Frames that wait for one transport. `limit` is how many bytes of bulk may wait."""
 
     def __init__(self, limit: int) -> None:
         self.dropped = 0
-        """Frames that were given up."""
+        """Frames dropped."""
         self._limit = limit
         self._urgent: deque[_Entry] = deque()
         self._bulk: deque[_Entry] = deque()
@@ -76,7 +57,7 @@ class TransmitQueue:
             self._put_urgent(_Entry(data, now, None))
 
     def next_size(self, now: float) -> int:
-        """Bytes of the frame that goes next; 0 when none waits."""
+        """Return the bytes of the frame that goes next; 0 when none waits."""
         while self._urgent and self._is_stale(self._urgent[0], now):
             self._give_up(self._urgent.popleft())
         if self._urgent:
@@ -86,7 +67,7 @@ class TransmitQueue:
         return len(self._bulk[0].data) if self._bulk else 0
 
     def pop(self, now: float) -> bytes:
-        """The frame that goes next; empty when none waits."""
+        """Remove and return the frame that goes next; empty when none waits."""
         if not self.next_size(now):
             return b""
         if self._urgent:
@@ -99,7 +80,7 @@ class TransmitQueue:
         return entry.data
 
     def clear(self) -> None:
-        """Forget all that waits: the wire it waited for is gone."""
+        """Drop all that waits, after a disconnect."""
         self._urgent.clear()
         self._bulk.clear()
         self._newest.clear()
@@ -114,7 +95,7 @@ class TransmitQueue:
     def _put_newest(self, data: bytes, now: float, key: tuple[int, ...]) -> None:
         waiting = self._newest.get(key)
         if waiting is not None:
-            waiting.data, waiting.at = data, now  # it keeps its place in the queue
+            waiting.data, waiting.at = data, now  # keeps its place in the queue
             self.dropped += 1
             return
         entry = self._newest[key] = _Entry(data, now, key)
@@ -141,27 +122,27 @@ class TransmitQueue:
 
 
 def _stops(data: bytes) -> bool:
-    """Is this a frame of a command that only ever stops?"""
+    """Return whether this frame holds a command that only stops."""
     header = read_header(data)
-    if header is None or header.message_id not in (CommandLong.id, CommandInt.id):
+    if header is None or header.message_id not in COMMANDS:
         return False
     start = codec.HEADER_V2 if data[0] == codec.MAGIC_V2 else codec.HEADER_V1
     return is_stop(codec.decode(header.message_id, data[start : start + data[1]]))
 
 
 class TransmitPacer:
-    """Says when a wire of `capacity` bytes/s has room, so that no long queue forms in the driver behind it."""
+    """Paces a line of `capacity` bytes/s, so that no long queue forms in the driver."""
 
     def __init__(self, capacity: float) -> None:
         self._capacity = capacity
         self._free_at = 0.0
-        """When the wire will have sent what it was given."""
+        """When the line will have sent what was written."""
 
     def delay(self, size: int, in_driver: int, now: float) -> float:
-        """s until a frame of `size` bytes may go; `in_driver` bytes are there by its own word (0: it does not know)."""
+        """Return the s until a frame of `size` bytes may go; `in_driver` bytes wait there (0: not known)."""
         ahead = max(self._free_at - now, in_driver / self._capacity)
         return max(0.0, min(ahead + size / self._capacity - MAX_DRIVER_BACKLOG, ahead - MIN_DRIVER_BACKLOG))
 
     def record_written(self, size: int, now: float) -> None:
-        """`size` bytes went to the driver."""
+        """Record that `size` bytes went to the driver."""
         self._free_at = max(self._free_at, now) + size / self._capacity

@@ -1,5 +1,7 @@
-"""A serial port: pyserial opens and configures it, the event loop reads and writes it. It never blocks, and a port
-that is missing or unplugged is waited for."""
+"""Serial port transport: pyserial opens and configures the port, the event loop reads and writes it.
+
+Never blocks. A port that is missing or was unplugged is reopened as soon as it is there.
+"""
 
 from __future__ import annotations
 
@@ -24,66 +26,69 @@ from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallb
 BITS_PER_BYTE = 10
 """8 data bits, one start and one stop bit."""
 BULK_WAIT = 0.25
-"""s of wire time that telemetry may wait: longer than any burst of ours, and then the oldest is not worth sending."""
+"""s of transmission time that telemetry may wait: longer than any burst of ours; older telemetry is not worth
+sending."""
 BULK_LEAST = 600
-"""Bytes, for slow ports: two of the longest frames."""
+"""Lower limit in bytes, for slow ports: two of the longest frames."""
 READ = 4096
 
 
 class SerialTransport:
-    """One serial port, by its path. `port` is open, or None when it must be waited for."""
+    """One serial port, by its path. `port` is open, or None while it is missing."""
 
     def __init__(self, endpoint: Endpoint, port: serial.Serial | None) -> None:
         self.endpoint = endpoint
-        self.problem = None if port else _waiting(endpoint)
+        self.problem = None if port else _missing_text(endpoint)
         self.stream = True
         self.fixed_address: Hashable | None = endpoint.text
         self.capacity: float | None = endpoint.baud / BITS_PER_BYTE
         self._queue = TransmitQueue(max(BULK_LEAST, int(endpoint.baud / BITS_PER_BYTE * BULK_WAIT)))
         self._port = port
-        self._outlet: StreamWriter | None = None
+        self._writer: StreamWriter | None = None
         self._backoff = Backoff()
         self._timer: asyncio.TimerHandle | None = None
         self._closed = False
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._arrived: ReceiveCallback = lambda _: None
-        self._gone: DisconnectCallback = lambda _: None
+        self._on_receive: ReceiveCallback = lambda _: None
+        self._on_disconnect: DisconnectCallback = lambda _: None
 
     @property
     def dropped(self) -> int:
-        """Frames that the port had no room for."""
+        """Frames dropped because the port had no room."""
         return self._queue.dropped
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
-        """Hand over what arrives, and wait for the port where it is missing."""
-        self._loop, self._arrived, self._gone = loop, arrived, gone
+    def start(
+        self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
+    ) -> None:
+        """Start to receive, or to wait for a missing port."""
+        self._loop, self._on_receive, self._on_disconnect = loop, on_receive, on_disconnect
         if self._port:
             self._use(loop, self._port)
         else:
             self._try_later(loop)
 
     def send(self, data: bytes, address: Hashable) -> None:
-        """One frame into the queue; into nothing while the port is away, because it would be old when it returns."""
-        if self._outlet:
-            self._outlet.send(data)
+        """Queue one frame; while the port is missing it is dropped, because it would be old later."""
+        if self._writer:
+            self._writer.send(data)
 
     def close(self) -> None:
-        """Hand the last frames to the driver and free the port."""
+        """Pass the last frames to the driver and free the port."""
         self._closed = True
         if self._timer:
             self._timer.cancel()
-        if self._outlet:
-            self._outlet.flush_and_close()
+        if self._writer:
+            self._writer.flush_and_close()
         self._release()
 
     def _use(self, loop: asyncio.AbstractEventLoop, port: serial.Serial) -> None:
         self._port, self.problem = port, None
         descriptor = port.fileno()
-        self._outlet = StreamWriter(
+        self._writer = StreamWriter(
             descriptor,
             self._queue,
             lambda data: os.write(descriptor, data),
-            lambda error: self._lose(error.strerror or str(error)),
+            lambda error: self._handle_loss(error.strerror or str(error)),
             pacer=TransmitPacer(self.endpoint.baud / BITS_PER_BYTE),
             in_driver=lambda: _in_driver(descriptor),
         )
@@ -95,29 +100,29 @@ class SerialTransport:
         except BlockingIOError:
             return
         except OSError as error:
-            self._lose(error.strerror or str(error))
+            self._handle_loss(error.strerror or str(error))
             return
         if not data:
-            self._lose("hung up")
+            self._handle_loss("hung up")
             return
         self._backoff.reset()
-        self._arrived([(data, self.endpoint.text)])
+        self._on_receive([(data, self.endpoint.text)])
 
-    def _lose(self, why: str) -> None:
-        """Unplugged, or broken: what waits is old by the time it returns, and half a frame is no frame."""
+    def _handle_loss(self, why: str) -> None:
+        """Release a port that was unplugged or failed, and drop what waits to be sent."""
         if self._closed or self._port is None or self._loop is None:
             return
         self.problem = f"{self.endpoint.text}: lost the port ({why}); waiting for it"
-        if self._outlet:
-            self._outlet.close()
+        if self._writer:
+            self._writer.close()
         with contextlib.suppress(termios.error, OSError):
             termios.tcflush(self._port.fileno(), termios.TCIOFLUSH)  # or close() may wait 30 s for bytes to leave
         self._release()
-        self._gone(self.endpoint.text)
+        self._on_disconnect(self.endpoint.text)
         self._try_later(self._loop)
 
     def _release(self) -> None:
-        port, self._port, self._outlet = self._port, None, None
+        port, self._port, self._writer = self._port, None, None
         if port is None:
             return
         if self._loop:
@@ -137,31 +142,31 @@ class SerialTransport:
             if port:
                 self._use(loop, port)
                 return
-            self.problem = _waiting(self.endpoint)
+            self.problem = _missing_text(self.endpoint)
         self._try_later(loop)
 
 
 def open_serial(endpoint: Endpoint) -> SerialTransport:
-    """Open the port, or wait for it where it is missing. Raises LinkError for what waiting does not mend."""
+    """Open the port, or wait for a missing one. Raises LinkError for what waiting cannot repair."""
     return SerialTransport(endpoint, _open(endpoint))
 
 
-def _waiting(endpoint: Endpoint) -> str:
+def _missing_text(endpoint: Endpoint) -> str:
     return f"{endpoint.text}: waiting for {endpoint.path}, it is not there; is it plugged in?"
 
 
 def _open(endpoint: Endpoint) -> serial.Serial | None:
-    """The port, configured; None when there is none. Raises LinkError."""
+    """Return the configured port, or None if there is none. Raises LinkError."""
     try:
         if not stat.S_ISCHR(os.stat(endpoint.path).st_mode):
-            raise LinkError(f"{endpoint.text}: {endpoint.path} is no serial port but a file or folder")
+            raise LinkError(f"{endpoint.text}: {endpoint.path} is not a serial port but a file or directory")
         port = serial.Serial(endpoint.path, endpoint.baud, timeout=0, exclusive=True)
         try:
             _configure(port)
         except BaseException:
             port.close()
             raise
-    except (OSError, termios.error) as error:  # SerialException is an OSError; termios's own is none
+    except (OSError, termios.error) as error:  # SerialException is an OSError; termios.error is not
         fault = OSError(*error.args)
         if fault.errno in ABSENT_ERRNOS:
             return None
@@ -172,19 +177,19 @@ def _open(endpoint: Endpoint) -> serial.Serial | None:
 
 
 def _configure(port: serial.Serial) -> None:
-    """What pyserial leaves open."""
+    """Apply the settings that pyserial does not offer."""
     descriptor = port.fileno()
     os.set_blocking(descriptor, False)
     settings = termios.tcgetattr(descriptor)
-    settings[2] &= ~termios.HUPCL  # DTR stays as it is when we close: many boards reset when it falls
+    settings[2] &= ~termios.HUPCL  # keep DTR as it is on close: many boards reset when it falls
     settings[6][termios.VMIN] = 1  # or "nothing to read" would look like "unplugged"
     termios.tcsetattr(descriptor, termios.TCSANOW, settings)
     with contextlib.suppress(ValueError, OSError, AttributeError):
-        port.set_low_latency_mode(True)  # FTDI: 1 ms instead of 16; drivers without it refuse
+        port.set_low_latency_mode(True)  # FTDI: 1 ms instead of 16; other drivers raise
 
 
 def _in_driver(descriptor: int) -> int:
-    """Bytes that the driver has not sent yet, as far as it knows."""
+    """Return the bytes that the driver has not sent yet, or 0 if it does not know."""
     try:
         (waiting,) = struct.unpack("i", fcntl.ioctl(descriptor, termios.TIOCOUTQ, b"\0\0\0\0"))
     except OSError:

@@ -1,4 +1,4 @@
-"""Feeds a descriptor that does not block from a queue: at the pace of its wire where that is known."""
+"""Writes a queue to a non-blocking descriptor, at the speed of the line where that is known."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ from collections.abc import Callable
 from link.transport.priority_queue import TransmitPacer, TransmitQueue
 
 MAX_JOINED = 4096
-"""Bytes handed over in one call where no pace is known: fewer calls behind a backlog, and a short one at that."""
+"""Bytes written in one call without a pacer: fewer calls during a backlog, and still a short one."""
 
 
 class StreamWriter:
-    """The sending half of a stream. `write` puts bytes on it and returns how many it took, `failed` hears its OSError,
-    `in_driver` tells how many bytes wait behind it."""
+    """The sending half of a stream.
+
+    `write` writes bytes and returns how many were accepted, `failed` gets its OSError, `in_driver` returns how many
+    bytes the driver still holds.
+    """
 
     def __init__(
         self,
@@ -33,25 +36,25 @@ class StreamWriter:
         self._in_driver = in_driver
         self._loop = asyncio.get_running_loop()
         self._rest = b""
-        """The frame that is half on the wire: it must end before any other begins."""
+        """Rest of a frame that was written in part: it must be completed before any other starts."""
         self._timer: asyncio.TimerHandle | None = None
         self._blocked = False
 
     def send(self, frame: bytes) -> None:
-        """One frame, now or as soon as there is room."""
+        """Send one frame, now or as soon as there is room."""
         self._queue.push(frame, self._loop.time())
         if not self._blocked and self._timer is None:
             self._pump()
 
     def flush_and_close(self) -> None:
-        """Hand over what waits, without regard to the pace, as far as it is taken at once; then close()."""
+        """Write what waits, ignoring the pacer, as far as it is accepted at once; then close()."""
         self._pacer = None
         if not self._blocked:
             self._pump()
         self.close()
 
     def close(self) -> None:
-        """Send no more; what waits is forgotten."""
+        """Stop sending and drop what waits."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -74,7 +77,7 @@ class StreamWriter:
             self._unblock()
 
     def _has_next(self) -> bool:
-        """Bytes to write now, in `_rest`? Where the pace says "later", sets a timer."""
+        """Return whether `_rest` holds bytes to write now; if the pacer says later, set a timer."""
         if self._rest:
             return True
         now = self._loop.time()

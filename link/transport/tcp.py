@@ -1,4 +1,4 @@
-"""TCP: a stream for each connection. `tcpin` takes several and answers each, `tcpout` connects again and again."""
+"""TCP transports: `tcpin` accepts several connections, `tcpout` keeps one and reconnects."""
 
 from __future__ import annotations
 
@@ -17,13 +17,15 @@ from link.transport.connection import Connection
 from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
 
 MAX_CONNECTIONS = 16
-"""To one `tcpin`; more are closed at once."""
+"""Connections to one `tcpin`. A further one replaces the connection that has been silent longest, or is closed."""
+EVICT_AFTER = 10.0
+"""s of silence after which a connection may be replaced: a ground station sends a HEARTBEAT each second."""
 CONNECT_TIMEOUT = 5.0
-"""s, then the next try."""
+"""s before a connection attempt is given up."""
 
 
 class TcpServerTransport:
-    """`tcpin`: each connection is a peer of its own."""
+    """`tcpin`: each connection is a separate peer."""
 
     def __init__(self, endpoint: Endpoint, sock: socket.socket) -> None:
         self.endpoint = endpoint
@@ -35,21 +37,23 @@ class TcpServerTransport:
         self._connections: dict[Hashable, Connection] = {}
         self._dropped = 0
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._arrived: ReceiveCallback = lambda _: None
-        self._gone: DisconnectCallback = lambda _: None
+        self._on_receive: ReceiveCallback = lambda _: None
+        self._on_disconnect: DisconnectCallback = lambda _: None
 
     @property
     def dropped(self) -> int:
-        """Frames that no connection had room for."""
+        """Frames dropped because a connection had no room."""
         return self._dropped + sum(each.queue.dropped for each in self._connections.values())
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
-        """Take connections."""
-        self._loop, self._arrived, self._gone = loop, arrived, gone
+    def start(
+        self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
+    ) -> None:
+        """Accept connections."""
+        self._loop, self._on_receive, self._on_disconnect = loop, on_receive, on_disconnect
         loop.add_reader(self._socket, self._accept)
 
     def send(self, data: bytes, address: Hashable) -> None:
-        """One frame to one connection; nothing happens when that has ended."""
+        """Send one frame to one connection, if it still exists."""
         connection = self._connections.get(address)
         if connection:
             connection.send(data)
@@ -71,20 +75,29 @@ class TcpServerTransport:
             self.problem = f"{self.endpoint.text}: {error.strerror}"
             return
         self.problem = None
-        if len(self._connections) >= MAX_CONNECTIONS:
+        if len(self._connections) >= MAX_CONNECTIONS and not self._evict():
             sock.close()
             return
-        self._connections[address] = Connection(sock, address, self._arrived, self._ended)
-        self._arrived([(b"", address)])  # mavutil and MAVSDK wait for a HEARTBEAT before they say theirs
+        self._connections[address] = Connection(sock, address, self._on_receive, self._ended)
+        self._on_receive([(b"", address)])  # mavutil and MAVSDK wait for a HEARTBEAT before they send theirs
+
+    def _evict(self) -> bool:
+        """Close the connection that has been silent longest; False if each was heard within EVICT_AFTER."""
+        silent = min(self._connections.values(), key=lambda each: each.last_received)
+        if self._loop is None or self._loop.time() - silent.last_received < EVICT_AFTER:
+            return False
+        silent.close()
+        self._ended(silent, "silent")
+        return True
 
     def _ended(self, connection: Connection, why: str) -> None:
         del self._connections[connection.address]
         self._dropped += connection.queue.dropped
-        self._gone(connection.address)
+        self._on_disconnect(connection.address)
 
 
 class TcpClientTransport:
-    """`tcpout`: one connection, tried until it stands, and again when it has ended."""
+    """`tcpout`: one connection, attempted until it succeeds, and again when it has ended."""
 
     def __init__(self, endpoint: Endpoint, address: tuple[str, int], family: socket.AddressFamily) -> None:
         self.endpoint = endpoint
@@ -93,42 +106,44 @@ class TcpClientTransport:
         self.fixed_address: Hashable | None = endpoint.text
         self.capacity: float | None = None
         self._target = address, family
-        self._names = Worker("names", limit=1)
+        self._resolver = Worker("resolver", limit=1)
         self._connection: Connection | None = None
-        self._trying: socket.socket | None = None
+        self._connecting: socket.socket | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._backoff = Backoff()
         self._dropped = 0
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._arrived: ReceiveCallback = lambda _: None
-        self._gone: DisconnectCallback = lambda _: None
+        self._on_receive: ReceiveCallback = lambda _: None
+        self._on_disconnect: DisconnectCallback = lambda _: None
 
     @property
     def dropped(self) -> int:
-        """Frames that the connection had no room for."""
+        """Frames dropped because the connection had no room."""
         return self._dropped + (self._connection.queue.dropped if self._connection else 0)
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
-        """Begin to connect."""
+    def start(
+        self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
+    ) -> None:
+        """Start to connect."""
         self._loop = loop
-        self._arrived, self._gone = arrived, gone
+        self._on_receive, self._on_disconnect = on_receive, on_disconnect
         self._connect(loop)
 
     def send(self, data: bytes, address: Hashable) -> None:
-        """One frame; into nothing while there is no connection, because it would be old when there is one."""
+        """Send one frame; without a connection it is dropped, because it would be old later."""
         if self._connection:
             self._connection.send(data)
 
     def close(self) -> None:
-        """End it, and try no more."""
-        self._give_up_trying()
-        self._names.close(patience=0.0)
+        """End the connection and stop connecting."""
+        self._stop_connecting()
+        self._resolver.close(patience=0.0)
         if self._connection:
             self._connection.close()
 
     def _connect(self, loop: asyncio.AbstractEventLoop) -> None:
         address, family = self._target
-        sock = self._trying = socket.socket(family, socket.SOCK_STREAM)
+        sock = self._connecting = socket.socket(family, socket.SOCK_STREAM)
         sock.setblocking(False)
         self._timer = loop.call_later(CONNECT_TIMEOUT, self._refused, loop, "no answer")
         try:
@@ -142,43 +157,43 @@ class TcpClientTransport:
 
     def _connected(self, loop: asyncio.AbstractEventLoop, sock: socket.socket) -> None:
         error = sock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
-        # On one machine a port that nobody listens on can be our own end: the two would talk to themselves.
+        # On one machine a port without a listener can be our own end: the socket would be connected to itself.
         if error or sock.getsockname() == sock.getpeername():
-            self._refused(loop, os.strerror(error) if error else "nobody listens")
+            self._refused(loop, os.strerror(error) if error else "no listener")
             return
-        self._trying = None
-        self._give_up_trying()
+        self._connecting = None
+        self._stop_connecting()
         loop.remove_writer(sock)
         self.problem = None
         self._backoff.reset()
-        self._connection = Connection(sock, self.fixed_address, self._arrived, self._ended)
+        self._connection = Connection(sock, self.fixed_address, self._on_receive, self._ended)
 
     def _refused(self, loop: asyncio.AbstractEventLoop, why: str) -> None:
-        self._give_up_trying()
-        self._again(loop, f"not connected ({why})")
+        self._stop_connecting()
+        self._retry(loop, f"not connected ({why})")
 
     def _ended(self, connection: Connection, why: str) -> None:
         self._dropped += connection.queue.dropped
         self._connection = None
-        self._gone(connection.address)
+        self._on_disconnect(connection.address)
         if self._loop:
-            self._again(self._loop, f"connection lost ({why})")
+            self._retry(self._loop, f"connection lost ({why})")
 
-    def _again(self, loop: asyncio.AbstractEventLoop, what: str) -> None:
+    def _retry(self, loop: asyncio.AbstractEventLoop, what: str) -> None:
         self.problem = f"{self.endpoint.text}: {what}; trying again"
-        if self._target[0][0] != self.endpoint.host:  # a name, which may have another address by now
-            self._names.submit(self._look_up)
+        if self._target[0][0] != self.endpoint.host:  # a host name, whose address may have changed
+            self._resolver.submit(self._resolve)
         self._timer = loop.call_later(self._backoff.next_delay(), self._connect, loop)
 
-    def _look_up(self) -> None:
-        """In a thread, and no try waits for it: the name server may be what is away. Unknown: the last one stays."""
+    def _resolve(self) -> None:
+        """Look the host name up, in a thread. No attempt waits for it; if it fails, the last address is kept."""
         with contextlib.suppress(LinkError):
             self._target = resolve(self.endpoint, socket.SOCK_STREAM)
 
-    def _give_up_trying(self) -> None:
+    def _stop_connecting(self) -> None:
         if self._timer:
             self._timer.cancel()
-        sock, self._trying = self._trying, None
+        sock, self._connecting = self._connecting, None
         if sock:
             if self._loop:
                 self._loop.remove_writer(sock)
@@ -186,7 +201,7 @@ class TcpClientTransport:
 
 
 def open_tcpin(endpoint: Endpoint) -> TcpServerTransport:
-    """Open the port. Raises LinkError with one line that says what is wrong and what to do."""
+    """Open the port. Raises LinkError."""
     address, family = resolve(endpoint, socket.SOCK_STREAM)
     sock = socket.socket(family, socket.SOCK_STREAM)
     sock.setblocking(False)
@@ -201,5 +216,5 @@ def open_tcpin(endpoint: Endpoint) -> TcpServerTransport:
 
 
 def open_tcpout(endpoint: Endpoint) -> TcpClientTransport:
-    """Ready to connect; that nobody listens yet is no error. Raises LinkError where the name is not known."""
+    """Return a transport that connects once started. Raises LinkError if the host name is unknown."""
     return TcpClientTransport(endpoint, *resolve(endpoint, socket.SOCK_STREAM))

@@ -1,5 +1,7 @@
-"""What a link is: a wire (socket or port) with a channel (the conversation on it). To add a kind of wire: a module
-beside udp.py, a line in endpoint.SCHEMES and one in openers.OPENERS."""
+"""What a link is: a transport (socket or serial port) and the channel that speaks MAVLink over it.
+
+To add a link type, write a module beside udp.py and add its row to link.endpoint.SCHEMES.
+"""
 
 from __future__ import annotations
 
@@ -13,59 +15,63 @@ from link.protocol.channel import Channel
 
 
 class LinkError(Exception):
-    """A link cannot be opened; the message is one line that says what, where and what to do."""
+    """A link cannot be opened; the message is one line that names the endpoint, the error and the remedy."""
 
 
 ReceiveCallback = Callable[[Sequence[tuple[bytes, Hashable]]], None]
-"""Takes what arrived: bytes (a datagram, or any piece of a stream) and the address they came from; none yet from a new
-connection."""
+"""Takes what arrived: bytes (a datagram, or any piece of a stream) and the address they came from.
+
+A new connection is reported with empty bytes.
+"""
 DisconnectCallback = Callable[[Hashable], None]
-"""Hears that the connection to an address has ended."""
+"""Takes the address of a connection that has ended."""
 
 
 class Transport(Protocol):
-    """A socket or port, not blocking. It knows nothing of messages, only of frames that go first (priority_queue.py)."""
+    """A non-blocking socket or serial port. Of messages it knows only which go first (priority_queue.py)."""
 
     endpoint: Endpoint
     problem: str | None
-    """Why it does not work now, in one line, or None."""
+    """Why the transport does not work now, in one line, or None."""
     stream: bool
-    """Bytes have no datagram borders."""
+    """Bytes have no datagram boundaries."""
     fixed_address: Hashable | None
-    """The address that the user named, for wires that speak before they are spoken to."""
+    """The address that the user named, for transports that send first."""
     capacity: float | None
-    """Bytes/s that it takes, where that is known."""
+    """Bytes/s that the transport carries, or None where that is not known."""
 
     @property
     def dropped(self) -> int:
-        """Frames that it had no room for."""
+        """Frames dropped because there was no room."""
 
-    def start(self, loop: asyncio.AbstractEventLoop, arrived: ReceiveCallback, gone: DisconnectCallback) -> None:
-        """Hand over what arrives, from now on."""
+    def start(
+        self, loop: asyncio.AbstractEventLoop, on_receive: ReceiveCallback, on_disconnect: DisconnectCallback
+    ) -> None:
+        """Start to receive, and to connect where the link type does so."""
 
     def send(self, data: bytes, address: Hashable) -> None:
-        """Put one frame on the wire (a datagram may hold several), now or soon; neither blocks nor raises."""
+        """Send one frame, now or soon (a datagram may hold several). Neither blocks nor raises."""
 
     def close(self) -> None:
-        """Free the port; safe to call once."""
+        """Free the socket or port. Called once."""
 
 
 @dataclass(slots=True)
 class Link:
-    """A wire and the conversation on it."""
+    """A transport and the channel on it."""
 
     transport: Transport
     channel: Channel
 
     @property
     def endpoint(self) -> Endpoint:
-        """Where it ends."""
+        """The transport's endpoint."""
         return self.transport.endpoint
 
     def close(self) -> None:
-        """Free the port."""
+        """Free the socket or port."""
         self.transport.close()
 
 
 TransportFactory = Callable[[Endpoint], Transport]
-"""Opens one kind of wire. Raises LinkError with one clear line."""
+"""Opens one link type. Raises LinkError."""

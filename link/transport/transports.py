@@ -1,33 +1,28 @@
-"""Opens wires: the table of what opens each kind of endpoint."""
+"""Opens transports: finds the factory of each endpoint in link.endpoint.SCHEMES."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
 
-from link.endpoint import parse_endpoint
-from link.transport.serial import open_serial
-from link.transport.tcp import open_tcpin, open_tcpout
+from link.endpoint import SCHEMES, Scheme, parse_endpoints
 from link.transport.transport import LinkError, Transport, TransportFactory
-from link.transport.udp import open_udp
 
-TRANSPORTS: dict[str, TransportFactory] = {
-    "udpin": open_udp,
-    "udpout": open_udp,
-    "tcpin": open_tcpin,
-    "tcpout": open_tcpout,
-    "serial": open_serial,
-}
-"""Scheme of link/endpoint.py -> what opens it."""
+
+def load_factory(scheme: Scheme) -> TransportFactory:
+    """Import the factory of a link type."""
+    module, _, name = scheme.factory.partition(":")
+    factory: TransportFactory = getattr(import_module(module), name)
+    return factory
 
 
 def open_transports(endpoints: Sequence[str]) -> list[Transport]:
-    """Open all endpoints, or none: raises EndpointError or LinkError."""
-    parsed = [parse_endpoint(text) for text in endpoints]
-    wires: list[Transport] = []
+    """Open all endpoints, or none. Raises EndpointError or LinkError."""
+    transports: list[Transport] = []
     try:
-        wires.extend(TRANSPORTS[endpoint.scheme](endpoint) for endpoint in parsed)
+        transports.extend(load_factory(SCHEMES[each.scheme])(each) for each in parse_endpoints(endpoints))
     except LinkError:
-        for wire in wires:
-            wire.close()
+        for transport in transports:
+            transport.close()
         raise
-    return wires
+    return transports

@@ -1,6 +1,6 @@
 """The benchmarks' command line: `python -m tests.benchmarks`. JSON to stdout, progress to stderr.
 
-Exit code 0 when every benchmark ran, whether it met its goals or not, 1 when one could not run, 2 for a mistake.
+The exit code is 0 if every benchmark ran, whether it met its goals or not, 1 if one could not run, 2 for a usage error.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "mission": (mission.run, "ten minutes of AUTO in real time: how far the rover really is beside its lines"),
     "link_loss": (link_loss.run, "key to motor over a network that delays and loses"),
 }
-"""Name -> what runs it, and what it measures. To add one: a module with `run(Options) -> Report` and a line here."""
+"""Name -> its function, and what it measures. To add one: a module with `run(Options) -> Report` and a line here."""
 
 TLOG = machine.ROOT.parent / "shared" / "data" / "ardurover.tlog"
-"""Real traffic, where the checkout has it beside itself."""
+"""Recorded traffic, if it is beside the checkout."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run what is asked for; the exit code."""
+    """Run the selected benchmarks; return the exit code."""
     asked = _parser().parse_args(argv)
     options = Options(quick=asked.quick, tlog=asked.tlog, say=_say, seeds=tuple(asked.seed or (1,)))
     facts, failures = machine.facts(), {}
@@ -60,7 +60,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         started = time.monotonic()
         try:
             reports[name] = BENCHMARKS[name][0](options)
-        except Exception as error:  # the others still run; the exit code tells
+        except Exception as error:  # the others still run; the exit code reports it
             failures[name] = str(error)
             _tell(name, error)
         _say(f"{name}: {time.monotonic() - started:.0f} s")

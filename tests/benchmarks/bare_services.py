@@ -1,7 +1,7 @@
 """The reference of `services` on a network: both ends of the protocols in the barest form that works without loss.
 
-Blocking loops that answer each datagram before they read the next: no pacing but what the receive buffer of a socket
-takes, no repeats, no checks, no telemetry.
+Blocking loops answer each datagram before they read the next: no pacing but the receive buffer of a socket, no repeats,
+no checks, no telemetry.
 
 Usage of the vehicle's end: python -m tests.benchmarks.bare_services PORT PARAMETERS FILE
 """
@@ -27,17 +27,17 @@ from tests.benchmarks.traffic import framed
 VEHICLE = (1, 1)
 GROUND = (255, 190)
 BURST = 200
-"""Messages of a burst, as our own server's."""
+"""Messages of a burst, as in our own server."""
 AT_ONCE, PAUSE = 64, 0.0005
 """Datagrams and s: more at once do not fit into the receive buffer of a socket (212 kB)."""
 WITHIN = 10.0
-"""s without an answer after which the reference is broken."""
+"""s without an answer after which the reference has failed."""
 
 M = TypeVar("M", bound=m.Message)
 
 
 class Line:
-    """A socket that takes and gives messages, one a datagram."""
+    """A socket that sends and receives messages, one per datagram."""
 
     def __init__(self, sock: socket.socket, ids: tuple[int, int]) -> None:
         self._socket = sock
@@ -47,7 +47,7 @@ class Line:
         sock.settimeout(WITHIN)
 
     def say(self, message: m.Message, address: Hashable = None) -> None:
-        """To `address`, or to where the socket is connected."""
+        """Send to `address`, or to where the socket is connected."""
         self._sequence = (self._sequence + 1) & 0xFF
         data = framed(message, self._sequence, *self._ids)
         if address is None:
@@ -56,12 +56,12 @@ class Line:
             self._socket.sendto(data, address)  # type: ignore[call-overload]
 
     def hear(self) -> tuple[list[m.Message], Hashable]:
-        """The messages of the next datagram, and where it came from."""
+        """Return the messages of the next datagram, and its source."""
         data, address = self._socket.recvfrom(2048)
         return [codec.decode(number, payload_of(raw)) for number, *_, raw in self._framer.feed(data, 0.0)], address
 
     def await_(self, kind: type[M]) -> M:
-        """The next message of a kind. Raises BenchmarkError."""
+        """Return the next message of a kind. Raises BenchmarkError."""
         try:
             while True:
                 for message in self.hear()[0]:
@@ -75,7 +75,7 @@ class Line:
 
 
 class Server:
-    """Parameters by number, one mission, one file."""
+    """Parameters by index, one mission, one file."""
 
     def __init__(self, parameters: int, file: bytes) -> None:
         self._parameters = parameters
@@ -84,7 +84,7 @@ class Server:
         self._count = 0
 
     def answers(self, message: m.Message) -> Iterator[m.Message]:
-        """To one message of the client."""
+        """Answer one message of the client."""
         match message:
             case m.ParamRequestList():
                 for index in range(self._parameters):
@@ -127,7 +127,7 @@ class Server:
 
 
 def serve(port: int, server: Server) -> None:
-    """Until killed."""
+    """Serve until killed."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
         sock.bind(("127.0.0.1", port))
         line = Line(sock, VEHICLE)
@@ -146,7 +146,7 @@ def serve(port: int, server: Server) -> None:
 
 
 def fetch_params(line: Line) -> None:
-    """Until all have come."""
+    """Read until all have arrived."""
     line.say(m.ParamRequestList(*VEHICLE))
     first = line.await_(m.ParamValue)
     for _ in range(first.param_count - 1):
@@ -154,7 +154,7 @@ def fetch_params(line: Line) -> None:
 
 
 def upload(line: Line, items: Sequence[m.MissionItemInt]) -> None:
-    """Item by item as asked for."""
+    """Upload item by item, as requested."""
     line.say(m.MissionCount(*VEHICLE, len(items), MissionType.MISSION))
     for _ in items:
         line.say(items[line.await_(m.MissionRequestInt).seq])
@@ -162,7 +162,7 @@ def upload(line: Line, items: Sequence[m.MissionItemInt]) -> None:
 
 
 def download(line: Line) -> None:
-    """The mission, item by item."""
+    """Download the mission, item by item."""
     line.say(m.MissionRequestList(*VEHICLE, MissionType.MISSION))
     for number in range(line.await_(m.MissionCount).count):
         line.say(m.MissionRequestInt(*VEHICLE, number, MissionType.MISSION))
@@ -171,7 +171,7 @@ def download(line: Line) -> None:
 
 
 def fetch_file(line: Line) -> int:
-    """By bursts; bytes that came. What is lost is not asked for again."""
+    """Download by bursts; return the bytes that arrived. Losses are not requested again."""
     line.say(FtpPacket(1, FtpOpcode.OPEN, 0, b"file").message(*VEHICLE))
     size = int.from_bytes(parse_packet(line.await_(m.FileTransferProtocol)).data, "little")
     offset = got = 0
@@ -186,7 +186,7 @@ def fetch_file(line: Line) -> int:
 
 
 def main(port: str, parameters: str, file: str) -> None:
-    """The vehicle's end."""
+    """Run the vehicle's end."""
     serve(int(port), Server(int(parameters), Path(file).read_bytes()))
 
 

@@ -1,8 +1,8 @@
-"""A serial cable between two programs as a process: two ptys, joined at the pace of a baud rate in both directions.
+"""A serial cable between two programs as a process: two ptys, connected at the pace of a baud rate in both directions.
 
-A byte that is written is there after the wire time of what went before it and its own. What the wire has not taken yet
-stays in the pty, as in the driver of a real port. SIGUSR1 turns a second ground station on that line on and off: it
-asks for bulk again and again (line_load.py), between the frames of the first. Each time the cable prints its totals.
+A byte arrives after the wire time of everything before it and its own. What the wire has not taken yet stays in the
+pty, as in the driver of a real port. SIGUSR1 turns a second ground station on that line on and off: it requests bulk
+data again and again (line_load.py), between the frames of the first. Each time the cable prints its totals.
 
 Usage: python -m tests.benchmarks.baud_cable PATH_OF_VEHICLE PATH_OF_GROUND BAUD
 """
@@ -30,7 +30,7 @@ HEAD, FRAME, SIGNATURE = 3, 12, 13
 
 
 class Boundary:
-    """Follows frames to know where one ends."""
+    """Follows the frames of a stream to know where one ends."""
 
     def __init__(self) -> None:
         self._head = b""
@@ -42,7 +42,7 @@ class Boundary:
         return not self._head and not self._left
 
     def follow(self, data: bytes) -> None:
-        """These bytes pass."""
+        """Follow these bytes."""
         while data:
             size = min(self._left or HEAD - len(self._head), len(data))
             piece, data = data[:size], data[size:]
@@ -56,13 +56,13 @@ class Boundary:
 
 
 class Direction:
-    """One wire of the cable: from one descriptor to another, one piece on its way at a time."""
+    """One direction of the cable: from one descriptor to another, one piece in transit at a time."""
 
     def __init__(self, source: int, target: int, rate: float) -> None:
         """`rate`: bytes/s."""
         self.source = source
         self.passed = 0
-        """Bytes since the last reading of the totals."""
+        """Bytes since the totals were last read."""
         self.extra = b""
         """Frames of the second station that wait for a gap between two frames of the first."""
         self._target = target
@@ -75,20 +75,20 @@ class Direction:
 
     @property
     def busy(self) -> bool:
-        """Is something on its way?"""
+        """Return whether a piece is in transit."""
         return bool(self._flying)
 
     def wait(self, now: float) -> float:
-        """s until what is on its way arrives."""
+        """Return the s until the piece in transit arrives."""
         return max(0.0, self._due - now)
 
     def move(self, now: float) -> None:
-        """Hand over what has arrived, and take the next piece."""
+        """Deliver what has arrived, and take the next piece."""
         start = now
         if self._flying:
             if now < self._due:
                 return
-            start = self._due  # the next piece follows at once, however late we look
+            start = self._due  # the next piece follows at once, however late the poll is
             self._hand_over()
         self._flying = self._next()
         self._boundary.follow(self._flying)
@@ -96,7 +96,7 @@ class Direction:
 
     def _hand_over(self) -> None:
         self.passed += len(self._flying)
-        with contextlib.suppress(BlockingIOError):  # nobody reads there: a UART would have lost it, too
+        with contextlib.suppress(BlockingIOError):  # no program reads there: a UART would have lost it, too
             os.write(self._target, self._flying)
         self._flying = b""
 
@@ -113,7 +113,7 @@ class Direction:
 
 
 class BaudCable:
-    """Both wires and the second station, in one loop."""
+    """Both directions and the second station, in one loop."""
 
     def __init__(self, vehicle: int, ground: int, rate: float) -> None:
         self._down = Direction(vehicle, ground, rate)
@@ -121,13 +121,13 @@ class BaudCable:
         self._asker: Asker | None = None
 
     def toggle(self) -> None:
-        """Second station on or off; prints the time in ns and the bytes down and up since the last time."""
+        """Turn the second station on or off; print the time in ns and the bytes down and up since the last time."""
         self._asker = None if self._asker else Asker()
         print("passed", time.monotonic_ns(), self._down.passed, self._up.passed, flush=True)
         self._down.passed = self._up.passed = 0
 
     def run(self) -> None:
-        """Until killed."""
+        """Run until killed."""
         both = (self._down, self._up)
         while True:
             now = time.monotonic()
@@ -142,12 +142,12 @@ class BaudCable:
 
 
 def _end(path: Path) -> int:
-    """A pty whose program end is named `path`; our end."""
+    """Create a pty whose program end is named `path`; return our end."""
     ours, theirs = pty.openpty()
     tty.setraw(theirs)
     os.set_blocking(ours, False)
     path.symlink_to(os.ttyname(theirs))
-    return ours  # theirs stays open, too: programs come and go on a cable
+    return ours  # the other end stays open, too, so that programs can come and go
 
 
 def main(vehicle: str, ground: str, baud: str) -> None:

@@ -1,7 +1,7 @@
 """The bridge as a router from one UDP port to another, beside MAVProxy, a pymavlink forwarder and a relay in C.
 
-blast.c makes the load and takes it at the other end. For the throughput it keeps at most 192 frames under way, so that
-nothing is lost and a router cannot look fast by dropping; for the latency it sends one frame every 20 ms.
+blast.c generates the load and receives it at the other end. For the throughput it keeps at most 192 frames in transit,
+so that nothing is lost and a router cannot look fast by dropping; for the latency it sends one frame every 20 ms.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tests.benchmarks.programs import Program, free_port, on_pipe, python, scrat
 from tests.benchmarks.watch import Watch
 
 SECONDS, QUICK_SECONDS = 4.0, 1.0
-"""Of one measurement of throughput."""
+"""s of one measurement of throughput."""
 LATENCY_SECONDS, QUICK_LATENCY_SECONDS = 20.0, 2.0
 TOGETHER = (1, 8)
 """Frames in one datagram of the load."""
@@ -29,28 +29,30 @@ BRIDGE, ONE_FRAME = "bridge", "bridge --one-frame"
 RELAY, FORWARDER = "C relay with CRC", "pymavlink forwarder"
 MAVPROXY, MAVPROXY_BARE = "MAVProxy", "MAVProxy, no modules, no logs"
 MAVLINK_ROUTER = {1: 153_813 / 190_755, 8: 208_306 / 190_755}
-"""Frames in a datagram -> mavlink-router's frames/s as a share of what a C relay does with one a datagram, measured in
-one run on another day; mavlink-router itself is not at hand here."""
+"""Frames in a datagram -> mavlink-router's frames/s as a share of what a C relay does with one per datagram.
+
+Measured in one run on another day; mavlink-router itself is not available here.
+"""
 
 HERE = Path(__file__).resolve().parent
 
 
 @dataclass(slots=True)
 class Outcome:
-    """What one router has shown, one value a round."""
+    """Results of one router, one value per round."""
 
     rates: dict[int, list[float]] = field(default_factory=dict)
     """Frames in a datagram -> frames/s."""
     lost: int = 0
     cpu: list[float] = field(default_factory=list)
-    """us of CPU a frame, with one frame a datagram."""
+    """us of CPU per frame, with one frame per datagram."""
     rss: list[float] = field(default_factory=list)
     latencies: list[list[float]] = field(default_factory=list)
     """us."""
 
 
 def run(options: Options) -> Report:
-    """All routers in turn, round by round."""
+    """Measure all routers in turn, round by round."""
     with scratch() as folder:
         blast = _compiled("blast", folder)
         routers = _routers(folder, options)
@@ -86,7 +88,7 @@ def _routers(folder: Path, options: Options) -> dict[str, list[str]]:
 
 
 def _mavproxy(folder: Path) -> list[str]:
-    """MAVProxy in an environment of its own: an external program that we run and never import."""
+    """MAVProxy in a virtual environment of its own: an external program that we run and never import."""
     home = str(folder / "mavproxy")
     install = [f"{home}/bin/pip", "install", "--quiet"]
     for argv in (
@@ -128,7 +130,7 @@ def _measure(outcome: Outcome, blast: str, argv: list[str], options: Options) ->
     seconds = QUICK_SECONDS if options.quick else SECONDS
     for together in TOGETHER:
         with _running(argv) as (program, source, target):
-            _blast(blast, "rate", source, target, together, 0.2)  # the router knows us and is warm
+            _blast(blast, "rate", source, target, together, 0.2)  # so that the router has its routes and is warm
             before = cpu_seconds(family(program.pid))
             frames, took, lost = map(float, _blast(blast, "rate", source, target, together, seconds)[0].split())
             outcome.rates.setdefault(together, []).append(frames / took)
@@ -141,7 +143,7 @@ def _measure(outcome: Outcome, blast: str, argv: list[str], options: Options) ->
 
 
 def _direct(blast: str, options: Options) -> list[float]:
-    """Without any router: the load's own latency."""
+    """Measure the load's own latency, without any router."""
     port = free_port()
     return _latencies(blast, port, port, options)
 
@@ -159,7 +161,7 @@ def _blast(blast: str, what: str, source: int, target: int, together: int, secon
     return done.stdout.splitlines()
 
 
-# ---- what it says ----
+# ---- report ----
 
 
 def _report(outcomes: dict[str, Outcome], direct: list[list[float]]) -> Report:

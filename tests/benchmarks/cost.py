@@ -20,16 +20,16 @@ from tests.benchmarks.watch import Watch
 WINDOW, QUICK_WINDOW = 10.0, 2.0
 """s over which CPU time is counted; /proc counts in steps of 10 ms."""
 WARM_UP = 2.0
-"""s before that: what a program does once at its start is start-up time."""
+"""s before that, because what a program does once at its start is start-up time."""
 
 STARTS = 3
-"""Of each program in each round."""
+"""Starts of each program in each round."""
 
 REPEATS = 30.0
 """Hz of a held key, as most systems repeat it."""
 
 FLOOD = 1000
-"""Messages a second of performance.md; ArduPilot can be asked for as many."""
+"""Messages a second, the highest rate in performance.md; ArduPilot can be asked for as many."""
 FLOOD_STEP = 0.01
 
 SIZE = (140, 45)
@@ -38,7 +38,7 @@ GROUND, VEHICLE, PYTHON, TEXTUAL = "groundstation", "vehicle --sim", "bare pytho
 
 
 def run(options: Options) -> Report:
-    """Starts first, then what the running programs cost."""
+    """Measure the starts first, then the cost of the running programs."""
     goals: list[Goal] = []
     return Report([_starts(options, goals), _running_costs(options, goals)], goals)
 
@@ -48,7 +48,7 @@ def run(options: Options) -> Report:
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """A program and the word that says that it is there."""
+    """A program, and the word in its output that shows that it has started."""
 
     argv: list[str]
     word: str
@@ -103,7 +103,7 @@ def _start_time(start: Start) -> float:
 
 @dataclass(slots=True)
 class Cost:
-    """Of one program in one state; one value a round."""
+    """The cost of one program in one state; one value per round."""
 
     processes: int = 0
     rss: list[float] = field(default_factory=list)
@@ -111,7 +111,7 @@ class Cost:
     cpu: list[float] = field(default_factory=list)
 
     def row(self, name: str) -> Row:
-        """As a row of the table."""
+        """Return the costs as a row of the table."""
         return {
             "program": name,
             "processes": self.processes,
@@ -123,14 +123,14 @@ class Cost:
 
 
 class Ledger:
-    """Costs by program and state, and how they are counted."""
+    """The costs by program and state, and how they are measured."""
 
     def __init__(self, window: float) -> None:
         self.costs: dict[str, Cost] = {}
         self.window = window
 
     def book(self, programs: dict[str, Program], meanwhile: Callable[[float], None]) -> None:
-        """Count what `programs` use while `meanwhile` lets the window pass."""
+        """Measure what `programs` use while `meanwhile` lets the window pass."""
         meanwhile(WARM_UP)
         pids = {name: family(program.pid) for name, program in programs.items()}
         before = {name: cpu_seconds(each) for name, each in pids.items()}
@@ -194,7 +194,7 @@ def _connected(ledger: Ledger) -> None:
 
 
 def _hold(rig: Rig, seconds: float) -> None:
-    """A key held down for so long."""
+    """Hold a key down for this time."""
     start = time.monotonic()
     for number in range(round(seconds * REPEATS)):
         rig.watch.pause(start + number / REPEATS - time.monotonic())
@@ -212,15 +212,15 @@ def _flooded(ledger: Ledger) -> None:
 
 
 class Flood:
-    """A vehicle that tells too much."""
+    """A vehicle that sends too much."""
 
     def __init__(self, sock: socket.socket) -> None:
         self._socket = sock
-        self._frames = mix(2560)  # a whole number of times round the sequence numbers: no gap where it starts again
+        self._frames = mix(2560)  # a multiple of the sequence numbers, so that there is no gap at the restart
         self._next = 0
 
     def send(self, watch: Watch, seconds: float) -> None:
-        """FLOOD frames a second, one a datagram, a few at a time."""
+        """Send FLOOD frames a second, one per datagram, a few at a time."""
         start = time.monotonic()
         for step in range(round(seconds / FLOOD_STEP)):
             watch.pause(start + step * FLOOD_STEP - time.monotonic())

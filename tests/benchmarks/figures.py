@@ -1,4 +1,4 @@
-"""What a benchmark hands back: spreads of samples, tables of rows, and goals held against what was measured."""
+"""Results of a benchmark: spreads of samples, tables of rows, and goals compared with what was measured."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from statistics import median
 from typing import Any
 
 ROUNDS = 3
-"""Rounds of every comparison, ours and the reference in turn: a machine that others use drifts within minutes."""
+"""Rounds of every comparison, ours and the reference in turn: a shared machine drifts within minutes."""
 
 Row = dict[str, Any]
-"""Column -> value. The unit, where there is one, is the last word of the column."""
+"""Column -> value. The unit, if any, is the last word of the column."""
 
 
 @dataclass(frozen=True, slots=True)
 class Spread:
-    """How samples lie. A tail of 60 samples says nothing, so p90, p99 and max are those of all rounds together."""
+    """Distribution of samples. A tail of 60 samples means nothing, so p90, p99 and max are those of all rounds
+    together."""
 
     samples: int
     p50: float
@@ -29,7 +30,7 @@ class Spread:
 
 
 def spread(rounds: Sequence[Sequence[float]]) -> Spread:
-    """Of the samples of each round; none may be empty."""
+    """Compute the distribution of the samples of all rounds; no round may be empty."""
     together = sorted(sample for each in rounds for sample in each)
     middles = tuple(median(each) for each in rounds)
     return Spread(
@@ -43,28 +44,28 @@ def spread(rounds: Sequence[Sequence[float]]) -> Spread:
 
 
 def quantile(ordered: Sequence[float], share: float) -> float:
-    """The nearest-rank quantile of sorted samples: a value that was really seen."""
+    """Return the nearest-rank quantile of sorted samples: a value that was measured."""
     return ordered[max(0, math.ceil(share * len(ordered)) - 1)]
 
 
 @dataclass(slots=True)
 class Goal:
-    """One line of performance.md's goals, and what this run says of it."""
+    """One goal of performance.md, and the result of this run."""
 
     what: str
     measured: float
     limit: float
     unit: str
     at_least: bool = False
-    """The measured value must reach `limit`; else it must not pass it."""
+    """True if the measured value must be at least `limit`, else at most."""
 
     @property
     def met(self) -> bool:
-        """Does this run reach the goal?"""
+        """Return whether this run meets the goal."""
         return self.measured >= self.limit if self.at_least else self.measured <= self.limit
 
     def row(self) -> Row:
-        """As a row of a table."""
+        """Return the goal as a row of a table."""
         sign = ">=" if self.at_least else "<="
         return {
             "goal": self.what,
@@ -85,13 +86,13 @@ class Table:
 
 @dataclass(slots=True)
 class Report:
-    """What one benchmark found."""
+    """Results of one benchmark."""
 
     tables: list[Table] = field(default_factory=list)
     goals: list[Goal] = field(default_factory=list)
 
     def plain(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return the report for JSON."""
         return {
             "tables": [asdict(table) for table in self.tables],
             "goals": [asdict(goal) | {"met": goal.met} for goal in self.goals],
@@ -100,17 +101,17 @@ class Report:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What the command line asks of every benchmark."""
+    """Options of the command line for every benchmark."""
 
     quick: bool
-    """A short run, to see that it works: its tails mean nothing."""
+    """A short run to check that it works: its tails mean nothing."""
     tlog: str | None
-    """A telemetry log for the framer; None: the made mix alone."""
+    """A telemetry log for the framer; None: only the generated mix."""
     say: Callable[[str], None]
-    """Progress, for a person."""
+    """Prints the progress."""
     seeds: tuple[int, ...] = (1,)
-    """Of the noise of simulated sensors."""
+    """Seeds for the noise of simulated sensors."""
 
 
 class BenchmarkError(Exception):
-    """A benchmark could not run; the message is one line that says why."""
+    """A benchmark could not run; the message is one line with the reason."""

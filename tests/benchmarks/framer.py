@@ -1,4 +1,4 @@
-"""Frames found, decoded and made a second, against pymavlink: same definitions, same bytes, same run."""
+"""Frames found, decoded and encoded a second, against pymavlink: same definitions, same bytes, same run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.benchmarks.traffic import chopped, framed, joined, mix, telemetry_log
 
 FRAMES = 20_000
 SERIAL_READ = 64
-"""Bytes a read of a serial port gives at a time, about; frames are cut anywhere."""
+"""Bytes that a read of a serial port returns, about; frames are cut anywhere."""
 
 DRIVE_SCREEN = frozenset(
     message.id
@@ -39,7 +39,7 @@ CHANNEL = "channel + screen's"
 
 
 def run(options: Options) -> Report:
-    """All figures of the framer and the codec."""
+    """Measure the framer and the codec."""
     report = Report()
     for name, frames in _sources(options).items():
         _receiving(report, name, frames, options)
@@ -106,7 +106,7 @@ def _receivers(pieces: Sequence[bytes], *, stream: bool) -> dict[str, Work]:
 
 
 def _parser() -> Any:
-    """pymavlink's parser as mavutil sets it up: bad bytes are dropped and counted, not raised."""
+    """pymavlink's parser as mavutil configures it: bad bytes are dropped and counted, not raised."""
     parser = rover.MAVLink(None)
     parser.robust_parsing = True
     return parser
@@ -135,7 +135,7 @@ def _decoding(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> Non
 def _channel(pieces: Sequence[bytes], stream: bool, ids: frozenset[int]) -> None:
     receive = Channel("bench", 0, system=255, component=190, stream=stream, wanted=ids).receive
     for number, piece in enumerate(pieces):
-        receive(piece, "peer", number * 0.01)  # 100 datagrams a second: the rate limits stay out of it
+        receive(piece, "peer", number * 0.01)  # 100 datagrams a second, below the rate limits
 
 
 # ---- sending ----
@@ -180,7 +180,7 @@ def _times(encode: Callable[[], object]) -> Work:
 
 
 def _noise(report: Report) -> None:
-    """40 frames of a 20 Hz stream with one stray start byte before the first."""
+    """Return 40 frames of a 20 Hz stream with one stray start byte before the first."""
     frames = [framed(build_manual_control(Axes(0.5, 0.1), 1), number, 255, 190) for number in range(40)]
     pieces = [b"\xfd" + frames[0], *frames[1:]]
     parser, framer = _parser(), Framer(stream=True)

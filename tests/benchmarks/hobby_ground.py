@@ -1,6 +1,7 @@
-"""The ground station that most hobby projects write: keys set a state, a mavutil thread sends it at a fixed rate.
+"""The common hobby ground station: keys set a state, a mavutil thread sends the state at a fixed rate.
 
-A reference for key_to_motor.py, written as well as this form allows (it reads the descriptor and loses no key).
+A reference for key_to_motor.py, as good as this form allows (it reads the descriptor and loses no key).
+
 Usage: python -m tests.benchmarks.hobby_ground ENDPOINT RATE
 """
 
@@ -32,7 +33,7 @@ class Sender(threading.Thread):
         self._period = period
 
     def run(self) -> None:
-        """Until `ending`."""
+        """Send until `ending`."""
         while not self.ending.wait(self._period):
             x, r = self.state
             self._connection.mav.manual_control_send(1, x, 0, 0, r, 0)

@@ -1,6 +1,7 @@
-"""The vehicle that most hobby projects write: a mavutil loop that looks for messages at each tick and sets the motors.
+"""The common hobby vehicle: a mavutil loop that polls for messages at each tick and sets the motors.
 
-A reference for key_to_motor.py; it ramps nothing and checks nothing, so its path is as short as this form allows.
+A reference for key_to_motor.py. It has no ramps and no checks, so its path is as short as this form allows.
+
 Usage: python -m tests.benchmarks.hobby_vehicle ENDPOINT TICK_SECONDS MOTOR_LOG
 """
 

@@ -1,7 +1,7 @@
 """Key byte written to a real terminal -> motor outputs changed at the vehicle: both real programs, UDP loopback.
 
-The common hobby form runs the same path beside it: a mavutil sender thread at a fixed rate, a mavutil receiver that
-looks at each tick. A measurement ends with the vehicle's own stamp of the change; all processes share that clock.
+The common hobby form runs the same path beside it: a mavutil sender thread at a fixed rate, and a mavutil receiver that
+polls at each tick. A measurement ends with the vehicle's own timestamp of the change; all processes share that clock.
 """
 
 from __future__ import annotations
@@ -28,8 +28,10 @@ QUIET = 0.06
 """s without a change after which the outputs count as settled: three control cycles."""
 
 GAPS = (0.02, 0.25)
-"""s, random, from settled outputs to the next key, so that keys fall on every phase of every timer. A key of the ground
-station counts as held for 0.75 s: ramp (0.24), QUIET and gap together stay below."""
+"""s, random, from settled outputs to the next key, so that keys meet every phase of every timer.
+
+A key of the ground station counts as held for 0.75 s: ramp (0.24), QUIET and gap together stay below.
+"""
 
 LOST_AFTER = 1.0
 """s without a change after which a key counts as lost."""
@@ -49,7 +51,7 @@ class Contender:
     columns: int = 80
     lines: int = 24
     arms: bool = False
-    """It must be armed with r and y before keys drive."""
+    """True if it must be armed with r and y before keys drive."""
 
 
 _OURS = (
@@ -72,7 +74,7 @@ CONTENDERS = {
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """What lies between ground station and vehicle; `loss` 0..1, times one way in s."""
+    """The network between ground station and vehicle; `loss` 0..1, times one way in s."""
 
     loss: float = 0.0
     delay: float = 0.0
@@ -80,13 +82,13 @@ class Network:
 
     @property
     def arguments(self) -> list[str]:
-        """For lossy_relay.py."""
+        """Return the arguments of lossy_relay.py."""
         return [str(self.loss), str(self.delay), str(self.jitter)]
 
 
 @dataclass(slots=True)
 class Outcome:
-    """What one contender has shown so far."""
+    """Results of one contender so far."""
 
     latencies: list[list[float]]
     """ms, one list a round."""
@@ -94,7 +96,7 @@ class Outcome:
 
 
 def run(options: Options) -> Report:
-    """All contenders in turn, round by round."""
+    """Measure all contenders in turn, round by round."""
     chance = random.Random(7)
     outcomes = {name: Outcome([]) for name in CONTENDERS}
     for number in range(ROUNDS):
@@ -108,7 +110,7 @@ def run(options: Options) -> Report:
 
 
 class Rig:
-    """A ground station on a terminal and a vehicle whose motors we watch, connected."""
+    """A ground station on a terminal and a vehicle whose motors are watched, connected."""
 
     def __init__(self, ground: Program, vehicle: Program, feed: MotorFeed, watch: Watch) -> None:
         self.ground = ground
@@ -117,7 +119,7 @@ class Rig:
         self.watch = watch
 
     def arm(self) -> None:
-        """Through the keys, as a driver does; then drive once, so that nothing happens for the first time later."""
+        """Arm with keys, as a driver does; then drive once, so that nothing happens for the first time later."""
         for key in (b"r", b"y"):
             self.watch.pause(0.5)
             self.ground.type(key)
@@ -148,7 +150,7 @@ class Rig:
         outcome.latencies.append(latencies)
 
     def _settle(self, chance: random.Random) -> None:
-        """Steady outputs, and then a random moment in which they stay so."""
+        """Wait for steady outputs, and then for a random time in which they stay so."""
         while True:
             if not self.feed.quiet_for(QUIET, 10):
                 raise BenchmarkError("the outputs never settled")
@@ -160,7 +162,7 @@ class Rig:
 
 @contextmanager
 def running(contender: Contender, network: Network | None = None) -> Iterator[Rig]:
-    """Both programs, connected to each other directly or through a bad `network`."""
+    """Start both programs, connected to each other directly or through a bad `network`."""
     with ExitStack() as stack:
         folder: Path = stack.enter_context(scratch())
         watch = Watch()
@@ -184,7 +186,7 @@ def running(contender: Contender, network: Network | None = None) -> Iterator[Ri
         yield Rig(ground, vehicle, feed, watch)
 
 
-# ---- what it says ----
+# ---- report ----
 
 
 def _report(outcomes: dict[str, Outcome]) -> Report:

@@ -1,4 +1,4 @@
-"""A second ground station on a serial line that asks for all parameters and a file, again and again: bytes only."""
+"""A second ground station on a serial line that requests all parameters and a file, again and again: bytes only."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from link.services.ftp.protocol import FtpOpcode, FtpPacket
 from tests.benchmarks.traffic import framed
 
 SYSTEM, COMPONENT = 254, 190
-"""Not those of the real ground station: its sequence numbers stay whole."""
+"""Ids that differ from those of the real ground station, whose sequence numbers stay without gaps."""
 VEHICLE = (1, 1)
 PERIOD = 0.5
-"""s between two rounds of questions: an answer takes longer at 57600 baud, so that one is always on its way."""
+"""s between two rounds of requests: an answer takes longer at 57600 baud, so that one is always in transit."""
 FILE = b"@PARAM/param.pck"
 
 
 class Asker:
-    """What it writes, as it gets due."""
+    """The bytes of the second station, as they become due."""
 
     def __init__(self) -> None:
         self._due = 0.0
@@ -24,7 +24,7 @@ class Asker:
         self._questions = 0
 
     def due(self, now: float) -> bytes:
-        """The questions of a round, when it is time for one."""
+        """Return the requests of a round, when a round is due."""
         if now < self._due:
             return b""
         self._due = now + PERIOD
@@ -34,7 +34,7 @@ class Asker:
 
     def _ftp(self, op: FtpOpcode, data: bytes = b"") -> Message:
         self._questions = (self._questions + 2) & 0xFFFF
-        size = 239 if op is FtpOpcode.BURST else None  # of a burst: how much each message shall bring
+        size = 239 if op is FtpOpcode.BURST else None  # of a burst: the size of each message
         return FtpPacket(self._questions, op, 0, data, size=size).message(*VEHICLE)
 
     def _frame(self, message: Message) -> bytes:

@@ -1,6 +1,6 @@
 """Key to motor over a bad network: 10 ms one way with jitter, and random loss, for us and for the common hobby form.
 
-A lost change is healed by the sender's next frame, so the tail shows the sender's period and what it does on a change.
+The sender's next frame replaces a lost change, so the tail shows the sender's period and what it does on a change.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ KEYS, QUICK_KEYS = 60, 10
 
 
 def run(options: Options) -> Report:
-    """Every network with both, round by round."""
+    """Measure every network with both, round by round."""
     chance = random.Random(11)
     outcomes = {(network, path): Outcome([]) for network in NETWORKS for path in (OURS_NARROW, HOBBY_50)}
     for number in range(ROUNDS):

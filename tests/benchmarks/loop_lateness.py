@@ -1,7 +1,7 @@
 """How late the control cycles of the real vehicle process are at 50 Hz, on an idle machine and on a busy one.
 
-Looked at from outside: the vehicle drives motors that write down when each cycle reaches them (ticking.py), armed and
-driven at 20 Hz by a small ground station over UDP. Two bare loops do the same in turn.
+Measured from outside: the vehicle drives motors that record when each cycle reaches them (ticking.py), armed and driven
+at 20 Hz by a small ground station over UDP. Two bare loops do the same in turn.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from tests.benchmarks.traffic import framed
 from tests.benchmarks.watch import Watch
 
 SECONDS, QUICK_SECONDS = 3.2, 0.8
-"""Of one contender under one load in one round."""
+"""s of one contender under one load in one round."""
 SKIPPED = 0.3
-"""s after a change of the load: the scheduler moves the processes about."""
+"""s after a change of the load, in which the scheduler moves the processes."""
 LONGEST = 60.0
-"""s after which a busy child ends, whatever became of us."""
+"""s after which a busy child ends in any case."""
 
 DEMANDS = 0.05
-"""s between two demands: 20 Hz, as the ground station of the project sends them."""
+"""s between two demands: 20 Hz, as our ground station sends them."""
 NEUTRAL_FIRST = 20
-"""Neutral demands after arming; only then does the vehicle take others."""
+"""Neutral demands after arming; the vehicle accepts others only after them."""
 
 OURS, ASYNCIO, BLOCKING = "vehicle, driven at 20 Hz", "bare asyncio loop", "bare blocking loop"
 IDLE, OTHER, ALL = "idle", "one core busy", "all cores busy"
@@ -47,14 +47,14 @@ GOAL_BEYOND = 1.0
 """ms that a cycle with all its work may be later, at p99, than a bare loop of the same kind."""
 
 Contender = Callable[[Path], AbstractContextManager[Callable[[float], None]]]
-"""Starts one, given a folder; what it hands out lets so many s pass."""
+"""Starts a contender, given a folder; yields a function that lets time pass."""
 
 Samples = dict[tuple[str, str], list[list[float]]]
-"""(contender, load) -> ms late, a list a round."""
+"""(contender, load) -> ms late, a list per round."""
 
 
 def run(options: Options) -> Report:
-    """All contenders in turn, each under all loads, round by round."""
+    """Measure all contenders in turn, each under all loads, round by round."""
     seconds = QUICK_SECONDS if options.quick else SECONDS
     samples: Samples = {(name, load): [] for load in LOADS for name in CONTENDERS}
     for number in range(ROUNDS):
@@ -67,7 +67,7 @@ def run(options: Options) -> Report:
 
 
 def _under(children: int, pause: Callable[[float], None], folder: Path, seconds: float) -> list[float]:
-    """Lateness of the cycles within `seconds`, ms."""
+    """Return the lateness of the cycles within `seconds`, ms."""
     with _busy(children):
         pause(SKIPPED)
         before = len(read(folder / "stamps"))
@@ -79,9 +79,10 @@ def _under(children: int, pause: Callable[[float], None], folder: Path, seconds:
 
 
 def lateness(stamps: Sequence[int]) -> list[float]:
-    """Of cycles that should be PERIOD apart, ms. The deadlines are not seen: the earliest cycle counts as on time.
+    """Return the lateness of cycles that should be PERIOD apart, ms.
 
-    The loops skip nothing: a cycle that comes after the next one's deadline moves the deadlines that follow.
+    The deadlines are not visible: the earliest cycle counts as on time. The loops skip nothing: a cycle that comes
+    after the next one's deadline moves the deadlines that follow.
     """
     late: list[float] = []
     due = float(stamps[0])
@@ -155,7 +156,7 @@ CONTENDERS: dict[str, Contender] = {
 
 
 class Driver:
-    """The smallest ground station: a heartbeat, arming, a demand. A steady one changes nothing between cycles."""
+    """The smallest ground station: a heartbeat, arming, a demand. A steady demand changes nothing between cycles."""
 
     def __init__(self, port: int, watch: Watch) -> None:
         self._watch = watch
@@ -173,7 +174,7 @@ class Driver:
         self._socket.close()
 
     def arm(self, stamps: Path) -> None:
-        """Until the cycles reach the motors, and then to a steady speed."""
+        """Wait until the cycles reach the motors, and then for a steady speed."""
         for _ in range(10):
             self._send(Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3))
             self._watch.pause(0.2)
@@ -203,7 +204,7 @@ class Driver:
         return True
 
 
-# ---- what it says ----
+# ---- report ----
 
 
 def _report(samples: Samples) -> Report:

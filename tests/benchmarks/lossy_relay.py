@@ -14,13 +14,13 @@ import time
 from link.transport.memory import LossyPipe
 
 STEP = 0.0005
-"""s between two looks at what is under way: small beside the delay, and only while something is."""
+"""s between two polls of the delayed datagrams: short beside the delay, and only while there are any."""
 
 LOCALHOST = "127.0.0.1"
 
 
 class Relay:
-    """The vehicle sends to `vehicle_port`, where it finds us; we send on to the ground station at `ground_port`."""
+    """The vehicle sends to `vehicle_port`, which is ours; we forward to the ground station at `ground_port`."""
 
     def __init__(self, vehicle_port: int, ground_port: int, pipes: tuple[LossyPipe, LossyPipe]) -> None:
         self._vehicle = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -32,7 +32,7 @@ class Relay:
         self._busy_until = 0.0
 
     def run(self) -> None:
-        """Until killed."""
+        """Run until killed."""
         while True:
             now = time.monotonic()
             timeout = STEP if now < self._busy_until else None

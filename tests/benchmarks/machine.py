@@ -1,4 +1,4 @@
-"""What a figure means nothing without: the machine, its versions, its load, and when."""
+"""The context of every figure: the machine, its versions, its load, and the time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def facts() -> dict[str, Any]:
-    """Of this machine, now."""
+    """Describe this machine, now."""
     return {
         "date": datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
         "cpu": _cpu(),
@@ -30,7 +30,7 @@ def facts() -> dict[str, Any]:
 
 
 def load() -> str:
-    """Processes that wanted a core, on average over the last minute."""
+    """Return the number of processes that wanted a core, on average over the last minute."""
     return f"{os.getloadavg()[0]:.2f}"
 
 

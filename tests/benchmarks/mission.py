@@ -1,7 +1,7 @@
-"""Ten minutes of AUTO in real time with noisy sensors: how far the plant's truth is beside the lines.
+"""Ten minutes of AUTO in real time with noisy sensors: the distance of the simulator's truth from the lines.
 
-`python -m vehicle --sim` as a process gets laps of a course over UDP by our own MissionClient, and writes down where it
-really is (`--sim-truth`), which none of its sensors knows.
+`python -m vehicle --sim` as a process gets laps of a course over UDP from our own MissionClient, and records its true
+position (`--sim-truth`), which none of its sensors knows.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ HOME = Origin(50.0, 8.0)
 RELATIVE_ALTITUDE, NO_PLACE = 6, 2
 """MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, MAV_FRAME_MISSION."""
 CORNER = 1.5
-"""m around a corner that are no straight: the rover may cut it (WP_RADIUS) or pivot there."""
+"""m around a corner that are not measured: the rover may cut the corner (WP_RADIUS) or pivot there."""
 LAP_MAX = 300.0
 """s that a lap may take."""
 
@@ -44,7 +44,7 @@ class Course:
 
     @property
     def legs(self) -> list[Leg]:
-        """The straights."""
+        """Return the straight lines of a lap."""
         return [Leg(one, two) for one, two in pairwise((self.corners[-1], *self.corners))]
 
 
@@ -57,7 +57,7 @@ GOAL = 0.5
 
 
 def run(options: Options) -> Report:
-    """Seed by seed."""
+    """Measure seed by seed."""
     course = QUICK if options.quick else FULL
     rows = []
     for seed in options.seeds:
@@ -119,7 +119,7 @@ def _way(place: Point) -> MissionItem:
 
 
 def _judged(course: Course, truth: Path) -> Row:
-    """What the file of the truth says of the straights; the rover moves from its start to its end."""
+    """Evaluate the truth file on the straight lines, while the rover moves from start to end."""
     rows = [[float(word) for word in line.split()] for line in truth.read_text().splitlines()]
     moving = [index for index, row in enumerate(rows) if row[4]]
     on_the_way = rows[moving[0] : moving[-1] + 1]
@@ -139,7 +139,7 @@ def _judged(course: Course, truth: Path) -> Row:
 
 
 def _beside(course: Course, place: Point) -> float:
-    """m from the nearest straight."""
+    """Return the distance from the nearest straight line, m."""
     return min(_from_leg(leg, place) for leg in course.legs)
 
 

@@ -1,4 +1,4 @@
-"""The vehicle's motor log, read as it is written: when did the outputs change? The time is the vehicle's own stamp."""
+"""The vehicle's motor log, read as it is written: when the outputs changed, by the vehicle's own timestamp."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ class Change(NamedTuple):
 
 
 class MotorFeed:
-    """A named pipe that stands where the vehicle appends its motor log, so that nobody has to poll a file."""
+    """A named pipe in place of the vehicle's motor log, so that no file needs to be polled."""
 
     def __init__(self, watch: Watch, folder: Path) -> None:
         self.path = folder / "motors"
         os.mkfifo(self.path)
-        # For writing too: without any writer a pipe counts as ended, and the vehicle opens its end later than we ours.
+        # For writing too: a pipe without a writer counts as ended, and the vehicle opens its end later.
         self._descriptor = os.open(self.path, os.O_RDWR | os.O_NONBLOCK)
         self._watch = watch
         self._rest = b""
@@ -33,11 +33,11 @@ class MotorFeed:
 
     @property
     def moving(self) -> bool:
-        """Do the motors get anything now?"""
+        """Return whether the motors get any power now."""
         return bool(self.changes) and any(self.changes[-1].throttles)
 
     def after(self, stamp: int, within: float) -> Change | None:
-        """The first change later than `stamp`; None when none comes within so many s."""
+        """Return the first change later than `stamp`; None if there is none within `within` s."""
         seen = len(self.changes)
         while seen and self.changes[seen - 1].at > stamp:
             seen -= 1

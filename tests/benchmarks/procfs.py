@@ -15,13 +15,13 @@ class Memory(NamedTuple):
     """MiB of all processes together."""
 
     rss: float
-    """Resident; what processes share is counted once for each."""
+    """Resident; pages shared by processes are counted for each."""
     pss: float
-    """The same, each shared page divided by how many processes share it."""
+    """The same, each shared page divided by the number of processes that share it."""
 
 
 def family(pid: int) -> list[int]:
-    """A process and all that descend from it."""
+    """Return a process and all its descendants."""
     children: dict[int, list[int]] = {}
     for each in _all():
         parent = _parent(each)
@@ -34,12 +34,12 @@ def family(pid: int) -> list[int]:
 
 
 def memory(pids: list[int]) -> Memory:
-    """Of all `pids` together."""
+    """Return the memory of all `pids` together."""
     return Memory(sum(_rss(pid) for pid in pids), sum(_pss(pid) for pid in pids))
 
 
 def cpu_seconds(pids: list[int]) -> float:
-    """User and system time that `pids` have used so far, s; in steps of 10 ms."""
+    """Return the user and system time that `pids` have used so far, s; in steps of 10 ms."""
     return sum(_cpu(pid) for pid in pids)
 
 
@@ -48,7 +48,7 @@ def _all() -> Iterator[int]:
 
 
 def _fields(pid: int) -> list[str]:
-    """/proc/PID/stat from its third field on; the second may contain anything."""
+    """Return /proc/PID/stat from its third field on; the second may contain anything."""
     return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
 
 
@@ -56,7 +56,7 @@ def _parent(pid: int) -> int | None:
     try:
         return int(_fields(pid)[1])
     except OSError:
-        return None  # it has ended meanwhile
+        return None  # the process has ended
 
 
 def _cpu(pid: int) -> float:

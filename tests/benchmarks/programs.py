@@ -1,4 +1,4 @@
-"""Real programs on real terminals and pipes, started for a measurement and ended with it; nothing is judged here."""
+"""Real programs on real terminals and pipes, started for a measurement and ended with it."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ PING, PONG = b"\x1b[5n", b"\x1b[0n"
 """Device status report and its answer: a terminal answers, and the ground station asks four times a second."""
 
 KEPT = 200_000
-"""Bytes of output kept for a look."""
+"""Bytes of output that are kept."""
 
 END_WITHIN = 5.0
-"""s that a program may take to end when told."""
+"""s in which a program must end after SIGTERM."""
 
 _CONTROL = re.compile(rb"\x1b(?:\[[0-9:;<=>?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)|[@-Z\\-_])")
 
@@ -57,27 +57,27 @@ class Program:
         )
         os.close(program_end)
         watch.add(terminal, self._read)
-        self._end = os.pidfd_open(self.process.pid)  # readable when it has ended: an end that wakes the watch
+        self._end = os.pidfd_open(self.process.pid)  # readable when the process has ended, which wakes the watch
         watch.add(self._end, lambda: False)
 
     @property
     def pid(self) -> int:
-        """Of the process that was started; it may have children."""
+        """Process id of the program; it may have children."""
         return self.process.pid
 
     @property
     def text(self) -> str:
-        """What it has written lately, without control sequences."""
+        """Return its latest output, without control sequences."""
         return _CONTROL.sub(b"", bytes(self._output)).decode("utf-8", "replace")
 
     def type(self, keys: bytes) -> int:
-        """Write keys to its terminal; the time just before, CLOCK_MONOTONIC ns."""
+        """Write keys to its terminal; return the time just before, CLOCK_MONOTONIC ns."""
         stamp = time.monotonic_ns()
         os.write(self._terminal, keys)
         return stamp
 
     def wait_for(self, word: str, within: float) -> float:
-        """Wait for a word in its output; s since the start. Raises BenchmarkError."""
+        """Wait for a word in its output; return the s since the start. Raises BenchmarkError."""
         if not self._watch.until(lambda: word in self.text or self.process.poll() is not None, within):
             raise BenchmarkError(f"{self.name}: no {word!r} within {within:g} s; it says {self.text[-300:]!r}")
         if word not in self.text:
@@ -90,7 +90,7 @@ class Program:
         return " ".join(map(str, self.process.args[1:4])) if isinstance(self.process.args, list) else "program"
 
     def end(self) -> None:
-        """SIGTERM, a while, SIGKILL."""
+        """Send SIGTERM, wait, send SIGKILL."""
         if self.process.poll() is None:
             self.process.terminate()
         if not self._watch.until(lambda: self.process.poll() is not None, END_WITHIN):
@@ -113,7 +113,7 @@ class Program:
         return bool(data)
 
     def _answer(self, data: bytes) -> None:
-        """As a terminal would. A question may be cut by the end of a read, but a suffix of one begins no other."""
+        """Answer as a terminal would. The end of a read may cut a query, but no suffix of one starts another."""
         seen = self._tail + data
         for _ in range(seen.count(PING)):
             os.write(self._terminal, PONG)
@@ -134,12 +134,12 @@ def on_pipe(watch: Watch, argv: Sequence[str]) -> Program:
 
 
 def python(module: str, *arguments: str) -> list[str]:
-    """A module with the interpreter that runs us."""
+    """Return the command for a module, with our interpreter."""
     return [sys.executable, "-m", module, *arguments]
 
 
 def free_port() -> int:
-    """A UDP port on loopback that nobody uses now."""
+    """Return a UDP port on loopback that is free now."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
         sock.bind(("127.0.0.1", 0))
         return int(sock.getsockname()[1])
@@ -147,18 +147,20 @@ def free_port() -> int:
 
 @contextmanager
 def scratch() -> Iterator[Path]:
-    """A folder that lives as long as a measurement."""
+    """Create a folder that exists as long as a measurement."""
     with tempfile.TemporaryDirectory(prefix="mavhelm-bench-") as name:
         yield Path(name)
 
 
 def _own_terminal() -> None:
-    """In the child: the terminal on its standard input is the one of its session, as in a terminal window."""
+    """Make the terminal on standard input the controlling terminal of the session, as in a terminal window (in the
+    child)."""
     fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 
 
 def _environment() -> Mapping[str, str]:
-    """Ours, with a plain terminal of the size that the pty has, and byte code kept as on a user's machine."""
+    """Return our environment, with a plain terminal of the size of the pty, and with byte code caches as on a user's
+    machine."""
     left_out = ("COLUMNS", "LINES", "PYTHONDONTWRITEBYTECODE")
     kept = {name: value for name, value in os.environ.items() if name not in left_out}
     return kept | {"TERM": "xterm-256color", "PYTHONUNBUFFERED": "1"}

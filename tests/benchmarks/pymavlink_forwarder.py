@@ -1,4 +1,4 @@
-"""The router that anybody writes first: pymavlink on both ends, whatever arrives is written on. Arguments: IN OUT."""
+"""The simplest router: pymavlink on both ends, whatever arrives is written to the other. Arguments: IN OUT."""
 
 from __future__ import annotations
 

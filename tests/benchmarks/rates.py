@@ -1,4 +1,4 @@
-"""How often a second something can be done: contenders in turn, each round, on warm code. Not an end-to-end figure."""
+"""Operations a second: contenders in turn, each round, on warm code. Not an end-to-end figure."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Work = Callable[[], None]
 
 
 def rates(contenders: Mapping[str, Work], items: int, *, quick: bool) -> dict[str, float]:
-    """Items a second of each contender, median of the rounds. `items` are those of one pass."""
+    """Return the items a second of each contender, median of the rounds. `items` are those of one pass."""
     least = 0.1 if quick else 0.6
     seen: dict[str, list[float]] = {name: [] for name in contenders}
     for _ in range(ROUNDS):
@@ -36,7 +36,7 @@ def _passes_per_second(work: Work, least: float) -> float:
 
 @contextmanager
 def _no_collections() -> Iterator[None]:
-    """A full collection in the middle of one contender would be charged to it, whoever made the garbage."""
+    """Collect garbage first: a full collection in the middle of one contender would be charged to it."""
     gc.collect()
     gc.disable()
     try:

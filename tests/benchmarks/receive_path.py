@@ -1,6 +1,7 @@
-"""The vehicle's work on one demand: frame found, checked, decoded, selected, mixed, ramped, gated, given to the motors.
+"""The vehicle's work on one demand: frame found, checked, decoded, selected, mixed, ramped, gated, written to the
+motors.
 
-Hot is a loop in virtual time; cold is the same at 50 Hz, where caches and the clock of the core have gone to sleep.
+Hot is a loop in virtual time; cold is the same at 50 Hz, where caches are cold and the clock of the core is low.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from vehicle.rover import Rover
 from vehicle.sim.body import SimulatedBody
 
 CYCLE = 0.02
-"""s; control cycle of the vehicle and time between two demands here."""
+"""s; control cycle of the vehicle, and time between two demands here."""
 ADDRESS = ("127.0.0.1", 14550)
 MANUAL = "MANUAL_CONTROL to outputs"
 PRESENCE = "ROVER_OPERATOR_PRESENCE before it"
@@ -32,7 +33,7 @@ REFERENCE = "pymavlink parse_buffer of the same MANUAL_CONTROL, decode only"
 
 
 def run(options: Options) -> Report:
-    """Hot and cold."""
+    """Measure hot and cold."""
     report = Report()
     for name, count, pace in (("hot", 5000, _at_once), ("cold, 50 Hz", 250, _cold)):
         options.say(f"receive_path: {name}")
@@ -102,7 +103,7 @@ def _timed(work: Callable[[], object]) -> float:
 
 
 class VehicleInMemory:
-    """The daemon's cores without its loop: channel, machine, rover, simulated body. Time moves by cycle()."""
+    """The daemon's cores without its loop: channel, control loop, rover, simulated body. cycle() moves the time."""
 
     def __init__(self) -> None:
         self._now = 100.0
@@ -115,11 +116,11 @@ class VehicleInMemory:
 
     @property
     def turning(self) -> bool:
-        """Do the wheels get power?"""
+        """Return whether the wheels get power."""
         return any(self._motors.outputs)
 
     def arm(self) -> None:
-        """A ground station introduces itself, arms, and shows neutral."""
+        """Introduce a ground station, arm, and send neutral."""
         arm = CommandLong(1, 1, Command.COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
         for message in (Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3), arm):
             self.take(self._frame(message))
@@ -129,18 +130,18 @@ class VehicleInMemory:
             self.cycle()
 
     def demand(self, number: int) -> tuple[bytes, bytes]:
-        """Proof of life and demand, each time another one."""
+        """Return operator presence and demand, different each time."""
         alive = RoverOperatorPresence(1, 1, number, 0, 7, number, 0, 0)
         axes = Axes(0.5 + 0.3 * (number % 2), 0.1 * (number % 3))
         return self._frame(alive), self._frame(build_manual_control(axes, 1))
 
     def take(self, data: bytes) -> None:
-        """What the runner does with a datagram, down to the motors."""
+        """Do what the runner does with a datagram, down to the motors."""
         for received in self._channel.receive(data, ADDRESS, self._now):
             self._machine.receive(received, self._now)
 
     def cycle(self) -> None:
-        """20 ms pass; what the rover says is thrown away. Its ground station's heartbeat comes when it is due."""
+        """Let 20 ms pass and discard what the rover sends. Its ground station's heartbeat is sent when it is due."""
         before, self._now = int(self._now), self._now + CYCLE
         if int(self._now) != before:
             self.take(self._frame(Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3)))

@@ -1,7 +1,7 @@
-"""Key byte written to a real terminal -> motor outputs changed, both real programs joined by a serial cable.
+"""Key byte written to a real terminal -> motor outputs changed, both real programs connected by a serial cable.
 
 The cable (baud_cable.py) passes bytes at the pace of 57600 or 921600 baud. Telemetry flows all the time; in every
-second run of keys another ground station on the same line asks for all parameters and a file again and again.
+second run of keys another ground station on the same line requests all parameters and a file again and again.
 """
 
 from __future__ import annotations
@@ -26,25 +26,26 @@ from tests.benchmarks.watch import Watch
 
 SLOW, FAST = 57600, 921600
 KEYS = {SLOW: 22, FAST: 11}
-"""Keys of one load in one round: most where the goal is, 66 and 33 in all."""
+"""Keys of one load in one round: most at the rate with the goal, 66 and 33 in all."""
 QUICK_KEYS = {SLOW: 4, FAST: 3}
 
 SOFTWARE = 30.0
-"""ms that the goal leaves for all that is not wire: two programs, their timers, a terminal and a frame before ours."""
+"""ms that the goal allows for everything but the wire: two programs, their timers, a terminal and a frame before ours.
+"""
 
 TELEMETRY, BULK = "telemetry", "telemetry, parameter list and file"
 LOADS = (TELEMETRY, BULK)
 SETTLE = 1.0
-"""s after a change of the load; a list that is under way ends."""
+"""s after a change of the load, in which a list in transit ends."""
 
 
 @dataclass(slots=True)
 class Seen:
-    """Of one load at one rate."""
+    """Results of one load at one rate."""
 
     keys: Outcome = field(default_factory=lambda: Outcome([]))
     down: list[float] = field(default_factory=list)
-    """Share of the wire to the ground station that was in use, %, one a round."""
+    """Share of the wire to the ground station that was in use, %, one per round."""
     up: list[float] = field(default_factory=list)
 
 
@@ -55,11 +56,11 @@ class Wired:
         self.rig = rig
         self._cable = cable
         self._rate = baud / BITS_PER_BYTE
-        self._stamp = self._totals()[0]  # and bulk is on, so that both loads have happened before anything is measured
+        self._stamp = self._totals()[0]  # bulk is on now, so that both loads ran before the first measurement
         self._change()
 
     def measure(self, seen: Seen, keys: int, chance: random.Random) -> None:
-        """Press `keys` keys under the load that is on now; the other load is on afterwards."""
+        """Press `keys` keys under the present load, then switch to the other load."""
         self.rig.watch.pause(SETTLE)
         self.rig.measure(seen.keys, keys, chance)
         down, up = self._change()
@@ -67,7 +68,7 @@ class Wired:
         seen.up.append(up)
 
     def _change(self) -> tuple[float, float]:
-        """Turn the load; how full the wires were since the last time, %."""
+        """Switch the load; return how full the wires were since the last time, %."""
         before = self._stamp
         self._stamp, *passed = self._totals()
         seconds = (self._stamp - before) / 1e9
@@ -86,7 +87,7 @@ class Wired:
 
 
 def run(options: Options) -> Report:
-    """Rate by rate; the loads take turns."""
+    """Measure rate by rate; the loads take turns."""
     chance = random.Random(13)
     seen = {(baud, load): Seen() for baud in (SLOW, FAST) for load in LOADS}
     for baud in (SLOW, FAST):
@@ -123,17 +124,17 @@ def wired(baud: int) -> Iterator[Wired]:
         yield Wired(rig, cable, baud)
 
 
-# ---- what it says ----
+# ---- report ----
 
 
 def frame_sizes() -> tuple[int, int]:
-    """Bytes of the presence and of the MANUAL_CONTROL that a key sends; no value is 0, so nothing is cut off."""
+    """Bytes of the presence and of the MANUAL_CONTROL that a key sends; no value is 0, so nothing is truncated."""
     presence = RoverOperatorPresence(1, 1, 2**31, 2**31, 2**31, 2**31, 2**15, 3)
     return len(framed(presence, 0)), len(framed(build_manual_control(Axes(0.5, 0.5), 1), 0))
 
 
 def wire_time(baud: int) -> float:
-    """ms of a key's frames on the wire."""
+    """Return the ms that a key's frames need on the wire."""
     return sum(frame_sizes()) * BITS_PER_BYTE / baud * 1000
 
 

@@ -1,4 +1,4 @@
-"""The jobs of `services`: what is asked of a vehicle, by our clients and by the bare ones, and the bytes it takes."""
+"""The jobs of `services`: the requests to a vehicle, by our clients and by the bare ones, and their bytes."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ PARAMS, UPLOAD, DOWNLOAD, FILE = "parameter list", f"mission of {ITEMS}, up", f"
 RELATIVE_ALTITUDE = 6
 """MAV_FRAME_GLOBAL_RELATIVE_ALT_INT"""
 WITHIN = 1200.0
-"""s for one job; a megabyte takes 200 s of a wire at 57600 baud."""
+"""s for one job; a megabyte takes 200 s at 57600 baud."""
 
 Times = dict[str, list[float]]
 """Job -> s of each round."""
 
 
 def mission() -> list[MissionItem]:
-    """Waypoints, all different."""
+    """Return waypoints, all different."""
     return [
         MissionItem(
             Command.NAV_WAYPOINT,
@@ -49,7 +49,7 @@ def mission() -> list[MissionItem]:
 
 
 async def fetch_params(station: Station, times: Times, name: str = PARAMS) -> None:
-    """All of them."""
+    """Read all parameters."""
     with _clocked(times, name):
         station.params.fetch(_now())
         await station.until(lambda: not station.params.fetching, name, WITHIN)
@@ -58,17 +58,17 @@ async def fetch_params(station: Station, times: Times, name: str = PARAMS) -> No
 
 
 async def upload(station: Station, times: Times) -> None:
-    """The mission, up."""
+    """Upload the mission."""
     await _mission_job(station, times, UPLOAD, lambda: station.missions.upload(mission(), MissionType.MISSION, _now()))
 
 
 async def download(station: Station, times: Times) -> None:
-    """The mission, down."""
+    """Download the mission."""
     await _mission_job(station, times, DOWNLOAD, lambda: station.missions.download(MissionType.MISSION, _now()))
 
 
 async def fetch_log(station: Station, times: Times, size: int) -> None:
-    """The log of `size` bytes."""
+    """Download the log of `size` bytes."""
     with _clocked(times, FILE):
         station.files.download(f"/logs/{LOG_NAME}", _now())
         await station.until(lambda: not station.files.busy, FILE, WITHIN)
@@ -94,7 +94,7 @@ def _now() -> float:
 
 
 def bare_round(port: int, times: Times, size: int) -> None:
-    """Each job once."""
+    """Run each job once."""
     items = [to_message(item, number, MissionType.MISSION, VEHICLE) for number, item in enumerate(mission())]
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
         sock.connect(("127.0.0.1", port))
@@ -141,7 +141,7 @@ def wire_bytes(station: Station, size: int) -> dict[str, int]:
 
 
 def log_bytes(size: int) -> int:
-    """Of a log of `size` bytes on the wire."""
+    """Return the bytes of a log of `size` bytes on the wire."""
     return _bytes(_pieces(size))
 
 

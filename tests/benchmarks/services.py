@@ -1,9 +1,8 @@
-"""How long parameters, a mission of 200 items and a log of 1 MB take from a real vehicle, and what share of the link
-that is.
+"""How long parameters, a mission of 200 items and a log of 1 MB take from a real vehicle, as a share of the link.
 
 On a serial line the reference is the wire: the time of the bytes that must travel at its baud rate, both directions one
-after the other where the protocol makes them wait for each other. On UDP loopback, where no wire limits anything, it is
-the barest form of both ends (bare_services.py), in turns with ours.
+after the other where the protocol makes them wait for each other. On UDP loopback, which limits nothing, the reference
+is the barest form of both ends (bare_services.py), in turns with ours.
 """
 
 from __future__ import annotations
@@ -28,16 +27,19 @@ LOG, QUICK_LOG, QUICK_WIRE_LOG = 1_000_000, 100_000, 20_000
 """Bytes; a megabyte takes more than three minutes of the wire."""
 ARMED = "parameter list, armed"
 ARDUROVER = 30.9
-"""s of ArduRover's list at 57600 baud, with more parameters than ours; the design's figure."""
+"""s of ArduRover's list at 57600 baud, with more parameters than ours; the figure was measured before."""
 SLOWER = 1.25
-"""Times the log's own time at the pace of link/services/pacing.py: what opening, control cycles and timers add."""
+"""Times the log's own time at the pace of link/services/pacing.py: the part of opening, control cycles and timers."""
 LEAST = {jobs.FILE: 50.0, ARMED: 25.0, jobs.UPLOAD: 60.0, jobs.DOWNLOAD: 60.0}
-"""% of the wire: what vehicle/telemetry/bandwidth.py gives bulk while nobody can drive and while somebody can, less its steps; an
-item of a mission waits for the one before it."""
+"""% of the wire: the share of bulk in vehicle/telemetry/bandwidth.py while the vehicle cannot be driven and while it
+can.
+
+It is less its steps; an item of a mission waits for the one before it.
+"""
 
 
 def run(options: Options) -> Report:
-    """The network first, then the wire."""
+    """Measure the network first, then the wire."""
     report = Report()
     _on_network(options, report)
     _on_wire(options, report)
@@ -140,7 +142,7 @@ def _on_wire(options: Options, report: Report) -> None:
 
 @contextmanager
 def _vehicle(watch: Watch, folder: Path, size: int, endpoint: str) -> Iterator[None]:
-    """A simulated rover with a log of `size` bytes."""
+    """Start a simulated rover with a log of `size` bytes."""
     log = _log(folder)
     log.parent.mkdir(parents=True)
     log.write_bytes(random.Random(5).randbytes(size))

@@ -1,4 +1,4 @@
-"""The ground station of a measurement: our own clients of parameters, missions and files on real links, no screen."""
+"""The ground station of a measurement: our own clients for parameters, missions and files on real links, no screen."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ class Client(Protocol):
     """One of link/services' clients."""
 
     def receive(self, received: Received, now: float) -> None:
-        """Take a message."""
+        """Handle a message."""
 
     def tick(self, now: float) -> None:
         """Let time pass."""
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What to send now."""
+        """Return what to send now."""
 
 
 class Station:
-    """A `link.core.Core`: says HEARTBEAT, hands messages to its clients, keeps the newest of each kind."""
+    """A `link.core.Core` that sends HEARTBEAT, passes messages to its clients, and keeps the newest of each kind."""
 
     def __init__(self) -> None:
         self.params = ParamClient(SYSTEM, COMPONENT, target_system=VEHICLE[0])
@@ -56,7 +56,7 @@ class Station:
     # ---- core ----
 
     def receive(self, received: Received, now: float) -> None:
-        """Take one message."""
+        """Handle one message."""
         self.newest[type(received.message).id] = received.message
         if isinstance(received.message, m.StatusText):
             self.texts.append(m.decode_text(received.message))
@@ -76,11 +76,11 @@ class Station:
         self._look()
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Take what the link counts."""
+        """Keep what the link reports."""
         self.bytes_received = sum(each.bytes_received for each in reports)
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What to send now; empties what it returns."""
+        """Return what to send now and clear the queue."""
         outgoing, self._outgoing = self._outgoing, []
         for client in self._clients:
             outgoing += client.messages_to_send()
@@ -89,7 +89,7 @@ class Station:
     # ---- for scripts ----
 
     async def until(self, condition: Callable[[], bool], what: str, within: float) -> None:
-        """Wait until `condition`, looked at with each message and each tick. Raises BenchmarkError."""
+        """Wait until `condition`, checked with each message and each tick. Raises BenchmarkError."""
         found: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._looks.append((condition, found))
         try:
@@ -116,7 +116,7 @@ class Station:
 
     @property
     def armed(self) -> bool:
-        """What the newest HEARTBEAT says."""
+        """Return whether the newest HEARTBEAT says that the vehicle is armed."""
         beat = self.newest.get(m.Heartbeat.id)
         return isinstance(beat, m.Heartbeat) and bool(beat.base_mode & ModeFlag.ARMED)
 
@@ -132,7 +132,7 @@ class Station:
 
 
 async def connected(endpoint: str, script: Callable[[Station], Awaitable[None]]) -> None:
-    """Run a script with a station on a link, once it hears the vehicle."""
+    """Run a script with a station on a link, once it has received from the vehicle."""
     station = Station()
     runner = Runner(station, open_links([endpoint], system=SYSTEM, component=COMPONENT), period=PERIOD)
     running = asyncio.ensure_future(runner.run())

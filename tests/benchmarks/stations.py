@@ -1,7 +1,7 @@
 """What ground stations cost the vehicle: CPU and memory with 1, 4 and 16 of them on one UDP port.
 
-Each says HEARTBEAT once a second and reads what it is told; one has armed and drives at 20 Hz. They live in this
-process and only count, so that they take little of the machine.
+Each sends HEARTBEAT once a second and reads what it gets; one has armed and drives at 20 Hz. They live in this process
+and only count, so that they need little of the machine.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ MODE_AT = 6
 
 
 class Light:
-    """One ground station that only counts what it hears."""
+    """One ground station that only counts what it receives."""
 
     def __init__(self, watch: Watch, port: int, system: int) -> None:
         self.heard = 0
@@ -55,16 +55,16 @@ class Light:
         watch.add(self._socket.fileno(), self._read)
 
     def say(self, message: m.Message) -> None:
-        """One datagram."""
+        """Send one datagram."""
         self._sequence = (self._sequence + 1) & 0xFF
         self._socket.send(framed(message, self._sequence, self._system, COMPONENT))
 
     def beat(self) -> None:
-        """HEARTBEAT."""
+        """Send HEARTBEAT."""
         self.say(m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, SystemState.ACTIVE, 3))
 
     def close(self) -> None:
-        """Fall silent."""
+        """Close the socket."""
         self._watch.remove(self._socket.fileno())
         self._socket.close()
 
@@ -93,7 +93,7 @@ class Crowd:
         self._demand_due = now
 
     def pass_time(self, seconds: float) -> None:
-        """Everybody says what is due."""
+        """Send what is due for all stations."""
         end = time.monotonic() + seconds
         while (now := time.monotonic()) < end:
             for number, station in enumerate(self._stations):
@@ -118,19 +118,19 @@ class Crowd:
 
 @dataclass(slots=True)
 class Seen:
-    """With so many stations; a value a round."""
+    """Results with this number of stations; one value per round."""
 
     cpu: list[float] = field(default_factory=list)
     rss: list[float] = field(default_factory=list)
     told: list[float] = field(default_factory=list)
-    """Messages a second of the one that got least and of the one that drives."""
+    """Messages a second of the station that got least and of the one that drives."""
     driver: list[float] = field(default_factory=list)
     reached: list[int] = field(default_factory=list)
-    """Stations that heard HEARTBEATs all the time."""
+    """Stations that received HEARTBEATs all the time."""
 
 
 def run(options: Options) -> Report:
-    """Round by round, the counts in turn."""
+    """Measure round by round, the counts in turn."""
     seen = {count: Seen() for count in COUNTS}
     for number in range(ROUNDS):
         for count in COUNTS:

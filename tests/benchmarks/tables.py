@@ -1,4 +1,4 @@
-"""Results as Markdown, ready to paste into docs/performance.md. It prints what there is and judges nothing."""
+"""Results as Markdown, ready to paste into docs/performance.md."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tests.benchmarks.figures import Report, Row, Table
 
 
 def markdown(machine: Mapping[str, Any], reports: Mapping[str, Report], *, quick: bool) -> str:
-    """All tables of a run."""
+    """Return all tables of a run."""
     return "\n".join([_machine_line(machine, quick=quick), "", *_sections(reports)])
 
 
@@ -51,7 +51,7 @@ def _heading(column: str) -> str:
 
 
 def number(value: Any) -> str:
-    """Three significant digits: more than a shared machine repeats."""
+    """Format with three significant digits: more than a shared machine repeats."""
     if value is None:
         return "-"
     if not isinstance(value, float):

@@ -1,6 +1,7 @@
-"""Motors that turn nothing and write down when each control cycle reached them; and the two reference loops.
+"""Motors that turn nothing and record when each control cycle reached them; and the two reference loops.
 
-`vehicle --config` takes `Motors` as the driver "tests.benchmarks.ticking:Motors" with a file to append to.
+`vehicle --config` accepts `Motors` as the driver "tests.benchmarks.ticking:Motors" with a file to append to.
+
 Usage of the references: python -m tests.benchmarks.ticking asyncio|blocking FILE
 """
 
@@ -27,24 +28,24 @@ STAMP = struct.Struct("=q")
 
 
 class Stamps:
-    """A file of stamps: 8 bytes each, written at once."""
+    """A file of timestamps: 8 bytes each, written at once."""
 
     def __init__(self, path: str) -> None:
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
 
     def add(self) -> None:
-        """Now."""
+        """Record the present time."""
         os.write(self._descriptor, STAMP.pack(time.monotonic_ns()))
 
     def close(self) -> None:
-        """No more of them."""
+        """Close the file."""
         if self._descriptor >= 0:
             os.close(self._descriptor)
             self._descriptor = -1
 
 
 def read(path: Path) -> list[int]:
-    """All stamps of a file so far, ns."""
+    """Return all timestamps of a file so far, ns."""
     data = path.read_bytes() if path.exists() else b""
     return [stamp for (stamp,) in STAMP.iter_unpack(data[: len(data) // STAMP.size * STAMP.size])]
 
@@ -67,27 +68,27 @@ class Motors:
         self._enabled = False
 
     def enable(self) -> None:
-        """From now on what is set counts as a cycle."""
+        """Record the times of `set` from now on."""
         self._enabled = True
 
     def disable(self) -> None:
-        """What is set is no cycle."""
+        """Stop recording the times of `set`."""
         self._enabled = False
 
     def set(self, throttles: Sequence[float]) -> None:
-        """Note the time first."""
+        """Record the time first."""
         if self._enabled:
             self._stamps.add()
         check_throttles(throttles, self.count)
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self.disable()
         self._stamps.close()
 
 
 async def _in_asyncio(stamps: Stamps) -> None:
-    """Absolute deadlines through the event loop, which does nothing else."""
+    """Run a loop with absolute deadlines in asyncio, which does nothing else."""
     loop = asyncio.get_running_loop()
     ended: asyncio.Future[None] = loop.create_future()
 
@@ -101,7 +102,7 @@ async def _in_asyncio(stamps: Stamps) -> None:
 
 
 def _blocking(stamps: Stamps) -> None:
-    """Absolute deadlines; the kernel wakes us."""
+    """Run a loop with absolute deadlines that blocks in the kernel."""
     due = time.monotonic()
     while True:
         stamps.add()

@@ -1,4 +1,4 @@
-"""The bytes that framers are measured on: a real telemetry log where there is one, and a seeded mix of seven kinds."""
+"""The input of the framer benchmark: a real telemetry log if there is one, and a seeded mix of seven kinds."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TLOG_STAMP = 8
 
 
 def telemetry_log(path: Path, most: int) -> list[bytes]:
-    """The first `most` frames of a log, one an item. Raises OSError."""
+    """Return the first `most` frames of a log, one per item. Raises OSError."""
     return list(_frames(path.read_bytes(), most))
 
 
@@ -45,7 +45,8 @@ def _length(data: bytes, at: int) -> int:
 
 
 def mix(count: int, seed: int = 1) -> list[bytes]:
-    """`count` frames of system 1, as a rover sends them: fast state often, slow state seldom, all values moving."""
+    """Return `count` frames of system 1, as a rover sends them: fast state often, slow state seldom, all values
+    changing."""
     chance = random.Random(seed)
     makers = list(_MAKERS)
     weights = [_MAKERS[maker] for maker in makers]
@@ -54,17 +55,17 @@ def mix(count: int, seed: int = 1) -> list[bytes]:
 
 
 def framed(message: Message, sequence: int, system: int = 1, component: int = 1) -> bytes:
-    """One MAVLink 2 frame."""
+    """Return one MAVLink 2 frame."""
     return codec.frame(type(message).id, codec.encode_payload(message), sequence, system, component)
 
 
 def joined(frames: Sequence[bytes], size: int) -> list[bytes]:
-    """`size` frames a datagram."""
+    """Return datagrams of `size` frames."""
     return [b"".join(frames[start : start + size]) for start in range(0, len(frames), size)]
 
 
 def chopped(frames: Sequence[bytes], size: int) -> list[bytes]:
-    """As a serial port gives them: reads of `size` bytes, without regard to frames."""
+    """Return reads of `size` bytes, without regard to frames, as from a serial port."""
     data = b"".join(frames)
     return [data[start : start + size] for start in range(0, len(data), size)]
 
@@ -111,4 +112,4 @@ _MAKERS: dict[Callable[[random.Random], Message], int] = {
     _position: 2,
     _servos: 2,
 }
-"""Kind -> how often, in Hz: HEARTBEAT and the six that our vehicle sends most often (vehicle/telemetry/telemetry.py)."""
+"""Kind -> Hz: HEARTBEAT and the six that our vehicle sends most often (vehicle/telemetry/streams.py)."""

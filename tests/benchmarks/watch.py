@@ -1,4 +1,4 @@
-"""One thread that waits on descriptors: what arrives is taken at once, and time passes in poll() and nowhere else."""
+"""One thread that waits on descriptors: what arrives is read at once, and time passes in poll() only."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 
 class Watch:
-    """Descriptors with what reads each of them; a reader returns False when its descriptor has ended."""
+    """Descriptors and the reader of each; a reader returns False when its descriptor has ended."""
 
     def __init__(self) -> None:
         self._selector = selectors.DefaultSelector()
@@ -23,7 +23,7 @@ class Watch:
             self._selector.unregister(descriptor)
 
     def until(self, condition: Callable[[], bool], within: float) -> bool:
-        """Read until `condition`; False when it was still not true after `within` s."""
+        """Read until `condition`; return False if it is still false after `within` s."""
         deadline = time.monotonic() + within
         while not condition():
             left = deadline - time.monotonic()
@@ -33,7 +33,7 @@ class Watch:
         return True
 
     def pause(self, seconds: float) -> None:
-        """Let time pass and read meanwhile."""
+        """Let time pass, and read meanwhile."""
         self.until(lambda: False, seconds)
 
     def close(self) -> None:

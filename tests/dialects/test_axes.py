@@ -34,6 +34,26 @@ def test_ardupilot_reads_z_and_y_with_zero_as_neutral() -> None:
     assert build_manual_control(NEUTRAL, 1, axis_map(Autopilot.ARDUPILOT)).z == 0
 
 
+FORWARD, BACKWARD, LEFT, RIGHT = 1, -1, -1, 1
+
+
+@pytest.mark.parametrize(
+    ("throttle", "nose", "y"),
+    [
+        (FORWARD, LEFT, -1000),
+        (FORWARD, RIGHT, 1000),
+        (BACKWARD, LEFT, 1000),  # the wheels to the right: a car that backs up turns its nose left
+        (BACKWARD, RIGHT, -1000),
+        (0, LEFT, -1000),  # on the spot
+        (0, RIGHT, 1000),
+        (BACKWARD, 0, 0),
+    ],
+)
+def test_ardupilot_turns_the_other_way_in_reverse(throttle: int, nose: int, y: int) -> None:
+    message = build_manual_control(Axes(throttle, nose), 1, axis_map(Autopilot.ARDUPILOT))
+    assert message.y == y
+
+
 def test_px4_reads_z_with_500_as_neutral() -> None:
     px4 = axis_map(Autopilot.PX4)
     assert build_manual_control(NEUTRAL, 1, px4).z == 500

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import json
-import math
 from pathlib import Path
 
 import pytest
@@ -14,17 +13,10 @@ from hypothesis import strategies as st
 from dialects import codec, messages, rover
 from dialects.messages import (
     MESSAGES,
-    CommandInt,
-    CommandLong,
     Heartbeat,
     ManualControl,
     Message,
     RoverDriveStatus,
-    StatusText,
-    boot_ms,
-    decode_text,
-    is_stop,
-    printable,
 )
 
 GOLDEN = Path(__file__).with_name("golden_frames.json")
@@ -109,28 +101,3 @@ def test_arrays_are_lists() -> None:
     status = codec.decode(46001, codec.encode_payload(RoverDriveStatus(1, 2, 3, 4, [5, 6, 7, 8], 9, 1, 2)))
     assert isinstance(status, RoverDriveStatus)
     assert status.output == [5, 6, 7, 8]
-
-
-def test_text_is_utf8_and_harmless_to_a_terminal() -> None:
-    raw = "Akku schwach: 9,8 V \x1b[2J\N{HEAVY BLACK HEART}".encode()
-    message = codec.decode(StatusText.id, codec.encode_payload(StatusText(severity=4, text=raw)))
-    assert isinstance(message, StatusText)
-    assert decode_text(message) == "Akku schwach: 9,8 V \ufffd[2J\N{HEAVY BLACK HEART}"
-    assert printable("a\nb\x7f\x9b") == "a\ufffdb\ufffd\ufffd"
-
-
-def test_boot_time_wraps_instead_of_raising() -> None:
-    assert boot_ms(0.0) == 0
-    assert boot_ms(2**32 / 1000 + 1.5) == 1500
-
-
-@pytest.mark.parametrize(
-    ("command", "param1", "stops"),
-    [
-        *((400, 0.0, True), (400, 1.0, False), (5300, 0.0, True), (5300, 1.0, False), (176, 0.0, False)),
-        *((185, 1.0, True), (185, 0.0, False), (185, math.nan, False)),
-    ],
-)
-def test_what_counts_as_a_stop(command: int, param1: float, stops: bool) -> None:
-    assert is_stop(CommandLong(1, 1, command, 0, param1, 0, 0, 0, 0, 0, 0)) is stops
-    assert is_stop(CommandInt(1, 1, 0, command, 0, 0, param1, 0, 0, 0, 0, 0, 0)) is stops

@@ -13,8 +13,8 @@ from dialects import fingerprint
 from dialects.fingerprint import HERE, INPUTS, fault, line
 
 ROOT = Path(__file__).parents[2]
-OLDER = "dialects/rover.py is older than its definitions: pip install -e . makes it anew"
-MISSING = "dialects/rover.py is missing: pip install -e . makes it anew"
+OLDER = "dialects/rover.py is older than its definitions: run pip install -e . to generate it"
+MISSING = "dialects/rover.py is missing: run pip install -e . to generate it"
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from dialects.enums import Autopilot, ModeFlag, command_name, result_name
+from dialects.enums import Autopilot, ModeFlag, result_name
 from dialects.modes import Mode, base_mode, custom_mode, mode_name
 
 
@@ -40,8 +40,6 @@ def test_do_set_mode_parameters() -> None:
         custom_mode(Mode.CIRCLE, Autopilot.PX4)
 
 
-def test_names_of_commands_and_results() -> None:
-    assert command_name(400) == "COMPONENT_ARM_DISARM"
-    assert command_name(65535) == "command 65535"
+def test_names_of_results() -> None:
     assert result_name(2) == "denied"
     assert result_name(99) == "result 99"

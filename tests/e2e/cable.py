@@ -1,4 +1,4 @@
-"""A serial cable between two real programs: two ptys, joined at a baud rate, that can be unplugged."""
+"""A serial cable between two real programs: two ptys, connected at a baud rate, that can be unplugged."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import tty
 from pathlib import Path
 
 STEP = 0.001
-"""s between two looks: what passes in one at 57600 baud is 5 bytes."""
+"""s between two polls; 5 bytes pass in that time at 57600 baud."""
 
 
 class _End:
-    """One end: the program opens `path`; we hold `far`."""
+    """One end: the program opens `path`, the test holds `far`."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -35,7 +35,7 @@ class _End:
         try:
             os.write(self.far, data)
         except BlockingIOError:
-            return  # nobody reads there: an UART would have lost it, too
+            return  # no program reads there: a UART would have lost it, too
 
     def close(self) -> None:
         self.path.unlink(missing_ok=True)
@@ -44,7 +44,7 @@ class _End:
 
 
 class SerialCable:
-    """`one` and `two` are the endpoints to give to the programs."""
+    """`one` and `two` are the endpoints for the programs."""
 
     def __init__(self, folder: Path, baud: int = 57600) -> None:
         self.one = f"serial:{folder}/tty-one:{baud}"
@@ -59,19 +59,19 @@ class SerialCable:
         self._thread.start()
 
     def plug(self) -> None:
-        """New devices under the old names, as USB adapters make them."""
+        """Create new devices under the old names, as USB adapters do."""
         with self._lock:
             self._ends = tuple(_End(self._folder / name) for name in ("tty-one", "tty-two"))
 
     def unplug(self) -> None:
-        """Both devices are gone."""
+        """Remove both devices."""
         with self._lock:
             for end in self._ends:
                 end.close()
             self._ends = ()
 
     def close(self) -> None:
-        """End the cable."""
+        """Close the cable."""
         self._running = False
         self._thread.join(5)
         self.unplug()

@@ -17,31 +17,32 @@ from tests.waits import Waits
 
 @dataclass
 class Rig:
-    """Vehicle - relay - ground station."""
+    """Vehicle, relay and ground station."""
 
     vehicle: Vehicle
     relay: Relay
     station: GroundStation
     obeying: Waits = field(init=False)
-    """What the machine made the vehicle and the relay wait since the last `watch`."""
+    """How long the machine delayed the vehicle and the relay since the last `watch`."""
     asking: Waits = field(init=False)
     """The same, with the ground station."""
 
     def drive(self) -> None:
-        """Arm and hold `i` until the wheels turn: what they do now is watched."""
+        """Arm and hold `i` until the wheels turn, then start to watch."""
         programs.drive(self.station, self.vehicle, self.relay.armed)
         self.watch()
-        self.station.hold("i", self.vehicle.at_full)  # counting took its time: what follows, follows at once
+        self.station.hold("i", self.vehicle.at_full)  # counting took some time; the stop must follow at once
 
     def watch(self) -> None:
-        """From now on the machine's part in being late counts."""
+        """Count the delays of the machine from now on."""
         self.obeying = Waits(self.vehicle.process.pid)
         self.asking = Waits(self.vehicle.process.pid, self.station.process.pid)
 
 
 @pytest.fixture
 def rig(tmp_path: Path) -> Iterator[Callable[..., Rig]]:
-    """Builds a rig; keyword arguments go to the Relay (loss, delay), `options` to the ground station."""
+    """Return a function that builds a rig; keyword arguments go to the Relay (loss, delay), `options` to the ground
+    station."""
     with ExitStack() as stack:
 
         def build(*options: str, **network: float) -> Rig:

@@ -22,13 +22,13 @@ REPEAT = 0.033
 FIRST_REPEAT = 0.4
 """s from pressing a key to its first repeat; shorter than the longest in use (0.66 s, X11)."""
 LET_GO = 1.2
-"""s without a repeat after which a key counts as let go, whatever the ground station has learned (1.1 s at most)."""
+"""s without a repeat after which a key counts as released, whatever the ground station has learned (1.1 s at most)."""
 PATIENCE = 60.0
-"""s for what must come, and comes in one or two: the machine is shared."""
+"""s for what takes one or two on an idle machine: the machine is shared."""
 AT_REST = 0.5
-"""s for which wheels that have come to rest have stood."""
+"""s without motion after which wheels count as stopped."""
 PATIENT_LOOP = "FS_LOOP_TIMEOUT=2"
-"""A control cycle later than this disarms: the longest that can be set, because the machine is shared."""
+"""A control cycle later than this disarms. The largest value that can be set, because the machine is shared."""
 
 
 _ESCAPES = re.compile(rb"\x1b\[[0-9;?<>=]*[a-zA-Z]")
@@ -43,7 +43,7 @@ class Output(NamedTuple):
 
     @property
     def turning(self) -> bool:
-        """Does any wheel get power?"""
+        """True if any wheel gets power."""
         return any(self.throttles)
 
 
@@ -61,7 +61,7 @@ class Vehicle:
             )
 
     def outputs(self) -> list[Output]:
-        """All changes of the motor outputs so far."""
+        """Return all changes of the motor outputs so far."""
         if not self.motor_log.exists():
             return []
         lines = self.motor_log.read_text().rpartition("\n")[0].splitlines()
@@ -69,28 +69,28 @@ class Vehicle:
         return [Output(int(at) / 1e9, tuple(map(float, values))) for at, *values in rows]
 
     def turning(self) -> bool:
-        """Do the wheels turn now?"""
+        """Return whether the wheels turn now."""
         outputs = self.outputs()
         return bool(outputs) and outputs[-1].turning
 
     def stands(self) -> bool:
-        """Have the wheels come to rest? A late control cycle gives zero once, and goes on: that is no rest."""
+        """Return whether the wheels have stopped. A late control cycle outputs zero once; that does not count."""
         outputs = self.outputs()
         return bool(outputs) and not outputs[-1].turning and time.monotonic() - outputs[-1].at > AT_REST
 
     def at_full(self, least: float = 0.4) -> bool:
-        """Do both wheels get at least `least` of their power?"""
+        """Return whether both wheels get at least `least` of their power."""
         outputs = self.outputs()
         return bool(outputs) and min(map(abs, outputs[-1].throttles)) >= least
 
     def moved_since(self, at: float) -> bool:
-        """Did any wheel get power at or after `at` (monotonic)?"""
+        """Return whether any wheel got power at or after `at` (monotonic)."""
         return any(each.turning for each in self.outputs() if each.at >= at)
 
     def falls_and_stops_after(self, at: float) -> tuple[float, float]:
-        """When, counted from `at`, the outputs first got smaller and when they were neutral and stayed so, s.
+        """Return when, counted from `at`, the outputs first fell, and when they were neutral for good, s.
 
-        Not above 0 where they stood before: who paused between the key and the clock has seen the end only.
+        Neither is above 0 if the wheels had stopped before `at`: a caller that was delayed sees only the end.
         """
         outputs = self.outputs()
         assert not outputs[-1].turning, f"still turning: {outputs[-1]}"
@@ -104,7 +104,7 @@ class Vehicle:
         return falls - at, outputs[-1].at - at
 
     def end(self) -> None:
-        """End it, whatever state it is in."""
+        """End the process in any state."""
         _end(self.process)
 
 
@@ -128,16 +128,16 @@ class GroundStation:
         os.close(program)
 
     def type(self, keys: str) -> None:
-        """All of `keys` in one write: a slow SSH brings several at once like this."""
+        """Send all of `keys` in one write, as a slow SSH does."""
         os.write(self._terminal, keys.encode())
         self.look(0.0)
 
     def hold(self, key: str, until: Callable[[], bool], within: float = PATIENCE) -> None:
-        """Hold a key down, as auto-repeat shows it, until `until`; then let go."""
+        """Hold a key down, with auto-repeat, until the condition `until`; then release it."""
         assert self.held(key, until, within), f"holding {key!r} for {within} s did not do it\n{self.drawn()}"
 
     def held(self, key: str, until: Callable[[], bool], within: float) -> bool:
-        """The same; False where it does not come within so many s."""
+        """Do the same; return False if the condition is not true within `within` s."""
         deadline = time.monotonic() + within
         self.type(key)
         self.look(FIRST_REPEAT)
@@ -149,7 +149,7 @@ class GroundStation:
         return True
 
     def look(self, seconds: float) -> None:
-        """Read what the program draws, for `seconds`: a terminal that nobody reads blocks its program."""
+        """Read what the program draws for `seconds`: a terminal that is not read blocks its program."""
         deadline = time.monotonic() + seconds
         while True:
             ready, _, _ = select.select([self._terminal], [], [], max(0.0, deadline - time.monotonic()))
@@ -161,11 +161,11 @@ class GroundStation:
                 return  # the program has closed its end
 
     def wait_for(self, condition: Callable[[], bool], within: float, what: str) -> None:
-        """Look at the screen until `condition`."""
+        """Read the screen until `condition`."""
         assert self.soon(condition, within), f"not within {within} s: {what}\n{self.drawn()}"
 
     def soon(self, condition: Callable[[], bool], within: float) -> bool:
-        """The same; False where it does not come."""
+        """Do the same; return False if the condition does not become true."""
         deadline = time.monotonic() + within
         while not condition():
             if time.monotonic() > deadline:
@@ -174,27 +174,27 @@ class GroundStation:
         return True
 
     def says_armed(self) -> bool:
-        """Of the hints of a vehicle that stands, was the one drawn last that of an armed one?"""
+        """Return whether the hint that was drawn last is the one of an armed vehicle."""
         return self.screen.rfind(b"hold i to drive") > self.screen.rfind(b"disarmed:")
 
     def drawn(self) -> str:
-        """The last things drawn, without colours and places: for the message of a failed test."""
+        """Return the end of the drawing without colours and positions, for messages of failed tests."""
         return _ESCAPES.sub(b" ", self.screen)[-2500:].decode(errors="replace") + self.log.read_text()[-1000:]
 
     def ended(self) -> int:
-        """Wait for the program's end; returns its exit code."""
+        """Wait for the end of the program; return its exit code."""
         self.wait_for(lambda: self.process.poll() is not None, PATIENCE, "the ground station ends")
         return int(self.process.returncode)
 
     def close_terminal(self) -> None:
-        """Close the window: the program gets SIGHUP and its terminal is gone."""
+        """Close the window: the program gets SIGHUP and loses its terminal."""
         os.close(self._terminal)
         self._terminal = -1
 
     def end(self) -> None:
-        """End it and the processes that it started, whatever state they are in."""
-        if self.process.returncode is None:  # its number, and so its group's, is still its own
-            os.killpg(self.process.pid, signal.SIGKILL)  # a frozen one that only loses its parent stays for ever
+        """End the program and the processes that it started, in any state."""
+        if self.process.returncode is None:  # its process id, and so its group's, is not reused yet
+            os.killpg(self.process.pid, signal.SIGKILL)  # a frozen child that only loses its parent never ends
             self.process.wait(PATIENCE)
         if self._terminal >= 0:
             os.close(self._terminal)
@@ -212,7 +212,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def drive(station: GroundStation, vehicle: Vehicle, armed: Callable[[], bool], key: str = "i") -> None:
-    """Arm through the keys and hold one until the wheels turn: every stop test starts from here."""
+    """Arm with keys and hold one until the wheels turn: every stop test starts like this."""
     station.wait_for(lambda: b"disarmed:" in station.screen, PATIENCE, "the drive screen says how to arm")
     deadline = time.monotonic() + PATIENCE
     while not (_arms(station, armed) and station.held(key, vehicle.at_full, 5.0)):
@@ -221,7 +221,7 @@ def drive(station: GroundStation, vehicle: Vehicle, armed: Callable[[], bool], k
 
 
 def drive_on(station: GroundStation, vehicle: Vehicle, key: str = "i") -> None:
-    """After the vehicle has stopped by itself, and it went to HOLD: drive again, armed as it still is."""
+    """Drive again, still armed, after the vehicle has stopped by itself and changed to HOLD."""
     deadline = time.monotonic() + PATIENCE
     _begin_anew(station)
     while not station.held(key, vehicle.at_full, 5.0):
@@ -230,14 +230,14 @@ def drive_on(station: GroundStation, vehicle: Vehicle, key: str = "i") -> None:
 
 
 def _begin_anew(station: GroundStation) -> None:
-    """As a driver does whom the rover does not obey, after a bad link or a screen that stood still: let go, MANUAL."""
+    """Do what a driver does after a bad link or a frozen screen: release the key, choose MANUAL."""
     station.look(LET_GO)
     station.type("1")
     station.look(0.6)
 
 
 def _arms(station: GroundStation, armed: Callable[[], bool]) -> bool:
-    """One try to arm: a bad link may lose it, and a vehicle that has just started refuses."""
+    """Try once to arm: a bad link may lose the command, and a vehicle that has just started refuses it."""
     if armed():
         return True
     asked = len(station.screen)

@@ -1,4 +1,4 @@
-"""The network between two real programs: a UDP relay on loopback that loses, delays and cuts, and sees every frame."""
+"""The network between two real programs: a UDP relay on loopback that loses, delays, cuts and records frames."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from link.transport.memory import LossyPipe
 from tests.ports import free_port
 
 STEP = 0.005
-"""s at most between two looks at what is under way."""
+"""s at most between two polls of the delayed frames."""
 
 
 Kind = TypeVar("Kind", bound=Message)
 
 
 class Seen(NamedTuple):
-    """A message that passed the relay, and when; `system` sent it."""
+    """A message that passed the relay, with its time and sender."""
 
     at: float
     system: int
@@ -34,7 +34,7 @@ class Seen(NamedTuple):
 
 
 class Relay:
-    """Stands between a vehicle (`udpout` to `vehicle_side`) and a ground station (`udpin` on `ground_port`)."""
+    """Relay between a vehicle (`udpout` to `vehicle_side`) and a ground station (`udpin` on `ground_port`)."""
 
     def __init__(self, *, loss: float = 0.0, delay: float = 0.0) -> None:
         self.up = LossyPipe(loss=loss, delay=delay, seed=1)
@@ -44,7 +44,7 @@ class Relay:
         self.vehicle_port: int = self._vehicle_socket.getsockname()[1]
         self.ground_port = free_port()
         self._vehicle_address: tuple[str, int] | None = None
-        self._news = threading.Condition()
+        self._changed = threading.Condition()
         self._seen: list[Seen] = []
         self._delivered: list[Seen] = []
         self._running = True
@@ -52,71 +52,72 @@ class Relay:
         self._thread.start()
 
     def cut(self, cut: bool = True) -> None:
-        """Cut both directions, or join them again."""
+        """Cut both directions, or connect them again."""
         self.up.cut = self.down.cut = cut
 
     def close(self) -> None:
-        """End the relay."""
+        """Close the relay."""
         self._running = False
         self._thread.join(5)
         self._vehicle_socket.close()
         self._ground_socket.close()
 
-    # ---- what passed ----
+    # ---- recorded frames ----
 
     def wait(self, condition: Callable[[], bool], within: float, what: str) -> float:
-        """Wait until `condition`; returns when it came true (monotonic). AssertionError names `what` did not happen."""
+        """Wait until `condition`; return when it became true (monotonic). An AssertionError names `what`."""
         deadline = time.monotonic() + within
-        with self._news:
+        with self._changed:
             while not condition():
                 assert time.monotonic() < deadline, f"not within {within} s: {what}; last texts: {self.texts()[-5:]}"
-                self._news.wait(STEP)
+                self._changed.wait(STEP)
         return time.monotonic()
 
     def newest(self, kind: type[Kind], system: int = 1) -> Kind | None:
-        """The newest message of a kind that `system` sent."""
+        """Return the newest message of a kind from `system`."""
         for seen in reversed(self._seen):
             if seen.system == system and isinstance(seen.message, kind):
                 return seen.message
         return None
 
     def armed(self) -> bool:
-        """Does the vehicle's newest HEARTBEAT say so?"""
+        """Return whether the vehicle is armed, by its newest HEARTBEAT."""
         beat = self.newest(Heartbeat)
         return beat is not None and bool(beat.base_mode & ModeFlag.ARMED)
 
     def mode(self) -> int | None:
-        """custom_mode of the vehicle's newest HEARTBEAT."""
+        """Return custom_mode of the vehicle's newest HEARTBEAT."""
         beat = self.newest(Heartbeat)
         return None if beat is None else int(beat.custom_mode)
 
     def position(self) -> tuple[float, float]:
-        """North and east, m, as the vehicle told last."""
+        """Return the newest position of the vehicle, m to the north and east."""
         where = self.newest(LocalPositionNed)
         return (0.0, 0.0) if where is None else (where.x, where.y)
 
     def texts(self) -> list[str]:
-        """What the vehicle has said."""
+        """Return the texts of the vehicle."""
         return [decode_text(seen.message) for seen in list(self._seen) if isinstance(seen.message, StatusText)]
 
     def last_demand(self) -> float:
-        """When the vehicle was last handed a MANUAL_CONTROL that asks for motion (monotonic); 0.0 for never."""
+        """Return when a MANUAL_CONTROL that requests motion was last delivered to the vehicle (monotonic); 0.0 if
+        never."""
         return max((seen.at for seen in list(self._delivered) if _asks_for_motion(seen.message)), default=0.0)
 
     def demands_since(self, at: float) -> list[ManualControl]:
-        """Every MANUAL_CONTROL that the ground station has sent since `at`, delivered or not."""
+        """Return every MANUAL_CONTROL that the ground station has sent since `at`, delivered or not."""
         return [s.message for s in list(self._seen) if s.at >= at and isinstance(s.message, ManualControl)]
 
     def neutral_since(self, at: float) -> int:
-        """How many neutral MANUAL_CONTROL the ground station has sent since `at`."""
+        """Return the number of neutral MANUAL_CONTROL that the ground station has sent since `at`."""
         return sum(not _asks_for_motion(message) for message in self.demands_since(at))
 
     def newest_demand_is_neutral(self) -> bool:
-        """Was the last MANUAL_CONTROL of the ground station neutral?"""
+        """Return whether the last MANUAL_CONTROL of the ground station was neutral."""
         newest = self.newest(ManualControl, system=255)
         return newest is not None and not _asks_for_motion(newest)
 
-    # ---- the wire ----
+    # ---- forwarding ----
 
     def _run(self) -> None:
         watch = selectors.DefaultSelector()
@@ -132,8 +133,8 @@ class Relay:
                     self._vehicle_socket.sendto(data, self._vehicle_address)
             for data in self.down.receive(now):
                 self._ground_socket.sendto(data, ("127.0.0.1", self.ground_port))
-            with self._news:
-                self._news.notify_all()
+            with self._changed:
+                self._changed.notify_all()
 
     def _from_vehicle(self) -> None:
         data, self._vehicle_address = self._vehicle_socket.recvfrom(65536)

@@ -1,4 +1,4 @@
-"""systemd as PID 1 of a small machine inside this one (boot_systemd.sh), where the kernel and our rights allow it."""
+"""systemd as PID 1 of a container (boot_systemd.sh), if the kernel and our rights allow it."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ TREE = Path(__file__).resolve().parents[2]
 SYSTEMD = Path("/usr/lib/systemd/systemd")
 CHILDREN = Path("/proc/thread-self/children")
 BOOT = 12.0
-"""s until it has started and runs a service, else it is left alone; 1 on an idle machine."""
+"""s until systemd must have started and run a service, or the tests are skipped; 1 on an idle machine."""
 LOOK = 0.05
-"""s between two looks whether it has; its end is seen at once."""
+"""s between two checks whether systemd has started; its end is noticed at once."""
 WITHIN = 120.0
-"""s for one program in it."""
+"""s for one program in the container."""
 
 ABLE = """\
 [Service]
@@ -54,24 +54,24 @@ OOMScoreAdjust=-900
 MemoryMax=256M
 TasksMax=64
 """
-"""What any service like ours needs of the machine, with nothing of ours in it."""
+"""A unit that needs of the machine what our service needs, without anything of ours."""
 
 
 class UnableError(Exception):
-    """This machine cannot do it; the text says why."""
+    """This machine cannot run systemd in a container; the text says why."""
 
 
 class Machine:
-    """The running one. `root` is its file system as we see it."""
+    """The running container. `root` is its file system as seen from outside."""
 
     def __init__(self, init: int, booted_by: float) -> None:
         self.root = Path(f"/proc/{init}/root")
         self.booted_by: float | None = booted_by
-        """When the patience with it ends while it is not known to work, monotonic, s."""
+        """When to give up while systemd is not known to work, monotonic, s."""
         self._enter = ["nsenter", "--target", str(init), "--mount", "--pid", "--ipc", "--uts", "--wd=/"]
 
     def run(self, *words: str) -> tuple[int, str]:
-        """Run a program in it: exit code, what it said. Raises subprocess.TimeoutExpired."""
+        """Run a program in the container; return its exit code and output. Raises subprocess.TimeoutExpired."""
         done = subprocess.run(
             [*self._enter, *words],
             stdout=subprocess.PIPE,
@@ -83,27 +83,27 @@ class Machine:
         return done.returncode, done.stdout
 
     def property(self, name: str, unit: str) -> str:
-        """What systemd says of a unit."""
+        """Return a property of a unit."""
         return self.run("systemctl", "show", "--property", name, "--value", unit)[1].rstrip("\n")
 
     def install(self, name: str, unit: str) -> None:
-        """Write a unit and have systemd read it."""
+        """Write a unit and let systemd read it."""
         self.write(f"/etc/systemd/system/{name}", unit)
         self.run("systemctl", "daemon-reload")
 
     def path(self, file: str) -> Path:
-        """A file of its, as we see it."""
+        """Return the path of a file in the container, as seen from outside."""
         return self.root / file.lstrip("/")
 
     def write(self, file: str, text: str) -> None:
-        """Write a file of its, that all may read."""
+        """Write a file in the container that every user may read."""
         path = self.path(file)
         path.parent.mkdir(exist_ok=True)
         path.write_text(text)
         path.chmod(0o644)
 
     def journal(self, unit: str) -> list[tuple[int, str]]:
-        """Priority and text of each line since the start of the machine, systemd's own about the unit too."""
+        """Return priority and text of each line of the journal about a unit, including systemd's own."""
         self.run("journalctl", "--sync")
         lines = self.run("journalctl", "--unit", unit, "--output", "json", "--no-pager")[1].splitlines()
         entries: list[dict[str, Any]] = [json.loads(line) for line in lines if line.startswith("{")]
@@ -112,7 +112,7 @@ class Machine:
 
 @contextlib.contextmanager
 def booted(folder: Path) -> Iterator[Machine]:
-    """A machine until the end. Raises UnableError where services of this kind cannot run here, and why."""
+    """Run a container until the end. Raises UnableError if services of this kind cannot run here."""
     if os.geteuid() != 0:
         raise UnableError("systemd as PID 1 needs root")
     if not SYSTEMD.exists():
@@ -150,7 +150,7 @@ def _started(outer: subprocess.Popen[bytes], said: Path) -> Machine:
                 raise UnableError(f"no systemd of our own here: {_last(said)}")
     except subprocess.TimeoutExpired as error:
         told = f"it waits for {' '.join(error.cmd[-2:])}"
-    except OSError as error:  # no nsenter, or it has ended under our hands
+    except OSError as error:  # no nsenter, or the container has just ended
         raise UnableError(f"no systemd of our own here: {error} {_last(said)}".rstrip()) from error
     raise UnableError(f"no systemd of our own within {BOOT:g} s: {told} {_last(said)}".rstrip())
 
@@ -169,18 +169,18 @@ def _able(machine: Machine) -> None:
 
 
 def _end(outer: subprocess.Popen[bytes]) -> None:
-    """Everything inside ends with its systemd; the script then clears up."""
-    for _ in range(10):  # one that it gets before it is ready for it may be lost
+    """End systemd, which ends everything inside; the script then cleans up."""
+    for _ in range(10):  # a signal before systemd is ready may be lost
         outer.terminate()
         with contextlib.suppress(subprocess.TimeoutExpired):
             outer.wait(1)
             return
-    outer.kill()  # and by the kernel all that it has started
+    outer.kill()  # the kernel then ends everything that it has started
     outer.wait(30)
 
 
 def _inits(outer: int) -> list[int]:
-    """The systemd among the descendants of a process."""
+    """Return the systemd among the descendants of a process."""
     found, left = [], [outer]
     while left:
         pid = left.pop()

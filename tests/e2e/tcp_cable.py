@@ -10,11 +10,11 @@ import threading
 from tests.ports import free_port
 
 STEP = 0.005
-"""s at most between two looks."""
+"""s at most between two polls."""
 
 
 class TcpCable:
-    """Programs connect to `port`; what they say goes to whoever listens on `target` of this machine, and back."""
+    """Programs connect to `port`; the bytes go to the listener on `target` of this machine, and back."""
 
     def __init__(self, target: int) -> None:
         self._target = target
@@ -35,12 +35,12 @@ class TcpCable:
                 self._end(one)
 
     def plug(self) -> None:
-        """Take connections again, on the same port."""
+        """Accept connections again, on the same port."""
         with self._lock:
             self._listener = _listening(self.port)
 
     def close(self) -> None:
-        """End the cable."""
+        """Close the cable."""
         self._running = False
         self._thread.join(5)
         self.unplug()
@@ -74,7 +74,7 @@ class TcpCable:
         try:
             other = socket.create_connection(("127.0.0.1", self._target), timeout=1.0)
         except OSError:
-            one.close()  # nobody listens there yet
+            one.close()  # no program listens there yet
             return
         self._pairs |= {one: other, other: one}
 

@@ -1,8 +1,7 @@
-"""Mistakes on the command lines of the real programs: exit code 2, one line that names the thing, no traceback.
+"""Mistakes on the command lines of the real programs: exit code 2, one line that names the mistake, no traceback.
 
-A vehicle that lacks what may come later ends with 1: as a service it is started again.
-
-The words of each message are tested beside its code; here it is that nothing else is said, in a process of its own.
+A vehicle that lacks something that may appear later ends with 1: as a service it is restarted. The text of each message
+is tested beside its code. These tests check, in processes of their own, that nothing else is printed.
 """
 
 from __future__ import annotations
@@ -27,11 +26,11 @@ pytestmark = [pytest.mark.e2e, pytest.mark.timeout(60)]
 ROOT = Path(__file__).resolve().parents[2]
 SIZE = (80, 24)
 WITHIN = 60.0
-"""s: Python's start on a busy machine."""
+"""s: the start of Python on a busy machine."""
 
 
 def run(words: list[str], folder: Path) -> tuple[int, str, str]:
-    """Exit code, what was printed, what was complained of. Started in an empty folder, without a terminal."""
+    """Return exit code, stdout and stderr of a program that is started in an empty folder, without a terminal."""
     done = subprocess.run(
         [sys.executable, "-m", *words],
         capture_output=True,
@@ -46,7 +45,7 @@ def run(words: list[str], folder: Path) -> tuple[int, str, str]:
 
 
 def run_in_terminal(words: list[str], folder: Path, size: tuple[int, int] = SIZE) -> tuple[int, str, str]:
-    """The same in a terminal of this size; only stderr is no terminal, so that the two can be told apart."""
+    """Do the same in a terminal of this size. Only stderr is no terminal, so that the two can be told apart."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
     environment = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "LINES")}
@@ -67,7 +66,7 @@ def run_in_terminal(words: list[str], folder: Path, size: tuple[int, int] = SIZE
 
 
 def _readable(terminal: int) -> bool:
-    """Is there anything to read? A terminal whose program has ended says so by an error."""
+    """Return whether there is anything to read. A terminal whose program has ended reports that as an error."""
     (waiting,) = struct.unpack("i", fcntl.ioctl(terminal, termios.FIONREAD, b"\0\0\0\0"))
     return int(waiting) > 0
 
@@ -86,7 +85,7 @@ def assert_one_line(result: tuple[int, str, str], program: str, *names: str, cod
 
 @pytest.fixture
 def taken() -> Iterator[dict[str, str]]:
-    """Ports of loopback that somebody else has, by the kind of socket."""
+    """Ports of loopback that another socket holds, by the kind of socket."""
     with ExitStack() as stack:
         ports = {}
         for name, kind in (("udp", socket.SOCK_DGRAM), ("tcp", socket.SOCK_STREAM)):
@@ -102,6 +101,8 @@ ENDPOINTS = [
     ("carrier:pigeon", ["'carrier:pigeon'", "udpin:HOST:PORT", "serial:PATH:BAUD"]),
     ("udpn:127.0.0.1:14550", ["did you mean udpin:?"]),
     ("14550", ["'14550'"]),
+    ("127.0.0.1:14550", ["did you mean udpin:127.0.0.1:14550?"]),
+    ("udpout:0.0.0.0:14550", ["0.0.0.0 is not an address to send to"]),
     ("udpin:127.0.0.1", ["'udpin:127.0.0.1'", "udpin:HOST:PORT"]),
     ("udpin:127.0.0.1:0", ["port '0'", "1 to 65535"]),
     ("tcpout:127.0.0.1:99999", ["port '99999'", "1 to 65535"]),
@@ -110,15 +111,15 @@ ENDPOINTS = [
     ("serial:ttyUSB0:57600", ["serial:/dev/ttyUSB0:57600"]),
     ("serial:/dev/ttyUSB0:fast", ["baud rate 'fast'"]),
 ]
-"""Words that are no endpoint -> what the line must name."""
+"""Invalid endpoints -> what the error must name."""
 ABSENT = [
-    ("serial:/dev/null:57600", ["/dev/null is no serial port"]),
-    ("serial:/tmp:57600", ["/tmp is no serial port"]),
+    ("serial:/dev/null:57600", ["/dev/null is not a serial port"]),
+    ("serial:/tmp:57600", ["/tmp is not a serial port"]),
     ("udpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
     ("tcpout:no-such-host.invalid:14550", ["no-such-host.invalid", "is not known"]),
     ("udpin:192.0.2.1:14550", ["192.0.2.1"]),
 ]
-"""Endpoints that cannot be had. The last one is an address of nobody's machine (RFC 5737)."""
+"""Endpoints that cannot be opened. The last one is an address for documentation only (RFC 5737)."""
 NAMES = [endpoint for endpoint, _ in (*ENDPOINTS, *ABSENT)]
 
 

@@ -1,20 +1,25 @@
-"""The first command of the README in a real terminal: arm, hold a key, see the rover go, let go, see it stand."""
+"""The first command of the README in a real terminal: arm, hold a key, see the rover move, release it, see it stop."""
 
 from __future__ import annotations
 
+import fcntl
 import os
+import pty
 import re
 import select
 import shlex
 import shutil
+import struct
 import subprocess
 import sys
+import termios
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.groundstation.ui.wheel import modes, notch
 from tests.ports import free_port
 
 pytestmark = [
@@ -27,10 +32,11 @@ pytestmark = [
     ),
 ]
 
+FOLDER = Path(__file__).parents[2]
 PATIENCE = 60.0
-"""s for what must come: the machine is shared."""
+"""s for every wait: the machine is shared."""
 PAUSE = 0.04
-"""s between two looks or two key repeats."""
+"""s between two polls or two key repeats."""
 
 
 class Tmux:
@@ -47,15 +53,15 @@ class Tmux:
         return done.stdout
 
     def screen(self) -> str:
-        """What a person sees."""
+        """Return the text on the screen."""
         return self._run("capture-pane", "-p")
 
     def press(self, *keys: str) -> None:
-        """Press keys, in tmux's names."""
+        """Press keys, by tmux's names."""
         self._run("send-keys", *keys)
 
     def until(self, condition: Callable[[str], bool], within: float, holding: str | None = None) -> str:
-        """Look until the screen is as it should be, with a key held meanwhile; returns the screen."""
+        """Poll until the condition holds for the screen, with a key held meanwhile; return the screen."""
         deadline = time.monotonic() + within
         while not condition(screen := self.screen()):
             assert time.monotonic() < deadline, f"not within {within} s:\n{screen}"
@@ -65,13 +71,13 @@ class Tmux:
         return screen
 
     def end(self) -> None:
-        """Close the terminal and all in it."""
+        """Close the terminal and everything in it."""
         self._run("kill-server")
 
 
 @pytest.fixture
 def tmux(tmp_path: Path) -> Iterator[Callable[..., Tmux]]:
-    """Opens a terminal; closed at the end of the test."""
+    """Return a function that opens a terminal; it is closed at the end of the test."""
     opened: list[Tmux] = []
 
     def build(columns: int, lines: int, *arguments: str) -> Tmux:
@@ -84,13 +90,13 @@ def tmux(tmp_path: Path) -> Iterator[Callable[..., Tmux]]:
 
 
 def home_distance(screen: str) -> float:
-    """m between the rover and its home, as the map tells."""
+    """Return the distance between the rover and its home as the map shows it, m."""
     found = re.search(r"home\s+([\d.]+) m", screen)
     return float(found[1]) if found else 0.0
 
 
 def speed_shown(screen: str) -> bool:
-    """Does the drive panel show a motor output?"""
+    """Return whether the drive panel shows a motor output."""
     return bool(re.search(r"left\s.*\+[1-9]\d*%", screen))
 
 
@@ -120,3 +126,55 @@ def test_waiting_offers_the_simulator(tmux: Callable[..., Tmux]) -> None:
     assert str(port) in waiting
     terminal.press("F5")
     terminal.until(lambda screen: "DISARMED" in screen, PATIENCE)
+
+
+class AttachedTmux:
+    """A tmux with its default settings, attached to a terminal that this test plays."""
+
+    def __init__(self, folder: Path, report: Path, *options: str) -> None:
+        program = shlex.join([sys.executable, "-m", "tests.groundstation.ui.programs", str(report), *options])
+        master, self._slave = pty.openpty()
+        fcntl.ioctl(self._slave, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
+        command = ["tmux", "-S", str(folder / "tmux"), "-f", "/dev/null", "new-session", program]
+        self._client = subprocess.Popen(
+            command, cwd=FOLDER, env={**os.environ, "TERM": "xterm-256color"}, start_new_session=True,
+            stdin=self._slave, stdout=self._slave, stderr=self._slave,
+        )  # fmt: skip
+        self._master, self.drawn = master, b""
+
+    def until(self, condition: Callable[[], bool]) -> None:
+        """Read what tmux draws until the condition holds."""
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, self.drawn[-2000:]
+            if select.select([self._master], [], [], PAUSE)[0]:
+                self.drawn += os.read(self._master, 1 << 16)
+
+    def type(self, data: bytes) -> None:
+        """Send bytes as the terminal does."""
+        os.write(self._master, data)
+
+    def end(self, folder: Path) -> None:
+        """End tmux and give the terminal back."""
+        subprocess.run(["tmux", "-S", str(folder / "tmux"), "kill-server"], capture_output=True, timeout=60)
+        os.close(self._slave)
+        os.close(self._master)
+        self._client.wait(PATIENCE)
+
+
+@pytest.mark.parametrize("protected", [False, True], ids=["without protection", "with protection"])
+def test_the_mouse_wheel_through_tmux(tmp_path: Path, protected: bool) -> None:
+    """In tmux with the default `mouse off` the terminal turns the wheel into arrow keys, and tmux passes them on."""
+    report = tmp_path / "report"
+    terminal = AttachedTmux(tmp_path, report, *([] if protected else ["--stock-mouse"]))
+    try:
+        terminal.until(lambda: b"MANUAL" in terminal.drawn and bool(modes(terminal.drawn).get(1049)))
+        if protected:
+            terminal.until(lambda: bool(modes(terminal.drawn).get(1000)))
+        for _ in range(10):
+            terminal.type(notch(terminal.drawn))
+        terminal.type(b"-")  # a key that neither drives nor stops, behind the wheel
+        terminal.until(lambda: "ScaleLimits" in report.read_text())
+        assert ("DriveKeyDown" in report.read_text()) is not protected
+    finally:
+        terminal.end(tmp_path)

@@ -1,4 +1,4 @@
-"""Sixteen ground stations on one port of a real vehicle: each is told everything, and nothing of it is lost."""
+"""Sixteen ground stations on one port of a real vehicle: each gets all telemetry, without loss."""
 
 from __future__ import annotations
 
@@ -25,11 +25,13 @@ STATIONS = 16
 
 
 class Listener:
-    """The least of a ground station: a HEARTBEAT a second, and what it hears."""
+    """A minimal ground station: it sends a HEARTBEAT a second and counts what arrives."""
 
     def __init__(self, port: int, system: int) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)  # for as long as we are held up
+        self.socket.setsockopt(
+            socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20
+        )  # for the time in which the test is delayed
         self.socket.connect(("127.0.0.1", port))
         self.socket.setblocking(False)
         self._framer = Framer(stream=False)
@@ -47,7 +49,7 @@ class Listener:
         self._sequence = (self._sequence + 1) & 0xFF
         try:
             self.socket.send(data)
-        except ConnectionRefusedError:  # it has not opened its port yet
+        except ConnectionRefusedError:  # the vehicle has not opened its port yet
             self._beat_due = 0.0
 
     def listen(self) -> None:
@@ -81,7 +83,7 @@ def stations(tmp_path: Path) -> Iterator[list[Listener]]:
 
 
 def wait(stations: list[Listener], enough: int, within: float = 60.0) -> None:
-    """Until each has heard so many ATTITUDE."""
+    """Wait until each has received this number of ATTITUDE."""
     deadline = time.monotonic() + within
     while any(each.heard.get(m.Attitude.id, 0) < enough for each in stations):
         assert time.monotonic() < deadline, [each.heard.get(m.Attitude.id, 0) for each in stations]

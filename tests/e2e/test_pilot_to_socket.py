@@ -15,7 +15,7 @@ from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.intents import SetStyle
 from groundstation.processes import start_module
 from groundstation.ui.app import ConsoleApp
-from tests.groundstation.broken_helm import ORDER
+from tests.groundstation.crashing_station import ORDER
 from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.groundstation.ui.frames import text
 from tests.groundstation.ui.ptys import PATIENCE, until
@@ -38,7 +38,7 @@ async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path:
                 pressed = time.monotonic()
 
                 async def drives() -> bool:
-                    await pilot.press("i")  # again: a loop that was held up for 0.3 s has let the key go
+                    await pilot.press("i")  # again: a loop that was delayed by 0.3 s has released the key
                     with contextlib.suppress(TimeoutError):
                         await until(lambda: any(x == 600 for _, x in vehicle.demands(pressed)), 2.0)
                         return True
@@ -57,7 +57,7 @@ async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path:
 
 async def test_a_bug_in_the_station_is_told_on_the_screen(monkeypatch: pytest.MonkeyPatch) -> None:
     def start(module: str, *arguments: Any, **options: Any) -> Any:
-        return start_module("tests.groundstation.broken_helm", *arguments, **options)
+        return start_module("tests.groundstation.crashing_station", *arguments, **options)
 
     monkeypatch.setattr(client_module, "start_module", start)
     station = StationClient.start([f"udpin:127.0.0.1:{free_port()}"])
@@ -67,7 +67,7 @@ async def test_a_bug_in_the_station_is_told_on_the_screen(monkeypatch: pytest.Mo
             await until(lambda: app.drive.snapshot.number > 0)
             station.send(SetStyle(style=ORDER + "tick"))
             await until(lambda: not station.alive)
-            await until(lambda: "the station broke (ZeroDivisionError" in text(app))
+            await until(lambda: "station crashed (ZeroDivisionError" in text(app))
             await pilot.pause()
     finally:
         assert station.close() == 1

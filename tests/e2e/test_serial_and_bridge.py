@@ -1,4 +1,4 @@
-"""The rover behind a serial cable of 57600 baud: driven through the bridge, and by a ground station on the port."""
+"""The rover at a serial cable of 57600 baud: driven through the bridge, and by a ground station on the port."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from tests.waits import Waits
 pytestmark = pytest.mark.e2e
 
 NEUTRAL_WITHIN = 1.7
-"""s from the last demand to wheels at rest: stale after 0.45, ramp 0.4, and what a shared machine does not count."""
+"""s from the last demand to stopped wheels: stale after 0.45, ramp 0.4, and what waits.py does not count."""
 RELEASED_WITHIN = 3.0
-"""s from the last repeat of a key: the same, and until it counts as let go."""
+"""s from the last repeat of a key: the same, and the time until the key counts as released."""
 
 
 @pytest.fixture
@@ -39,7 +39,7 @@ def bridge(stack: ExitStack, *endpoints: str) -> subprocess.Popen[bytes]:
 
 
 def stands_within(station: GroundStation, vehicle: Vehicle, limit: float, since: float, waits: Waits) -> None:
-    """The wheels, turning until now, have come to rest in time."""
+    """Check that the wheels, which turned until now, have stopped in time."""
     station.wait_for(vehicle.stands, PATIENCE, "the wheels stop")
     assert vehicle.outputs()[-1].at - since < limit + waits.total()
 

@@ -1,9 +1,8 @@
 """The unit as `vehicle systemd-unit` prints it, under a real systemd: driven, killed, hung and stopped.
 
-The watchdog alone is more patient than printed, but in the test of a hang: a machine that pauses is no hang.
-
-The motor controller is an emulator on a terminal line whose own timeout does not work, so that only a command stops it;
-one that never answers, because a busy machine would be late with it.
+Only the watchdog has a longer timeout than printed, except in the test of a hang, because a machine that pauses is not
+a hang. The motor controller is an emulator on a terminal line. Its own timeout does not work, so that only a command
+stops it, and it never answers, because a busy machine would make it late.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ FILE = "/etc/rover.toml"
 STATE = "/var/lib/private/mavhelm"
 DIALOUT = 20
 WITHIN = 60.0
-"""s: never reached where the code is right, so it may be long."""
+"""s: never reached if the code is right, so it may be long."""
 PATIENT_WATCHDOG = "WatchdogSec=60"
 
 
@@ -55,27 +54,27 @@ class Service:
         self.watch(PATIENT_WATCHDOG)
 
     def watch(self, watchdog: str) -> None:
-        """The rover's unit, with this beside it."""
+        """Return the rover's unit with these lines added."""
         self.machine.write(f"/etc/systemd/system/{UNIT}.d/watchdog.conf", f"[Service]\n{watchdog}\n")
         self.install(UNIT, "--config", FILE)
 
     def install(self, name: str, *options: str) -> None:
-        """The unit as the machine's own `vehicle` prints it."""
+        """Return the unit that the installed `vehicle` prints."""
         code, unit = self.machine.run("/opt/rover/bin/python3", "-m", "vehicle", "systemd-unit", *options)
         assert code == 0, unit
         self.machine.install(name, unit)
 
     def write(self, rest: str, endpoint: str = "") -> None:
-        """The file of settings."""
+        """Return the path of the settings file."""
         self.machine.write(FILE, f'endpoints = ["{endpoint or self.ground.endpoint}"]\n{rest}')
 
     def start(self) -> None:
-        """It runs, says systemd."""
+        """Wait until systemd reports the service as running."""
         code, _ = self.machine.run("systemctl", "start", UNIT)
         assert code == 0, "\n".join(text for _, text in self.said())
 
     def fail_to_start(self) -> None:
-        """It does not."""
+        """Wait until systemd reports the service as stopped."""
         assert self.machine.run("systemctl", "start", UNIT)[0] != 0
 
     def property(self, name: str) -> str:
@@ -85,20 +84,20 @@ class Service:
         return any(self._line.controller.outputs)
 
     def drive(self) -> int:
-        """Go ahead until the wheels turn; the daemon's process, as the machine numbers it."""
-        pid = int(self.property("MainPID"))  # before, for a demand is soon too old
+        """Drive until the wheels turn; return the daemon's process id inside the container."""
+        pid = int(self.property("MainPID"))  # first, because a demand expires soon
         self.ground.wait(lambda: self.turning() or self._ahead(), "the wheels turn", WITHIN)
         return pid
 
     def drive_and_send(self, signal: str) -> int:
-        """Send it to the daemon while the wheels turn; the daemon's process."""
-        while True:  # a watchdog with little patience may have taken the one that was there
+        """Send a signal to the daemon while the wheels turn; return the daemon's process id."""
+        while True:  # the short watchdog may have killed the process meanwhile
             pid = self.drive()
             if pid and self.machine.run("bash", "-c", f"kill -{signal} {pid}")[0] == 0:
                 return pid
 
     def ask(self, command: int, *params: float) -> None:
-        """Say it once."""
+        """Send a message once."""
         self.ground.say(CommandLong(1, 1, command, 0, *params, *[0.0] * (7 - len(params))))
 
     def _ahead(self) -> bool:
@@ -108,11 +107,11 @@ class Service:
         return False
 
     def said(self) -> list[tuple[int, str]]:
-        """Priority and text of each line in the journal, in this test."""
+        """Return priority and text of each line in the journal since the start of this test."""
         return self.machine.journal(UNIT)[self._before :]
 
     def back(self, killed: int) -> bool:
-        """Does it run again?"""
+        """Return whether the service runs again."""
         return self.property("ActiveState") == "active" and self.property("MainPID") not in ("0", str(killed))
 
 
@@ -156,7 +155,7 @@ def test_after_a_hang_the_watchdog_does_the_same(service: Service) -> None:
 
 
 def stopped_by_safe_stop(service: Service, ended: int) -> None:
-    """Nobody else can have: the demand goes on, and a new daemon is not armed."""
+    """A restart does not move the rover: the demand continues, but the new daemon is not armed."""
     service.ground.wait(lambda: not service.turning(), "the wheels stand", WITHIN)
     service.ground.wait(lambda: service.back(ended), "it runs again", WITHIN)
     assert (6, "vehicle safe-stop: sabertooth: motors neutral and without power") in service.said()
@@ -191,18 +190,18 @@ def test_a_damaged_parameter_file_is_said_and_forbids_to_arm(service: Service) -
 
 
 def tried(service: Service) -> list[str]:
-    """The vehicle's texts after one more wish to arm."""
+    """Return the vehicle's texts after one more attempt to arm."""
     service.ask(Command.COMPONENT_ARM_DISARM, 1)
     return service.ground.texts()
 
 
 POWER = {"reboot": 1, "poweroff": 2}
-"""What the computer is to do -> what PREFLIGHT_REBOOT_SHUTDOWN calls it."""
+"""What the computer shall do -> the parameters of PREFLIGHT_REBOOT_SHUTDOWN."""
 
 
 @pytest.mark.parametrize("word", POWER)
 def test_the_computer_does_what_a_ground_station_asks(service: Service, word: str) -> None:
-    """Its targets are empty here: they become active, and the machine goes on."""
+    """Use empty targets here: they become active, and the machine continues."""
     service.write('[motors]\ndriver = "simulated"\n[params]\nREBOOT_ENABLE = 2\n')
     service.install(UNIT, "--config", FILE)
     for each in POWER:
@@ -218,6 +217,6 @@ def test_the_computer_does_what_a_ground_station_asks(service: Service, word: st
         return service.machine.property("ActiveState", f"{word}.target") == "active"
 
     service.ground.wait(asked, f"systemd is told to {word}", WITHIN)
-    assert service.property("ActiveState") == "failed"  # not started again
+    assert service.property("ActiveState") == "failed"  # not restarted
     for each in POWER:
         assert (service.machine.property("ActiveState", f"{each}.target") == "active") is (each == word)

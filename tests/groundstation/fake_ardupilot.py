@@ -1,4 +1,4 @@
-"""A vehicle that behaves as ArduRover 4.7 was measured to (design/ardupilot.md): it holds the last demand for 3 s."""
+"""A vehicle that behaves as ArduRover 4.7 did in measurements: it holds the last demand for 3 s."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NOT_KNOWN = (Command.REQUEST_OPERATOR_CONTROL, Command.DO_SET_SAFETY_SWITCH_STAT
 
 
 class FakeArduPilot(FakeVehicle):
-    """Axes y and z, one ground station by its system id, no arming with throttle, telemetry when asked."""
+    """Axes y and z, one ground station by its system id, no arming with throttle, telemetry on request."""
 
     def __init__(self, *, station: int = 255, mode: Mode = Mode.MANUAL, autopilot: int = Autopilot.ARDUPILOT) -> None:
         super().__init__(autopilot=autopilot, driver=None, mode=mode)
@@ -36,17 +36,17 @@ class FakeArduPilot(FakeVehicle):
 
     @property
     def moves(self) -> bool:
-        """Do the motors get power?"""
+        """The motors turn."""
         return bool(self.turning and any(self.turning[-1][1:]))
 
     @property
     def stopped_at(self) -> float:
-        """Since when they get none."""
+        """When they stopped."""
         assert not self.moves
         return self.turning[-1][0]
 
     def receive(self, received: Received, now: float) -> None:
-        """Demands of its ground station, group requests, and what FakeVehicle knows."""
+        """Handle demands of its ground station, group requests, and what FakeVehicle handles."""
         message = received.message
         if isinstance(message, m.ManualControl) and received.system == self._station and message.target == 1:
             self._steering, self._throttle = (0 if axis == INVALID_AXIS else axis for axis in (message.y, message.z))
@@ -60,7 +60,7 @@ class FakeArduPilot(FakeVehicle):
         self._drive(now)
 
     def tick(self, now: float) -> None:
-        """Let go of an old demand, tell."""
+        """Drop an old demand, send telemetry."""
         super().tick(now)
         if now - self._demand_at > LATCH:
             self._steering = self._throttle = 0
@@ -68,10 +68,10 @@ class FakeArduPilot(FakeVehicle):
         for number, due in self._due.items():
             if self.rates[number] and now >= due:
                 self._due[number] = max(due, now - 0.1) + 1 / self.rates[number]
-                self.say(_TELEMETRY[number](self, now))
+                self.send(_TELEMETRY[number](self, now))
 
     def reboot(self) -> None:
-        """Everything that was asked of it is forgotten."""
+        """Forget all requests."""
         self.armed = False
         self.rates = dict.fromkeys(STREAM_RATES, 1.0)
 

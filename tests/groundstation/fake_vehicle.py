@@ -1,4 +1,4 @@
-"""A vehicle that does as it is told by the test, and a station with an operator whose screen lives."""
+"""A scripted vehicle, and a station with an operator whose screen renews its lease."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from link.transport.memory import LossyPipe
 from tests.world import World
 
 OURS = 255
-QUESTIONS = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
-"""Commands that change nothing which a HEARTBEAT tells."""
+QUERIES = (Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL)
+"""Commands that change nothing in the HEARTBEAT."""
 MessageT = TypeVar("MessageT", bound=m.Message)
 
 
 class FakeVehicle:
-    """A core that answers commands by `answers`, and obeys those it accepts."""
+    """A core that answers commands with `answers` and obeys those it accepts."""
 
     def __init__(
         self,
@@ -44,69 +44,69 @@ class FakeVehicle:
         self.answers: dict[int, Result] = {}
         self.reasons: dict[int, bytes] = {}
         self.parameters: dict[str, float] = {}
-        self.heard: list[tuple[float, m.Message]] = []
+        self.received: list[tuple[float, m.Message]] = []
         self.outbox: list[Outgoing] = []
         self._beat_due = 0.0
 
     def receive(self, received: Received, now: float) -> None:
-        """Note it, and answer what is a command or a question; what is for another vehicle is not heard."""
+        """Record the message, and answer commands and requests; ignore messages to other vehicles."""
         message = received.message
         if getattr(message, "target_system", getattr(message, "target", 0)) not in (0, self.system):
             return
-        self.heard.append((now, message))
+        self.received.append((now, message))
         match message:
             case m.CommandLong():
                 self._command(message, received.system)
             case m.ParamRequestRead() if message.param_id in self.parameters:
                 value = self.parameters[message.param_id]
-                self.say(m.ParamValue(message.param_id.encode(), value, 9, 1, 0xFFFF))
+                self.send(m.ParamValue(message.param_id.encode(), value, 9, 1, 0xFFFF))
             case m.Timesync() if message.tc1 == 0:
-                self.say(m.Timesync(tc1=1, ts1=message.ts1))
+                self.send(m.Timesync(tc1=1, ts1=message.ts1))
             case m.ManualControl() if self.autopilot == Autopilot.GENERIC and self.driver == received.system:
-                self.say(self.drive_status(message, received, now))
+                self.send(self.drive_status(message, received, now))
 
     def tick(self, now: float) -> None:
-        """One heartbeat a second."""
+        """Send one heartbeat a second."""
         if now >= self._beat_due:
             self._beat_due = now + 1.0
             self.beat()
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Nothing to learn."""
+        """Ignore the reports."""
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What was said."""
+        """Return the queued messages."""
         outbox, self.outbox = self.outbox, []
         return outbox
 
-    def say(self, message: m.Message) -> None:
-        """Send it with the next step."""
+    def send(self, message: m.Message) -> None:
+        """Queue a message."""
         self.outbox.append(Outgoing(message))
 
     def beat(self) -> None:
-        """HEARTBEAT, and CONTROL_STATUS where the vehicle tells who is in control."""
+        """HEARTBEAT, and CONTROL_STATUS unless `driver` is None."""
         status = SystemState.EMERGENCY if self.locked else SystemState.ACTIVE if self.armed else SystemState.STANDBY
         if self.autopilot == Autopilot.PX4:
             mode, flags = 1 << 16, ModeFlag.CUSTOM | (ModeFlag.ARMED if self.armed else 0)
         else:
             mode, flags = self.mode, base_mode(self.mode, armed=self.armed)
-        self.say(m.Heartbeat(VehicleType.GROUND_ROVER, self.autopilot, flags, mode, status, 3))
+        self.send(m.Heartbeat(VehicleType.GROUND_ROVER, self.autopilot, flags, mode, status, 3))
         if self.driver is not None:
-            self.say(m.ControlStatus(1, self.driver, [0] * 10))
+            self.send(m.ControlStatus(1, self.driver, [0] * 10))
 
     def drive_status(self, message: m.ManualControl, received: Received, now: float) -> m.RoverDriveStatus:
-        """The word that this demand is applied."""
+        """Build the report that this demand is applied."""
         return m.RoverDriveStatus(
             boot_ms(now), 0, message.x * 10, message.r * 10, [message.x * 10, 0, 0, 0], 0,
             received.system, received.sequence,
         )  # fmt: skip
 
     def all(self, kind: type[MessageT]) -> list[tuple[float, MessageT]]:
-        """Everything of a kind that was heard, with its time."""
-        return [(at, message) for at, message in self.heard if isinstance(message, kind)]
+        """Return all received messages of a kind, with their times."""
+        return [(at, message) for at, message in self.received if isinstance(message, kind)]
 
     def commands(self, command: int) -> list[m.CommandLong]:
-        """Every time this command was heard."""
+        """Return all received COMMAND_LONG with this command."""
         return [message for _, message in self.all(m.CommandLong) if message.command == command]
 
     def _command(self, message: m.CommandLong, source: int) -> None:
@@ -117,9 +117,9 @@ class FakeVehicle:
         if result is Result.ACCEPTED:
             self._obey(message, source)
         elif command in self.reasons:
-            self.say(m.StatusText(4, self.reasons[command]))
-        self.say(m.CommandAck(command, result, target_system=source, target_component=190))
-        if result is Result.ACCEPTED and command not in QUESTIONS:
+            self.send(m.StatusText(4, self.reasons[command]))
+        self.send(m.CommandAck(command, result, target_system=source, target_component=190))
+        if result is Result.ACCEPTED and command not in QUERIES:
             self.beat()
 
     def _obey(self, message: m.CommandLong, source: int) -> None:
@@ -138,7 +138,7 @@ class FakeVehicle:
 
 
 class Cockpit:
-    """A station whose screen renews its lease, joined with a vehicle in virtual time."""
+    """A station whose screen renews its lease, connected with a vehicle in virtual time."""
 
     def __init__(self, vehicle: FakeVehicle | None = None, *, loss: float = 0.0) -> None:
         self.vehicle = vehicle or FakeVehicle()
@@ -156,13 +156,13 @@ class Cockpit:
         return self.world.now
 
     def do(self, *intents: AnyIntent) -> None:
-        """What the operator wants, now."""
+        """Handle intents now."""
         for intent in intents:
             self.station.handle_intent(intent, self.now)
         self.world.settle()
 
     def run(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance the time."""
         self.world.run(seconds, self._renew)
 
     def _renew(self, now: float) -> None:
@@ -172,19 +172,19 @@ class Cockpit:
 
     @property
     def snapshot(self) -> Snapshot:
-        """The picture now; the wall clock is 1000 s ahead."""
+        """The snapshot now; the wall clock is 1000 s ahead."""
         return self.station.snapshot(self.now, self.now + 1000.0)
 
     @property
     def view(self) -> VehicleView:
-        """The vehicle that is looked at."""
+        """The selected vehicle."""
         view = self.snapshot.vehicle
         assert view is not None
         return view
 
     @property
-    def helm(self) -> OperatorView:
-        """The operator's side."""
+    def operator(self) -> OperatorView:
+        """The operator's part of the snapshot."""
         return self.snapshot.operator
 
     @property
@@ -193,5 +193,5 @@ class Cockpit:
         return [line.text for line in self.snapshot.texts]
 
     def demands(self, since: float = 0.0) -> list[tuple[float, int, int]]:
-        """Time, x and r of the MANUAL_CONTROL that the vehicle heard."""
+        """Return time, x and r of the MANUAL_CONTROL that the vehicle received."""
         return [(at, message.x, message.r) for at, message in self.vehicle.all(m.ManualControl) if at >= since]

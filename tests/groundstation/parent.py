@@ -1,4 +1,4 @@
-"""A screen process to be killed: starts a station, arms, holds a key, prints the station's pid. Run as `python -m`."""
+"""A screen process to kill: starts a station, arms, holds a key, prints the station's pid. Run as `python -m`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The screen's side without a screen: a client, its lease, and waiting for what the snapshots say."""
+"""A client without a screen: renews the lease and waits for snapshots."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 
 
 class Screen:
-    """Starts a station process on a free port; renews the lease until told otherwise."""
+    """Starts a station process on a free port; renews the lease until `freeze`."""
 
     def __init__(self, *endpoints: str, **options: Any) -> None:
         endpoints = endpoints or (f"udpin:127.0.0.1:{free_port()}",)
@@ -66,13 +66,13 @@ class Screen:
         raise AssertionError(f"not seen within {within} s (alive: {self.client.alive}); last: {self.snapshot}")
 
     def drive(self, vehicle: UdpVehicle) -> None:
-        """Arm and hold `i`; returns when the vehicle hears the demand."""
+        """Arm and hold `i`; return when the vehicle receives the demand."""
         self.hold_forward()
         begun = time.monotonic()
         until(lambda: any(x == 600 for _, x in vehicle.demands(begun)))
 
     def hold_forward(self) -> None:
-        """Arm and hold `i`; returns when the station says that it sends the demand."""
+        """Arm and hold `i`; return when the snapshot shows the demand."""
         self.see(lambda snapshot: snapshot.vehicle is not None)
         self.client.send(ReportKeyReleases())
         self.insist(lambda: self.client.send(Arm()), lambda seen: seen.vehicle is not None and seen.vehicle.armed)
@@ -94,7 +94,7 @@ class Screen:
 
 
 def until(condition: Callable[[], bool], within: float = PATIENCE) -> None:
-    """Wait for something that no descriptor tells."""
+    """Poll until `condition` is true."""
     deadline, waiting = time.monotonic() + within, threading.Event()
     while not condition():
         assert time.monotonic() < deadline, f"not within {within} s"

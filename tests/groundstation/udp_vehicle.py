@@ -13,7 +13,7 @@ from tests.groundstation.fake_vehicle import FakeVehicle
 
 
 class UdpVehicle:
-    """Answers in a thread from `with` on; `core` holds what it heard, with time.monotonic()."""
+    """Answers in a thread from `with` on; `core` records messages with time.monotonic()."""
 
     def __init__(self, endpoint: str) -> None:
         self.core = FakeVehicle()
@@ -37,7 +37,7 @@ class UdpVehicle:
         self._socket.close()
 
     def demands(self, since: float) -> list[tuple[float, int]]:
-        """Time and x of the MANUAL_CONTROL heard."""
+        """Return time and x of the MANUAL_CONTROL received."""
         return [(at, message.x) for at, message in self.core.all(m.ManualControl) if at >= since]
 
     def _run(self) -> None:
@@ -61,4 +61,4 @@ class UdpVehicle:
         try:
             self._socket.send(frame)
         except ConnectionRefusedError:
-            return  # the station is gone
+            return  # the station has exited

@@ -1,4 +1,4 @@
-"""Our vehicle as a process, looking for foreign ground stations on two UDP ports of this machine, near or far."""
+"""Our vehicle as a process, with two UDP ports for foreign ground stations, directly or through a relay."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from tests.ports import free_port
 HOME = (-35.3632581, 149.1652363)
 """Where the simulated rover starts, degrees."""
 STEP = 0.02
-"""s between two looks at the motor log."""
+"""s between two polls of the motor log."""
 DEGREE = 1e7 / 89.83
-"""m, to the north."""
+"""m of a degree to the north."""
 NEARLY = 1.2
-"""m that the rover may be from where it shall be: 0.3 m of control, and what its simulated receiver is wrong by."""
+"""m of allowed distance from the target: 0.3 m for the control, the rest for the simulated receiver."""
 
 
 class Rover:
-    """The vehicle, and the ports where it looks for its ground stations; `relay` is before the first of them."""
+    """The vehicle and its two ports; `relay` is in front of the first."""
 
     def __init__(self, folder: Path, *options: str, relay: Relay | None = None) -> None:
         self.port = relay.ground_port if relay else free_port()
@@ -35,13 +35,13 @@ class Rover:
         first = relay.vehicle_port if relay else self.port
         self._truth = folder / "truth.log"
         self._stood = 0
-        """How many outputs there were when the wheels last stood."""
+        """Number of outputs when the wheels last stopped."""
         self.vehicle = Vehicle(
             folder, first, f"udpout:127.0.0.1:{self.second_port}", "--sim-truth", str(self._truth), *options
         )
 
     def soon(self, condition: Callable[[], bool], within: float) -> bool:
-        """Look at the motors until `condition`; False where it does not come."""
+        """Poll the motors until `condition`; return False if it does not become true."""
         deadline = time.monotonic() + within
         tick = threading.Event()
         while not condition():
@@ -51,53 +51,53 @@ class Rover:
         return True
 
     def wait(self, condition: Callable[[], bool], within: float, what: str) -> None:
-        """Look at the motors until `condition`."""
+        """Poll the motors until `condition`."""
         assert self.soon(condition, within), (
             f"not within {within} s: {what}; {self.vehicle.outputs()[-3:]}, at {self._place()}"
         )
 
     def is_at(self, place: tuple[float, float], within: float = PATIENCE) -> None:
-        """Wait until it really is there, whatever it believes; latitude and longitude."""
+        """Wait until the true position is near `place` (latitude and longitude)."""
         north = (place[0] - HOME[0]) * DEGREE
         east = (place[1] - HOME[1]) * DEGREE * math.cos(math.radians(HOME[0]))
         self.wait(lambda: math.dist(self._place(), (north, east)) < NEARLY, within, f"{north:.1f}, {east:.1f} m")
 
     def _place(self) -> tuple[float, float]:
-        """Where it really is, m to the north and to the east of its start."""
+        """Return the true position, m to the north and east of the start."""
         lines = self._truth.read_text().rpartition("\n")[0].splitlines()
         _, north, east, *_ = lines[-1].split()
         return float(north), float(east)
 
     def speaks(self, within: float = PATIENCE) -> None:
-        """Wait until it has started and sends."""
+        """Wait until the vehicle has started and sends."""
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ear:
             ear.bind(("127.0.0.1", self.second_port))
             ear.settimeout(within)
             ear.recv(65536)
 
     def drives(self) -> None:
-        """Wait until the wheels turn, or have turned since they last stood: a short drive may be over when we look."""
+        """Wait until the wheels turn or have turned since the last stop: a short drive may be over before a poll."""
         self.wait(lambda: any(each.turning for each in self.vehicle.outputs()[self._stood :]), PATIENCE, "wheels turn")
 
     def stands(self) -> None:
-        """Wait until they have come to rest."""
+        """Wait until the wheels have stopped."""
         self.wait(self.vehicle.stands, PATIENCE, "the wheels stop")
         self._stood = len(self.vehicle.outputs())
 
 
 LOSS = 0.1
-"""Of the frames of each direction, on a lossy link."""
+"""Share of the frames that are lost in each direction."""
 
 
 @pytest.fixture
 def options() -> tuple[str, ...]:
-    """More words for the vehicle; a test file may have its own."""
+    """Options of the vehicle; a test file may override this."""
     return ()
 
 
 @pytest.fixture
 def rover(tmp_path: Path, options: tuple[str, ...]) -> Iterator[Rover]:
-    """A simulated rover; ended with the test."""
+    """A simulated rover that ends with the test."""
     with ExitStack() as stack:
         rover = Rover(tmp_path, *options)
         stack.callback(rover.vehicle.end)
@@ -114,7 +114,7 @@ def relay() -> Iterator[Relay]:
 
 @pytest.fixture
 def far_rover(tmp_path: Path, relay: Relay) -> Iterator[Rover]:
-    """A simulated rover behind a network that loses frames; ended with the test."""
+    """A simulated rover behind a network that loses frames."""
     with ExitStack() as stack:
         rover = Rover(tmp_path, relay=relay)
         stack.callback(rover.vehicle.end)

@@ -1,4 +1,4 @@
-"""A foreign program that is spoken to by lines: what it said, and waiting for what it must say."""
+"""A foreign program that is controlled by lines of text: what it printed, and waiting for what it must print."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PATIENCE = 60.0
 
 
 class Conversation:
-    """A running program. Its output is read by a thread, so that it never waits for us."""
+    """A running program. A thread reads its output, so that the program never blocks."""
 
     def __init__(self, command: Sequence[str], folder: Path) -> None:
         self._process = subprocess.Popen(
@@ -27,7 +27,7 @@ class Conversation:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
         )
-        self._news = threading.Condition()
+        self._changed = threading.Condition()
         self._heard = b""
         self._read = 0
         self._thread = threading.Thread(target=self._listen, name="conversation", daemon=True)
@@ -35,46 +35,46 @@ class Conversation:
 
     @property
     def pid(self) -> int:
-        """Of the program."""
+        """Process id of the program."""
         return self._process.pid
 
     @property
     def transcript(self) -> str:
-        """All it has said."""
+        """Return everything that it has printed."""
         return self._heard.decode(errors="replace")
 
     def say(self, line: str) -> None:
-        """Type a line; `hear` looks behind it."""
+        """Type a line; the next `hear` searches after it."""
         assert self._process.stdin is not None
-        with self._news:
+        with self._changed:
             self._read = len(self._heard)
         self._process.stdin.write(line.encode() + b"\n")
         self._process.stdin.flush()
 
     def hear(self, pattern: str, within: float = PATIENCE) -> re.Match[str]:
-        """Wait until it has said something that matches, since the last `say` or `hear`."""
+        """Wait for output that matches, since the last `say` or `hear`."""
         deadline = time.monotonic() + within
-        with self._news:
+        with self._changed:
             while not (found := re.search(pattern.encode(), self._heard[self._read :])):
                 left = deadline - time.monotonic()
                 assert left > 0, f"not within {within} s: {pattern!r}\n{self.transcript}"
-                self._news.wait(left)
+                self._changed.wait(left)
             self._read += found.end()
         match = re.search(pattern, found[0].decode())
         assert match is not None
         return match
 
     def wait_for(self, pattern: str, within: float = PATIENCE) -> None:
-        """Wait until it has said something that matches, since its start."""
+        """Wait for output that matches, since the start."""
         deadline = time.monotonic() + within
-        with self._news:
+        with self._changed:
             while not re.search(pattern.encode(), self._heard):
                 left = deadline - time.monotonic()
                 assert left > 0, f"not within {within} s: {pattern!r}\n{self.transcript}"
-                self._news.wait(left)
+                self._changed.wait(left)
 
     def ask(self, line: str, pattern: str, period: float = 0.5) -> None:
-        """Type a line each `period` s, until the answer matches: what it asks about takes its time."""
+        """Type a line every `period` s until the answer matches."""
         deadline = time.monotonic() + PATIENCE
         while True:
             self.say(line)
@@ -86,19 +86,19 @@ class Conversation:
                     raise
 
     def end(self) -> None:
-        """End it, whatever state it is in."""
+        """End the program in any state."""
         end(self._process, self._thread)
 
     def _listen(self) -> None:
         assert self._process.stdout is not None
         while data := os.read(self._process.stdout.fileno(), 65536):
-            with self._news:
+            with self._changed:
                 self._heard += data
-                self._news.notify_all()
+                self._changed.notify_all()
 
 
 def end(process: subprocess.Popen[Any], listener: threading.Thread) -> None:
-    """End a program in any state, and the thread that reads what it says."""
+    """End a program in any state, and the thread that reads its output."""
     process.kill()
     process.wait(10)
     listener.join(5)

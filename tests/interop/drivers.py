@@ -1,4 +1,4 @@
-"""Each client behind one face: somebody who sees the vehicle, holds a stick, and takes or gives up control."""
+"""Every client behind one interface: it sees the vehicle, holds a stick, and takes or releases control."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ RELEASE, REQUEST = 0, 1
 """Parameter 1 of REQUEST_OPERATOR_CONTROL."""
 MANUAL = (Command.DO_SET_MODE, 1.0, 0.0)
 NEUTRALS = 6
-"""Sent before the stick moves."""
+"""Neutral messages that are sent before the stick moves."""
 SIGHTS = ("attitude", "position", "motion")
-"""That it is heard from, where it is, and that it moves."""
+"""What a client must see: the vehicle, its position and its motion."""
 
 
 class Driver(Protocol):
-    """A client; what it does is accepted by the vehicle, or an AssertionError."""
+    """A client. The vehicle must accept what it does; otherwise AssertionError."""
 
     system: int
 
@@ -40,15 +40,15 @@ class Driver(Protocol):
         """Hold the stick there from now on, -1..1, neutral first; 0 is a stick at rest."""
 
     def command(self, command: int, *params: float) -> None:
-        """A COMMAND_LONG that must be accepted."""
+        """Send a COMMAND_LONG that must be accepted."""
 
     def sees_armed(self, armed: bool) -> None: ...
 
     def sees(self, sight: str) -> None:
-        """One of SIGHTS, told by the vehicle since the start."""
+        """Wait for one of SIGHTS, since the start."""
 
     def reads(self, text: str) -> None:
-        """A STATUSTEXT of the vehicle, matched by this pattern, since the start."""
+        """Wait for a STATUSTEXT of the vehicle that matches this pattern, since the start."""
 
 
 STATUS = {
@@ -56,11 +56,11 @@ STATUS = {
     "position": ("status GLOBAL_POSITION_INT", r"GLOBAL_POSITION_INT \{.*lat : -35\d+"),
     "motion": ("status VFR_HUD", r"groundspeed : (0\.[1-9]|[1-9])"),
 }
-"""What MAVProxy's user types to look, and what it shows then."""
+"""What MAVProxy's user types to see something, and what MAVProxy prints then."""
 
 
 class MavProxyDriver:
-    """Types."""
+    """MAVProxy, by typed commands."""
 
     def __init__(self, program: Conversation, system: int) -> None:
         self._program = program
@@ -91,7 +91,7 @@ class MavProxyDriver:
 
 
 class MavsdkDriver:
-    """Gives orders to a script."""
+    """MAVSDK, by orders to a script."""
 
     def __init__(self, client: mavsdk_process.Client, system: int) -> None:
         self._client = client
@@ -124,7 +124,7 @@ class MavsdkDriver:
 
 
 class Loop:
-    """A client that must be kept going: a thread owns it, says what its stick holds, and notes what comes."""
+    """A client that must be polled: a thread owns it, repeats its stick, and records what arrives."""
 
     def __init__(self, turn: Callable[[], None], send: Callable[[int], None], system: int) -> None:
         """`turn` receives for a moment, `send` sends a MANUAL_CONTROL with this throttle."""
@@ -167,7 +167,7 @@ class Loop:
         self._wait(lambda: any(re.search(text, each) for each in list(self._texts)), text)
 
     def note(self, kind: str, message: Any) -> None:
-        """A message of the vehicle; fields are named alike in both codecs."""
+        """Record a message of the vehicle; both codecs have the same field names."""
         if kind == "HEARTBEAT":
             self._armed = bool(message.base_mode & ModeFlag.ARMED)
         elif kind == "ATTITUDE":
@@ -180,7 +180,7 @@ class Loop:
             self._texts.append(message.text if isinstance(message.text, str) else m.decode_text(message))
 
     def call(self, job: Callable[[], bool], what: str, within: float = PATIENCE) -> None:
-        """Let the thread do it, again until it is true."""
+        """Let the thread run it, again until it returns true."""
         done = threading.Event()
 
         def once() -> None:
@@ -209,7 +209,7 @@ class Loop:
 
 
 class ScriptDriver(Loop):
-    """A script with pymavlink."""
+    """pymavlink, by a script."""
 
     def __init__(self, script: Script, system: int) -> None:
         self._script = script
@@ -229,7 +229,7 @@ class ScriptDriver(Loop):
 
 
 class GroundDriver(Loop):
-    """QGroundControl's stand-in."""
+    """The stand-in for QGroundControl."""
 
     def __init__(self, ground: QGroundControl, system: int) -> None:
         self._ground = ground
@@ -277,4 +277,4 @@ KINDS = {
     "pymavlink": script_driver,
     "QGroundControl": ground_driver,
 }
-"""Name -> how to start one: port, system id, folder."""
+"""Name -> how to start a client: port, system id, folder."""

@@ -1,4 +1,4 @@
-"""MAVProxy as a program that is typed to, in an environment of its own: it wants libraries that we do not."""
+"""MAVProxy as a program with typed commands, in a virtual environment of its own, because it needs other libraries."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import pytest
 from tests.interop.conversation import Conversation
 
 MAVPROXY = Path(__file__).parents[2] / ".venv-mavproxy/bin"
-"""`.ci/run` makes it."""
+"""`.ci/run` creates it."""
 MODULES = "log,wp,rally,fence,ftp,param,arm,mode,rc,misc,cmdlong,battery,relay"
-"""Of its usual modules those that need no map, no plot and no screen."""
+"""Those of its default modules that need no map, plot or screen."""
 
 needed = pytest.mark.skipif(
     not (MAVPROXY / "mavproxy.py").exists() and "MAVHELM_CI" not in os.environ,
@@ -42,6 +42,6 @@ def started(port: int, folder: Path, system: int = 255) -> Iterator[Conversation
 
 
 def plan_file(command: int, first: int, places: Sequence[tuple[float, float]]) -> str:
-    """A plan as MAVProxy reads it; `first` is parameter 1 of each item."""
+    """Return a plan in MAVProxy's format; `first` is parameter 1 of each item."""
     lines = (f"{n}\t0\t3\t{command}\t{first}\t0\t0\t0\t{x:.7f}\t{y:.7f}\t0\t1" for n, (x, y) in enumerate(places))
     return "\n".join(["QGC WPL 110", *lines, ""])

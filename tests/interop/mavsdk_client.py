@@ -1,8 +1,7 @@
 """A user's script for MAVSDK: `python -m tests.interop.mavsdk_client PORT SCENARIO FOLDER SYSTEM`.
 
-Prints JSON, a line a step.
-A process of its own: MAVSDK is a C++ library with threads, and what crashes there must not take pytest along. What
-MAVSDK itself has to say goes to stderr.
+It prints JSON, one line per step. It is a process of its own, because MAVSDK is a C++ library with threads, whose crash
+must not end pytest. MAVSDK's own output goes to stderr.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ from tests.interop.mavsdk_tools import (
 
 
 def identity(system: Any, folder: str) -> None:
-    """Who is it, and what does it tell?"""
+    """Identify the vehicle and read its telemetry."""
     info, telemetry = plugin("info", system), plugin("telemetry", system)
     step("version", lambda: info.get_version().flight_sw_major)
     for name in mavsdk_streams.ASKED:
@@ -55,7 +54,7 @@ def identity(system: Any, folder: str) -> None:
 
 
 def parameters(system: Any, folder: str) -> None:
-    """Read, set, and be refused."""
+    """Read and set parameters, and be refused."""
     param = plugin("param", system)
     step("all", lambda: len(param.get_all_params().float_params))
     step("get", lambda: param.get_param_float("SPEED_MAX"))
@@ -77,7 +76,7 @@ def driving(system: Any, folder: str) -> None:
 
 
 def leaving(system: Any, folder: str) -> None:
-    """Have it start again, or turned off: each with a line on stdin, in a run of its own."""
+    """Restart and shut down the vehicle, each with a line on stdin, in a run of its own."""
     action = plugin("action", system)
     for line in sys.stdin:
         step(line.strip(), partial(insist, getattr(action, line.strip())))
@@ -97,7 +96,7 @@ def places(system: Any, folder: str) -> None:
 
 
 def guided(system: Any, folder: str) -> None:
-    """Go somewhere at a speed, come back, drive by velocity; each until a line comes on stdin."""
+    """Go to a place at a speed, return, drive by velocity; each until a line comes on stdin."""
     action, offboard, telemetry = (plugin(name, system) for name in ("action", "offboard", "telemetry"))
     velocity = import_module("mavsdk.plugins.offboard.offboard").VelocityBodyYawspeed
     north, east = here(telemetry)
@@ -126,25 +125,25 @@ AWAY = 110
 
 
 def here(telemetry: Any) -> tuple[int, int]:
-    """Where the rover is, in degrees x 1e7, once it knows."""
+    """Return the position of the rover in degrees x 1e7, once it is known."""
     first(telemetry.subscribe_health, lambda value: value.is_global_position_ok)
     place = first(telemetry.subscribe_position, lambda value: abs(value.latitude_deg) > 1)
     return round(place.latitude_deg * 1e7), round(place.longitude_deg * 1e7)
 
 
 def item(number: int, command: int, first: float, north: int, east: int, kind: int = 0) -> Any:
-    """An item of a plan."""
+    """Return an item of a plan."""
     make = import_module("mavsdk.plugins.mission_raw.mission_raw").MissionItem
     return make(number, 3, command, number == 0, 1, first, 0, 0, float("nan"), north, east, 0, kind)
 
 
 def shape(plan: list[Any]) -> list[list[int]]:
-    """What must come back as it was."""
+    """Return the fields that must be the same after a download."""
     return [[each.seq, each.command, each.x, each.y] for each in plan]
 
 
 def mission(system: Any, folder: str) -> None:
-    """Upload, download, be refused, drive it to its end, clear."""
+    """Upload, download, be refused, drive to the end, clear."""
     action, raw, telemetry = (plugin(name, system) for name in ("action", "mission_raw", "telemetry"))
     north, east = here(telemetry)
     plan = [item(n, 16, 0, north + 200 * (n + 1), east) for n in range(2)]
@@ -164,7 +163,7 @@ def mission(system: Any, folder: str) -> None:
 
 
 def plan(system: Any, folder: str) -> None:
-    """A mission as MAVSDK's own examples make it, with a speed at each place, and one with what a rover has not."""
+    """Drive a mission as in MAVSDK's examples, with a speed for each item; one has items that a rover cannot do."""
     action, missions, telemetry = (plugin(name, system) for name in ("action", "mission", "telemetry"))
     kinds = import_module("mavsdk.plugins.mission.mission")
     north, east = here(telemetry)
@@ -187,7 +186,7 @@ def plan(system: Any, folder: str) -> None:
 
 
 def files(system: Any, folder: str) -> None:
-    """Files, logs, and what the parameters mean."""
+    """Download files, logs, and the parameter metadata."""
     ftp, logs, metadata = (plugin(name, system) for name in ("ftp", "log_files", "component_metadata"))
     step("root", lambda: [entry.name for entry in ftp.list_directory("/").entries])
     for burst in (True, False):
@@ -206,7 +205,7 @@ def files(system: Any, folder: str) -> None:
 
 
 def recordings(system: Any, folder: str) -> None:
-    """The list of logs, and each of them."""
+    """List the logs and download each."""
     logs = plugin("log_files", system)
     entries = logs.get_entries()
     step("logs", lambda: [[entry.id, entry.date, entry.size_bytes] for entry in entries])
@@ -216,7 +215,7 @@ def recordings(system: Any, folder: str) -> None:
 
 
 def lossy(system: Any, folder: str) -> None:
-    """All of it, over a link that loses: what fails is tried again."""
+    """Do everything over a lossy link, with retries."""
     action, ftp, manual, param, raw, telemetry = (
         plugin(name, system) for name in ("action", "ftp", "manual_control", "param", "mission_raw", "telemetry")
     )
@@ -238,7 +237,7 @@ def lossy(system: Any, folder: str) -> None:
 
 
 def wheel(system: Any, folder: str) -> None:
-    """Do what the lines on stdin say, and tell what is seen meanwhile; `push` is repeated until the next one."""
+    """Follow the lines on stdin, and print what is seen; `push` is repeated until the next line."""
     action, direct, manual, telemetry = (
         plugin(name, system) for name in ("action", "mavlink_direct", "manual_control", "telemetry")
     )
@@ -282,7 +281,7 @@ def main(port: str, scenario: str, folder: str, system_id: str) -> None:
     step("connect", lambda: str(sdk.add_any_connection(f"udpin://127.0.0.1:{port}")))
     system = step("discover", lambda: sdk.first_autopilot(PATIENCE))
     SCENARIOS[scenario](system, folder)
-    os._exit(0)  # its threads end when they please
+    os._exit(0)  # its threads may take long to end
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The script mavsdk_client.py with one of its scenarios, as a process: its steps as they come."""
+"""mavsdk_client.py with one of its scenarios, as a process that prints its steps."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ needed = pytest.mark.skipif(
 
 
 class Step(NamedTuple):
-    """What a step of the script came to."""
+    """The result of a step of the script."""
 
     name: str
     value: object
@@ -40,7 +40,7 @@ class Step(NamedTuple):
 
 
 class Client:
-    """The process. A thread reads what it says, so that it never waits for us."""
+    """The process. A thread reads its output, so that the process never blocks."""
 
     def __init__(self, port: int, scenario: str, folder: Path, system: int = 245) -> None:
         self._log = folder / f"mavsdk-{system}.log"
@@ -55,24 +55,24 @@ class Client:
                 text=True,
             )
         self.waits = Waits(self._process.pid)
-        """What the machine makes the script wait."""
+        """How long the machine delays the script."""
         self.discovery = 0.0
-        """s that MAVSDK took to find the vehicle."""
-        self._news = threading.Condition()
+        """s in which MAVSDK found the vehicle."""
+        self._changed = threading.Condition()
         self._steps: list[Step] = []
         self._ended = False
         self._thread = threading.Thread(target=self._listen, name="mavsdk", daemon=True)
         self._thread.start()
 
     def step(self, name: str, value: str = "", within: float = PATIENCE) -> Step:
-        """Wait for a step of that name, and with a value that matches; each is taken once."""
+        """Wait for a step of that name with a value that matches; each step is returned once."""
         deadline = time.monotonic() + within
-        with self._news:
+        with self._changed:
             while (found := self._find(name, value)) is None:
                 left = deadline - time.monotonic()
                 if left <= 0 or self._ended:
                     raise AssertionError(f"no {name!r} {value}\n{self._steps}\n{self._log.read_text()}")
-                self._news.wait(left)
+                self._changed.wait(left)
             self._steps.remove(found)
             return found
 
@@ -83,13 +83,13 @@ class Client:
         return step
 
     def say(self, line: str = "") -> None:
-        """What it waits for."""
+        """Send the line that the script waits for."""
         assert self._process.stdin is not None
         self._process.stdin.write(f"{line}\n")
         self._process.stdin.flush()
 
     def end(self) -> None:
-        """End it, whatever state it is in."""
+        """End the process in any state."""
         end(self._process, self._thread)
 
     def _find(self, name: str, value: str) -> Step | None:
@@ -99,17 +99,17 @@ class Client:
         assert self._process.stdout is not None
         for line in self._process.stdout:
             told = json.loads(line)
-            with self._news:
+            with self._changed:
                 self._steps.append(Step(told["step"], told["value"], told["error"], told["took"]))
-                self._news.notify_all()
-        with self._news:
+                self._changed.notify_all()
+        with self._changed:
             self._ended = True
-            self._news.notify_all()
+            self._changed.notify_all()
 
 
 @contextmanager
 def started(port: int, scenario: str, folder: Path, system: int = 245) -> Iterator[Client]:
-    """The process, with the vehicle found."""
+    """Start the process and wait until it has found the vehicle."""
     client = Client(port, scenario, folder, system)
     try:
         client.good("discover")

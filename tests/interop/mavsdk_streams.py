@@ -1,4 +1,4 @@
-"""What MAVSDK's telemetry plugin has for a rover: stream by stream, and what its values must be like."""
+"""The streams of MAVSDK's telemetry plugin that a rover has, and what their values must be."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ UNASKED: dict[str, Callable[[Any], bool]] = {
     "in_air": lambda value: not value,
     "landed_state": lambda value: value.name == "ON_GROUND",
     "vtol_state": lambda value: value.name == "UNDEFINED",
-    "flight_mode": lambda value: True,  # MAVSDK reads the number as PX4's, where it does not know the autopilot
+    "flight_mode": lambda value: True,  # MAVSDK reads the number as PX4's if it does not know the autopilot
     "attitude_euler": lambda value: -180 <= value.yaw_deg <= 180,
     "attitude_angular_velocity_body": lambda value: math.isfinite(value.yaw_rad_s),
     "velocity_ned": lambda value: abs(value.north_m_s) < 1,
@@ -28,7 +28,7 @@ UNASKED: dict[str, Callable[[Any], bool]] = {
     "health": lambda value: value.is_home_position_ok and value.is_global_position_ok and value.is_armable,
     "health_all_ok": lambda value: value,
 }
-"""Comes by itself."""
+"""Streams that start by themselves."""
 ASKED: dict[str, Callable[[Any], bool]] = {
     "attitude_quaternion": lambda value: math.isclose(
         math.hypot(value.w, value.x, value.y, value.z), 1.0, abs_tol=1e-3
@@ -37,4 +37,4 @@ ASKED: dict[str, Callable[[Any], bool]] = {
     "imu": lambda value: math.isfinite(value.angular_velocity_frd.down_rad_s),
     "altitude": lambda value: math.isfinite(value.altitude_amsl_m),
 }
-"""Comes when its rate is set."""
+"""Streams that start when their rate is set."""

@@ -1,4 +1,4 @@
-"""What a script for MAVSDK needs: its plugins by name, values from callbacks, and steps that are told as JSON."""
+"""Tools for a MAVSDK script: plugins by name, values from callbacks, and steps that are printed as JSON."""
 
 from __future__ import annotations
 
@@ -13,45 +13,45 @@ from typing import Any
 
 Subscribe = Callable[[Callable[..., None]], Any]
 PATIENCE = 60.0
-"""s for an answer that MAVSDK brings by a callback: the machine is shared."""
+"""s for an answer that MAVSDK returns by a callback: the machine is shared."""
 NEUTRALS = 8
-"""Sent before the stick moves: more than a lossy link loses in a row."""
+"""Neutral messages before the stick moves: more than a lossy link loses in a row."""
 
 
 def plugin(name: str, system: Any) -> Any:
-    """The plugin's object; MAVSDK has a module of the same name for each."""
+    """Return the object of a plugin; MAVSDK has a module of the same name for each."""
     module = import_module(f"mavsdk.plugins.{name}.{name}")
     return getattr(module, "".join(part.capitalize() for part in name.split("_")))(system)
 
 
 def step(name: str, run: Callable[[], Any]) -> Any:
-    """Run a step; print what came of it and how long it took."""
+    """Run a step; print its result and its duration."""
     start = time.monotonic()
     try:
         value, error = run(), None
     except Exception as exception:
         value, error = None, f"{type(exception).__name__}: {exception}"
     took = time.monotonic() - start
-    # In one piece: callbacks come on a thread of MAVSDK's.
+    # In one write: callbacks run in a thread of MAVSDK.
     sys.stdout.write(json.dumps({"step": name, "value": shown(value), "error": error, "took": took}) + "\n")
     sys.stdout.flush()
     return value
 
 
 def shown(value: Any) -> Any:
-    """As JSON has it."""
+    """Return a value as JSON can hold it."""
     if isinstance(value, Enum):
         return value.name
     return value if isinstance(value, int | float | str | list | None) else str(value)
 
 
 def first(subscribe: Subscribe, good: Callable[[Any], bool]) -> Any:
-    """The first value of a stream that is `good`."""
+    """Return the first value of a stream that is `good`."""
     return following(subscribe, good)()
 
 
 def following(subscribe: Subscribe, good: Callable[[Any], bool]) -> Callable[[], Any]:
-    """Listen for a value of a stream that is `good`, from now on; what is returned waits for it."""
+    """Listen for a value of a stream that is `good`, from now on; the returned function waits for it."""
     came, found = threading.Event(), []
 
     def take(value: Any, *_: Any) -> None:
@@ -78,7 +78,7 @@ def twenty(subscribe: Subscribe) -> None:
 
 
 def finished(start: Callable[[Callable[..., None]], Any]) -> str:
-    """The final result of a transfer that reports its progress."""
+    """Return the final result of a transfer that reports its progress."""
     done, results = threading.Event(), []
 
     def take(result: Any, *_: Any) -> None:
@@ -93,7 +93,7 @@ def finished(start: Callable[[Callable[..., None]], Any]) -> str:
 
 
 def fetched(start: Callable[[Callable[..., None]], Any]) -> str:
-    """The final result of a transfer that must succeed."""
+    """Return the final result of a transfer that must succeed."""
     result = finished(start)
     if result != "SUCCESS":
         raise RuntimeError(result)
@@ -101,7 +101,7 @@ def fetched(start: Callable[[Callable[..., None]], Any]) -> str:
 
 
 def wait_until(condition: Callable[[], bool]) -> bool:
-    """Look until it is so."""
+    """Poll until the condition is true."""
     deadline, pause = time.monotonic() + PATIENCE, threading.Event()
     while not condition() and time.monotonic() < deadline:
         pause.wait(0.1)
@@ -109,9 +109,10 @@ def wait_until(condition: Callable[[], bool]) -> bool:
 
 
 def insist(attempt: Callable[[], Any]) -> Any:
-    """Try until it works, as an operator does on a lossy link; MAVSDK's own repeats come to nothing now and then.
+    """Retry until it works, as an operator does on a lossy link, where MAVSDK's own retries sometimes all fail.
 
-    Its first HEARTBEAT may come later than its first command, which the vehicle then refuses: so arming insists, too.
+    MAVSDK's first HEARTBEAT may come later than its first command, which the vehicle then refuses. So arming is retried
+    too.
     """
     deadline, pause = time.monotonic() + PATIENCE, threading.Event()
     while True:
@@ -124,7 +125,7 @@ def insist(attempt: Callable[[], Any]) -> Any:
 
 
 def unless_busy(attempt: Callable[[], Any]) -> Any:
-    """Try it, again where MAVSDK is busy: it tells the end of a transfer a moment before it begins another."""
+    """Retry while MAVSDK is busy: it reports the end of a transfer a moment before it can start another."""
     deadline, pause = time.monotonic() + PATIENCE, threading.Event()
     while True:
         try:
@@ -136,7 +137,7 @@ def unless_busy(attempt: Callable[[], Any]) -> Any:
 
 
 def refused(attempt: Callable[[], Any], why: str) -> None:
-    """Raises where it is not refused for that."""
+    """Check that the call is refused for this reason."""
     try:
         attempt()
     except Exception as error:
@@ -171,7 +172,7 @@ class Stick:
         threading.Thread(target=self._run, daemon=True).start()
 
     def hold(self, throttle: float) -> None:
-        """There, from now on."""
+        """Hold the stick there from now on."""
         self._throttle, self._neutrals = throttle, NEUTRALS
 
     def _run(self) -> None:
@@ -183,7 +184,7 @@ class Stick:
 
 
 def watch(telemetry: Any) -> None:
-    """Tell what the vehicle does: each text, each change of `armed`, and once where it is and that it moves."""
+    """Print what the vehicle does: each text, each change of `armed`, and once its position and its motion."""
     told: dict[str, Any] = {}
 
     def tell(name: str, value: Any) -> None:
@@ -201,7 +202,7 @@ def watch(telemetry: Any) -> None:
 
 
 def accepted(direct: Any, command: float, *params: float) -> None:
-    """A command that MAVSDK has no verb for; raises where it is not accepted."""
+    """Send a command for which MAVSDK has no method; raises if it is not accepted."""
     message = import_module("mavsdk.plugins.mavlink_direct.mavlink_direct").MavlinkMessage
     fields: dict[str, float] = {"target_system": 1, "target_component": 1, "command": int(command), "confirmation": 0}
     fields |= {f"param{number}": 0.0 for number in range(1, 8)}

@@ -1,7 +1,7 @@
 """How QGroundControl downloads a file (FTPManager): one burst after the other, then the holes piece by piece.
 
-It answers silence by asking again from where it is, with the same sequence number, and takes only answers with the
-number it expects.
+After a timeout it repeats its request from where it is, with the same sequence number, and accepts only answers with
+the number that it expects.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from tests.interop.qgroundcontrol import QGroundControl
 
 LIMIT, TRIES = 1.0, 3
-"""s for each answer, and how often it asks again."""
+"""s for each answer, and the number of retries."""
 
 
 class DownloadError(Exception):
-    """QGroundControl gave up: it goes on without the file."""
+    """QGroundControl gave up and continues without the file."""
 
 
 class Download:
-    """One file."""
+    """The download of one file."""
 
     def __init__(self, ground: QGroundControl, path: str, limit: float = LIMIT) -> None:
         self._ground = ground
@@ -35,7 +35,7 @@ class Download:
         self._content = bytearray()
 
     def run(self) -> bytes:
-        """The content. Raises DownloadError."""
+        """Return the content. Raises DownloadError."""
         opened = self._ask(FtpPacket(0, FtpOpcode.OPEN, data=self._path.encode()), tries=0)
         if opened.op != FtpOpcode.ACK:
             raise DownloadError(f"{self._path}: {opened.data!r}")
@@ -49,7 +49,7 @@ class Download:
         return bytes(self._content)
 
     def _burst(self, session: int) -> None:
-        """To the end of the file, which is told by a refusal."""
+        """Read bursts to the end of the file, which is reported by a NAK."""
         ask = True
         while True:
             request = FtpPacket(0, FtpOpcode.BURST, session, offset=len(self._content), size=MAX_DATA)
@@ -78,7 +78,7 @@ class Download:
         self._holes[:1] = [(offset, missing)] if missing else []
 
     def _next(self, request: FtpPacket) -> FtpPacket:
-        """The next of a burst under way; asked for again where it does not come."""
+        """Return the next answer of a burst; repeat the request if there is none."""
         return self._heard(request) or self._ask(request, again=True)
 
     def _ask(self, request: FtpPacket, *, tries: int = TRIES, again: bool = False) -> FtpPacket:
@@ -102,7 +102,7 @@ class Download:
         return None if answer is None else parse_packet(answer)
 
     def _fits(self, request: FtpPacket, answer: FtpPacket) -> bool:
-        if answer.asked != request.op:
+        if answer.req_opcode != request.op:
             return False
         late = request.op == FtpOpcode.BURST and answer.op == FtpOpcode.ACK and answer.sequence >= self._expected
         return late or answer.sequence == self._expected

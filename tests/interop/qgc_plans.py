@@ -1,5 +1,8 @@
-"""How QGroundControl reads and writes a plan (PlanManager): it repeats MISSION_COUNT, its questions for the list and
-for items; an item that it was asked for it sends once, and leaves it to the vehicle to ask again."""
+"""How QGroundControl reads and writes a plan (PlanManager).
+
+It repeats MISSION_COUNT and its requests for the list and for items. An item that was requested is sent once: the
+vehicle has to request it again.
+"""
 
 from __future__ import annotations
 
@@ -13,15 +16,15 @@ if TYPE_CHECKING:
     from tests.interop.qgroundcontrol import QGroundControl
 
 ACK_LIMIT, ITEM_LIMIT, TRIES = 1.5, 0.25, 5
-"""s for most answers, s for an item, and how often it asks again."""
+"""s for most answers, s for an item, and the number of retries."""
 
 
 class PlanError(Exception):
-    """QGroundControl gave up and tells its user so, who tries again."""
+    """QGroundControl gave up and shows an error; its user retries."""
 
 
 def count(ground: QGroundControl, kind: int) -> int:
-    """How long a plan is. Raises PlanError."""
+    """Return the length of a plan. Raises PlanError."""
     for attempt in range(TRIES + 1):
         ground.repeats += attempt > 0
         ground.send(m.MissionRequestList(1, 1, kind))
@@ -32,7 +35,7 @@ def count(ground: QGroundControl, kind: int) -> int:
 
 
 def read(ground: QGroundControl, kind: int) -> list[m.MissionItemInt]:
-    """The whole plan. Raises PlanError."""
+    """Return the whole plan. Raises PlanError."""
     items = [_item(ground, number, kind) for number in range(count(ground, kind))]
     ground.send(m.MissionAck(1, 1, MissionResult.ACCEPTED, kind))
     return items
@@ -49,7 +52,7 @@ def _item(ground: QGroundControl, number: int, kind: int) -> m.MissionItemInt:
 
 
 def write(ground: QGroundControl, kind: int, items: Sequence[m.MissionItemInt]) -> MissionResult:
-    """Upload a plan; what the vehicle says to it. Raises PlanError."""
+    """Upload a plan; return the vehicle's answer. Raises PlanError."""
     wanted: set[int] = set(range(len(items)))
     repeats = 0
     ground.send(m.MissionCount(1, 1, len(items), kind))

@@ -1,8 +1,8 @@
-"""What QGroundControl does when it meets a vehicle: its steps in their order, its repeats and time limits.
+"""What QGroundControl does when it connects to a vehicle: its steps in their order, its retries and time limits.
 
 Written after reading InitialConnectStateMachine, StandardModes, RequestMetaDataTypeStateMachine and ParameterManager of
-its sources; it is not QGroundControl. It is stricter: where QGroundControl would go on without what did not come, this
-asks again and counts it in `repeats`, or fails. Files and plans are in qgc_files.py and qgc_plans.py.
+its sources; it is not QGroundControl. It is stricter: where QGroundControl would continue without an answer, this
+repeats the request and counts it in `repeats`, or fails. Files and plans are in qgc_files.py and qgc_plans.py.
 """
 
 from __future__ import annotations
@@ -26,24 +26,27 @@ Kind = TypeVar("Kind", bound=m.Message)
 
 SYSTEM, COMPONENT = 255, 190
 TRIES, COMMAND_LIMIT = 3, 3.0
-"""Of a command, and s for each."""
+"""Retries of a command, and s for each."""
 PARAMETERS_BEGIN, PARAMETERS_GAP = 5.0, 3.0
 """s until the first parameter, and between two."""
 PARAMETER_TRIES, PARAMETER_BATCH = 5, 10
-"""How often it asks for missing ones, and for how many at once."""
+"""Retries for missing parameters, and how many are requested at once."""
 NOT_SELECTABLE = 2
 """MAV_MODE_PROPERTY_NOT_USER_SELECTABLE."""
 JOYSTICK = 1 / 25
 """s between two MANUAL_CONTROL."""
 NEUTRALS = 8
-"""Sent before the stick moves: more than a lossy link loses in a row."""
+"""Neutral messages before the stick moves: more than a lossy link loses in a row."""
 PATIENCE = 60.0
-"""s for what must come: the machine is shared."""
+"""s for every wait: the machine is shared."""
 
 
 class QGroundControl:
-    """One connection. `haste` divides the limits for its questions: it is the stricter by it. `clicks` is how often
-    its user tries again what it has given up."""
+    """One connection.
+
+    `haste` divides the time limits of its requests, which makes it stricter by that factor. `clicks` is how often its
+    user retries what it has given up.
+    """
 
     def __init__(self, port: int, system: int = SYSTEM, haste: float = 1.0, clicks: int = 1) -> None:
         self._system = system
@@ -56,21 +59,21 @@ class QGroundControl:
         self._sequence = 0
         self._beat_due = 0.0
         self.watch: Callable[[m.Message], object] = lambda message: None
-        """Is told all that comes."""
+        """Called with every message that arrives."""
         self.repeats = 0
-        """Questions that had to be asked again."""
+        """Requests that had to be repeated."""
 
     def __enter__(self) -> QGroundControl:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Close its port."""
+        """Close the port."""
         self._socket.close()
 
-    # ---- the wire ----
+    # ---- messages ----
 
     def send(self, message: m.Message) -> None:
-        """To the vehicle."""
+        """Send a message to the vehicle."""
         assert self._vehicle is not None
         payload = codec.encode_payload(message)
         self._socket.sendto(
@@ -81,7 +84,7 @@ class QGroundControl:
     def wait(
         self, kind: type[Kind], within: float, wanted: Callable[[Kind], bool] = lambda message: True
     ) -> Kind | None:
-        """The next message of a kind that is `wanted`; None where it does not come."""
+        """Return the next message of a kind that is `wanted`; None if there is none."""
         deadline = time.monotonic() + within
         while (left := deadline - time.monotonic()) > 0:
             self._beat()
@@ -102,7 +105,7 @@ class QGroundControl:
         self.wait(m.Message, seconds, lambda message: False)
 
     def _beat(self) -> None:
-        """Its HEARTBEAT: armed and active, once a second."""
+        """Send its HEARTBEAT, armed and active, once a second."""
         if self._vehicle is not None and time.monotonic() >= self._beat_due:
             self._beat_due = time.monotonic() + 1
             self.send(m.Heartbeat(6, 8, 128, 0, 4, 3))
@@ -110,13 +113,13 @@ class QGroundControl:
     # ---- the steps ----
 
     def meet(self) -> None:
-        """0: a HEARTBEAT of component 1 that is a vehicle's."""
+        """Step 0: wait for a HEARTBEAT of component 1 of a vehicle."""
         beat = self.wait(m.Heartbeat, PATIENCE, lambda each: each.type not in (6, 18, 26, 27))
         assert beat is not None
-        self._beat()  # whose first one may go before it knows of a vehicle, and we answer to an address
+        self._beat()  # repeated: the first may be sent before it has found a vehicle
 
     def command(self, command: int, *params: float) -> Result:
-        """With its repeats."""
+        """Send a command, with retries."""
         full = (*params, *(0.0,) * (7 - len(params)))
         for confirmation in range(TRIES * self._clicks):
             self.repeats += confirmation > 0
@@ -127,7 +130,7 @@ class QGroundControl:
         raise AssertionError(f"no answer to command {command}")
 
     def request(self, kind: type[Kind], *params: float) -> Kind:
-        """REQUEST_MESSAGE: the message and the acknowledgement, in either order."""
+        """Send REQUEST_MESSAGE; wait for the message and the acknowledgement, in either order."""
         for confirmation in range(TRIES * self._clicks):
             self.repeats += confirmation > 0
             full = (kind.id, *params, *(0.0,) * (6 - len(params)))
@@ -146,8 +149,10 @@ class QGroundControl:
         raise AssertionError(f"no {kind.msgname}")
 
     def modes(self) -> list[str]:
-        """3: the names of all modes that a driver may choose; the last one ends it. What was lost is asked for again,
-        where QGroundControl would do without."""
+        """Step 3: return the names of all modes that a driver may select; the last one ends the list.
+
+        A lost mode is requested again, where QGroundControl would continue without it.
+        """
         mode = self.request(m.AvailableModes, 0)
         modes = {mode.mode_index: mode}
         while mode.mode_index < mode.number_modes:
@@ -162,7 +167,7 @@ class QGroundControl:
         return [each.mode_name for _, each in sorted(modes.items()) if not each.properties & NOT_SELECTABLE]
 
     def metadata(self) -> dict[str, dict[str, object]]:
-        """4: what the parameters mean, by name."""
+        """Step 4: return the parameter metadata, by name."""
         told = self.request(m.ComponentMetadata)
         general = self.download(told.uri.removeprefix("mftp://"))
         assert crc32(general) == told.file_crc
@@ -172,7 +177,7 @@ class QGroundControl:
         return {each["name"]: each for each in json.loads(lzma.decompress(packed))["parameters"]}
 
     def download(self, path: str) -> bytes:
-        """A file, tried again where QGroundControl would go on without it."""
+        """Download a file, with a retry where QGroundControl would continue without it."""
         for _ in range(TRIES * self._clicks):
             try:
                 return Download(self, path, LIMIT / self._haste).run()
@@ -181,7 +186,7 @@ class QGroundControl:
         raise AssertionError(f"no {path}")
 
     def parameters(self) -> dict[str, float]:
-        """5: the whole list; what is missing is asked for by its number."""
+        """Step 5: read the whole parameter list; missing ones are requested by index."""
         values: dict[int, m.ParamValue] = {}
         self.send(m.ParamRequestList(1, 0))
         for _ in range(PARAMETER_TRIES * self._clicks):
@@ -204,7 +209,7 @@ class QGroundControl:
             self.send(m.ParamRequestRead(1, 1, b"", number))
 
     def joystick(self, throttle: int, until: Callable[[], bool], within: float = PATIENCE) -> bool:
-        """Its joystick, 25 times a second, until `until`; False where that does not come."""
+        """Send its joystick, 25 times a second, until `until`; return False if that does not become true."""
         deadline = time.monotonic() + within
         while not until():
             if time.monotonic() > deadline:
@@ -213,7 +218,7 @@ class QGroundControl:
         return True
 
     def drive(self, throttle: int, until: Callable[[], bool]) -> None:
-        """Neutral first, then the joystick, until `until`; again and in MANUAL, where a pause has ended in HOLD."""
+        """Send neutral, then the joystick, until `until`; again and in MANUAL, if a pause has ended in HOLD."""
         deadline = time.monotonic() + PATIENCE
         self.neutral()
         while not self.joystick(throttle, until, 5.0):
@@ -222,7 +227,7 @@ class QGroundControl:
             self.neutral()
 
     def neutral(self) -> None:
-        """The stick at rest for a moment."""
+        """Hold the stick at rest for a moment."""
         for _ in range(NEUTRALS):
             self._stick(0)
 

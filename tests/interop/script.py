@@ -1,4 +1,4 @@
-"""pymavlink's mavutil, as a script uses it. It repeats little by itself: on a lossy link `insist` does."""
+"""pymavlink's mavutil, as a script uses it. mavutil repeats little by itself; on a lossy link `insist` does."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 os.environ["MAVLINK20"] = "1"  # read when mavutil is imported
 
-mavftp: Any = import_module("pymavlink.mavftp")  # half typed: none of it is checked
+mavftp: Any = import_module("pymavlink.mavftp")  # partly typed, so not checked
 mavparm: Any = import_module("pymavlink.mavparm")
 mavutil: Any = import_module("pymavlink.mavutil")
 mavwp: Any = import_module("pymavlink.mavwp")
@@ -20,13 +20,13 @@ GCS, NO_AUTOPILOT, ACTIVE = 6, 8, 4
 STICK = 0.05
 """s between two MANUAL_CONTROL."""
 NEUTRALS = 8
-"""Sent before the stick moves: more than a lossy link loses in a row."""
+"""Neutral messages before the stick moves: more than a lossy link loses in a row."""
 PATIENCE = 60.0
-"""s for what must come: the machine is shared."""
+"""s for every wait: the machine is shared."""
 
 
 class Script:
-    """One connection, which says its HEARTBEAT once a second while it receives."""
+    """One connection, which sends its HEARTBEAT once a second while it receives."""
 
     def __init__(self, port: int, system: int = 255, component: int = 190) -> None:
         mavutil.set_dialect("common")
@@ -41,11 +41,11 @@ class Script:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Close its port."""
+        """Close the port."""
         self.link.close()
 
     def hear(self, *types: str, within: float = 5.0) -> Any:
-        """The next message of these types, of any where none is named; None where it does not come."""
+        """Return the next message of these types, or of any type if none is named; None if there is none."""
         deadline = time.monotonic() + within
         while (left := deadline - time.monotonic()) > 0:
             self._beat()
@@ -68,7 +68,7 @@ class Script:
             self.hear(within=0.1)
 
     def insist(self, act: Callable[[], object], condition: Callable[[], bool], within: float = PATIENCE) -> None:
-        """Do it again each half second, until `condition`."""
+        """Repeat an action each half second, until `condition`."""
         deadline = time.monotonic() + within
         while not condition():
             assert time.monotonic() < deadline
@@ -78,7 +78,7 @@ class Script:
                 self.hear(within=0.1)
 
     def command(self, command: int, *params: float) -> int:
-        """A COMMAND_LONG, repeated until it is answered; the result."""
+        """Send a COMMAND_LONG until it is acknowledged; return the result."""
         answers: list[int] = []
 
         def hook(_: Any, message: Any) -> None:
@@ -92,14 +92,14 @@ class Script:
         return answers[0]
 
     def stick(self, throttle: int, until: Callable[[], bool], within: float = 5.0) -> None:
-        """Hold the stick for a while: 20 MANUAL_CONTROL a second. The condition may stay away."""
+        """Hold the stick for a while: 20 MANUAL_CONTROL a second. The condition may stay false."""
         deadline = time.monotonic() + within
         while not until() and time.monotonic() < deadline:
             self.link.mav.manual_control_send(1, throttle, 0, 0, 0, 0)
             self.hear(within=STICK)
 
     def drive(self, throttle: int, until: Callable[[], bool]) -> None:
-        """Neutral first, then the stick, until `until`; again and in MANUAL, where a pause has ended in HOLD."""
+        """Send neutral, then the stick, until `until`; again and in MANUAL, if a pause has ended in HOLD."""
         deadline = time.monotonic() + PATIENCE
         while not until():
             assert time.monotonic() < deadline
@@ -111,7 +111,8 @@ class Script:
                 self.link.set_mode("MANUAL")
 
     def upload(self, loader: Any) -> int:
-        """Send a plan of mavwp's; the type of the MISSION_ACK. What is not answered for a second is said again."""
+        """Send a plan of mavwp's; return the type of the MISSION_ACK. Messages without an answer are repeated after a
+        second."""
         last: Any = None
         while True:
             if last is None:
@@ -124,7 +125,7 @@ class Script:
                 self.link.mav.send(last)
 
     def download(self) -> list[Any]:
-        """The items of the mission in force."""
+        """Return the items of the mission in force."""
         count = self._answer(self.link.waypoint_request_list_send, "MISSION_COUNT").count
         return [self._item(number) for number in range(count)]
 
@@ -133,7 +134,7 @@ class Script:
         return self._answer(ask, "MISSION_ITEM_INT", lambda item: item.seq == number)
 
     def fetch(self, path: str) -> bytes:
-        """A file, by mavftp; empty where it gave up."""
+        """Download a file by mavftp; empty if mavftp gave up."""
         ftp, came = mavftp.MAVFTP(self.link, 1, 1), list[bytes]()
         ftp.cmd_get([path], callback=lambda file: came.append(file.read() if file else b""))
         ftp.process_ftp_reply("OpenFileRO", timeout=PATIENCE)

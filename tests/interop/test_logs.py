@@ -18,12 +18,12 @@ LOGS = {
     "00000011.tlog": random.Random(1).randbytes(90 * 40),
     "00000012_2026-11-21T14-05-09Z.tlog": random.Random(2).randbytes(60_123),
 }
-"""One from before the clock was known, of whole messages; and one that ends within a message."""
+"""A log from before the clock was set, of complete messages, and one that ends within a message."""
 
 
 @pytest.fixture
 def options(tmp_path: Path) -> tuple[str, ...]:
-    """The vehicle has these logs."""
+    """Give the vehicle these logs."""
     folder = tmp_path / "vehicle"
     folder.mkdir()
     for name, content in LOGS.items():
@@ -33,7 +33,7 @@ def options(tmp_path: Path) -> tuple[str, ...]:
 
 @pytest.fixture
 def stack() -> Iterator[ExitStack]:
-    """Ends what a test starts."""
+    """End what a test starts."""
     with ExitStack() as stack:
         yield stack
 
@@ -49,7 +49,7 @@ def test_mavproxy(rover: Rover, tmp_path: Path, stack: ExitStack) -> None:
         shell.say(f"log download {number} fetched-{number}")
         shell.hear(rf"Finished downloading fetched-{number} \({len(content)} bytes")
         assert (tmp_path / f"fetched-{number}").read_bytes() == content
-    shell.ask("arm throttle", "ARMED")  # it is refused until its HEARTBEAT was heard
+    shell.ask("arm throttle", "ARMED")  # refused until the vehicle has received its HEARTBEAT
     shell.say("log erase")
     shell.hear("logs not erased: disarm first")
     shell.say("disarm")

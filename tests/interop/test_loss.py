@@ -1,6 +1,6 @@
-"""Each client over a network that loses one frame in ten, each way: all it does comes to its end, and files are whole.
+"""Each client over a network that loses one frame in ten, each way: everything completes, and files are intact.
 
-Where a client says a thing once and does not listen for an answer, the test does what its user does: says it again.
+If a client sends something once and does not wait for an answer, the test does what its user does, and repeats it.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ from tests.interop.script import Script, mavparm, mavwp
 from vehicle.autonomy.mission.executor import MissionState
 from vehicle.params import TABLE
 
-pytestmark = pytest.mark.interop
+pytestmark = [pytest.mark.interop, pytest.mark.slow]
 
 NORTH, EAST = (round(degrees * 1e7) for degrees in HOME)
 WAYPOINT, LONG = 16, 200
 END = (HOME[0] + 0.00003, HOME[1])
-"""Of the missions that are driven: 3.3 m to the north."""
+"""End of the missions that are driven: 3.3 m to the north."""
 CLICKS = 10
-"""How often QGroundControl's user tries again: three tries of a command are all lost once in 150."""
+"""Attempts of QGroundControl's user: three tries of a command are all lost once in 150."""
 HASTE = 5.0
-"""How much sooner than QGroundControl its stand-in asks again, so that the test takes less time."""
+"""Factor by which the stand-in retries sooner than QGroundControl, so that the test takes less time."""
 
 
 def waypoint(number: int, north: int) -> m.MissionItemInt:
-    """An item, `north` of home in degrees x 1e7."""
+    """Return an item, `north` of home in degrees x 1e7."""
     return m.MissionItemInt(1, 1, number, 3, WAYPOINT, 0, 1, 0.0, 0.0, 0.0, 0.0, NORTH + north, EAST, 0.0)
 
 
 @pytest.fixture
 def long_plan(far_rover: Rover) -> bytes:
-    """A mission of 200 items, given to the vehicle over a link without loss: the file that it is served as."""
+    """Upload a mission of 200 items over a link without loss; return the file by which the vehicle serves it."""
     items = [waypoint(number, 100 * number) for number in range(LONG)]
     with QGroundControl(far_rover.second_port, system=254) as near:
         near.meet()
@@ -54,14 +54,14 @@ def long_plan(far_rover: Rover) -> bytes:
 
 @pytest.fixture(autouse=True)
 def it_was_lossy(relay: Relay) -> Iterator[None]:
-    """Looks whether the network did its worst."""
+    """Check that the network did lose frames."""
     yield
     assert relay.up.lost >= 2
     assert relay.down.lost >= 10
 
 
 def eventually(attempt: Callable[[], bool]) -> None:
-    """Try until it works, as a user does."""
+    """Retry until it works, as a user does."""
     deadline = time.monotonic() + PATIENCE
     while not attempt():
         assert time.monotonic() < deadline
@@ -73,7 +73,7 @@ def test_pymavlink(far_rover: Rover, long_plan: bytes) -> None:
         link.param_fetch_all()
         script.insist(lambda: fetch_missing(link), lambda: len(link.params) == len(TABLE))
         script.insist(lambda: set_speed(link), lambda: link.params["SPEED_MAX"] == 1.25)
-        eventually(lambda: script.fetch("missions/mission.waypoints") == long_plan)  # it gives up after three tries
+        eventually(lambda: script.fetch("missions/mission.waypoints") == long_plan)  # mavftp gives up after three tries
         loader = mavwp.MAVWPLoader(target_system=1, target_component=1)
         for number in range(10):
             loader.add_latlonalt(HOME[0] + number * 1e-6, HOME[1], 0)
@@ -91,14 +91,14 @@ def test_pymavlink(far_rover: Rover, long_plan: bytes) -> None:
 
 
 def fetch_missing(link: Any) -> None:
-    """One by one, once the run of all is over."""
+    """Fetch parameters one by one, once the fetch of all is over."""
     for index, parameter in enumerate(TABLE):
         if link.params and parameter.name not in link.params:
             link.param_fetch_one(index)
 
 
 def set_speed(link: Any) -> None:
-    """mavparm takes any PARAM_VALUE of that name for the answer, so that its user reads the value back."""
+    """mavparm accepts any PARAM_VALUE of that name as the answer, so its user reads the value back."""
     mavparm.MAVParmDict().mavset(link, "SPEED_MAX", 1.25, retries=1)
     link.param_fetch_one("SPEED_MAX")
 
@@ -129,7 +129,7 @@ def test_qgroundcontrol(far_rover: Rover, long_plan: bytes) -> None:
 
 
 def written(ground: QGroundControl, items: list[m.MissionItemInt]) -> bool:
-    """One click of its user on "upload"."""
+    """Click once on "upload"."""
     try:
         return qgc_plans.write(ground, 0, items) is MissionResult.ACCEPTED
     except qgc_plans.PlanError:
@@ -144,7 +144,9 @@ def test_mavproxy(far_rover: Rover, long_plan: bytes, tmp_path: Path) -> None:
         program.hear(rf"Received {len(TABLE)} parameters \(ftp\)")
         program.ask("param set SPEED_MAX 1.4\nparam fetch SPEED_MAX", r"SPEED_MAX = 1\.4")
         program.ask("ftp get /missions/mission.waypoints got.txt", r"Wrote", 10)
-        eventually(lambda: (tmp_path / "got.txt").read_bytes() == long_plan)  # it says so before it closes the file
+        eventually(
+            lambda: (tmp_path / "got.txt").read_bytes() == long_plan
+        )  # MAVProxy reports the end before it closes the file
         program.ask("wp load mission.txt", "TYPE_MISSION: ACCEPTED", 2)
         program.ask("wp list", "Saved 2 waypoints", 3)
         program.ask("arm throttle", "(?<!DIS)ARMED")
@@ -160,7 +162,7 @@ def test_mavproxy(far_rover: Rover, long_plan: bytes, tmp_path: Path) -> None:
 
 
 def pushed(program: Conversation, rover: Rover) -> bool:
-    """Neutral first, then ahead; MAVProxy repeats only the newest, so that the neutral one may get lost."""
+    """Send neutral, then ahead; MAVProxy repeats only the newest, so the neutral one may get lost."""
     program.say("rc 3 1500")
     program.say("rc 3 1600")
     return rover.soon(rover.vehicle.turning, 1.0)

@@ -30,11 +30,11 @@ def mavproxy(rover: Rover, tmp_path: Path) -> Iterator[Conversation]:
 
 
 QUICK, ATTEMPTS = 3.0, 5
-"""s for all parameters; how often it may take longer, because the machine does something else."""
+"""s for all parameters; how often it may take longer, because the machine is shared."""
 
 
 def test_it_connects_reads_all_parameters_and_sets_one(mavproxy: Conversation, rover: Rover) -> None:
-    """First as MAVProxy does by itself, then by the list that its older versions ask for."""
+    """First MAVProxy's own fetch, then the list that its older versions request."""
     mavproxy.hear("Detected vehicle 1:1")
     assert min(fetches(mavproxy, rover, rf"Received {len(TABLE)} parameters \(ftp\)")) < QUICK
     mavproxy.say("set param_ftp False")
@@ -48,8 +48,10 @@ def test_it_connects_reads_all_parameters_and_sets_one(mavproxy: Conversation, r
 
 
 def fetches(mavproxy: Conversation, rover: Rover, told: str) -> Iterator[float]:
-    """s that MAVProxy takes to fetch all parameters, without what the machine makes it wait; the first fetch is under
-    way already. Ends with a quick one."""
+    """Return the s that MAVProxy takes to fetch all parameters, without the delays of the machine.
+
+    The first fetch is already under way. Ends with a quick one.
+    """
     for _ in range(ATTEMPTS):
         waits, begun = Waits(rover.vehicle.process.pid, mavproxy.pid), time.monotonic()
         mavproxy.hear(told)
@@ -61,7 +63,7 @@ def fetches(mavproxy: Conversation, rover: Rover, told: str) -> Iterator[float]:
 
 
 def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation, rover: Rover, tmp_path: Path) -> None:
-    """Lists, plans, each mode, the stick, and the way back."""
+    """Type lists, plans, each mode, the stick, and the way back."""
     (tmp_path / "mission.txt").write_text(plan_file(WAYPOINT, 0, [HOME, (HOME[0] + 0.00003, HOME[1])]))
     (tmp_path / "rally.txt").write_text(plan_file(RALLY_POINT, 0, [HOME, (HOME[0] + 0.00001, HOME[1])]))
     mavproxy.hear("Received .* parameters")
@@ -79,7 +81,7 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     ):
         mavproxy.say(line)
         mavproxy.hear(answer)
-    mavproxy.ask("status ESTIMATOR_STATUS", r"flags : \d\d")  # knows where it is, as some modes want
+    mavproxy.ask("status ESTIMATOR_STATUS", r"flags : \d\d")  # the position is known, which some modes need
     mavproxy.say("module load calibration")
     mavproxy.hear("Loaded module calibration")
     mavproxy.say("gyrocal")
@@ -104,7 +106,7 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     assert_no_error(mavproxy)
     mavproxy.say("velocity 0.8 0 0")
     rover.drives()
-    mavproxy.hear("setpoints lost: stopping")  # it was said once
+    mavproxy.hear("setpoints lost: stopping")  # sent once
     rover.stands()
     mavproxy.say("disarm")
     mavproxy.hear("DISARMED")
@@ -123,7 +125,7 @@ def test_relays_and_servos_do_as_they_are_told(mavproxy: Conversation, rover: Ro
     mavproxy.hear("DO_REPEAT_RELAY: ACCEPTED")
     mavproxy.say("servo repeat 10 1200 1 0.2")
     mavproxy.hear("DO_REPEAT_SERVO: ACCEPTED")
-    mavproxy.ask("status SERVO_OUTPUT_RAW", r"servo10_raw : 1500")  # there, and back at its trim
+    mavproxy.ask("status SERVO_OUTPUT_RAW", r"servo10_raw : 1500")  # moved, and back at its trim
     mavproxy.say("relay set 0 0")
     mavproxy.hear("DO_SET_RELAY: ACCEPTED")
     mavproxy.ask("status RELAY_STATUS", r"on : 0, present : 3")
@@ -135,14 +137,14 @@ def test_relays_and_servos_do_as_they_are_told(mavproxy: Conversation, rover: Ro
 
 
 def choose(mavproxy: Conversation, mode: str) -> None:
-    """Change the mode, and see that it did."""
+    """Change the mode and wait for the change."""
     mavproxy.say(f"mode {mode}")
     mavproxy.hear("DO_SET_MODE: ACCEPTED")
     mavproxy.hear(f"Mode {mode}|{mode}>")
 
 
 def assert_no_loss(mavproxy: Conversation) -> None:
-    """It takes each message that its dialect lacks for a lost one, so none came that it had not asked for."""
+    """Check that no message was lost: MAVProxy counts messages that its dialect lacks, so none was sent unrequested."""
     mavproxy.say("link")
     told = mavproxy.hear(r"link 1 OK \((\d+) packets, .* (\d+) lost, ([\d.]+)% loss")
     assert int(told[1]) > 100
@@ -150,7 +152,7 @@ def assert_no_loss(mavproxy: Conversation) -> None:
 
 
 def assert_no_error(mavproxy: Conversation) -> None:
-    """Nothing that it has said since its start is one; a machine that pauses may keep its stick from the vehicle."""
+    """Check that it printed no error since its start; a machine that pauses may delay its stick."""
     said = re.sub(r"Failsafe.*manual control lost", "", mavproxy.transcript)
     assert not re.search("fail|error|traceback|unknown|refused", said, re.IGNORECASE), mavproxy.transcript
 

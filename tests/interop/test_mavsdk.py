@@ -1,4 +1,4 @@
-"""MAVSDK: finds the vehicle, reads what it is and where, sets parameters, drives it, and reads its files."""
+"""MAVSDK finds the vehicle, reads version and position, sets parameters, drives it, and reads its files."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from vehicle.params import TABLE
 pytestmark = [pytest.mark.interop, mavsdk_process.needed]
 
 INSTANT = 0.5
-"""s: MAVSDK's own timeouts begin at this."""
+"""s: the shortest of MAVSDK's own timeouts."""
 
 
 @pytest.fixture
 def client(rover: Rover, tmp_path: Path) -> Iterator[Callable[[str], Client]]:
-    """Starts a scenario and ends the one before; returns when MAVSDK has found the vehicle."""
+    """Start a scenario and end the one before; return when MAVSDK has found the vehicle."""
     with ExitStack() as stack:
 
         def start(scenario: str) -> Client:
@@ -87,6 +87,7 @@ def test_home_and_the_origin_are_where_they_are_set(client: Callable[[str], Clie
     assert sdk.good("origin told").value == pytest.approx(500.0)
 
 
+@pytest.mark.slow
 def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> None:
     sdk = client("guided")
     sdk.good("speed")
@@ -110,6 +111,7 @@ def test_it_drives_by_itself(client: Callable[[str], Client], rover: Rover) -> N
     sdk.good("disarm")
 
 
+@pytest.mark.slow
 def test_a_mission_from_upload_to_its_end(client: Callable[[str], Client], rover: Rover) -> None:
     sdk = client("mission")
     sdk.good("upload")
@@ -128,6 +130,7 @@ def test_a_mission_from_upload_to_its_end(client: Callable[[str], Client], rover
     assert sdk.good("empty").value == 0
 
 
+@pytest.mark.slow
 def test_a_mission_as_its_examples_make_it(client: Callable[[str], Client], rover: Rover) -> None:
     sdk = client("plan")
     sdk.good("refused")

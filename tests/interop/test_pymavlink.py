@@ -1,4 +1,4 @@
-"""pymavlink's mavutil, as scripts use it: wait for a vehicle, choose a mode, arm, drive, read parameters and files."""
+"""pymavlink's mavutil, as scripts use it: wait for a vehicle, select a mode, arm, drive, read parameters and files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ROVER_MODES = {"HOLD": 4, "MANUAL": 0}
 
 @pytest.fixture
 def script(rover: Rover) -> Iterator[Script]:
-    """mavutil with the ids that it has unless told otherwise, connected, with its own HEARTBEAT said."""
+    """Return mavutil with its default ids, connected, after it has sent its HEARTBEAT."""
     with Script(rover.port, 255, 0) as script:
         yield script
 
@@ -37,7 +37,7 @@ def test_modes_have_their_names_and_the_stick_drives(script: Script, rover: Rove
     script.until(link.motors_armed)
     script.drive(500, rover.vehicle.turning)
     assert rover.vehicle.turning()
-    rover.stands()  # because nothing comes any more
+    rover.stands()  # because no demand arrives any more
     link.arducopter_disarm()
     script.until(lambda: not link.motors_armed())
 
@@ -70,7 +70,7 @@ def test_a_mission_of_100_items_goes_up_and_comes_back(script: Script) -> None:
 
 
 def test_over_tcp_the_vehicle_speaks_first(tmp_path: Path) -> None:
-    """mavutil says no HEARTBEAT of its own, and scripts wait for the vehicle's."""
+    """mavutil sends no HEARTBEAT of its own, and scripts wait for the vehicle's."""
     port = free_port()
     with ExitStack() as stack:
         stack.callback(Vehicle(tmp_path, f"tcpin:127.0.0.1:{port}").end)

@@ -1,4 +1,4 @@
-"""QGroundControl's connect sequence to its end, and its joystick. See qgroundcontrol.py for what stands in for it."""
+"""QGroundControl's connect sequence to its end, and its joystick, by the stand-in of qgroundcontrol.py."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.interop
 
 @pytest.fixture
 def ground(rover: Rover) -> Iterator[QGroundControl]:
-    """It, connected."""
+    """The stand-in, connected."""
     with QGroundControl(rover.port) as ground:
         ground.meet()
         yield ground
@@ -39,10 +39,14 @@ def test_the_connect_sequence_comes_to_its_end(ground: QGroundControl, rover: Ro
     assert (meaning["SPEED_MAX"]["units"], meaning["SPEED_MAX"]["max"]) == ("m/s", 30)
     assert [qgc_plans.count(ground, kind) for kind in (0, 1, 2)] == [0, 0, 0]
     assert time.monotonic() - begun < 15 + waits.total()
-    for message in (m.ProtocolVersion.id, 395, 259):  # older versions' questions: each has an answer, none a time limit
+    for message in (
+        m.ProtocolVersion.id,
+        395,
+        259,
+    ):  # requests of older versions: each gets an answer, none has a time limit
         assert ground.command(Command.REQUEST_MESSAGE, message) in (Result.ACCEPTED, Result.UNSUPPORTED)
     assert ground.command(9999) is Result.UNSUPPORTED
-    assert ground.repeats <= waits.total() / LIMIT  # none, but where the machine made it wait so long
+    assert ground.repeats <= waits.total() / LIMIT  # none, except for delays of the machine
 
 
 def test_its_joystick_drives(ground: QGroundControl, rover: Rover) -> None:

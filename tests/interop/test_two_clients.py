@@ -41,13 +41,13 @@ def test_the_second_sees_all_and_drives_only_when_it_is_given_control(
         one.arm()
         other.sees_armed(True)
         other.push(-0.6)
-        one.reads("Demand of GCS 254 ignored: GCS 255 is in control")
+        one.reads("Demand from GCS 254 ignored: GCS 255 is in control")
         one.push(0.6)
         rover.drives()
         for sight in ("attitude", "position", "motion"):
             other.sees(sight)
         one.push(0.0)
-        rover.stands()  # though the other pushes still
+        rover.stands()  # although the other still holds its stick
         assert all(min(output.throttles) >= 0 for output in rover.vehicle.outputs())
 
         one.command(Command.REQUEST_OPERATOR_CONTROL, RELEASE)
@@ -59,7 +59,7 @@ def test_the_second_sees_all_and_drives_only_when_it_is_given_control(
         other.push(-0.6)
         rover.drives()
         other.push(0.0)
-        rover.stands()  # though the first pushes now
+        rover.stands()  # although the first holds its stick now
         assert all(max(output.throttles) <= 0 for output in rover.vehicle.outputs() if output.at > given)
         other.disarm()
         one.sees_armed(False)

@@ -14,6 +14,8 @@ from tests.link.services_world import from_gcs, messages
 GENERAL = b'{"version": 1}'
 LOG = bytes(range(256)) * 40
 SECRET = b"root:x:0:0"
+MAX_OFFSET = 0xFFFF_FFFF
+"""Largest offset that a packet can hold."""
 
 
 @dataclass
@@ -86,7 +88,7 @@ class Vehicle:
         self.sequence += 1
         who = {key: more.pop(key) for key in ("system", "peer", "now") if key in more}
         [answer] = self.send(FtpPacket(self.sequence, op, session, data, offset, **more), **who)
-        assert (answer.asked, answer.sequence) == (op, self.sequence + 1)
+        assert (answer.req_opcode, answer.sequence) == (op, self.sequence + 1)
         return answer
 
     def tick(self, now: float) -> list[FtpPacket]:

@@ -50,7 +50,7 @@ class Cable:
 
 
 class BaudCable(Cable):
-    """A cable that passes what the program writes at `baud`, as the wire of a UART would; the rest waits in the pty."""
+    """A cable that passes what the program writes at `baud`, as the line of a UART does; the rest waits in the pty."""
 
     def __init__(self, path: Path, baud: int) -> None:
         super().__init__(path)
@@ -63,7 +63,7 @@ class BaudCable(Cable):
 
     @property
     def waiting(self) -> int:
-        """Bytes that the program has written and the wire has not passed yet."""
+        """Bytes that the program has written and the line has not passed yet."""
         return int.from_bytes(fcntl.ioctl(self.far, termios.FIONREAD, bytes(4)), "little")
 
     def _pass(self) -> None:
@@ -71,7 +71,7 @@ class BaudCable(Cable):
         self._timer = self._loop.call_later(0.001, self._pass)
 
     def pass_on(self) -> None:
-        """What the wire has passed by now."""
+        """What the line has passed by now."""
         now = self._loop.time()
         room = int((now - self._passed_until) * self._per_second)
         if room:
@@ -84,13 +84,13 @@ class BaudCable(Cable):
 
 
 class Heard:
-    """What a wire has handed over."""
+    """What a transport has handed over."""
 
-    def __init__(self, wire: Transport) -> None:
-        self.wire = wire
+    def __init__(self, transport: Transport) -> None:
+        self.transport = transport
         self.data: list[tuple[bytes, Hashable]] = []
         self.gone: list[Hashable] = []
-        wire.start(asyncio.get_running_loop(), self._arrived, self.gone.append)
+        transport.start(asyncio.get_running_loop(), self._arrived, self.gone.append)
 
     def _arrived(self, pieces: Sequence[tuple[bytes, Hashable]]) -> None:
         self.data += pieces

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from link.endpoint import SCHEMES, Endpoint, EndpointError, endpoint_help, parse_endpoint
-from link.transport.transports import TRANSPORTS
+from link.endpoint import SCHEMES, Endpoint, EndpointError, endpoint_help, parse_endpoint, parse_endpoints
+from link.transport.transports import load_factory
 
 
 @pytest.mark.parametrize(
@@ -42,6 +42,17 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
         ("14550", "must be one of"),
         ("udpinn:127.0.0.1:14550", "did you mean udpin:"),
         ("bluetooth:1:2", "must be one of"),
+        ("127.0.0.1:14550", "did you mean udpin:127.0.0.1:14550? it must be one of"),
+        ("0.0.0.0:14550", "did you mean udpin:0.0.0.0:14550?"),
+        ("localhost:14550", "did you mean udpin:localhost:14550?"),
+        ("[::1]:14550", "did you mean udpin:[::1]:14550?"),
+        ("192.168.1.20:14550", "did you mean udpout:192.168.1.20:14550?"),
+        ("rover.local:14550", "did you mean udpout:rover.local:14550?"),
+        (
+            "udpout:0.0.0.0:14550",
+            "0.0.0.0 is not an address to send to; name the other end, or write udpin:0.0.0.0:14550",
+        ),
+        ("udpout:[::]:14550", "write udpin:[::]:14550 to wait for it"),
         ("tcp:127.0.0.1:5760", "did you mean tcpout:?"),
         ("udp:127.0.0.1:14550", "did you mean udpin:?"),
         ("/dev/ttyUSB0", "did you mean serial:/dev/ttyUSB0:57600?"),
@@ -77,5 +88,24 @@ def test_what_is_not_understood_is_explained(text: str, told: str) -> None:
 
 def test_the_table_is_the_help_and_every_scheme_can_be_opened() -> None:
     for scheme in SCHEMES.values():
-        assert scheme.form in endpoint_help()
-    assert SCHEMES.keys() == TRANSPORTS.keys()
+        assert f"  {scheme.syntax} " in endpoint_help()
+        assert scheme.help in endpoint_help()
+        assert callable(load_factory(scheme))
+
+
+@pytest.mark.parametrize(
+    "texts",
+    [
+        ("udpin:127.0.0.1:14550", "udpin:127.0.0.1:14550"),
+        ("udpout:rover.local:14550", "tcpin:0.0.0.0:5760", "UDPOUT://rover.local:14550"),
+        ("serial:/dev/ttyAMA0:57600", "serial:/dev/ttyAMA0:115200"),
+    ],
+)
+def test_an_endpoint_that_is_given_twice_is_refused(texts: tuple[str, ...]) -> None:
+    with pytest.raises(EndpointError, match=r"^endpoint '\S+' is given twice$"):
+        parse_endpoints(texts)
+
+
+def test_one_port_on_two_addresses_or_for_two_protocols_is_not_given_twice() -> None:
+    texts = ("udpin:127.0.0.1:14550", "udpin:192.168.1.2:14550", "tcpin:127.0.0.1:14550", "udpout:127.0.0.1:14550")
+    assert [each.text for each in parse_endpoints(texts)] == list(texts)

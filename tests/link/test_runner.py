@@ -14,7 +14,6 @@ import pytest
 from dialects.messages import Heartbeat, ManualControl, Message
 from link.core import LinkReport, Outgoing, Received
 from link.runner import Runner, open_links
-from link.transport.transport import LinkError
 from tests.link.frames import demand, heartbeat
 from tests.link.ports import Cable
 from tests.ports import free_port
@@ -216,24 +215,15 @@ async def test_ground_stations_on_two_links_hear_each_other(ground: socket.socke
     assert forwarded == ([heartbeat(0, system=254), heartbeat(2, system=254)] if route is None else [])
 
 
-async def test_one_line_says_why_a_port_cannot_be_opened(ground: socket.socket) -> None:
-    port = ground.getsockname()[1]
-    wrong = {
-        f"udpin:127.0.0.1:{port}": f"port {port} is in use",
-        "udpout:no-such-host.invalid:14550": "host 'no-such-host.invalid' is not known",
-        "udpin:203.0.113.7:14550": "203.0.113.7 is no address of this machine",
-        f"udpout:{'x' * 70}.invalid:14550": "is not known",
-    }
-    for endpoint, told in wrong.items():
-        with pytest.raises(LinkError) as caught:
-            open_links([endpoint], system=1, component=1)
-        assert told in str(caught.value)
-        assert "\n" not in str(caught.value)
+async def test_a_message_that_cannot_be_encoded_is_logged_once(caplog: pytest.LogCaptureFixture) -> None:
+    def wrong_then_right(core: Recorder) -> bool:
+        core.outbox += [Outgoing(Heartbeat(10, 0, 0, -1, 3, 3)), Outgoing(Heartbeat(10, 0, 0, 0, 3, 3))]
+        return len(core.numbers) > 5
 
-
-async def test_a_failed_endpoint_leaves_none_open() -> None:
-    port = free_port()
-    with pytest.raises(LinkError):
-        open_links([f"udpin:127.0.0.1:{port}", "udpin:203.0.113.7:14550"], system=1, component=1)
-    for link in open_links([f"udpin:127.0.0.1:{port}"], system=1, component=1):
-        link.close()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
+        ground.bind(("127.0.0.1", 0))
+        await run(f"udpout:127.0.0.1:{ground.getsockname()[1]}", wrong_then_right)
+    logged = [each for each in caplog.records if "could not be encoded" in each.message]
+    assert len(logged) == 1
+    assert "HEARTBEAT" in logged[0].message
+    assert logged[0].exc_info is None  # one line, no traceback

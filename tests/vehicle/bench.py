@@ -15,13 +15,12 @@ from link.core import Peer, Received
 from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.accessories.output import AccessorySpec, PulseRange
 from vehicle.accessories.simulated import SimulatedAccessory
-from vehicle.commands.inbound import INBOUND_IDS
 from vehicle.params import Params
 from vehicle.readings import ComputerReadings, Readings
 from vehicle.rover import Rover
 from vehicle.safety.states import SafetyState
 from vehicle.storage.logbook import LogRecorder
-from vehicle.storage.plan_keeping import PlanStoreLike
+from vehicle.storage.plan_store import PlanStore
 
 M = TypeVar("M", bound=m.Message)
 
@@ -29,6 +28,9 @@ CYCLE = 0.02
 DRIVER, OTHER = 255, 254
 AHEAD = Axes(throttle=1.0)
 NEUTRAL = Axes()
+
+MESSAGE_IDS = Rover(Params(), now=0.0).message_ids
+"""What a link passes to the rover."""
 
 BEAT = m.Heartbeat(VehicleType.GCS, Autopilot.INVALID, 0, 0, 4, 3)
 
@@ -47,7 +49,7 @@ class Bench:
     A ground station that knows our dialect listens from the beginning: `station`, from where DRIVER speaks.
     """
 
-    plans: PlanStoreLike | None = None
+    plans: PlanStore | None = None
     """What keeps its plans; a class of its own may have one."""
 
     recording: LogRecorder | None = None
@@ -60,7 +62,7 @@ class Bench:
         self.now = now
         self.rack = AccessorySet(self.outputs)
         self.rack.open()
-        self.rover = Rover(Params(params), now=now, plan_keeper=self.plans, recording=self.recording, rack=self.rack)
+        self.rover = Rover(Params(params), now=now, plan_store=self.plans, recording=self.recording, rack=self.rack)
         self.readings = Readings()
         self.sent: list[m.Message] = []
         self.peers: list[Peer | None] = []
@@ -98,7 +100,7 @@ class Bench:
     def say(self, message: m.Message, system: int = DRIVER, *, introduced: bool = True, sequence: int | None = None,
             address: Hashable = "", named: bool = False) -> None:  # fmt: skip
         """One message of a ground station, and what the rover answers. As on a link, the rest is not even decoded."""
-        if type(message).id not in INBOUND_IDS:
+        if type(message).id not in MESSAGE_IDS:
             return
         self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
         peer = Peer(0, address or f"gcs {system}")

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from dialects import messages as m
+from dialects.axes import Axes
 from dialects.enums import Command, DriveType, Result
 from dialects.modes import Mode
-from tests.vehicle.bench import CYCLE, DRIVER, Bench
+from tests.vehicle.bench import CYCLE, DRIVER, NEUTRAL, Bench
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Origin, Point
 from vehicle.sim.body import SimulatedBody, SimulatedHome
@@ -115,3 +116,16 @@ class Field(Bench):
             self.wait(CYCLE)
             still &= not self.turning
         return still
+
+
+def away() -> Field:
+    """Return an armed rover that was driven around a corner in MANUAL."""
+    field = Field()
+    field.arm()
+    field.wait(0.2, NEUTRAL)
+    field.wait(10.0, Axes(0.5))
+    field.wait(1.0, Axes(0.0, 0.4))
+    field.wait(8.0, Axes(0.5))
+    field.wait(0.5, NEUTRAL)
+    assert field.truth.distance(Point(0.0, 0.0)) > 6.0
+    return field

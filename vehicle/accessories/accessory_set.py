@@ -1,4 +1,4 @@
-"""All accessories of a vehicle: which there are, what may be asked of each, and what time does to them."""
+"""AccessorySet: all relays and servos of a vehicle, updated in each control cycle."""
 
 from __future__ import annotations
 
@@ -8,51 +8,50 @@ from vehicle.accessories.output import AccessoryOutput, AccessorySpec, Until
 
 
 class AccessorySet:
-    """Opened when the motors are; before that nothing is given."""
+    """The accessories by kind and number. They are opened together with the motors."""
 
-    def __init__(self, outputs: Iterable[AccessorySpec] = ()) -> None:
-        self._outlets: dict[tuple[str, float], AccessoryOutput] = {
-            (output.kind, output.number): AccessoryOutput(output) for output in outputs
+    def __init__(self, specs: Iterable[AccessorySpec] = ()) -> None:
+        self._outputs: dict[tuple[str, float], AccessoryOutput] = {
+            (spec.kind, spec.number): AccessoryOutput(spec) for spec in specs
         }
 
     def __iter__(self) -> Iterator[AccessoryOutput]:
-        return iter(self._outlets.values())
+        return iter(self._outputs.values())
 
     def find(self, kind: str, number: float) -> AccessoryOutput | None:
-        """The one of this number; None where there is none."""
-        return self._outlets.get((kind, number))
+        """Return the accessory with this number, or None."""
+        return self._outputs.get((kind, number))
 
     def values(self, kind: str) -> dict[int, int]:
-        """Number -> what the hardware has, of those that are open."""
+        """Return number -> value of the hardware for the open accessories of this kind."""
         return {
-            outlet.spec.number: outlet.actual
-            for outlet in self
-            if outlet.spec.kind == kind and outlet.actual is not None
+            output.spec.number: output.actual
+            for output in self
+            if output.spec.kind == kind and output.actual is not None
         }
 
     def open(self) -> None:
-        """Each with its first value. One that does not open is told as a fault, and keeps nobody from driving."""
-        for outlet in self:
-            outlet.open()
+        """Open each accessory with its start value. A failure is reported as a fault and does not prevent driving."""
+        for output in self:
+            output.open()
 
-    def update(self, secured: Callable[[Until], str | None], now: float) -> list[tuple[AccessoryOutput, str]]:
-        """One cycle. `secured` says why those that keep what they have until then must be safe now, or None; which of
-        them were not is returned, and why they are now.
+    def update(self, safe_reason: Callable[[Until], str | None], now: float) -> list[tuple[AccessoryOutput, str]]:
+        """Run one control cycle. Returns the outputs that were made safe, with the reason.
 
-        After a failure the others wait for the next cycle, so that a dead bus costs one wait in a cycle and not one
-        for each.
+        `safe_reason` returns why outputs with this `until` must be safe now, or None. After a failure the other outputs
+        wait for the next cycle, so that a dead bus delays a cycle once and not once for each output.
         """
-        ended = []
-        for outlet in self:
-            why = secured(outlet.spec.until)
-            if why is not None and outlet.set_safe():
-                ended.append((outlet, why))
-        for outlet in self:
-            if not outlet.update(now):
+        made_safe = []
+        for output in self:
+            reason = safe_reason(output.spec.until)
+            if reason is not None and output.set_safe():
+                made_safe.append((output, reason))
+        for output in self:
+            if not output.update(now):
                 break
-        return ended
+        return made_safe
 
     def close(self) -> None:
-        """Each safe, and let go. May come twice."""
-        for outlet in self:
-            outlet.close()
+        """Make each output safe, then release the hardware. May be called twice."""
+        for output in self:
+            output.close()

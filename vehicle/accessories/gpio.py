@@ -1,7 +1,6 @@
-"""A relay, or whatever else is switched, at a pin of a Raspberry Pi, through gpiozero and lgpio.
+"""A relay or another switched load on a GPIO pin of a Raspberry Pi, through gpiozero and lgpio.
 
-There is no servo here: lgpio makes pulses in software, by which a servo fidgets (its own words), and gpiozero hands it
-steps of 200 us.
+There is no servo driver here: the software pulses of lgpio make a servo jitter, and gpiozero has steps of 200 us only.
 """
 
 from __future__ import annotations
@@ -14,26 +13,26 @@ from vehicle.motors.settings import Pin, pin_name
 
 
 class GpioRelaySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A pin."""
+    """A relay on a pin."""
 
     pin: Pin
     """BCM number."""
     active_high: bool = True
-    """False for a board that switches on when its input is low, as many with optocouplers."""
+    """False for a board that switches on when its input is low, like many with optocouplers."""
 
     @property
     def taken(self) -> list[str]:
-        """The pin."""
+        """The pin by name."""
         return [pin_name(self.pin)]
 
 
 class GpioRelay:
-    """Fits `vehicle.accessories.Accessory`. Once closed the pin is an input: what the relay is then is its board's."""
+    """Fits `vehicle.accessories.Accessory`. A closed pin is an input: the relay board decides on the state then."""
 
     Settings = GpioRelaySettings
 
     def __init__(self, settings: GpioRelaySettings, value: int, *, pin_factory: Any = None) -> None:
-        """`pin_factory` is gpiozero's; None takes the one of this machine. Raises MotorError."""
+        """Open the pin. `pin_factory` is gpiozero's; None selects the one of this machine. Raises MotorError."""
         from vehicle.motors.pins import DigitalOutputDevice, translated
 
         self._translated = translated
@@ -46,11 +45,11 @@ class GpioRelay:
             )
 
     def set(self, value: int) -> None:
-        """Switch it. Raises MotorError."""
+        """Switch the relay on or off. Raises MotorError."""
         with self._translated("pin"):
             self._pin.value = bool(value)
 
     def close(self) -> None:
-        """Let go of the pin."""
+        """Release the pin."""
         with self._translated("pin"):
             self._pin.close()

@@ -1,4 +1,4 @@
-"""One relay or servo: what it may be given, what it is to give, and the accessory that gives it; no protocol."""
+"""One relay or servo: its specification, its target value and repetition, and the driver that outputs it."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from vehicle.accessories import OFF, Accessory
 from vehicle.hardware.error_text import format_error
 
 RETRY_INTERVAL = 1.0
-"""s after a failure until an accessory is tried again."""
+"""s after a failure until the driver is called again."""
 
 Until = Literal["end", "stop", "disarm"]
-"""How long an accessory keeps what it was given. Then it gets its safe value, until somebody asks for another again.
+"""When an accessory returns to its safe value; it stays there until another value is commanded.
 
-end: until the vehicle's program ends, or is killed.
-stop: also until an emergency stop, and not before it is released.
-disarm: also until the vehicle is disarmed or a failsafe stops it; away from its safe value only while neither holds.
+end: when the vehicle program ends or is killed.
+stop: also at an emergency stop; no other value is accepted until the stop is released.
+disarm: also when the vehicle is disarmed or stopped by a failsafe; no other value is accepted meanwhile.
 """
 
 
 class PulseRange(NamedTuple):
-    """What a servo may get, us."""
+    """Permitted pulses of a servo, us."""
 
     low: int
     trim: int
@@ -31,28 +31,28 @@ class PulseRange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class AccessorySpec:
-    """One line of the settings, understood."""
+    """The specification of one accessory, built from its settings."""
 
     kind: Literal["relay", "servo"]
     number: int
     make: Callable[[int], Accessory]
-    """Opens it with a first value. May raise anything."""
+    """Opens the driver with a start value. May raise anything."""
     driver: str = "simulated"
     start: int = OFF
     safe: int = OFF
     until: Until = "stop"
     pulses: PulseRange | None = None
-    """Of a servo."""
+    """None for a relay."""
     taken: Sequence[str] = ()
     shared: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
-        """As the driver reads it."""
+        """Name in texts for the operator."""
         return f"{self.kind} {self.number}"
 
     def format_value(self, value: int) -> str:
-        """A value as the driver reads it."""
+        """Return a value as text for the operator."""
         if self.kind == "relay":
             return "on" if value else "off"
         return f"{value} us" if value else "no pulses"
@@ -60,42 +60,46 @@ class AccessorySpec:
 
 @dataclass(slots=True)
 class RepeatState:
-    """To and fro."""
+    """A running repetition (DO_REPEAT_RELAY, DO_REPEAT_SERVO): alternates between two values."""
 
     away: int
     rest: int
-    left: int
-    """Changes to come: an even number goes away next."""
+    changes_left: int
+    """Number of remaining changes; an even number changes to `away` next."""
     period: float
     """s between two changes."""
     due: float
+    """Time of the next change."""
 
 
 class AccessoryOutput:
-    """`step` each cycle; the rest at any moment. It never raises, whatever the accessory does."""
+    """One accessory. Call `update` in each cycle. Never raises, whatever the driver does."""
 
-    def __init__(self, output: AccessorySpec) -> None:
-        self.spec = output
-        self.target = output.start
+    def __init__(self, spec: AccessorySpec) -> None:
+        self.spec = spec
+        self.target = spec.start
+        """Value to output."""
         self.actual: int | None = None
-        """What the hardware has; None before it is opened, after it is closed, and where it did not open."""
+        """Value of the hardware; None before it is opened, after it is closed, and if opening failed."""
         self.fault: str | None = None
-        """Why it does not do what is wanted, one line."""
+        """Why the target could not be set, one line."""
         self._accessory: Accessory | None = None
         self._repeat: RepeatState | None = None
         self._retry_due = 0.0
 
     def open(self) -> None:
-        """With its first value."""
+        """Open the driver with the start value."""
         self._attempt(self._make, self.spec.start)
 
     def set_value(self, value: int) -> None:
-        """From now on, in place of whatever was asked before."""
+        """Set the target, and end a repetition."""
         self.target, self._repeat = value, None
 
     def start_repeat(self, away: int | None, times: int, period: float, now: float) -> None:
-        """Go away and come back so many times: a servo from its trim to `away`, a relay, where `away` is None, to the
-        other state and back."""
+        """Start a repetition: change `times` times to another value and back.
+
+        A servo changes from its trim to `away`. A relay, for which `away` is None, changes to the other state.
+        """
         if away is None:
             rest = self._repeat.rest if self._repeat else self.target
             away = int(not rest)
@@ -104,15 +108,15 @@ class AccessoryOutput:
         self._repeat = RepeatState(away, rest, 2 * times, period, now)
 
     def set_safe(self) -> bool:
-        """Its safe value. True where that ends anything."""
-        ends = self.target != self.spec.safe or self._repeat is not None
+        """Set the safe value. Returns True if the target was another one or a repetition was running."""
+        changed = self.target != self.spec.safe or self._repeat is not None
         self.set_value(self.spec.safe)
-        return ends
+        return changed
 
     def update(self, now: float) -> bool:
-        """Let the hardware have what is wanted at this moment. False where it did not take it."""
-        self._go_on(now)
-        done = self.target == self.actual and self.fault is None  # after a failure nobody knows what it has
+        """Advance a repetition and output the target if needed. Returns False if the driver failed."""
+        self._advance_repeat(now)
+        done = self.target == self.actual and self.fault is None  # after a failure the value is unknown
         if self._accessory is None or done or now < self._retry_due:
             return True
         self.fault = None
@@ -124,7 +128,7 @@ class AccessoryOutput:
         return True
 
     def close(self) -> None:
-        """Its safe value, then the hardware is let go. May come twice."""
+        """Set the safe value, then release the hardware. May be called twice."""
         accessory, self._accessory, self.actual = self._accessory, None, None
         if accessory is not None:
             self.set_safe()
@@ -138,15 +142,15 @@ class AccessoryOutput:
     def _attempt(self, step: Callable[..., None], *values: int) -> None:
         try:
             step(*values)
-        except Exception as error:  # anybody's driver may raise anything
+        except Exception as error:  # a driver may raise anything
             self.fault = format_error(error)
 
-    def _go_on(self, now: float) -> None:
+    def _advance_repeat(self, now: float) -> None:
         repeat = self._repeat
         if repeat is None or now < repeat.due:
             return
-        self.target = repeat.rest if repeat.left % 2 else repeat.away
-        repeat.left -= 1
+        self.target = repeat.rest if repeat.changes_left % 2 else repeat.away
+        repeat.changes_left -= 1
         repeat.due = now + repeat.period
-        if not repeat.left:
+        if not repeat.changes_left:
             self._repeat = None

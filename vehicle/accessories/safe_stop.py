@@ -1,33 +1,34 @@
-"""Relays and servos that nobody serves any more, as after a killed daemon: each to its safe value; never raises."""
+"""Sets relays and servos to their safe values without a running vehicle, for example after the daemon was killed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from vehicle.accessories.settings import COMMON, Kind, build_spec
+from vehicle.accessories.drivers import Kind
+from vehicle.accessories.settings import COMMON, build_spec
 from vehicle.hardware.error_text import format_error
 
 
 def safe_stop(tables: Any) -> Iterator[tuple[bool, str]]:
-    """Try each of [accessories], whatever it holds: is it safe, and a line of what it has now or why nobody knows."""
+    """Make each accessory of [accessories] safe, and yield success and a line for each. Never raises."""
     for kind in COMMON:
-        for index, table in enumerate(_listed(tables, f"{kind}s")):
+        for index, table in enumerate(_tables_of(tables, f"{kind}s")):
             try:
-                yield True, _made_safe(kind, table)
-            except Exception as error:  # whatever it is, the caller has nothing better to do than to say it
-                why = format_error(error)
-                yield False, f"accessories.{kind}s[{index}]: may have its last value still: {why}"
+                yield True, _make_safe(kind, table)
+            except Exception as error:  # any error: the caller can only report it
+                reason = format_error(error)
+                yield False, f"accessories.{kind}s[{index}]: may still have its last value: {reason}"
 
 
-def _listed(tables: Any, name: str) -> list[Any]:
+def _tables_of(tables: Any, name: str) -> list[Any]:
     found = tables.get(name) if isinstance(tables, Mapping) else None
     return found if isinstance(found, list) else []
 
 
-def _made_safe(kind: Kind, table: Any) -> str:
-    output = build_spec(kind, table)
-    accessory = output.make(output.safe)
-    accessory.set(output.safe)  # what it was made with is the driver's word only
+def _make_safe(kind: Kind, table: Any) -> str:
+    spec = build_spec(kind, table)
+    accessory = spec.make(spec.safe)
+    accessory.set(spec.safe)  # a driver from outside may ignore its start value
     accessory.close()
-    return f"{output.name}: {output.format_value(output.safe)}"
+    return f"{spec.name}: {spec.format_value(spec.safe)}"

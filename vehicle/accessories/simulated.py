@@ -1,17 +1,17 @@
-"""An accessory that is none: telemetry (RELAY_STATUS, SERVO_OUTPUT_RAW) and tests see what it would get."""
+"""An accessory without hardware, whose value telemetry (RELAY_STATUS, SERVO_OUTPUT_RAW) and tests read."""
 
 from __future__ import annotations
 
 
 class SimulatedAccessory:
-    """Fits `vehicle.accessories.Accessory`; `value` is what a relay or a servo would get."""
+    """Fits `vehicle.accessories.Accessory`; `value` is the last value set."""
 
     def __init__(self, value: int) -> None:
         self.value = value
 
     def set(self, value: int) -> None:
-        """Hold it."""
+        """Keep the value."""
         self.value = value
 
     def close(self) -> None:
-        """There is no hardware to let go of."""
+        """Return: there is no hardware to release."""

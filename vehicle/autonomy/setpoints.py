@@ -1,7 +1,8 @@
-"""The setpoints of GUIDED as messages say them: SET_POSITION_TARGET_* and SET_ATTITUDE_TARGET become targets.
+"""Parses the setpoints of GUIDED: SET_POSITION_TARGET_LOCAL_NED, _GLOBAL_INT and SET_ATTITUDE_TARGET.
 
-Velocity and yaw rate in the body frame (frame 8, mask 1479) is the Twist of ROS, its turn clockwise as in NED.
-A message with anything wrong in a field that counts is refused as a whole, in words; altitude never counts for a rover.
+Velocity and yaw rate in the body frame (frame 8, mask 1479) equal the Twist of ROS, with turns clockwise as in NED. A
+message with an invalid value in a field that is used is rejected as a whole, with a reason; altitude is never used.
+Messages and masks: https://mavlink.io/en/messages/common.html#SET_POSITION_TARGET_LOCAL_NED
 """
 
 from __future__ import annotations
@@ -20,31 +21,33 @@ LOCAL_NED, LOCAL_OFFSET_NED, BODY_NED, BODY_OFFSET_NED, BODY_FRD = 1, 7, 8, 9, 1
 BODY = (BODY_NED, BODY_OFFSET_NED, BODY_FRD)
 LOCAL_FRAMES = (LOCAL_NED, LOCAL_OFFSET_NED, *BODY)
 GLOBAL_FRAMES = (0, 3, 10, 5, 6, 11)
-"""GLOBAL, _RELATIVE_ALT, _TERRAIN_ALT and their deprecated _INT: the altitude is all that differs."""
+"""MAV_FRAME_GLOBAL, _RELATIVE_ALT, _TERRAIN_ALT and their deprecated _INT: they differ in the altitude only."""
 POSITION, VELOCITY, ACCELERATION, YAW, YAW_RATE = 1 | 2, 8 | 16, 64 | 128 | 256, 1024, 2048
-"""POSITION_TARGET_TYPEMASK: a bit that is set says "ignore". 512 only says what an acceleration is, where one counts:
-MAVProxy's `velocity` and many scripts set all bits but those of the velocity."""
+"""POSITION_TARGET_TYPEMASK: a bit that is set means "ignore". 512 only tells what an acceleration means, if one is
+used: MAVProxy's `velocity` and many scripts set all bits but those of the velocity."""
 ATTITUDE_YAW_RATE, ATTITUDE_THRUST, ATTITUDE_Q = 4, 64, 128
 """ATTITUDE_TARGET_TYPEMASK: "ignore" ..."""
 THRUST_BODY = 32
-"""... and "thrust_body counts, and not thrust"."""
+"""... and "use thrust_body instead of thrust"."""
 SETPOINT_MAX_AGE = 1.0
-"""s; an older setpoint is not driven by (bad input 47)."""
+"""s; an older setpoint is ignored (bad input 47 in tests/test_bad_inputs.py)."""
 REORDER_WINDOW = 1.0
-"""s; a setpoint whose sender's clock went back was overtaken, unless nothing came for so long: then the sender has
-started anew."""
+"""s; a setpoint with an earlier time was overtaken, unless none came for this long: then the sender has restarted."""
 CLOCK_DRIFT = 5e-4
-"""s/s by which a sender's clock may be slower than ours; a crystal's is a tenth of it."""
+"""s/s by which the clock of a sender may be slower than ours; a crystal deviates by a tenth of it."""
 TIME_BOOT_WRAP = 2**32
-"""ms; where time_boot_ms begins again."""
+"""ms; time_boot_ms wraps around here."""
 QUATERNION_NORM_MIN = 0.5
-"""Length of a quaternion, which should be 1: all zeros are somebody who has filled in nothing."""
+"""Smallest norm of a quaternion, which should be 1: all zeros come from a sender that has set none."""
 TARGET_DISTANCE_MAX = 1e5
-"""m; a place beyond is no place for a rover."""
+"""m; a target farther away is rejected."""
 
 
 class VelocityTarget(NamedTuple):
-    """Drive at `speed`, negative backwards, turning at `turn_rate` or toward `heading`. Counts for GUIDED_TIMEOUT."""
+    """Drive at `speed`, turning at `turn_rate` or toward `heading`; valid for GUIDED_TIMEOUT.
+
+    A negative speed is backward.
+    """
 
     speed: float
     turn_rate: float | None = None
@@ -52,11 +55,11 @@ class VelocityTarget(NamedTuple):
 
 
 class PositionTarget(NamedTuple):
-    """Go there and stand. Counts until there is another target."""
+    """Drive to `point` and stop there. Valid until the next target."""
 
     point: Point
     speed: float | None = None
-    """m/s; None: the usual one."""
+    """m/s; None for the cruise speed."""
 
 
 Target = VelocityTarget | PositionTarget
@@ -64,33 +67,36 @@ Target = VelocityTarget | PositionTarget
 
 @dataclass(frozen=True, slots=True)
 class SetpointRejection:
-    """Why a setpoint is none."""
+    """Why a setpoint was rejected."""
 
     reason: str
 
 
 class SenderClock:
-    """How old a sender's setpoints are when they arrive, against the fastest of them.
+    """Estimates the age of a sender's setpoints on arrival, relative to the fastest of them.
 
-    No clocks have to agree: what waited in a radio or a socket is late against what did not. The two ways of TIMESYNC
-    would know no more, because time_boot_ms is another clock than the one that it compares.
+    The clocks need not agree: a setpoint that waited in a radio or a socket is late compared with one that did not.
+    TIMESYNC would not help, because time_boot_ms is another clock than the one that TIMESYNC compares.
     """
 
     def __init__(self) -> None:
         self._newest = 0
         self._at = -math.inf
         self._least = math.inf
-        """Least difference of the two clocks seen, s."""
+        """Smallest difference of the two clocks seen, s."""
         self._first: int | None = None
-        self._stands = 0
-        """Setpoints with the first time again: this is no clock. -1: another time was there, it is one."""
+        self._repeats = 0
+        """Number of setpoints that repeat the first time: not a clock. -1: the time has changed, so it is a clock."""
 
     def age(self, boot_ms: int, now: float) -> float | None:
-        """s; None for one that was overtaken. 0 where the sender has no clock: many scripts send 0, and ArduPilot's
-        examples always 10. A clock that stops is another matter."""
+        """Return the age in s; None for a setpoint that was overtaken.
+
+        The age is 0 if the sender has no clock: many scripts send 0, and ArduPilot's examples always 10. A clock that
+        stops after it has run is treated differently.
+        """
         if not boot_ms:
             return 0.0
-        stood = self._is_stopped(boot_ms)
+        stopped = self._is_stopped(boot_ms)
         ahead = (boot_ms - self._newest + TIME_BOOT_WRAP // 2) % TIME_BOOT_WRAP - TIME_BOOT_WRAP // 2
         quiet = now - self._at
         if ahead < 0 and quiet < REORDER_WINDOW:
@@ -101,19 +107,19 @@ class SenderClock:
             self._least, unwrapped = self._least + CLOCK_DRIFT * quiet, self._newest + ahead
         self._newest, self._at = unwrapped, now
         difference = now - unwrapped / 1000
-        self._least = difference if stood else min(self._least, difference)
+        self._least = difference if stopped else min(self._least, difference)
         return difference - self._least
 
     def _is_stopped(self, boot_ms: int) -> bool:
-        """Did it stand until now?"""
+        """Return True if the sender's clock has not advanced until now."""
         if self._first is None:
             self._first = boot_ms
-        elif boot_ms == self._first and self._stands >= 0:
-            self._stands += 1
-        stood = self._stands > 0
+        elif boot_ms == self._first and self._repeats >= 0:
+            self._repeats += 1
+        stopped = self._repeats > 0
         if boot_ms != self._first:
-            self._stands = -1
-        return stood
+            self._repeats = -1
+        return stopped
 
 
 Setpoint = m.SetPositionTargetLocalNed | m.SetPositionTargetGlobalInt | m.SetAttitudeTarget
@@ -121,27 +127,27 @@ SetPosition = m.SetPositionTargetLocalNed | m.SetPositionTargetGlobalInt
 
 
 def parse_position_target(message: SetPosition, estimate: Estimate) -> Target | SetpointRejection:
-    """The target of SET_POSITION_TARGET_LOCAL_NED or _GLOBAL_INT."""
+    """Return the target of SET_POSITION_TARGET_LOCAL_NED or _GLOBAL_INT, or why it is rejected."""
     mask = message.type_mask
     frames = LOCAL_FRAMES if isinstance(message, m.SetPositionTargetLocalNed) else GLOBAL_FRAMES
     if message.coordinate_frame not in frames:
-        return SetpointRejection(f"frame {message.coordinate_frame} is not offered")
+        return SetpointRejection(f"frame {message.coordinate_frame} is not supported")
     if mask & ACCELERATION != ACCELERATION:
-        return SetpointRejection("acceleration and force are not offered")
+        return SetpointRejection("acceleration and force are not supported")
     if mask & POSITION not in (0, POSITION):
-        return SetpointRejection("half a position")
+        return SetpointRejection("incomplete position")
     if mask & (POSITION | VELOCITY | YAW | YAW_RATE) == POSITION | VELOCITY | YAW | YAW_RATE:
-        return SetpointRejection("nothing is asked for")
-    wrong = _no_numbers(message, mask)
+        return SetpointRejection("all fields are ignored")
+    wrong = _first_invalid(message, mask)
     if wrong:
-        return SetpointRejection(f"{wrong} is no number")
+        return SetpointRejection(f"{wrong} is not a number")
     return _position_target(message, estimate) if not mask & POSITION else _velocity_target(message, estimate)
 
 
 def parse_attitude_target(message: m.SetAttitudeTarget, full_speed: float) -> Target | SetpointRejection:
-    """The target of SET_ATTITUDE_TARGET: thrust is the share of `full_speed`, as in ArduRover.
+    """Return the target of SET_ATTITUDE_TARGET, or why it is rejected.
 
-    Thrust in the body's frame is the forward part of it: a rover has no other.
+    Thrust is the share of `full_speed`, as in ArduRover. Of thrust_body only the forward component is used.
     """
     mask = message.type_mask
     thrust = message.thrust_body[0] if mask & THRUST_BODY else message.thrust
@@ -151,16 +157,16 @@ def parse_attitude_target(message: m.SetAttitudeTarget, full_speed: float) -> Ta
         return SetpointRejection("neither attitude nor yaw rate")
     used = [thrust] + ([message.body_yaw_rate] if not mask & ATTITUDE_YAW_RATE else list(message.q))
     if not all(map(math.isfinite, used)):
-        return SetpointRejection("a value is no number")
+        return SetpointRejection("a value is not a number")
     speed = max(-1.0, min(1.0, thrust)) * full_speed
     if not mask & ATTITUDE_YAW_RATE:
         return VelocityTarget(speed, turn_rate=message.body_yaw_rate)
     if math.hypot(*message.q) < QUATERNION_NORM_MIN:
-        return SetpointRejection("its quaternion is none")
+        return SetpointRejection("invalid quaternion")
     return VelocityTarget(speed, heading=_yaw(message.q))
 
 
-def _no_numbers(message: SetPosition, mask: int) -> str | None:
+def _first_invalid(message: SetPosition, mask: int) -> str | None:
     used: list[tuple[str, float]] = []
     if not mask & POSITION and isinstance(message, m.SetPositionTargetLocalNed):
         used += [("x", message.x), ("y", message.y)]
@@ -192,14 +198,14 @@ def _local_point(message: m.SetPositionTargetLocalNed, estimate: Estimate) -> Po
 
 
 def _global_point(message: m.SetPositionTargetGlobalInt, estimate: Estimate) -> Point | SetpointRejection:
-    return global_to_local(message.lat_int, message.lon_int, estimate) or SetpointRejection("no such place")
+    return global_to_local(message.lat_int, message.lon_int, estimate) or SetpointRejection("invalid position")
 
 
 def global_to_local(latitude: float, longitude: float, estimate: Estimate) -> Point | None:
-    """Degrees x 1e7 on our ground; None for what is no place: 0/0, INT32_MAX and beyond the poles."""
+    """Convert degrees x 1e7; None for an invalid position: 0/0, INT32_MAX and beyond the poles."""
     degrees = latitude / 1e7, longitude / 1e7
-    sane = abs(degrees[0]) <= 90.0 and abs(degrees[1]) <= 180.0 and (latitude, longitude) != (0, 0)
-    return estimate.origin.to_local(*degrees) if sane and estimate.origin is not None else None
+    valid = abs(degrees[0]) <= 90.0 and abs(degrees[1]) <= 180.0 and (latitude, longitude) != (0, 0)
+    return estimate.origin.to_local(*degrees) if valid and estimate.origin is not None else None
 
 
 def _velocity_target(message: SetPosition, estimate: Estimate) -> Target | SetpointRejection:
@@ -224,13 +230,13 @@ def _velocity_target(message: SetPosition, estimate: Estimate) -> Target | Setpo
 def _heading_target(
     message: SetPosition, estimate: Estimate, ahead: float, right: float, body: bool
 ) -> Target | SetpointRejection:
-    """By an explicit yaw, or by the direction of a velocity in the body's frame."""
+    """Return a target by an explicit yaw, or by the direction of a velocity in the body frame."""
     yaw = estimate.yaw
     if not message.type_mask & YAW:
         if yaw is None:
             return SetpointRejection("heading is not known")
-        asked = message.yaw + (yaw if body else 0.0)
-        return VelocityTarget(ahead if body else _rotated(ahead, right, -yaw)[0], heading=wrap_angle(asked))
+        requested = message.yaw + (yaw if body else 0.0)
+        return VelocityTarget(ahead if body else _rotated(ahead, right, -yaw)[0], heading=wrap_angle(requested))
     if not right:
         return VelocityTarget(ahead, turn_rate=0.0)
     if yaw is None:

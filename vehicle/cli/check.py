@@ -1,4 +1,4 @@
-"""`vehicle check`: is the file of settings right, and does the hardware answer? Nothing moves: no motor gets power."""
+"""`vehicle check`: check the configuration file and the hardware. Nothing moves: the motors stay without power."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ from vehicle.config.conflicts import find_motor_conflicts
 from vehicle.config.effective_params import EffectiveParams, load_effective_params
 from vehicle.drive.mixer import MIXERS
 from vehicle.hardware.error_text import format_error
-from vehicle.motors import MotorError, arming_check, open_motors
+from vehicle.motors import MotorError, arming_check
+from vehicle.motors.drivers import open_motors
 from vehicle.params import Params
 from vehicle.runtime.lock import MotorLock
 from vehicle.sensors.encoders import Encoders
@@ -33,149 +34,147 @@ from vehicle.storage.dir_check import write_problem
 from vehicle.storage.recorder import LOGS
 
 GPS_WAIT = 3.0
-"""s for a first report: gpsd answers at once, receivers give one each second."""
+"""s for a first report: gpsd responds at once, and receivers report once per second."""
 POLL = 0.1
-"""s"""
+"""s between two polls."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """One item: what, whether it is well, and what was seen."""
+    """The result for one item."""
 
     item: str
     ok: bool
     detail: str
-    mistake: bool = False
-    """It is not well because of the file, whatever the hardware does."""
+    user_error: bool = False
+    """The failure is caused by the file, not by the hardware."""
 
     def __str__(self) -> str:
         return f"{'ok  ' if self.ok else 'FAIL'}  {self.item}: {self.detail}"
 
 
 def run_checks(path: str, state: str | None = None) -> Iterator[CheckResult]:
-    """Item by item as they are tried; the file alone where it has mistakes. `state`: folder of kept parameters."""
+    """Yield the results one by one; only those of the file if it has errors. `state` overrides the state folder."""
     try:
         config = load(path)
     except ConfigError as error:
-        yield from (CheckResult("settings", False, problem, mistake=True) for problem in error.problems)
+        yield from (CheckResult("settings", False, problem, user_error=True) for problem in error.problems)
         return
     yield CheckResult("settings", True, path)
-    known = load_effective_params(config, state)
-    yield _parameters(config, known)
-    yield _folder("state", known.folder, "state or --state")
-    if known.params["LOG_BACKEND_TYPE"]:
-        logs = Path(config.log.tlog) if config.log.tlog else known.folder / LOGS
+    effective = load_effective_params(config, state)
+    yield _parameters(config, effective)
+    yield _folder("state", effective.folder, "state or --state")
+    if effective.params["LOG_BACKEND_TYPE"]:
+        logs = Path(config.log.tlog) if config.log.tlog else effective.folder / LOGS
         yield _folder("log.tlog", logs, "log.tlog")
     yield from _links(config)
     if config.motors:
-        yield _tried("motors", lambda: _motors(config, known.params))
+        yield _try("motors", lambda: _motors(config, effective.params))
     else:
-        yield CheckResult("motors", False, 'none; add [motors] and driver = "NAME"', mistake=True)
-    yield from _accessories(config, known.params)
+        yield CheckResult("motors", False, 'none; add [motors] and driver = "NAME"', user_error=True)
+    yield from _accessories(config, effective.params)
     yield from _sensors(config)
     for name, log in (("log.file", config.log.file), ("log.motors", config.log.motors)):
         if log is not None:
-            yield _tried(name, lambda log=Path(log): _log_file(log))  # type: ignore[misc]
+            yield _try(name, lambda log=Path(log): _log_file(log))  # type: ignore[misc]
 
 
 def _accessories(config: Config, params: Params) -> Iterator[CheckResult]:
-    """Each is opened as it is when it is safe; a servo without pulses, so that it does not move."""
-    outputs = build_specs(config.accessories)
-    for problem in find_motor_conflicts(outputs, DriveType(int(params["DRIVE_TYPE"]))):
-        yield CheckResult("settings", False, problem, mistake=True)
-    for output in outputs:
-        yield _tried(output.name, lambda output=output: _accessory(output, config.motors))  # type: ignore[misc]
+    """Open each relay with its safe state, and each servo without pulses, so that it does not move."""
+    specs = build_specs(config.accessories)
+    for problem in find_motor_conflicts(specs, DriveType(int(params["DRIVE_TYPE"]))):
+        yield CheckResult("settings", False, problem, user_error=True)
+    for spec in specs:
+        yield _try(spec.name, lambda spec=spec: _accessory(spec, config.motors))  # type: ignore[misc]
 
 
-def _accessory(output: AccessorySpec, motors: Mapping[str, Any]) -> str:
-    value = output.safe if output.kind == "relay" else OFF
+def _accessory(spec: AccessorySpec, motors: Mapping[str, Any]) -> str:
+    value = spec.safe if spec.kind == "relay" else OFF
     with contextlib.ExitStack() as opened:
-        if motors:  # a board that another vehicle drives by would be set up anew under its motors
+        if motors:  # setting up a board that a running vehicle uses would interrupt its motors
             opened.callback(MotorLock(motors).close)
         try:
-            output.make(value).close()
-        except Exception as error:  # anybody's driver may raise anything
-            raise _AbsentError(format_error(error)) from error
-    return f"{output.driver}, {output.format_value(value)}"
+            spec.make(value).close()
+        except Exception as error:  # a driver may raise anything
+            raise _CheckError(format_error(error)) from error
+    return f"{spec.driver}, {spec.format_value(value)}"
 
 
 def _sensors(config: Config) -> Iterator[CheckResult]:
     sensors = config.sensors
     if sensors.battery is not None:
         battery = PowerMonitor(sensors.battery)
-        yield _tried("sensors.battery", lambda: _battery(battery))
+        yield _try("sensors.battery", lambda: _battery(battery))
     if sensors.gps is not None:
-        yield _tried("sensors.gps", lambda: asyncio.run(_gps(config)))
+        yield _try("sensors.gps", lambda: asyncio.run(_gps(config)))
     if sensors.encoders is not None:
-        yield _tried("sensors.encoders", lambda: _encoders(config))
+        yield _try("sensors.encoders", lambda: _encoders(config))
     if sensors.computer:
-        yield _tried("sensors.computer", _computer)
+        yield _try("sensors.computer", _computer)
 
 
-class _AbsentError(Exception):
-    """It does not answer."""
+class _CheckError(Exception):
+    """The check failed; the text is one line."""
 
 
-def _tried(item: str, attempt: Callable[[], str]) -> CheckResult:
+def _try(item: str, attempt: Callable[[], str]) -> CheckResult:
     try:
         return CheckResult(item, True, attempt())
-    except (MotorError, OSError, ImportError, LinkError, _AbsentError) as error:
+    except (MotorError, OSError, ImportError, LinkError, _CheckError) as error:
         return CheckResult(item, False, format_error(error))
 
 
 def _links(config: Config) -> Iterator[CheckResult]:
     if not config.endpoints:
-        yield CheckResult(
-            "endpoints", False, 'none; where is the ground station? endpoints = ["udpin:0.0.0.0:14550"]', mistake=True
-        )
+        detail = 'none; add the link to the ground station: endpoints = ["udpin:0.0.0.0:14550"]'
+        yield CheckResult("endpoints", False, detail, user_error=True)
     for endpoint in config.endpoints:
-        yield _tried(f"endpoint {endpoint}", lambda endpoint=endpoint: _link(endpoint))  # type: ignore[misc]
+        yield _try(f"endpoint {endpoint}", lambda endpoint=endpoint: _link(endpoint))  # type: ignore[misc]
 
 
 def _link(endpoint: str) -> str:
-    [wire] = open_transports([endpoint])
-    if connects := _connecting(wire):
-        asyncio.run(_connected(wire))
+    [transport] = open_transports([endpoint])
+    if connects := _is_connecting(transport):
+        asyncio.run(_connect(transport))
     else:
-        wire.close()
-    if wire.problem:
-        raise _AbsentError(wire.problem.removeprefix(f"{endpoint}: ").removesuffix("; trying again"))
+        transport.close()
+    if transport.problem:
+        raise _CheckError(transport.problem.removeprefix(f"{endpoint}: ").removesuffix("; trying again"))
     return "connects" if connects else "opens"
 
 
-def _connecting(wire: Transport) -> bool:
-    return wire.problem == f"{wire.endpoint.text}: {CONNECTING}"
+def _is_connecting(transport: Transport) -> bool:
+    return transport.problem == f"{transport.endpoint.text}: {CONNECTING}"
 
 
-async def _connected(wire: Transport) -> None:
-    """Until it is, or says why not."""
-    wire.start(asyncio.get_running_loop(), lambda _: None, lambda _: None)
+async def _connect(transport: Transport) -> None:
+    """Wait until the transport is connected or has failed, then close it."""
+    transport.start(asyncio.get_running_loop(), lambda _: None, lambda _: None)
     while True:
         await asyncio.sleep(POLL)
-        if not _connecting(wire):
-            wire.close()
+        if not _is_connecting(transport):
+            transport.close()
             return
 
 
 def _folder(item: str, folder: Path, setting: str) -> CheckResult:
     problem = write_problem(folder, setting)
-    return CheckResult(
-        item, not problem, problem or f"{folder} {'can be written' if folder.exists() else 'can be made'}"
-    )
+    detail = f"{folder} {'is writable' if folder.exists() else 'can be created'}"
+    return CheckResult(item, not problem, problem or detail)
 
 
 def _log_file(path: Path) -> str:
     if path.is_dir() or not path.parent.is_dir():
-        raise _AbsentError(f"{path} is a folder" if path.is_dir() else f"there is no folder {path.parent}; make it")
+        raise _CheckError(f"{path} is a folder" if path.is_dir() else f"no folder {path.parent}; create it")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
-        raise _AbsentError(f"{path} may not be written by this user")
-    return f"{path} can be written"
+        raise _CheckError(f"{path} is not writable by this user")
+    return f"{path} is writable"
 
 
-def _parameters(config: Config, known: EffectiveParams) -> CheckResult:
-    problem = known.damage or "; ".join(f"a kept one is not used: {each}" for each in known.left_out)
-    seen = f"{len(config.params)} from the file, {known.saved_count} kept in {known.folder}"
-    return CheckResult("parameters", not problem, f"{seen}: {problem}" if problem else seen)
+def _parameters(config: Config, effective: EffectiveParams) -> CheckResult:
+    problem = effective.damage or "; ".join(f"a saved one is not used: {each}" for each in effective.left_out)
+    counts = f"{len(config.params)} from the file, {effective.saved_count} saved in {effective.folder}"
+    return CheckResult("parameters", not problem, f"{counts}: {problem}" if problem else counts)
 
 
 def _motors(config: Config, params: Params) -> str:
@@ -190,12 +189,12 @@ def _motors(config: Config, params: Params) -> str:
         motors.disable()
         arming_check(motors)()
         if motors.count != wanted:
-            raise _AbsentError(f"the driver has {motors.count} motors, DRIVE_TYPE {kind:d} needs {wanted}")
+            raise _CheckError(f"the driver has {motors.count} motors, DRIVE_TYPE {kind:d} needs {wanted}")
         version = getattr(motors, "version", None)
-        told = f", it calls itself {version()}" if version is not None else ""
-        turned = [name for number, name in enumerate(names, start=1) if params[f"MOT{number}_REVERSED"]]
-        told += f"; reversed: {', '.join(turned)}" if turned else ""
-        return f"{config.motors['driver']} with {motors.count} motors, neutral and without power{told}"
+        notes = f"; version {version()}" if version is not None else ""
+        reversed_ = [name for number, name in enumerate(names, start=1) if params[f"MOT{number}_REVERSED"]]
+        notes += f"; reversed: {', '.join(reversed_)}" if reversed_ else ""
+        return f"{config.motors['driver']} with {motors.count} motors, neutral and without power{notes}"
 
 
 def _battery(monitor: PowerMonitor) -> str:
@@ -214,10 +213,10 @@ async def _gps(config: Config) -> str:
         while loop.time() < end:
             await asyncio.sleep(POLL)
             if gps.fault:
-                raise _AbsentError(gps.fault)
+                raise _CheckError(gps.fault)
             if reading := gps.latest(loop.time()):
                 return f"fix type {reading.fix.fix_type}, {reading.sky.satellites or 0} satellites"
-        raise _AbsentError("gpsd is there, and says nothing of a position: is a receiver connected to it?")
+        raise _CheckError("gpsd responds, but reports no position: is a receiver connected to it?")
     finally:
         gps.close()
 
@@ -232,6 +231,6 @@ def _encoders(config: Config) -> str:
 def _computer() -> str:
     health = PiHealth().sample()
     if health.under_voltage:
-        raise _AbsentError("under-voltage: the supply or its cable is too weak")
-    warmth = "temperature unknown" if health.temperature is None else f"{health.temperature:.0f} degrees"
-    return f"{warmth}, {'supply not watched' if health.under_voltage is None else 'supply well'}"
+        raise _CheckError("under-voltage: the supply or its cable is too weak")
+    temperature = "temperature unknown" if health.temperature is None else f"{health.temperature:.0f} degrees C"
+    return f"{temperature}, {'supply voltage not monitored' if health.under_voltage is None else 'supply voltage ok'}"

@@ -1,4 +1,4 @@
-"""The command line of the vehicle: words in, Settings out. It only reads and refuses; vehicle/runtime/daemon.py does the work."""
+"""The command line of the vehicle: turns options and configuration file into RunSettings for the daemon."""
 
 from __future__ import annotations
 
@@ -12,92 +12,94 @@ from typing import TYPE_CHECKING
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
 from vehicle.cli import subcommands
-from vehicle.cli.options import GROUND_STATION, USAGE, build_parser, find_unknown_option, join_home_option
+from vehicle.cli.options import (
+    GROUND_STATION,
+    SIMULATION_OPTIONS,
+    USAGE,
+    build_parser,
+    find_unknown_option,
+    join_home_option,
+)
 
 if TYPE_CHECKING:
     from vehicle.config.config import Config
     from vehicle.config.run_settings import RunSettings
 
-# The daemon, its loop and the dialect are imported when there is something to run: --help and a mistake answer at once.
+# The daemon, its loop and the dialect are imported only to run: --help and usage errors respond at once.
 
 SIMULATION_PARAMS = {"FS_LOOP_TIMEOUT": 1.0}
-"""A desktop is no real-time machine: a pause of 0.2 s, which a vehicle on wheels must not ignore, only annoys here."""
-
-SIMULATION_ONLY = ("home", "sim_battery", "sim_seed", "sim_truth")
+"""A desktop computer is not a real-time system: a pause of 0.2 s, critical for a real vehicle, is tolerated there."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the vehicle; the exit code."""
+    """Run the vehicle or a subcommand and return the exit code."""
     stdio.ensure_open()
-    words = list(sys.argv[1:] if argv is None else argv)
-    if not words:
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments:
         sys.stderr.write(USAGE)
         return 2
-    if words[0] in subcommands.SUBCOMMANDS:
-        return subcommands.run(words)
+    if arguments[0] in subcommands.SUBCOMMANDS:
+        return subcommands.run(arguments)
     try:
         parser = build_parser()
-        if unknown := find_unknown_option(words):
+        if unknown := find_unknown_option(arguments):
             parser.error(unknown)
-        return _run(parser.parse_intermixed_args(join_home_option(parser.reject_empty(words))), parser)
-    except KeyboardInterrupt:  # before the daemon takes signals; no motor is open yet
+        return _run(parser.parse_intermixed_args(join_home_option(parser.reject_empty(arguments))), parser)
+    except KeyboardInterrupt:  # before the daemon handles signals; no motor is open yet
         return 0
 
 
-def _run(asked: argparse.Namespace, parser: CommandLineParser) -> int:
+def _run(options: argparse.Namespace, parser: CommandLineParser) -> int:
     from vehicle.runtime import daemon
     from vehicle.runtime.log import DaemonLog
 
-    config = _config(asked, parser)
-    settings = _settings(asked, config, parser)
-    verbose = asked.verbose or config.log.verbose
+    config = _load_config(options, parser)
+    settings = _build_settings(options, config, parser)
+    verbose = options.verbose or config.log.verbose
     problem = None
     try:
-        log = DaemonLog(asked.log_file or config.log.file, verbose=verbose)
+        log = DaemonLog(options.log_file or config.log.file, verbose=verbose)
     except OSError as error:
-        if asked.log_file:
-            parser.error(f"log file {asked.log_file}: {error.strerror}")
-        log, problem = (
-            DaemonLog(verbose=verbose),
-            error.strerror,
-        )  # a card that is read-only keeps no service from driving
+        if options.log_file:
+            parser.error(f"log file {options.log_file}: {error.strerror}")
+        log, problem = DaemonLog(verbose=verbose), error.strerror  # a read-only card must not stop a service
     try:
         if problem:
-            logging.getLogger(__name__).warning("log.file %s: %s; going on without it", config.log.file, problem)
+            logging.getLogger(__name__).warning("log.file %s: %s; continuing without it", config.log.file, problem)
         return daemon.run(settings)
     finally:
         log.close()
 
 
-def _config(asked: argparse.Namespace, parser: CommandLineParser) -> Config:
-    """What the file says, with the options of the command line in its place."""
+def _load_config(options: argparse.Namespace, parser: CommandLineParser) -> Config:
+    """Load the configuration file and apply the options of the command line, which take precedence."""
     from msgspec.structs import replace
 
     from vehicle.config.config import Config, ConfigError, Identity, load
 
     try:
-        config = Config() if asked.config is None else load(asked.config)
+        config = Config() if options.config is None else load(options.config)
     except ConfigError as error:
         parser.exit(2, f"vehicle: {error}\n")
-    if asked.motors:
-        config = replace(config, motors={"driver": asked.motors})
-    if asked.system is not None:
+    if options.motors:
+        config = replace(config, motors={"driver": options.motors})
+    if options.system is not None:
         params = {name: value for name, value in config.params.items() if name != "MAV_SYSID"}
-        config = replace(config, identity=Identity(asked.system), params=params)
-    default = (GROUND_STATION,) if asked.sim else ()
-    return replace(config, endpoints=tuple(asked.endpoints) or config.endpoints or default)
+        config = replace(config, identity=Identity(options.system), params=params)
+    default = (GROUND_STATION,) if options.sim else ()
+    return replace(config, endpoints=tuple(options.endpoints) or config.endpoints or default)
 
 
-def _settings(asked: argparse.Namespace, config: Config, parser: CommandLineParser) -> RunSettings:
+def _build_settings(options: argparse.Namespace, config: Config, parser: CommandLineParser) -> RunSettings:
     from vehicle.config.run_settings import RunSettings, Simulation
     from vehicle.sim.body import SimulatedHome
 
-    _refuse_contradictions(asked, config, parser)
+    _reject_conflicts(options, config, parser)
     simulation = Simulation(
-        home=SimulatedHome(*asked.home) if asked.home else SimulatedHome(),
-        battery=1.0 if asked.sim_battery is None else asked.sim_battery,
-        seed=1 if asked.sim_seed is None else asked.sim_seed,
-        truth=asked.sim_truth,
+        home=SimulatedHome(*options.home) if options.home else SimulatedHome(),
+        battery=1.0 if options.sim_battery is None else options.sim_battery,
+        seed=1 if options.sim_seed is None else options.sim_seed,
+        truth=options.sim_truth,
     )
     pinned = dict(config.params)
     if config.identity.system is not None:
@@ -106,21 +108,21 @@ def _settings(asked: argparse.Namespace, config: Config, parser: CommandLinePars
         endpoints=config.endpoints,
         motors=config.motors,
         accessories=config.accessories,
-        config=Path(asked.config) if asked.config else None,
+        config=Path(options.config) if options.config else None,
         sensors=config.sensors,
-        simulation=simulation if asked.sim else None,
+        simulation=simulation if options.sim else None,
         pinned=pinned,
-        params={**(SIMULATION_PARAMS if asked.sim else {}), **dict(asked.param)},
-        motor_log=asked.motor_log or config.log.motors,
-        state=_state(asked, config),
-        logs=_logs(asked, config),
+        params={**(SIMULATION_PARAMS if options.sim else {}), **dict(options.param)},
+        motor_log=options.motor_log or config.log.motors,
+        state=_state_folder(options, config),
+        logs=_log_folder(options, config),
     )
 
 
-def _state(asked: argparse.Namespace, config: Config) -> Path | None:
-    """Where parameters are kept. A simulation keeps nothing, unless it is told where."""
-    if asked.state or asked.sim:
-        return Path(asked.state) if asked.state else None
+def _state_folder(options: argparse.Namespace, config: Config) -> Path | None:
+    """Return the state folder; None for a simulation without --state, which saves nothing."""
+    if options.state or options.sim:
+        return Path(options.state) if options.state else None
     if config.state:
         return Path(config.state)
     from vehicle.storage.motor_copy import default_state_folder
@@ -128,26 +130,26 @@ def _state(asked: argparse.Namespace, config: Config) -> Path | None:
     return default_state_folder()
 
 
-def _logs(asked: argparse.Namespace, config: Config) -> Path | None:
-    """Where drives are recorded. A simulation records nothing, unless it is told where."""
-    folder = asked.tlog or (None if asked.sim else config.log.tlog)
+def _log_folder(options: argparse.Namespace, config: Config) -> Path | None:
+    """Return the folder of telemetry logs; None for a simulation without --tlog and --state, which records nothing."""
+    folder = options.tlog or (None if options.sim else config.log.tlog)
     if folder:
         return Path(folder)
     from vehicle.storage.recorder import LOGS
 
-    state = _state(asked, config)
+    state = _state_folder(options, config)
     return None if state is None else state / LOGS
 
 
-def _refuse_contradictions(asked: argparse.Namespace, config: Config, parser: CommandLineParser) -> None:
-    if asked.sim and asked.motors:
-        parser.error("--sim brings its own motors: leave out --motors, or leave out --sim")
-    if asked.sim:
+def _reject_conflicts(options: argparse.Namespace, config: Config, parser: CommandLineParser) -> None:
+    if options.sim and options.motors:
+        parser.error("--sim has its own motors: omit --motors or --sim")
+    if options.sim:
         return
     if not config.motors:
-        parser.error("no motors: --config FILE or --motors NAME for real ones, or --sim for a simulated rover")
+        parser.error("no motors: use --config FILE or --motors NAME for real ones, or --sim for a simulated rover")
     if not config.endpoints:
-        parser.error(f"no endpoint: where is the ground station? For example {GROUND_STATION}")
-    for name in SIMULATION_ONLY:
-        if getattr(asked, name) is not None:
-            parser.error(f"--{name.replace('_', '-')} is for --sim only")
+        parser.error(f"no endpoint: add the link to the ground station, for example {GROUND_STATION}")
+    for name in SIMULATION_OPTIONS:
+        if getattr(options, name.removeprefix("--").replace("-", "_")) is not None:
+            parser.error(f"{name} is for --sim only")

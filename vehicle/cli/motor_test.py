@@ -1,4 +1,4 @@
-"""Turns one motor, slowly and shortly, to see which wheel it is and which way it goes; nothing but driver and clock."""
+"""`vehicle motor-test`: turn one motor slowly and briefly, to identify its wheel and direction."""
 
 from __future__ import annotations
 
@@ -15,48 +15,48 @@ from vehicle.drive.gate import MOTOR_TEST_THROTTLE_MAX as LARGEST
 from vehicle.drive.gate import MOTOR_TEST_TIME_MAX as LONGEST
 from vehicle.drive.mixer import MIXERS
 from vehicle.drive.output_scaling import build_output_scaling, scale_outputs
-from vehicle.motors import open_motors
+from vehicle.motors.drivers import open_motors
 from vehicle.params import Params
 from vehicle.runtime.lock import MotorLock
 
 PERIOD = 0.02
-"""s between writes: that of the control loop, so that controllers with a timeout of their own go on."""
+"""s between writes: as in the control loop, so that controllers with a timeout of their own continue."""
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class RefusedError(Exception):
-    """This test is not made; the text is one line."""
+    """The test is rejected; the text is one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class MotorTestOptions:
-    """What the motors get, and how long."""
+    """Throttle of each motor, and duration in s."""
 
     throttles: tuple[float, ...]
     time: float
 
 
 def build_options(motor: str, throttle: float, seconds: float, params: Params) -> MotorTestOptions:
-    """What was asked for, checked. `motor` is a name of this kind of drive, or a number from 1. Raises RefusedError."""
+    """Check the request. `motor` is a name of this drive type, or a number from 1. Raises RefusedError."""
     mixer = MIXERS[DriveType(int(params["DRIVE_TYPE"]))]
     names = mixer.motors
     known = {name.replace(" ", "-"): index for index, name in enumerate(names)}
     known |= {str(index + 1): index for index in range(len(names))}
     if motor.lower() not in known:
-        raise RefusedError(f"no motor {motor!r}; there are {', '.join(known)}")
+        raise RefusedError(f"no motor {motor!r}; known: {', '.join(known)}")
     if not (math.isfinite(throttle) and abs(throttle) <= LARGEST):
         raise RefusedError(f"throttle {throttle:g} is not in -{LARGEST:g} to {LARGEST:g}")
     if not (math.isfinite(seconds) and 0.0 < seconds <= LONGEST):
-        raise RefusedError(f"time {seconds:g} s is not more than 0 and at most {LONGEST:g}")
+        raise RefusedError(f"time {seconds:g} s must be more than 0 and at most {LONGEST:g}")
     wheels = [0.0] * len(names)
     wheels[known[motor.lower()]] = throttle
     return MotorTestOptions(scale_outputs(wheels, mixer.driven_count, build_output_scaling(params)), seconds)
 
 
 def run_motor_test(table: Mapping[str, Any], wanted: MotorTestOptions) -> signal.Signals | None:
-    """Turn it; neutral and without power whatever happens. The signal that ended it early, or None. Raises MotorError.
+    """Run the test on the motors of the table [motors]. Returns the signal that ended the test early, or None.
 
-    `table` is [motors] of the settings.
+    The motors are neutral and disabled at the end, whatever happens. Raises MotorError, RefusedError.
     """
     settings = {key: value for key, value in table.items() if key != "driver"}
     with contextlib.ExitStack() as opened, _signals_blocked(SIGNALS):
@@ -79,7 +79,7 @@ def run_motor_test(table: Mapping[str, Any], wanted: MotorTestOptions) -> signal
 
 @contextlib.contextmanager
 def _signals_blocked(signals: Sequence[signal.Signals]) -> Any:
-    """Signals wait until they are asked for: none may come between a motor that turns and its end."""
+    """Block signals until they are polled, so that none interrupts the program while a motor turns."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     try:
         yield

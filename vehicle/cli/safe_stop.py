@@ -1,4 +1,4 @@
-"""`vehicle safe-stop`: stop what a killed vehicle left turning. It reads [motors] and [accessories], and no more."""
+"""`vehicle safe-stop`: stop the motors that a killed vehicle left running. Reads [motors] and [accessories] only."""
 
 from __future__ import annotations
 
@@ -12,49 +12,50 @@ from link.runtime.toml_file import TomlError, read_toml
 
 
 def stop_all(config: str) -> None:
-    """Stop what a killed vehicle drove, and what the file `config` names now, where that is something else.
+    """Stop the motors that a killed vehicle used, and those in the file `config` if they differ.
 
-    Raises TomlError where neither is known: nothing is stopped then.
+    Raises TomlError if neither is known: nothing is stopped then.
     """
     from vehicle.storage.motor_copy import load_settings_copy
 
-    driven = load_settings_copy(Path(config))
+    used = load_settings_copy(Path(config))
     try:
-        named: Mapping[str, Any] = {**read_toml(config), "motors": read_motor_table(config)}
+        configured: Mapping[str, Any] = {**read_toml(config), "motors": read_motor_table(config)}
     except TomlError as error:
-        if driven is None:
-            raise TomlError(f"{error}; nothing is stopped: cut the power of motors that turn, and mend it") from error
-        named = driven
-        _log(journald.ERROR, f"{error}; so only what the vehicle drove is stopped")
-    both = [named] if driven is None else [driven, named]
-    for motors in _different([parts["motors"] for parts in both]):
+        if used is None:
+            remedy = "nothing is stopped: cut the power of motors that turn, and fix the file"
+            raise TomlError(f"{error}; {remedy}") from error
+        configured = used
+        _log(journald.ERROR, f"{error}; stopping only the motors that the vehicle used")
+    settings = [configured] if used is None else [used, configured]
+    for motors in _distinct([tables["motors"] for tables in settings]):
         _stop(motors)
-    for accessories in _different([parts.get("accessories") or {} for parts in both]):
+    for accessories in _distinct([tables.get("accessories") or {} for tables in settings]):
         _make_safe(accessories)
 
 
 def read_motor_table(path: str) -> dict[str, Any]:
-    """[motors] of a file, as it stands there. Raises TomlError."""
+    """Return [motors] of a file, unchecked. Raises TomlError."""
     table = read_toml(path).get("motors")
     if not isinstance(table, dict) or "driver" not in table:
-        raise TomlError(f"{path}: no driver in [motors]; `vehicle check {path}` says more")
+        raise TomlError(f"{path}: no driver in [motors]; see `vehicle check {path}`")
     return table
 
 
-def _different(tables: Sequence[Any]) -> list[Any]:
+def _distinct(tables: Sequence[Any]) -> list[Any]:
     return [table for index, table in enumerate(tables) if table not in tables[:index]]
 
 
 def _make_safe(accessories: Any) -> None:
-    """After the motors, which are more urgent."""
+    """Make the accessories safe, after the motors, which are more urgent."""
     from vehicle.accessories.safe_stop import safe_stop
 
-    for well, words in safe_stop(accessories):
-        _log(journald.INFO if well else journald.ERROR, words)
+    for safe, text in safe_stop(accessories):
+        _log(journald.INFO if safe else journald.ERROR, text)
 
 
 def _stop(motors: Mapping[str, Any]) -> None:
-    from vehicle.motors import safe_stop
+    from vehicle.motors.drivers import safe_stop
 
     driver = str(motors["driver"])
     problems = safe_stop(driver, {key: value for key, value in motors.items() if key != "driver"})

@@ -1,54 +1,73 @@
-"""Commands that only the ground station in control may give, and how a refusal is told."""
+"""Access control: who may send a message or a command, and how a denial is reported."""
 
 from __future__ import annotations
 
 import math
+from enum import Enum
 
-from dialects.enums import Command, Result, Severity
+from dialects.enums import Result, Severity, command_name
 from link.services.command.jobs import CommandJob
-from link.services.command.server import CommandHandler, CommandRequest, RunCommand
+from link.services.command.server import CommandReply, CommandRequest
 from vehicle.drive.control import Control
 from vehicle.navigation.geo import Home
 from vehicle.statustext import StatusTextQueue
 
 GLOBAL_FRAMES = (0, 3, 5, 6)
-"""MAV_FRAME_GLOBAL, _RELATIVE_ALT and their _INT: frames that a place on the globe may have."""
+"""MAV_FRAME_GLOBAL, MAV_FRAME_GLOBAL_RELATIVE_ALT and their _INT: frames with latitude and longitude."""
 RELATIVE_FRAMES = (3, 6)
-"""... and those whose height is above home. A place of COMMAND_LONG is in MAV_FRAME_GLOBAL, as ArduPilot's home is."""
+"""Frames of GLOBAL_FRAMES with an altitude above home. A position of COMMAND_LONG is in MAV_FRAME_GLOBAL, as in
+ArduPilot."""
 
 ALTITUDE_MAX = 1e5
-"""m; what is farther above the sea, or below, is no height of a rover."""
+"""m above or below sea level; beyond that it is no altitude of a rover."""
+
+CommandResult = Result | CommandReply | CommandJob
+"""What the handler of a command returns."""
+
+
+class Access(Enum):
+    """Who may send a message or a command. The values are the words of docs/dialect.md."""
+
+    ANYONE = "anyone"
+    CONNECTED = "connected"
+    """A sender that has sent a HEARTBEAT or connected, or is at an address that the user named."""
+    INTRODUCED = "introduced"
+    """A sender that has sent a HEARTBEAT."""
+    DRIVER = "in control"
+    """The ground station in control."""
+    DRIVER_OR_UNCLAIMED = "driver"
+    """The ground station in control, or any introduced one while none is in control."""
 
 
 class CommandAccess:
-    """Knows who is in control, and what to say to the others."""
+    """Checks the sender of a command and reports denials to the driver."""
 
     def __init__(self, control: Control, texts: StatusTextQueue) -> None:
         self._control = control
         self._texts = texts
 
-    def require_control(self, run: RunCommand) -> CommandHandler:
-        """A handler for the ground station in control, or any introduced one where nobody is."""
+    def deny(self, access: Access, request: CommandRequest, now: float) -> Result | None:
+        """Return the result that denies a command, or None if its sender may send it."""
+        if access is Access.CONNECTED:
+            return None if request.may_ask else Result.TEMPORARILY_REJECTED
+        if access is Access.INTRODUCED and request.introduced:
+            return None
+        reason = self.denial_reason(request.system, request.introduced)
+        return self.reject(request, reason, now) if reason else None
 
-        def checked(request: CommandRequest, now: float) -> Result | CommandJob:
-            refusal = self.denial_reason(request)
-            return self.reject(request, refusal, now) if refusal else run(request, now)
+    def denial_reason(self, system: int, introduced: bool) -> str | None:
+        """Return why a sender may not command the vehicle, or None."""
+        return self._control.denial_reason(system) if introduced else "no HEARTBEAT received"
 
-        return CommandHandler(checked)
-
-    def denial_reason(self, request: CommandRequest) -> str | None:
-        """Why its sender may not command, or None."""
-        return self._control.denial_reason(request.system) if request.introduced else "no HEARTBEAT heard"
-
-    def reject(self, request: CommandRequest, why: str, now: float) -> Result:
-        """Something must be put right first; the driver reads what."""
-        name = Command(request.command).name
-        self._texts.send(Severity.WARNING, f"GCS {request.system}: {name} refused: {why}", now)
+    def reject(self, request: CommandRequest, reason: str, now: float) -> Result:
+        """Send the reason as STATUSTEXT and return FAILED: the command may work later."""
+        name = command_name(request.command)
+        self._texts.send(Severity.WARNING, f"GCS {request.system}: {name} refused: {reason}", now)
         return Result.FAILED
 
 
 def parse_position(request: CommandRequest) -> tuple[float, float] | Result:
-    """Latitude and longitude, degrees x 1e7, of parameters 5 and 6; or the answer where they are none."""
+    """Return latitude and longitude of parameters 5 and 6 in degrees x 1e7, or the result if they are invalid."""
     if request.is_int and request.frame not in GLOBAL_FRAMES:
         return Result.UNSUPPORTED_FRAME
     scale = 1.0 if request.is_int else 1e7
@@ -57,7 +76,7 @@ def parse_position(request: CommandRequest) -> tuple[float, float] | Result:
 
 
 def parse_altitude(request: CommandRequest, home: Home | None) -> float | None:
-    """m above the sea, of parameter 7; None where it is left out."""
+    """Return the altitude of parameter 7 in m above sea level; None if it is NaN."""
     altitude = request.params[6]
     if math.isnan(altitude):
         return None
@@ -65,5 +84,5 @@ def parse_altitude(request: CommandRequest, home: Home | None) -> float | None:
 
 
 def is_invalid_position(latitude: float, longitude: float) -> bool:
-    """0/0, INT32_MAX, NaN and what is beyond the poles, in degrees x 1e7."""
+    """Return True for 0/0, INT32_MAX, NaN and beyond the poles; in degrees x 1e7."""
     return not (abs(latitude) <= 90e7 and abs(longitude) <= 180e7) or (latitude, longitude) == (0, 0)

@@ -1,52 +1,51 @@
-"""DO_MOTOR_TEST and ACTUATOR_TEST: one motor of a disarmed rover turns, slowly and shortly, for who asked.
+"""DO_MOTOR_TEST and ACTUATOR_TEST: run one motor of a disarmed rover slowly, for 3 s at most.
 
-The two commands are one test: 3 s at most and MOT_TEST_MAX, one motor at a time. The last gate (vehicle/drive/gate.py)
-holds both bounds by a watch of its own. The test ends at once with its time, with anything that changes the safety
-state or the mode (every command of the stop set, arming, a motor fault), with a late control cycle, and when its asker
-falls silent. Unlike ArduRover's it neither arms the vehicle nor turns a failsafe off.
+Both commands start the same test: at most 3 s and MOT_TEST_MAX, one motor at a time. The last gate
+(vehicle/drive/gate.py) enforces both limits with a timer of its own. The test ends with its time, with any change of
+safety state or mode (every command that stops, arming, a motor fault), with a late control cycle, and when its sender
+is silent. Unlike ArduRover's motor test it neither arms the vehicle nor disables a failsafe.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from dialects.enums import Command, Result, Severity
 from link.core import Received
-from link.services.command.server import PROGRESS_TIMEOUT, CommandHandler, CommandRequest
-from vehicle.commands.access import CommandAccess
-from vehicle.drive.control import Control
+from link.services.command.server import PROGRESS_TIMEOUT, CommandRequest
+from vehicle.commands.access import Access
+from vehicle.commands.command_table import CommandSpec, CommandTable
+from vehicle.commands.context import Context
 from vehicle.drive.gate import MOTOR_TEST_TIME_MAX, MotorTest
 from vehicle.drive.mixer import clamp
-from vehicle.params import Params
-from vehicle.safety.state_machine import Safety
 from vehicle.safety.states import SafetyState
-from vehicle.statustext import StatusTextQueue
 
 REQUESTER_TIMEOUT = 1.5
-"""s without a frame of the asker that end its test. Ground stations send a HEARTBEAT a second, and some nothing else:
-half a second is left for the way. A test that ends early because one was lost can be asked for again."""
+"""s without a frame of the sender that end its test. Some ground stations send nothing but a HEARTBEAT a second, which
+leaves 0.5 s for delays. A test that ended because of a lost HEARTBEAT can be sent again."""
 THROTTLE_PERCENT = 0
-"""MOTOR_TEST_THROTTLE_PERCENT; pulses and the pilot's stick are not offered."""
+"""MOTOR_TEST_THROTTLE_PERCENT; MOTOR_TEST_THROTTLE_PWM and _PILOT are not offered."""
 
 PERCENT_TOLERANCE = 1e-4
-"""%; 30 % as a float32 share is a little more."""
+"""%; 0.3 as float32 is slightly more than 30 %."""
 
 
 @dataclass(frozen=True, slots=True)
 class ActuatorTestRequest:
-    """What a command asks for, whichever it was."""
+    """The parameters of either command."""
 
     motor: int
-    """Its index."""
+    """Index, from 0."""
     throttle: float
     time: float
     """s; 0 ends a test."""
 
 
 RequestKey = tuple[int, int, int, ActuatorTestRequest]
-"""By which a repeated request is known: system, component, command, what it asks for."""
+"""Identifies a repeated request: system, component, command, parameters."""
 
 
 @dataclass(slots=True)
@@ -54,109 +53,107 @@ class ActiveTest:
     """The test under way."""
 
     test: MotorTest
-    asker: CommandRequest
+    request: CommandRequest
     until: float
     last_heard: float
     mode_generation: int
-    """Of the safety state it began in."""
+    """`Safety.mode_generation` at its start."""
 
 
 class ActuatorTest:
-    """One test at a time."""
+    """Runs one test at a time."""
 
-    def __init__(
-        self, params: Params, safety: Safety, control: Control, texts: StatusTextQueue, motors: Sequence[str]
-    ) -> None:
-        """`motors` are the names, in the order of the outputs."""
-        self._params = params
-        self._safety = safety
-        self._asking = CommandAccess(control, texts)
-        self._texts = texts
-        self._motors = motors
+    def __init__(self, context: Context) -> None:
+        self._params = context.params
+        self._safety = context.safety
+        self._access = context.access
+        self._texts = context.statustext
+        self._motors = context.mixer.motors
         self._run: ActiveTest | None = None
         self._number = 0
         self._last: tuple[RequestKey, float] | None = None
-        """The newest request that was obeyed, and when it came."""
+        """The newest accepted request, and when it came."""
 
-    def handlers(self) -> dict[int, CommandHandler]:
-        """The table for link.services.command.server.CommandServer."""
-        return {
-            Command.DO_MOTOR_TEST: self._asking.require_control(
-                lambda request, now: self._do(request, _motor_test, now)
-            ),
-            Command.ACTUATOR_TEST: self._asking.require_control(
-                lambda request, now: self._do(request, _actuator_test, now)
-            ),
-        }
+    def commands(self) -> CommandTable:
+        """Return the rows of the commands handled here."""
+        return (
+            CommandSpec(Command.DO_MOTOR_TEST, partial(self._handle_command, _parse_motor_test),
+                        Access.DRIVER_OR_UNCLAIMED,
+                        "disarmed; 1: motor from 1, 2: 0 (percent), 3: percent, 4: s up to 3"),
+            CommandSpec(Command.ACTUATOR_TEST, partial(self._handle_command, _parse_actuator_test),
+                        Access.DRIVER_OR_UNCLAIMED,
+                        "disarmed; 1: -1..1, NaN stops, 2: s up to 3, 0 stops, 5: motor from 1"),
+        )  # fmt: skip
 
     def update_liveness(self, received: Received, now: float) -> None:
-        """Any frame of the asker, on the link that it asked by, is a sign of its life."""
+        """Note a frame of the sender of the test, from the peer that sent the command."""
         run = self._run
-        if run and received.system == run.asker.system and received.peer == run.asker.peer:
+        if run and received.system == run.request.system and received.peer == run.request.peer:
             run.last_heard = now
 
     def current_test(self, now: float, *, late: bool) -> MotorTest | None:
-        """What is permitted at this moment, for the last gate."""
-        over = self._over(now, late=late) if self._run else None
-        if over:
-            self._run = None
-            self._texts.send(Severity.INFO, f"Motor test over: {over}", now)
-        return self._run.test if self._run else None
-
-    def _over(self, now: float, *, late: bool) -> str | None:
-        """Why the test ends, or None."""
+        """Return the test that may run now, for the last gate."""
         run = self._run
         if run is None:
             return None
+        end_reason = self._end_reason(run, now, late=late)
+        if end_reason is None:
+            return run.test
+        self._run = None
+        self._texts.send(Severity.INFO, f"Motor test over: {end_reason}", now)
+        return None
+
+    def _end_reason(self, run: ActiveTest, now: float, *, late: bool) -> str | None:
+        """Return why a test ends now, or None."""
         if run.mode_generation != self._safety.mode_generation:
             return "stopped"
         if late:
             return "control loop was late"
         if now >= run.until:
             return "time is up"
-        return f"GCS {run.asker.system} is silent" if now - run.last_heard > REQUESTER_TIMEOUT else None
+        return f"GCS {run.request.system} is silent" if now - run.last_heard > REQUESTER_TIMEOUT else None
 
-    def _do(
-        self, request: CommandRequest, read: Callable[[CommandRequest], ActuatorTestRequest | None], now: float
+    def _handle_command(
+        self, parse: Callable[[CommandRequest], ActuatorTestRequest | None], request: CommandRequest, now: float
     ) -> Result:
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
-        wish = read(request)
-        if wish is None or not 0 <= wish.motor < len(self._motors):
+        test = parse(request)
+        if test is None or not 0 <= test.motor < len(self._motors):
             return Result.DENIED
-        if wish.time == 0.0:
+        if test.time == 0.0:
             if self._run:
                 self._run.until = now
             return Result.ACCEPTED
         largest = self._params["MOT_TEST_MAX"]
-        if abs(wish.throttle) * 100 > largest + PERCENT_TOLERANCE:
+        if abs(test.throttle) * 100 > largest + PERCENT_TOLERANCE:
             self._texts.send(Severity.WARNING, f"Motor test refused: more than {largest:g} % (MOT_TEST_MAX)", now)
             return Result.DENIED
         if self._safety.state is not SafetyState.SAFE:
-            return self._asking.reject(request, f"vehicle is in state {self._safety.state.value}", now)
-        return self._begin(request, wish, now)
+            return self._access.reject(request, f"vehicle is in state {self._safety.state.value}", now)
+        return self._begin(request, test, now)
 
-    def _begin(self, request: CommandRequest, wish: ActuatorTestRequest, now: float) -> Result:
-        self.current_test(now, late=False)  # one whose time is up is none
-        key = (request.system, request.component, request.command, wish)
+    def _begin(self, request: CommandRequest, test: ActuatorTestRequest, now: float) -> Result:
+        self.current_test(now, late=False)  # ends a test whose time is up
+        key = (request.system, request.component, request.command, test)
         if self._run is None:
             if self._last and self._last[0] == key and now - self._last[1] < PROGRESS_TIMEOUT:
-                # A repeat, because its answer was lost: the wheel has turned already.
-                self._texts.send(Severity.NOTICE, f"Motor test: asked a moment ago, wait {PROGRESS_TIMEOUT:g} s", now)
+                # The acknowledgement was lost and the command came again: the motor has run already.
+                self._texts.send(Severity.NOTICE, f"Motor test: repeated too soon, wait {PROGRESS_TIMEOUT:g} s", now)
                 return Result.ACCEPTED
-            words = f"{self._motors[wish.motor]} at {wish.throttle:+.0%} for {wish.time:g} s"
-            self._texts.send(Severity.WARNING, f"Motor test: {words}, by GCS {request.system}", now)
-        elif (self._run.asker.system, self._run.test.motor) != (request.system, wish.motor):
+            description = f"{self._motors[test.motor]} at {test.throttle:+.0%} for {test.time:g} s"
+            self._texts.send(Severity.WARNING, f"Motor test: {description}, by GCS {request.system}", now)
+        elif (self._run.request.system, self._run.test.motor) != (request.system, test.motor):
             return Result.TEMPORARILY_REJECTED
         self._last = (key, now)
         self._number += 1
-        trial = MotorTest(self._number, wish.motor, clamp(wish.throttle, self._params["MOT_TEST_MAX"] / 100))
-        self._run = ActiveTest(trial, request, now + wish.time, now, self._safety.mode_generation)
+        motor_test = MotorTest(self._number, test.motor, clamp(test.throttle, self._params["MOT_TEST_MAX"] / 100))
+        self._run = ActiveTest(motor_test, request, now + test.time, now, self._safety.mode_generation)
         return Result.ACCEPTED
 
 
-def _motor_test(request: CommandRequest) -> ActuatorTestRequest | None:
-    """1: motor from 1, 2: kind of throttle, 3: percent, 4: s, 5: how many motors, one after the other: only one."""
+def _parse_motor_test(request: CommandRequest) -> ActuatorTestRequest | None:
+    """1: motor from 1, 2: MOTOR_TEST_THROTTLE_TYPE, 3: percent, 4: s, 5: number of motors in sequence, 1 at most."""
     instance, kind, percent, seconds, count = request.params[:5]
     if (
         kind != THROTTLE_PERCENT
@@ -165,17 +162,17 @@ def _motor_test(request: CommandRequest) -> ActuatorTestRequest | None:
         or not 0.0 < seconds <= MOTOR_TEST_TIME_MAX
     ):
         return None
-    return _wish(instance, percent / 100, seconds)
+    return _build_request(instance, percent / 100, seconds)
 
 
-def _actuator_test(request: CommandRequest) -> ActuatorTestRequest | None:
-    """1: -1..1 and NaN to stop, 2: s, 0 to stop, 5: motor from 1 (ACTUATOR_OUTPUT_FUNCTION_MOTOR1)."""
+def _parse_actuator_test(request: CommandRequest) -> ActuatorTestRequest | None:
+    """1: -1..1, NaN stops, 2: s, 0 stops, 5: motor from 1 (ACTUATOR_OUTPUT_FUNCTION_MOTOR1)."""
     value, seconds, function = request.params[0], request.params[1], request.params[4]
     if not 0.0 <= seconds <= MOTOR_TEST_TIME_MAX or math.isinf(value):
         return None
-    return _wish(function, 0.0 if math.isnan(value) else value, 0.0 if math.isnan(value) else seconds)
+    return _build_request(function, 0.0 if math.isnan(value) else value, 0.0 if math.isnan(value) else seconds)
 
 
-def _wish(number: float, throttle: float, seconds: float) -> ActuatorTestRequest | None:
+def _build_request(number: float, throttle: float, seconds: float) -> ActuatorTestRequest | None:
     whole = math.isfinite(number) and number == int(number)
     return ActuatorTestRequest(int(number) - 1, throttle, seconds) if whole else None

@@ -1,73 +1,83 @@
-"""MAV_CMD -> what the vehicle does, for the commands that change it. Questions are in vehicle/commands/requests.py.
+"""Arming, modes, emergency stop and operator control: COMPONENT_ARM_DISARM, DO_SET_MODE, REQUEST_OPERATOR_CONTROL, ...
 
-Who may: the ground station in control, or any that has shown its HEARTBEAT where nobody is ("ctl"). The stop set
-(disarm, emergency stop, HOLD, termination) is open to everybody, so that nobody has to ask before stopping a vehicle.
-To add a command, write a handler and add a line to `handlers`. Every command not in a table is answered UNSUPPORTED.
+Disarming, the emergency stop, HOLD and flight termination are open to anyone: stopping a vehicle needs no control.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
+from dialects import messages as m
 from dialects.enums import Command, Result, Severity
-from dialects.messages import CommandInt, CommandLong, SetMode
 from dialects.modes import Mode
 from link.core import Outgoing, Received
-from link.services.command.server import CommandHandler, CommandRequest, value_or_default
-from vehicle.drive.control import Control
+from link.services.command.server import CommandReply, CommandRequest, value_or_default
+from vehicle.commands.access import Access
+from vehicle.commands.command_table import CommandSpec, CommandTable
+from vehicle.commands.context import Context
+from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
 from vehicle.modes import describe_mode, parse_mode, standard_mode
-from vehicle.safety.state_machine import Safety
-from vehicle.statustext import StatusTextQueue
 
 FORCE_VALUES = (21196, 2989)
 """COMPONENT_ARM_DISARM parameter 2 that skips soft checks: the specification's value and ArduPilot's second one."""
 SAFE, DANGEROUS = 0, 1
 """SAFETY_SWITCH_STATE."""
 FORWARD_INTERVAL = 3.0
-"""s before the owner is asked again on behalf of the same ground station."""
+"""s until the request of the same ground station is forwarded to the owner again."""
 
 
 class ArmingCommands:
-    """Translates commands into the verbs of Safety and Control."""
+    """Handles the commands that call Safety and Control."""
 
-    def __init__(self, safety: Safety, control: Control, texts: StatusTextQueue) -> None:
-        self._safety = safety
-        self._control = control
-        self._texts = texts
-        self._outbox: list[Outgoing] = []
-        self._asked: tuple[int, float] = (0, -math.inf)
+    def __init__(self, context: Context) -> None:
+        self._safety = context.safety
+        self._control = context.control
+        self._texts = context.statustext
+        self._access = context.access
+        self._forwarded: tuple[int, float] = (0, -math.inf)
+        """System id of the newest REQUEST_OPERATOR_CONTROL that was forwarded, and when."""
 
-    def handlers(self) -> dict[int, CommandHandler]:
-        """The table for link.services.command.server.CommandServer."""
-        return {
-            Command.COMPONENT_ARM_DISARM: CommandHandler(self._arm_disarm, broadcast=True),
-            Command.RUN_PREARM_CHECKS: CommandHandler(self._prearm_checks),
-            Command.DO_SET_MODE: CommandHandler(self._set_mode, broadcast=True),
-            Command.DO_SET_STANDARD_MODE: CommandHandler(self._set_standard_mode),
-            Command.DO_SET_SAFETY_SWITCH_STATE: CommandHandler(self._safety_switch, broadcast=True),
-            Command.DO_FLIGHTTERMINATION: CommandHandler(self._terminate, broadcast=True),
-            Command.REQUEST_OPERATOR_CONTROL: CommandHandler(self._operator_control),
-        }
+    def commands(self) -> CommandTable:
+        """Return the rows of the commands handled here."""
+        return (
+            # Safety.arm itself checks control: arming may take it over.
+            CommandSpec(Command.COMPONENT_ARM_DISARM, self._arm_disarm, Access.INTRODUCED,
+                        "1: 1 arm and take control, 0 disarm; 2: 21196 or 2989 skips soft checks",
+                        stops=_disarms, broadcast=True),
+            CommandSpec(Command.RUN_PREARM_CHECKS, self._run_prearm_checks, Access.ANYONE,
+                        "sends what forbids to arm as STATUSTEXT"),
+            CommandSpec(Command.DO_SET_MODE, self._set_mode, Access.DRIVER_OR_UNCLAIMED,
+                        "1: base mode with bit 0 set; 2: mode, HOLD stops; PX4's pairs in 2 and 3",
+                        stops=_holds, broadcast=True),
+            CommandSpec(Command.DO_SET_STANDARD_MODE, self._set_standard_mode, Access.DRIVER_OR_UNCLAIMED,
+                        "1: MAV_STANDARD_MODE, see modes"),
+            CommandSpec(Command.DO_SET_SAFETY_SWITCH_STATE, self._set_safety_switch, Access.DRIVER_OR_UNCLAIMED,
+                        "1: 0 emergency stop, 1 release", stops=_is_safe, broadcast=True),
+            CommandSpec(Command.DO_FLIGHTTERMINATION, self._terminate, Access.ANYONE,
+                        "1: above 0.5 emergency stop until a restart", broadcast=True),
+            CommandSpec(Command.REQUEST_OPERATOR_CONTROL, self._request_control, Access.INTRODUCED,
+                        "1: 1 request control, 0 release it; 2: 1 others may take over"),
+        )  # fmt: skip
 
-    def accepts_broadcast(self, message: CommandLong | CommandInt) -> bool:
-        """A command to system 0 may stop a vehicle and nothing else: arming all rovers at once is nobody's wish."""
-        first, main = message.param1, message.param2
-        stops: dict[int, bool] = {
-            Command.COMPONENT_ARM_DISARM: first == 0,
-            Command.DO_SET_MODE: parse_mode(first, main, message.param3) is Mode.HOLD,
-            Command.DO_SET_SAFETY_SWITCH_STATE: first == SAFE,
-        }
-        return stops.get(message.command, True)
+    def messages(self) -> InboundTable:
+        """Return the rows of the messages handled here."""
+        return (
+            InboundMessage(m.SetMode, Access.DRIVER_OR_UNCLAIMED,
+                           "as DO_SET_MODE, without COMMAND_ACK; to HOLD: anyone", self._handle_set_mode,
+                           Effect.MOTION, checks_sender=True),
+        )  # fmt: skip
 
-    def messages_to_send(self) -> list[Outgoing]:
-        """What handlers want said besides the acknowledgement; empties what it returns."""
-        outbox, self._outbox = self._outbox, []
-        return outbox
-
-    def handle_set_mode(self, received: Received, message: SetMode, now: float) -> None:
-        """SET_MODE, the old message without acknowledgement: a refusal is told by a text."""
+    def _handle_set_mode(self, received: Received, message: m.SetMode, now: float) -> None:
+        """SET_MODE is older than DO_SET_MODE. A denial is reported by a STATUSTEXT only."""
+        if message.target_system != self._control.system:
+            return
         asked = (message.base_mode, message.custom_mode)
-        self._choose(parse_mode(*asked), describe_mode(*asked), received.system, received.introduced, now)
+        denial = None if _holds((*asked, 0.0)) else self._access.denial_reason(received.system, received.introduced)
+        if denial:
+            self._texts.send(Severity.WARNING, f"GCS {received.system}: SET_MODE refused: {denial}", now)
+        else:
+            self._choose(parse_mode(*asked), describe_mode(*asked), now)
 
     def _arm_disarm(self, request: CommandRequest, now: float) -> Result:
         arm, force = request.params[:2]
@@ -77,11 +87,9 @@ class ArmingCommands:
             self._safety.disarm(f"by GCS {request.system}", now)
             self._safety.end_motor_test()
             return Result.ACCEPTED
-        if not request.introduced:
-            return self._refuse("arming", request, "no HEARTBEAT heard", now)
         return Result.FAILED if self._safety.arm(request.system, now, force=force in FORCE_VALUES) else Result.ACCEPTED
 
-    def _prearm_checks(self, request: CommandRequest, now: float) -> Result:
+    def _run_prearm_checks(self, request: CommandRequest, now: float) -> Result:
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
         problems = self._safety.prearm_problems(now)
@@ -93,48 +101,45 @@ class ArmingCommands:
 
     def _set_mode(self, request: CommandRequest, now: float) -> Result:
         asked = request.params[:3]
-        return self._choose(parse_mode(*asked), describe_mode(*asked), request.system, request.introduced, now)
+        return self._choose(parse_mode(*asked), describe_mode(*asked), now)
 
     def _set_standard_mode(self, request: CommandRequest, now: float) -> Result:
-        """SAFE_RECOVERY is RTL and MISSION is AUTO; for one that we have not the specification wants FAILED."""
+        """SAFE_RECOVERY is RTL and MISSION is AUTO; the specification wants FAILED for a mode that is not offered."""
         standard = request.params[0]
         if not math.isfinite(standard):
             return Result.DENIED
         mode = standard_mode(standard)
         if mode is not None:
-            return self._choose(mode, mode.name, request.system, request.introduced, now)
+            return self._choose(mode, mode.name, now)
         return self._refuse("standard mode", request, f"{standard:g} is not offered", now, Severity.NOTICE)
 
-    def _choose(self, mode: Mode | None, words: str, system: int, introduced: bool, now: float) -> Result:
+    def _choose(self, mode: Mode | None, description: str, now: float) -> Result:
         if mode is None:
-            self._texts.send(Severity.WARNING, f"Refused: {words} is not offered", now)
+            self._texts.send(Severity.WARNING, f"Refused: {description} is not offered", now)
             return Result.DENIED
-        refusal = None
-        if mode is not Mode.HOLD:
-            refusal = self._stranger(system, introduced)
-        refusal = refusal or self._safety.choose_mode(mode, now)
-        if refusal:
-            self._texts.send(Severity.WARNING, f"Mode {mode.name} refused: {refusal}", now)
-        return Result.FAILED if refusal else Result.ACCEPTED
+        denial = self._safety.choose_mode(mode, now)
+        if denial:
+            self._texts.send(Severity.WARNING, f"Mode {mode.name} refused: {denial}", now)
+        return Result.FAILED if denial else Result.ACCEPTED
 
-    def _safety_switch(self, request: CommandRequest, now: float) -> Result:
+    def _set_safety_switch(self, request: CommandRequest, now: float) -> Result:
         position = request.params[0]
         if position == SAFE:
             self._safety.emergency_stop(f"GCS {request.system}", now)
             return Result.ACCEPTED
         if position != DANGEROUS:
             return Result.DENIED
-        refusal = self._stranger(request.system, request.introduced) or self._safety.release_estop(now)
-        return self._refuse("release", request, refusal, now) if refusal else Result.ACCEPTED
+        denial = self._safety.release_estop(now)
+        return self._refuse("release", request, denial, now) if denial else Result.ACCEPTED
 
     def _terminate(self, request: CommandRequest, now: float) -> Result:
-        if request.params[0] > 0.5:  # false for NaN: an unclear wish does not end a drive for good
+        if request.params[0] > 0.5:  # False for NaN: an unclear command must not end a drive for good
             self._safety.emergency_stop(f"GCS {request.system}, restart to go on", now, terminate=True)
             return Result.ACCEPTED
         return self._refuse("termination", request, "parameter 1 is not 1", now)
 
-    def _operator_control(self, request: CommandRequest, now: float) -> Result:
-        """REQUEST_OPERATOR_CONTROL: 1 request, 0 release; parameter 2: others may take over without asking."""
+    def _request_control(self, request: CommandRequest, now: float) -> Result | CommandReply:
+        """Parameter 1: 1 requests control, 0 releases it; 2: 1 lets others take over without asking."""
         action, takeover, gcs = (
             request.params[0],
             value_or_default(request.params[1]),
@@ -142,19 +147,17 @@ class ArmingCommands:
         )
         if action not in (0, 1) or takeover not in (0, 1) or gcs not in (0, request.system):
             return Result.DENIED
-        if not request.introduced:
-            return self._refuse("control", request, "no HEARTBEAT heard", now)
         if action == 0:
-            return self._give_up(request, now)
-        refusal = self._control.takeover_denial_reason(request.system, now)
-        if refusal is None:
+            return self._release_control(request, now)
+        denial = self._control.takeover_denial_reason(request.system, now)
+        if denial is None:
             self._control.set_owner(request.system, now)
-            self._control.takeover_allowed = bool(takeover)
+            self._control.allow_takeover(bool(takeover))
             return Result.ACCEPTED
-        self._ask_owner(request, now)
-        return self._refuse("control", request, refusal, now)
+        forwarded = self._forward(request, now)
+        return CommandReply(self._refuse("control", request, denial, now), forwarded)
 
-    def _give_up(self, request: CommandRequest, now: float) -> Result:
+    def _release_control(self, request: CommandRequest, now: float) -> Result:
         if self._control.owner not in (0, request.system):
             return Result.FAILED
         if self._control.owner:
@@ -162,22 +165,28 @@ class ArmingCommands:
             self._safety.choose_mode(Mode.HOLD, now)
         return Result.ACCEPTED
 
-    def _ask_owner(self, request: CommandRequest, now: float) -> None:
-        """Forward the request: the owner may release, or allow the takeover (development.xml, 32100)."""
-        system, at = self._asked
+    def _forward(self, request: CommandRequest, now: float) -> tuple[Outgoing, ...]:
+        """Forward the request: the owner may release control, or allow the takeover (development.xml, 32100)."""
+        system, at = self._forwarded
         if not self._control.owner or (system == request.system and now - at < FORWARD_INTERVAL):
-            return
-        self._asked = (request.system, now)
+            return ()
+        self._forwarded = (request.system, now)
         params = (*map(value_or_default, request.params[:3]), float(request.system), 0.0, 0.0, 0.0)
-        self._outbox.append(Outgoing(CommandLong(self._control.owner, 0, request.command, 0, *params)))
-
-    def _stranger(self, system: int, introduced: bool) -> str | None:
-        """Why `system` may not command, or None where it may."""
-        if not introduced:
-            return "no HEARTBEAT heard"
-        return self._control.denial_reason(system)
+        return (Outgoing(m.CommandLong(self._control.owner, 0, request.command, 0, *params)),)
 
     def _refuse(self, what: str, request: CommandRequest, why: str, now: float,
                 severity: Severity = Severity.WARNING) -> Result:  # fmt: skip
         self._texts.send(severity, f"GCS {request.system}: {what} refused: {why}", now)
         return Result.FAILED
+
+
+def _disarms(params: Sequence[float]) -> bool:
+    return params[0] == 0
+
+
+def _holds(params: Sequence[float]) -> bool:
+    return parse_mode(*params[:3]) is Mode.HOLD
+
+
+def _is_safe(params: Sequence[float]) -> bool:
+    return params[0] == SAFE

@@ -1,12 +1,13 @@
-"""The buttons of MANUAL_CONTROL: each does what its parameter BTNn_FUNCTION says, at the moment it is pressed.
+"""BTNn_FUNCTION: what the buttons of MANUAL_CONTROL do when they are pressed.
 
-Pressed is a change from one message to the next. The first message of a station, and the first after a pause, presses
-nothing: a button that was held all along, or a joystick that came back, is nobody's wish. What stops is everybody's;
-the rest only the driver in control may ask for, as by command. To add a function, add a line to FUNCTIONS.
+A press is a change from one message to the next. The first message of a station, and the first one after a pause longer
+than MAN_TIMEOUT, press nothing: a button held all along, or a joystick that reconnects, is no request. Anyone may stop;
+the rest needs control, as for commands. To add a function, add a row to FUNCTIONS.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,10 +15,9 @@ from dialects.enums import Severity
 from dialects.messages import ManualControl
 from dialects.modes import Mode
 from link.core import Received
-from vehicle.drive.control import Control
-from vehicle.params import BUTTONS, Params
+from vehicle.commands.context import Context
+from vehicle.params import BUTTONS
 from vehicle.safety.state_machine import Safety
-from vehicle.statustext import StatusTextQueue
 
 STATIONS_MAX = 8
 """Stations whose buttons are remembered; as many as a link has peers."""
@@ -25,13 +25,13 @@ STATIONS_MAX = 8
 
 @dataclass(frozen=True, slots=True)
 class ButtonFunction:
-    """What a button may do."""
+    """One value of BTNn_FUNCTION."""
 
     label: str
     run: Callable[[Safety, int, float], str | list[str] | None]
-    """With the station's system id and the time. Returns why not."""
+    """Called with the system id of the station and the time. Returns why it was denied, or None."""
     stops: bool = False
-    """It is open to everybody."""
+    """Open to anyone."""
 
 
 def _chosen(mode: Mode) -> Callable[[Safety, int, float], str | None]:
@@ -54,25 +54,26 @@ FUNCTIONS: dict[int, ButtonFunction] = {
     6: ButtonFunction("AUTO", _chosen(Mode.AUTO)),
     7: ButtonFunction("RTL", _chosen(Mode.RTL)),
 }
-"""BTNn_FUNCTION -> what it does; 0 is nothing."""
+"""BTNn_FUNCTION -> function; 0 is none."""
 
 
 class Buttons:
-    """Remembers which are held."""
+    """Runs the function of each button when it is pressed."""
 
-    def __init__(self, params: Params, safety: Safety, control: Control, texts: StatusTextQueue) -> None:
-        self._params = params
-        self._safety = safety
-        self._control = control
-        self._texts = texts
+    def __init__(self, context: Context) -> None:
+        self._params = context.params
+        self._safety = context.safety
+        self._control = context.control
+        self._texts = context.statustext
         self._held: dict[int, tuple[int, float]] = {}
+        """System id -> its newest `buttons`, and when they came."""
 
     def handle_manual_control(self, received: Received, message: ManualControl, now: float) -> None:
-        """Do what is newly pressed; stops first."""
+        """Run the function of what is newly pressed; a stop comes before the others."""
         if message.target != self._control.system or not received.introduced:
             return
-        before, at = self._held.pop(received.system, (0, 0.0))
-        known = at and now - at <= self._params["MAN_TIMEOUT"]
+        before, at = self._held.pop(received.system, (0, -math.inf))
+        known = now - at <= self._params["MAN_TIMEOUT"]
         self._held[received.system] = (message.buttons, now)
         if len(self._held) > STATIONS_MAX:
             del self._held[next(iter(self._held))]
@@ -84,8 +85,8 @@ class Buttons:
         numbers = (int(self._params[f"BTN{bit}_FUNCTION"]) for bit in range(BUTTONS) if pressed >> bit & 1)
         wanted = [FUNCTIONS[number] for number in numbers if number in FUNCTIONS]
         for function in sorted(wanted, key=lambda each: not each.stops)[:1]:
-            stranger = None if function.stops else self._control.denial_reason(system)
-            refusal = stranger or function.run(self._safety, system, now)
-            if isinstance(refusal, str):  # arming says itself why not
+            denial = None if function.stops else self._control.denial_reason(system)
+            refusal = denial or function.run(self._safety, system, now)
+            if isinstance(refusal, str):  # arming reports its reasons itself
                 text = f"GCS {system}: button for {function.label} refused: {refusal}"
                 self._texts.send(Severity.WARNING, text, now)

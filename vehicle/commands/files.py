@@ -1,6 +1,6 @@
-"""What ground stations read at length: files by MAVLink FTP, logs, and what the parameters mean.
+"""MAVLink FTP, log download and component metadata: what ground stations read in bulk.
 
-It joins the vehicle with the protocols of link/services; what is in a file is its maker's matter.
+Joins the vehicle with the protocols of link/services; the content of each file comes from the module it belongs to.
 """
 
 from __future__ import annotations
@@ -8,15 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from dialects import messages as m
-from link.core import Outgoing, Received
+from link.core import Outgoing
 from link.services import metadata
 from link.services.ftp.files import FileTree, Folder, GeneratedFolder, Query
 from link.services.ftp.server import FtpServer
 from link.services.log.server import LogServer
-from link.services.pacing import BulkPacer
 from link.services.param.pack import pack
-from vehicle.drive.control import Control
-from vehicle.params import Params
+from vehicle.commands.access import Access
+from vehicle.commands.context import Context
+from vehicle.commands.inbound import InboundMessage, InboundTable, from_server
 from vehicle.storage.logbook import Logbook
 from vehicle.telemetry.build_status import VERSION
 from vehicle.telemetry.view import TelemetryView
@@ -25,29 +25,20 @@ VENDOR, MODEL = "mavhelm", "rover"
 
 
 class FileServices:
-    """Answers for one system and component. Reading is for everybody, writing for the driver in control."""
+    """Serves files and logs. Anyone connected may read; only the driver may write."""
 
-    def __init__(
-        self,
-        params: Params,
-        control: Control,
-        logbook: Logbook,
-        *,
-        missions: Folder,
-        ids: tuple[int, int],
-        pacer: BulkPacer,
-    ) -> None:
-        system, component = ids
-        table = params.table
+    def __init__(self, context: Context, logbook: Logbook, missions: Folder) -> None:
+        system, component = context.ids
+        pacer, table = context.pacer, context.params.table
         self._metadata = metadata.build_metadata(table, vendor=VENDOR, model=MODEL, version=".".join(map(str, VERSION)))
         described = GeneratedFolder({name: _constant(data) for name, data in self._metadata.files.items()})
-        packed = GeneratedFolder({"param.pck": lambda query: pack(table, params, query)})
+        packed = GeneratedFolder({"param.pck": lambda query: pack(table, context.params, query)})
         self._ftp = FtpServer(
             FileTree(described, {"@PARAM": packed, "logs": logbook.folder(), "missions": missions}),
             system=system,
             component=component,
             pacer=pacer,
-            allowed=lambda received: control.denial_reason(received.system) is None,
+            allowed=lambda received: context.control.denial_reason(received.system) is None,
         )
         self._log = LogServer(
             logbook.recording.folder,
@@ -58,16 +49,25 @@ class FileServices:
             erase=logbook.handle_log_erase,
         )
 
-    def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Answer one message."""
-        return self._ftp.receive(received, now) + self._log.receive(received, now)
+    def messages(self) -> InboundTable:
+        """Return the rows of the messages handled here."""
+        serve = from_server(self._log.receive)
+        return (
+            InboundMessage(m.FileTransferProtocol, Access.CONNECTED, "files; writing needs control",
+                           from_server(self._ftp.receive)),
+            InboundMessage(m.LogRequestList, Access.CONNECTED, "LOG_ENTRY for each log", serve),
+            InboundMessage(m.LogRequestData, Access.CONNECTED, "LOG_DATA", serve),
+            InboundMessage(m.LogRequestEnd, Access.CONNECTED, "ends LOG_DATA", serve),
+            InboundMessage(m.LogErase, Access.DRIVER_OR_UNCLAIMED, "erases the logs while disarmed", serve,
+                           checks_sender=True),
+        )  # fmt: skip
 
     def tick(self, now: float) -> list[Outgoing]:
-        """The next of what is under way, as far as the links have room."""
+        """Return the next messages of running transfers, as far as the links have room."""
         return self._ftp.tick(now) + self._log.tick(now)
 
     def message_builders(self) -> dict[int, Callable[[TelemetryView], m.Message]]:
-        """What REQUEST_MESSAGE may ask for, by id."""
+        """Return builders of what REQUEST_MESSAGE may ask for, by message id."""
         return {m.ComponentMetadata.id: lambda view: self._metadata.message(view.boot_ms)}
 
 

@@ -1,18 +1,21 @@
-"""Commands and setpoints that make the vehicle drive by itself. Arming, stops and modes are in vehicle/commands/arming.py.
+"""Setpoints of GUIDED, and DO_REPOSITION, DO_CHANGE_SPEED, DO_SET_HOME, DO_PAUSE_CONTINUE and their like.
 
-Only the ground station in control may give them; pausing is a stop and open to everybody.
+Only the ground station in control may send them. Pausing is a stop and open to anyone.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from dialects import messages as m
 from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from link.core import Received
-from link.services.command.server import CommandHandler, CommandRequest, RunCommand, value_or_default
-from vehicle.autonomy.navigator import DEFAULT_SPEED, Navigator
+from link.services.command.server import CommandRequest, value_or_default
+from link.services.mission.items import ItemRule, MissionItem
+from vehicle.autonomy.mission.rules import DoItem
+from vehicle.autonomy.navigator import Navigator
 from vehicle.autonomy.setpoints import (
     SETPOINT_MAX_AGE,
     PositionTarget,
@@ -27,79 +30,92 @@ from vehicle.autonomy.setpoints import (
 from vehicle.commands.access import (
     ALTITUDE_MAX,
     GLOBAL_FRAMES,
-    CommandAccess,
+    Access,
     is_invalid_position,
     parse_altitude,
     parse_position,
 )
-from vehicle.drive.control import Control
+from vehicle.commands.command_table import CommandSpec, CommandTable
+from vehicle.commands.context import COMPONENT, Context
+from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
 from vehicle.modes import MODES
 from vehicle.navigation.geo import Home
-from vehicle.params import Params
-from vehicle.safety.state_machine import Safety
-from vehicle.statustext import StatusTextQueue
 
 CHANGE_MODE = 1
 """MAV_DO_REPOSITION_FLAGS_CHANGE_MODE"""
 AIRSPEED, GROUNDSPEED = 0, 1
-"""SPEED_TYPE; a rover's are the same."""
+"""SPEED_TYPE; the same for a rover."""
 KEEP_SPEED = -1
-"""A speed of DO_CHANGE_SPEED and DO_REPOSITION that is none."""
+"""Speed of DO_CHANGE_SPEED and DO_REPOSITION that changes nothing."""
+DEFAULT_SPEED = -2
+"""Speed of DO_CHANGE_SPEED that restores WP_SPEED."""
+SPEED_RANGE = (DEFAULT_SPEED, 100.0)
+"""m/s; of a DO_CHANGE_SPEED item."""
+PAUSE, CONTINUE = 0, 1
+"""Parameter 1 of DO_PAUSE_CONTINUE."""
 
 
 class GuidedCommands:
-    """Translates them into the verbs of Navigator and Safety."""
+    """Handles setpoints and commands that call Navigator and Safety."""
 
-    def __init__(
-        self, params: Params, safety: Safety, control: Control, navigator: Navigator, texts: StatusTextQueue
-    ) -> None:
-        self._params = params
-        self._safety = safety
-        self._control = control
-        self._asking = CommandAccess(control, texts)
-        self._navigator = navigator
-        self._texts = texts
+    def __init__(self, context: Context) -> None:
+        self._params = context.params
+        self._safety = context.safety
+        self._control = context.control
+        self._access = context.access
+        self._navigator = context.navigator
+        self._texts = context.statustext
         self._clock = SenderClock()
         self._mode_generation = -1
 
-    def handlers(self) -> dict[int, CommandHandler]:
-        """The table for link.services.command.server.CommandServer."""
-        mine: dict[int, RunCommand] = {
-            Command.DO_REPOSITION: self._reposition,
-            Command.DO_CHANGE_SPEED: self._change_speed,
-            Command.DO_SET_REVERSE: self._reverse,
-            Command.DO_SET_HOME: self._set_home,
-            Command.NAV_RETURN_TO_LAUNCH: self._return,
-        }
-        table = {command: self._asking.require_control(run) for command, run in mine.items()}
-        return {**table, Command.DO_PAUSE_CONTINUE: CommandHandler(self._pause)}
+    def commands(self) -> CommandTable:
+        """Return the rows of the commands handled here."""
+        driver = Access.DRIVER_OR_UNCLAIMED
+        return (
+            CommandSpec(Command.DO_REPOSITION, self._reposition, driver,
+                        "COMMAND_INT; 1: m/s, -1 WP_SPEED; 2: 1 changes to GUIDED; x, y: position"),
+            CommandSpec(Command.DO_CHANGE_SPEED, self._change_speed, driver,
+                        "1: 0 or 1; 2: m/s, -1 no change, -2 WP_SPEED",
+                        item=DoItem(ItemRule(ranges={1: (0.0, 1.0), 2: SPEED_RANGE}), self._run_speed_item)),
+            CommandSpec(Command.DO_SET_REVERSE, self._reverse, driver,
+                        "1: 1 backwards along the path, 0 forwards",
+                        item=DoItem(ItemRule(ranges={1: (0.0, 1.0)}), self._run_reverse_item)),
+            CommandSpec(Command.DO_SET_HOME, self._set_home, driver,
+                        "1: 1 the position of the rover, 0 the position in 5 to 7"),
+            CommandSpec(Command.NAV_RETURN_TO_LAUNCH, self._return, driver, "changes to RTL"),
+            CommandSpec(Command.DO_PAUSE_CONTINUE, self._pause, driver, "1: 0 pause, 1 continue", stops=_pauses),
+        )  # fmt: skip
+
+    def messages(self) -> InboundTable:
+        """Return the rows of the messages handled here."""
+        return tuple(
+            InboundMessage(message, Access.DRIVER, "setpoint of GUIDED", self._handle_setpoint, Effect.MOTION)
+            for message in (m.SetPositionTargetLocalNed, m.SetPositionTargetGlobalInt, m.SetAttitudeTarget)
+        )
 
     # Setpoints
 
-    def handle_setpoint(self, received: Received, message: Setpoint, now: float) -> bool:
-        """Take a setpoint; True where it is in force now. A refusal is told once."""
-        system = self._control.system
-        if message.target_system not in (0, system) or message.target_component not in (0, 1):
-            return False
-        if not received.introduced:
-            return False
+    def _handle_setpoint(self, received: Received, message: Setpoint, now: float) -> None:
+        """Put a setpoint in force. A rejection is reported once."""
+        if message.target_system not in (0, self._control.system) or message.target_component not in (0, COMPONENT):
+            return
         target = self._rejection(received) or self._check_age(message, now)
         if target is None:  # overtaken by a newer one
-            return False
+            return
         if isinstance(target, SetpointRejection):
             key = f"setpoint {received.system} {target.reason}"
             text = f"Setpoint of GCS {received.system} ignored: {target.reason}"
             self._texts.send_once(key, Severity.WARNING, text, now)
-            return False
+            return
         self._texts.reset_once("setpoint")
         self._navigator.set_target(target, now)
         self._safety.confirm_autonomy()
-        return True
+        self._navigator.step(self._safety, now)
 
     def _rejection(self, received: Received) -> SetpointRejection | None:
         if self._control.owner != received.system:
             return SetpointRejection(
-                self._control.denial_reason(received.system) or "nobody is in control, arm to take it"
+                self._control.denial_reason(received.system) or "no GCS is in control, arm to take it"
             )
         if self._safety.mode is not Mode.GUIDED:
             return SetpointRejection(f"mode is {self._safety.mode.name}, not GUIDED")
@@ -108,7 +124,7 @@ class GuidedCommands:
         return None
 
     def _check_age(self, message: Setpoint, now: float) -> Target | SetpointRejection | None:
-        """None for one that was overtaken. A clock is learnt anew with each choice of a mode, and arming."""
+        """Return None for a setpoint that a newer one overtook. A change of mode, or arming, resets the clock."""
         if self._mode_generation != self._safety.mode_generation:
             self._mode_generation = self._safety.mode_generation
             self._clock = SenderClock()
@@ -116,7 +132,7 @@ class GuidedCommands:
         if age is None:
             return None
         return (
-            SetpointRejection("it is old, by its sender's clock") if age > SETPOINT_MAX_AGE else self._target(message)
+            SetpointRejection("too old by the clock of its sender") if age > SETPOINT_MAX_AGE else self._target(message)
         )
 
     def _target(self, message: Setpoint) -> Target | SetpointRejection:
@@ -144,60 +160,69 @@ class GuidedCommands:
         return self._go(request, speed if speed > 0.0 else None, now)
 
     def _go(self, request: CommandRequest, speed: float | None, now: float) -> Result:
-        """A place that is one: may it be driven to?"""
+        """Drive to a valid position, unless something forbids it."""
         estimate = self._navigator.estimate
         point = global_to_local(request.x, request.y, estimate)
         if point is None or not estimate.good:
-            return self._asking.reject(request, "position is not known", now)
+            return self._access.reject(request, "position is not known", now)
         if not self._safety.armed:
-            return self._asking.reject(request, "not armed", now)
+            return self._access.reject(request, "not armed", now)
         barred = self._navigator.fence_avoidance.rejection(point)
         if barred:
-            return self._asking.reject(request, barred, now)
+            return self._access.reject(request, barred, now)
         if self._safety.mode is not Mode.GUIDED and (refusal := self._safety.choose_mode(Mode.GUIDED, now)):
-            return self._asking.reject(request, refusal, now)
+            return self._access.reject(request, refusal, now)
         self._navigator.restart_mode(self._safety, now)  # GUIDED begins, and forgets older targets
         self._navigator.set_target(PositionTarget(point, speed), now)
         self._safety.confirm_autonomy()
         return Result.ACCEPTED
 
     def _change_speed(self, request: CommandRequest, now: float) -> Result:
-        """Parameter 1: which speed; 2: m/s, -1 no change, -2 the usual one."""
+        """Parameter 1: SPEED_TYPE; 2: m/s, -1 no change, -2 WP_SPEED."""
         kind, speed = request.params[:2]
         if kind not in (AIRSPEED, GROUNDSPEED):
             return Result.DENIED
         if speed == KEEP_SPEED:
             return Result.ACCEPTED
         if speed == DEFAULT_SPEED:
-            self._navigator.speed_override = None
+            self._navigator.set_speed(None)
             return Result.ACCEPTED
         if not 0.0 <= speed < math.inf:
             return Result.DENIED
         largest = self._params["SPEED_MAX"]
         if speed > largest:
-            self._texts.send(Severity.WARNING, f"Speed {speed:g} m/s cut to {largest:g} (SPEED_MAX)", now)
-        self._navigator.speed_override = min(speed, largest)
+            self._texts.send(Severity.WARNING, f"Speed {speed:g} m/s limited to {largest:g} (SPEED_MAX)", now)
+        self._navigator.set_speed(min(speed, largest))
         return Result.ACCEPTED
+
+    def _run_speed_item(self, item: MissionItem, now: float) -> None:
+        speed = item.params[1]
+        if speed >= 0.0:
+            self._navigator.set_speed(speed)
+        elif speed == DEFAULT_SPEED:
+            self._navigator.set_speed(None)
 
     def _reverse(self, request: CommandRequest, now: float) -> Result:
-        """1: backwards along the path, 0: forwards."""
         if request.params[0] not in (0, 1):
             return Result.DENIED
-        self._navigator.guide.reverse = bool(request.params[0])
+        self._navigator.set_reverse(bool(request.params[0]))
         return Result.ACCEPTED
 
+    def _run_reverse_item(self, item: MissionItem, now: float) -> None:
+        self._navigator.set_reverse(bool(item.params[0]))
+
     def _set_home(self, request: CommandRequest, now: float) -> Result:
-        """Parameter 1: 1 is here; else the place in 5..7."""
+        """Parameter 1: 1 is the position of the rover; 0 the position in 5 to 7."""
         here = request.params[0]
         if here not in (0, 1):
             return Result.DENIED
         navigator, estimate = self._navigator, self._navigator.estimate
         if not estimate.good or estimate.lat_lon is None:
-            return self._asking.reject(request, "position is not known", now)
+            return self._access.reject(request, "position is not known", now)
         if here:
             before = navigator.home.altitude if navigator.home else 0.0
             altitude = before if navigator.altitude is None else navigator.altitude
-            navigator.home = Home(*estimate.lat_lon, altitude, *estimate.place)
+            navigator.set_home(Home(*estimate.lat_lon, altitude, *estimate.place))
             return Result.ACCEPTED
         return self._home_at(request, navigator)
 
@@ -213,27 +238,31 @@ class GuidedCommands:
         point = global_to_local(latitude, longitude, navigator.estimate)
         if point is None or not abs(altitude) < ALTITUDE_MAX:
             return Result.DENIED
-        navigator.home = Home(latitude / 1e7, longitude / 1e7, altitude, *point)
+        navigator.set_home(Home(latitude / 1e7, longitude / 1e7, altitude, *point))
         return Result.ACCEPTED
 
     def _return(self, request: CommandRequest, now: float) -> Result:
         refusal = self._safety.choose_mode(Mode.RTL, now)
-        return self._asking.reject(request, refusal, now) if refusal else Result.ACCEPTED
+        return self._access.reject(request, refusal, now) if refusal else Result.ACCEPTED
 
     def _pause(self, request: CommandRequest, now: float) -> Result:
-        """0: stand, 1: go on. Where nothing drives by itself a wish to stop is HOLD."""
-        wish = request.params[0]
-        if wish not in (0, 1):
+        """Parameter 1: 0 pauses, 1 continues. Outside of autonomous modes a pause changes to HOLD."""
+        action = request.params[0]
+        if action not in (PAUSE, CONTINUE):
             return Result.DENIED
-        own = MODES[self._safety.mode].autonomous
-        if wish == 0:
-            self._safety.end_motor_test()
-        if wish == 0 and not own:
-            self._safety.choose_mode(Mode.HOLD, now)
+        autonomous = MODES[self._safety.mode].autonomous
+        if action == CONTINUE:
+            if not autonomous:
+                return self._access.reject(request, f"mode is {self._safety.mode.name}", now)
+            self._navigator.resume()
             return Result.ACCEPTED
-        if wish == 1:
-            refusal = self._asking.denial_reason(request) or (None if own else f"mode is {self._safety.mode.name}")
-            if refusal:
-                return self._asking.reject(request, refusal, now)
-        self._navigator.paused = wish == 0
+        self._safety.end_motor_test()
+        if autonomous:
+            self._navigator.pause()
+        else:
+            self._safety.choose_mode(Mode.HOLD, now)
         return Result.ACCEPTED
+
+
+def _pauses(params: Sequence[float]) -> bool:
+    return params[0] == PAUSE

@@ -1,76 +1,71 @@
-"""DO_SET_GLOBAL_ORIGIN, and SET_GPS_GLOBAL_ORIGIN before it: another place on the globe is 0/0 of local positions.
+"""DO_SET_GLOBAL_ORIGIN and the older SET_GPS_GLOBAL_ORIGIN: move 0/0 of local positions to another place on the globe.
 
-Nothing moves on the globe by it: what is kept in metres is reckoned anew (vehicle/autonomy/navigator.py, `rebase`). Local
-heights count from the origin's, home's where none is given. Whoever asks is told the origin, moved or not (common.xml).
+The rover and its home keep their places on the globe (vehicle/autonomy/navigator.py, `set_origin`). Local altitudes
+count from the altitude of the origin, or from home if none is given. The sender gets GPS_GLOBAL_ORIGIN, moved or not
+(common.xml).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from dialects.enums import Command, Result, Severity
 from dialects.messages import SetGpsGlobalOrigin
 from link.core import Outgoing, Peer, Received
-from link.services.command.server import CommandHandler, CommandRequest
-from vehicle.autonomy.navigator import Navigator
+from link.services.command.server import CommandReply, CommandRequest
 from vehicle.autonomy.setpoints import global_to_local
-from vehicle.commands.access import ALTITUDE_MAX, CommandAccess, parse_altitude, parse_position
-from vehicle.drive.control import Control
+from vehicle.commands.access import ALTITUDE_MAX, Access, parse_altitude, parse_position
+from vehicle.commands.command_table import CommandSpec, CommandTable
+from vehicle.commands.context import Context, Reporting
+from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
 from vehicle.navigation.geo import Origin
-from vehicle.safety.state_machine import Safety
-from vehicle.statustext import StatusTextQueue
 from vehicle.telemetry import build_motion
-from vehicle.telemetry.view import TelemetryView
 
 MAX_ORIGIN_DISTANCE = 10e3
-"""m from the rover: flat ground is wrong by 0.2 % that far from its origin, and no rover of this size drives there."""
+"""m from the rover: local positions are wrong by 0.2 % that far from the origin, and no small rover drives there."""
 
 
 class OriginCommands:
-    """Of the driver, while disarmed and where the position is known."""
+    """Moves the origin for the driver, while disarmed and with a known position."""
 
-    def __init__(
-        self,
-        safety: Safety,
-        control: Control,
-        navigator: Navigator,
-        texts: StatusTextQueue,
-        look: Callable[[float], TelemetryView],
-    ) -> None:
-        self._safety = safety
-        self._control = control
-        self._navigator = navigator
-        self._texts = texts
-        self._asking = CommandAccess(control, texts)
-        self._build_view = look
-        self._outbox: list[Outgoing] = []
+    def __init__(self, context: Context, reporting: Reporting) -> None:
+        self._safety = context.safety
+        self._control = context.control
+        self._navigator = context.navigator
+        self._texts = context.statustext
+        self._access = context.access
+        self._build_view = reporting.build_view
 
-    def handlers(self) -> dict[int, CommandHandler]:
-        """The table for link.services.command.server.CommandServer."""
-        return {Command.DO_SET_GLOBAL_ORIGIN: self._asking.require_control(self._set)}
+    def commands(self) -> CommandTable:
+        """Return the rows of the commands handled here."""
+        return (
+            CommandSpec(Command.DO_SET_GLOBAL_ORIGIN, self._set, Access.DRIVER_OR_UNCLAIMED,
+                        "disarmed; 5, 6: position of the local origin, 7: its altitude"),
+        )  # fmt: skip
 
-    def messages_to_send(self) -> list[Outgoing]:
-        """What goes with an acknowledgement; empties what it returns."""
-        outbox, self._outbox = self._outbox, []
-        return outbox
+    def messages(self) -> InboundTable:
+        """Return the rows of the messages handled here."""
+        return (
+            InboundMessage(SetGpsGlobalOrigin, Access.DRIVER_OR_UNCLAIMED,
+                           "as DO_SET_GLOBAL_ORIGIN; answered by GPS_GLOBAL_ORIGIN",
+                           self._handle_set_origin, Effect.MOTION),
+        )  # fmt: skip
 
-    def receive(self, received: Received, message: SetGpsGlobalOrigin, now: float) -> list[Outgoing]:
-        """The older message: it has no answer but the origin, and a refusal is told by a text."""
-        if not received.introduced:
-            return []
+    def _handle_set_origin(self, received: Received, message: SetGpsGlobalOrigin, now: float) -> tuple[Outgoing, ...]:
+        """Move the origin. A denial is reported by a STATUSTEXT; the answer is the origin in either case."""
+        if message.target_system != self._control.system:
+            return ()
         point = message.latitude, message.longitude
         if global_to_local(*point, self._navigator.estimate) is None:
-            why: str | None = "it is no place, or the position is not known"
+            denial: str | None = "invalid position, or the position is not known"
         else:
-            why = self._control.denial_reason(received.system) or self._forbidden(*point)
-        if why:
-            self._texts.send(Severity.WARNING, f"GCS {received.system}: SET_GPS_GLOBAL_ORIGIN refused: {why}", now)
+            denial = self._control.denial_reason(received.system) or self._rejection(*point)
+        if denial:
+            self._texts.send(Severity.WARNING, f"GCS {received.system}: SET_GPS_GLOBAL_ORIGIN refused: {denial}", now)
         else:
             self._move(*point, message.altitude / 1e3, received.system, now)
         return self._build_reply(received.peer, now)
 
-    def _set(self, request: CommandRequest, now: float) -> Result:
-        """Parameters 5 to 7: the place, and m above the sea, or above home where the frame says so."""
+    def _set(self, request: CommandRequest, now: float) -> Result | CommandReply:
+        """Parameters 5 to 7: the position, and m above sea level, or above home in a relative frame."""
         place = parse_position(request)
         if isinstance(place, Result):
             return place
@@ -79,14 +74,13 @@ class OriginCommands:
         altitude = parse_altitude(request, self._navigator.home)
         if altitude is not None and not abs(altitude) < ALTITUDE_MAX:
             return Result.DENIED
-        if why := self._forbidden(*place):
-            return self._asking.reject(request, why, now)
+        if why := self._rejection(*place):
+            return self._access.reject(request, why, now)
         self._move(*place, altitude, request.system, now)
-        self._outbox += self._build_reply(request.peer, now)
-        return Result.ACCEPTED
+        return CommandReply(Result.ACCEPTED, self._build_reply(request.peer, now))
 
-    def _forbidden(self, latitude: float, longitude: float) -> str | None:
-        """Why the origin stays where it is, or None. Degrees x 1e7."""
+    def _rejection(self, latitude: float, longitude: float) -> str | None:
+        """Return why the origin cannot move there, or None. Degrees x 1e7."""
         estimate = self._navigator.estimate
         if self._safety.armed:
             return "armed"
@@ -97,13 +91,13 @@ class OriginCommands:
         return (
             None
             if distance <= MAX_ORIGIN_DISTANCE
-            else f"it is {distance / 1e3:.0f} km away, {MAX_ORIGIN_DISTANCE / 1e3:g} at most"
+            else f"{distance / 1e3:.0f} km away, limit is {MAX_ORIGIN_DISTANCE / 1e3:g} km"
         )
 
     def _move(self, latitude: float, longitude: float, altitude: float | None, system: int, now: float) -> None:
         self._navigator.set_origin(Origin(latitude / 1e7, longitude / 1e7), altitude, self._safety, now)
         self._texts.send(Severity.NOTICE, f"GCS {system} has set the origin of local positions", now)
 
-    def _build_reply(self, peer: Peer, now: float) -> list[Outgoing]:
+    def _build_reply(self, peer: Peer, now: float) -> tuple[Outgoing, ...]:
         message = build_motion.gps_global_origin(self._build_view(now))
-        return [] if message is None else [Outgoing(message, peer)]
+        return () if message is None else (Outgoing(message, peer),)

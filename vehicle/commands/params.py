@@ -1,139 +1,106 @@
-"""The parameters as ground stations see them: who may set which, and what follows; the protocol is link/services'."""
+"""The parameter service: who may set which parameter, saving, and what a reset changes.
+
+The protocol itself is link/services/param/server.py.
+"""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
-from typing import Protocol
 
+from dialects import messages as m
 from dialects.enums import Severity
-from link.core import Outgoing, Received
-from link.services.pacing import BulkPacer
+from link.core import Outgoing
 from link.services.param.server import ParamServer
 from link.transport.backoff import Backoff
-from vehicle.drive.control import Control
-from vehicle.params import ParamError, Params
-from vehicle.statustext import StatusTextQueue
+from vehicle.commands.access import Access
+from vehicle.commands.context import Context
+from vehicle.commands.inbound import InboundMessage, InboundTable, from_server
+from vehicle.params import ParamError
+from vehicle.storage.param_store import ParamStore
 
 SAVE_RETRY_TIMES = (2.0, 60.0)
-"""s until what could not be saved is tried again: at first, and at most."""
-
-
-class ParamStoreLike(Protocol):
-    """Remembers values for the next start."""
-
-    @property
-    def problem(self) -> str | None:
-        """Why values are not kept, one line."""
-
-    @property
-    def idle(self) -> bool:
-        """What was to be remembered is, or cannot be."""
-
-    def set(self, name: str, value: float) -> None:
-        """Remember it, soon. Never blocks and never raises."""
-
-    def save(self) -> None:
-        """Write once more what is remembered."""
-
-
-class NullParamStore:
-    """Values end with the program, as in the simulator."""
-
-    problem: str | None = None
-    idle = True
-
-    def set(self, name: str, value: float) -> None:
-        """Forget it."""
-
-    def save(self) -> None:
-        """Nothing."""
+"""s until a failed save is tried again: the first time, and at most."""
 
 
 class ParamService:
-    """Only the driver in control sets, or anybody while nobody is; safety settings never while armed."""
+    """Parameters of ground stations: only the driver sets them, and safety parameters only while disarmed."""
 
-    def __init__(
-        self,
-        params: Params,
-        control: Control,
-        texts: StatusTextQueue,
-        *,
-        ids: tuple[int, int],
-        pacer: BulkPacer,
-        armed: Callable[[], bool],
-        keeper: ParamStoreLike | None = None,
-    ) -> None:
-        self._params = params
-        self._control = control
-        self._texts = texts
-        self._store = keeper or NullParamStore()
+    def __init__(self, context: Context, store: ParamStore | None = None) -> None:
+        """Without a `store`, values end with the program."""
+        self._params = context.params
+        self._texts = context.statustext
+        self._store = store or ParamStore()
         self._backoff = Backoff(*SAVE_RETRY_TIMES)
         self._retry_due: float | None = None
-        """When what could not be saved is tried again; None while all is saved."""
-        params.unannounced.clear()
+        """When a failed save is tried again; None while everything is saved."""
+        context.params.pop_unannounced()
+        system, component = context.ids
         self._server = ParamServer(
-            params.table,
-            params,
-            system=ids[0],
-            component=ids[1],
-            pacer=pacer,
-            allowed=lambda received: control.denial_reason(received.system) is None,
-            armed=armed,
+            context.params.table,
+            context.params,
+            system=system,
+            component=component,
+            pacer=context.pacer,
+            allowed=lambda received: context.control.denial_reason(received.system) is None,
+            armed=lambda: context.safety.armed,
             changed=self._handle_change,
-            say=lambda text, now: texts.send(Severity.WARNING, text, now),
+            send_text=lambda text, now: context.statustext.send(Severity.WARNING, text, now),
         )
 
-    def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Answer one message."""
-        return self._server.receive(received, now)
+    def messages(self) -> InboundTable:
+        """Return the rows of the messages handled here."""
+        serve = from_server(self._server.receive)
+        return (
+            InboundMessage(m.ParamRequestList, Access.CONNECTED, "all PARAM_VALUE, paced", serve),
+            InboundMessage(m.ParamRequestRead, Access.CONNECTED, "PARAM_VALUE, or PARAM_ERROR", serve),
+            InboundMessage(m.ParamSet, Access.DRIVER_OR_UNCLAIMED,
+                           "PARAM_VALUE, after a PARAM_ERROR if it is refused", serve),
+        )  # fmt: skip
 
     def tick(self, now: float) -> list[Outgoing]:
-        """The next values of running lists, and those that the vehicle itself has changed."""
-        announced = self._server.broadcast(sorted(self._params.unannounced)) if self._params.unannounced else []
-        self._params.unannounced.clear()
-        return announced + self._server.tick(now)
+        """Return the next values of running lists, and those that the vehicle itself has changed."""
+        return self._server.broadcast(self._params.pop_unannounced()) + self._server.tick(now)
 
     def observe(self, now: float) -> None:
-        """About once a second: are values kept? Else they are tried again, ever less often: a disk gets room again."""
+        """Check about once a second that values are saved; retry failed saves, with backoff."""
         if problem := self._store.problem:
             text = f"Parameters are not saved: {problem}; trying again"
-            self._texts.send_once(f"keeper {problem}", Severity.WARNING, text, now)
+            self._texts.send_once(f"param store {problem}", Severity.WARNING, text, now)
             self._retry(now)
         elif self._retry_due is not None:
             self._retry_due = None
             self._backoff.reset()
-            self._texts.reset_once("keeper ")
+            self._texts.reset_once("param store ")
             self._texts.send(Severity.NOTICE, "Parameters are saved now", now)
 
     @property
     def is_volatile(self) -> bool:
-        """What is set ends with the program."""
-        return isinstance(self._store, NullParamStore)
+        """Values end with the program."""
+        return self._store.is_volatile
 
     @property
     def damage(self) -> str | None:
-        """Why what was kept is lost, until somebody sets a parameter."""
+        """Why the saved values are lost, until a parameter is set."""
         return self._params.damage
 
     @property
     def problem(self) -> str | None:
-        """Why values are not kept, one line."""
+        """Why values are not saved, one line, or None."""
         return self._store.problem
 
     @property
     def idle(self) -> bool:
-        """Nothing is being written."""
+        """No write is pending."""
         return self._store.idle
 
     def save(self) -> None:
-        """Once more: what is set was written already, where the disk took it."""
+        """Queue all values for saving again: each was queued already when it was set."""
         self._store.save()
 
     def reset(self, now: float) -> None:
-        """Defaults for all that a ground station may set; who listens is told what that changed.
+        """Reset every parameter that a ground station may set to its default, and announce the changes.
 
-        What this run was given stays in force until its end, but only its default is kept.
+        A value of the command line stays in force until the program ends, but its default is saved.
         """
         before, run = {name: self._params[name] for name in self._params}, self._params.run_values
         table = [each for each in self._params.table if not each.read_only]
@@ -145,8 +112,8 @@ class ParamService:
         for each in table:
             if each.name in changed or each.name in run:
                 self._save_value(each.name, each.default)
-        self._params.unannounced = changed
-        self._texts.send(Severity.NOTICE, f"Parameters: {len(changed)} back to their defaults", now)
+        self._params.set_unannounced(changed)
+        self._texts.send(Severity.NOTICE, f"Parameters: {len(changed)} reset to defaults", now)
 
     def _retry(self, now: float) -> None:
         if self._retry_due is not None and now >= self._retry_due and self._store.idle:
@@ -156,9 +123,9 @@ class ParamService:
             self._retry_due = now + self._backoff.next_delay()
 
     def _handle_change(self, name: str, value: float) -> None:
-        self._params.unannounced.discard(name)  # its answer tells everybody
+        self._params.mark_announced(name)  # the server broadcasts its PARAM_VALUE
         self._save_value(name, value)
 
     def _save_value(self, name: str, value: float) -> None:
-        self._params.damage = None  # somebody sees to the parameters
+        self._params.clear_damage()
         self._store.set(name, value)

@@ -1,7 +1,7 @@
-"""PREFLIGHT_STORAGE: what is kept over a restart, parameters and plans, put back to the start or made sure of.
+"""PREFLIGHT_STORAGE: reset parameters, erase plans, or save either again.
 
-Everything that is set or uploaded is kept at once, so that there is never anything to read back. The answer comes when
-the disk has it.
+Everything that is set or uploaded is saved at once, so that there is never anything to read back. The command ends when
+the disk has written it.
 """
 
 from __future__ import annotations
@@ -10,98 +10,112 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Protocol
 
-from dialects.enums import MissionResult, Result
+from dialects.enums import Command, MissionResult, Result
 from link.services.command.jobs import CommandJob
 from link.services.command.server import CommandRequest, value_or_default
 from link.services.mission.commit import WRITE_TIMEOUT, PlanChange
-from vehicle.commands.access import CommandAccess
+from vehicle.commands.access import Access
+from vehicle.commands.command_table import CommandSpec, CommandTable
+from vehicle.commands.context import Context
 from vehicle.commands.mission import MissionService
 from vehicle.commands.params import ParamService
-from vehicle.safety.state_machine import Safety
 
 NOTHING, READ, WRITE, RESET, RESET_ALL = -1, 0, 1, 2, 4
 PARAMETERS = (NOTHING, READ, WRITE, RESET, RESET_ALL)
-"""PREFLIGHT_STORAGE_PARAMETER_ACTION; 3 would reset the calibration of sensors, and there is none."""
+"""PREFLIGHT_STORAGE_PARAMETER_ACTION; 3 would reset sensor calibration, of which there is none."""
 PLANS = (NOTHING, READ, WRITE, RESET)
-"""PREFLIGHT_STORAGE_MISSION_ACTION, of mission, fence and rally points."""
+"""PREFLIGHT_STORAGE_MISSION_ACTION, for mission, fence and rally points."""
 LOGGING = (-1, 0, 1)
-"""Parameter 3: stop, nothing, the usual rate. LOG_DISARMED says when to record, and there are no other rates."""
+"""Parameter 3: stop, no change, default rate. All have no effect: LOG_DISARMED says when to record, at one rate."""
 
 
 class PreflightStorage:
-    """Begins it, for the driver while disarmed."""
+    """Handles PREFLIGHT_STORAGE for the driver, while disarmed."""
 
-    def __init__(self, params: ParamService, plans: MissionService, safety: Safety, asking: CommandAccess) -> None:
+    def __init__(self, context: Context, params: ParamService, plans: MissionService) -> None:
+        self._safety = context.safety
+        self._access = context.access
         self._params = params
         self._plans = plans
-        self._safety = safety
-        self._asking = asking
 
-    def run(self, request: CommandRequest, now: float) -> Result | CommandJob:
-        """Parameter 1: what happens to parameters; 2: to plans. NaN: nothing."""
+    def commands(self) -> CommandTable:
+        """Return the rows of the commands handled here."""
+        return (
+            CommandSpec(Command.PREFLIGHT_STORAGE, self._run, Access.DRIVER_OR_UNCLAIMED,
+                        "disarmed; 1: 2 or 4 resets parameters to their defaults, or to the values of this run; "
+                        "2: 2 erases the plans; 1 saves either again"),
+        )  # fmt: skip
+
+    def _run(self, request: CommandRequest, now: float) -> Result | CommandJob:
+        """Parameter 1: action for parameters; 2: for plans. NaN: none."""
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
         params, plans = value_or_default(request.params[0], NOTHING), value_or_default(request.params[1], NOTHING)
         if params not in PARAMETERS or plans not in PLANS or value_or_default(request.params[2]) not in LOGGING:
             return Result.DENIED
-        wanted = [kept for kept, wish in ((self._params, params), (self._plans, plans)) if wish not in (NOTHING, READ)]
+        actions = ((self._params, params), (self._plans, plans))
+        written = [service for service, action in actions if action not in (NOTHING, READ)]
         if why := self._unsavable(params == WRITE, plans == WRITE):
-            return self._asking.reject(request, why, now)
+            return self._access.reject(request, why, now)
         erased = self._plans.clear() if plans == RESET else None
         if plans == RESET and erased is None:
-            return Result.TEMPORARILY_REJECTED  # somebody uploads
+            return Result.TEMPORARILY_REJECTED  # an upload is under way
         if plans == WRITE:
             self._plans.save()
         if params == WRITE:
             self._params.save()
         if params in (RESET, RESET_ALL):
             self._params.reset(now)
-        saving = SaveJob(wanted, erased, partial(self._asking.reject, request), now)
+        saving = SaveJob(written, erased, partial(self._access.reject, request), now)
         result = saving.step(now)
         return saving if result is None else result
 
     def _unsavable(self, params: bool, plans: bool) -> str | None:
-        """Why parameters, or plans, cannot be saved when that is asked for."""
+        """Return why a requested save of parameters or plans is impossible, or None."""
         if (params and self._params.is_volatile) or (plans and self._plans.is_volatile):
-            return "nothing is kept in this run"
-        if params and self._params.damage:  # a file of nothing would be a good one at the next start
+            return "nothing is saved in this run"
+        if params and self._params.damage:  # saving now would make an empty file valid at the next start
             return f"{self._params.damage}; set one to go on"
         return None
 
 
 class WriteStatus(Protocol):
-    """Parameters, or plans."""
+    """Progress of the writes of one service."""
 
     @property
     def idle(self) -> bool:
-        """Nothing is being written."""
+        """No write is pending."""
 
     @property
     def problem(self) -> str | None:
-        """Why what was last to be written is not."""
+        """Why the last write failed, or None."""
 
 
 class SaveJob:
-    """What was wanted is on its way to the disk: a `link.services.command.jobs.Job`."""
+    """Waits for the disk: a `link.services.command.jobs.CommandJob`."""
 
     percent: int | None = None
 
     def __init__(
-        self, kept: Sequence[WriteStatus], erased: PlanChange | None, refuse: Callable[[str, float], Result], now: float
+        self,
+        services: Sequence[WriteStatus],
+        erased: PlanChange | None,
+        reject: Callable[[str, float], Result],
+        now: float,
     ) -> None:
-        self._kept = kept
+        self._services = services
         self._erased = erased
-        self._refuse = refuse
+        self._reject = reject
         self._began = now
 
     def step(self, now: float) -> Result | None:
-        """Look whether it is there."""
-        if not all(each.idle for each in self._kept):
-            return None if now - self._began < WRITE_TIMEOUT else self._refuse("the disk does not answer", now)
-        problem = next(filter(None, (each.problem for each in self._kept)), None)
+        """Return the result once all writes are done, or have failed."""
+        if not all(each.idle for each in self._services):
+            return None if now - self._began < WRITE_TIMEOUT else self._reject("the disk does not respond", now)
+        problem = next(filter(None, (each.problem for each in self._services)), None)
         if self._erased and self._erased.verdict is not MissionResult.ACCEPTED:
             problem = problem or "the plans could not be erased"
-        return self._refuse(problem, now) if problem else Result.ACCEPTED
+        return self._reject(problem, now) if problem else Result.ACCEPTED
 
     def cancel(self, now: float) -> None:
-        """Files are written whole or not at all: it cannot be stopped half way."""
+        """Do nothing: files are written whole, and a write cannot be stopped half way."""

@@ -1,7 +1,7 @@
-"""How the daemon ends when a ground station asked for it: exit codes that say what is to happen next.
+"""Exit codes of PREFLIGHT_REBOOT_SHUTDOWN: what must happen after the daemon has ended.
 
-The daemon has no rights to restart a computer and runs no other program: the unit (vehicle/cli/systemd_unit.py) does what the code
-says. Any other supervisor can do the same.
+The daemon may not restart the computer and runs no other program: the systemd unit (vehicle/cli/systemd_unit.py) acts
+on the exit code. Any other supervisor can do the same.
 """
 
 from __future__ import annotations
@@ -12,26 +12,26 @@ from enum import IntEnum
 from link.services.command.server import value_or_default
 
 REBOOT_DELAY = 0.5
-"""s between the answer and the end: a client whose answer was lost repeats, and is answered again."""
+"""s between the acknowledgement and the end: a client repeats the command if the acknowledgement was lost."""
 
 
 OWN_COMPONENTS = (0, 1)
-"""Component ids in parameter 4 of PREFLIGHT_REBOOT_SHUTDOWN that mean this program: all, and the autopilot."""
+"""Component ids in parameter 4 that mean this program: all components, and the autopilot."""
 
 
 class RebootRequest(IntEnum):
-    """Exit codes; free ones between those of sysexits.h and systemd's own."""
+    """Exit codes, between those of sysexits.h and those of systemd."""
 
     RESTART = 80
-    """Start me again."""
+    """Start the daemon again."""
     REBOOT = 81
-    """Start the computer again."""
+    """Reboot the computer."""
     POWER_OFF = 82
-    """Turn the computer off."""
+    """Shut the computer down."""
 
     @property
     def label(self) -> str:
-        """As the driver reads it."""
+        """Words for the driver."""
         return {RebootRequest.RESTART: "restarting", RebootRequest.REBOOT: "rebooting the computer",
                 RebootRequest.POWER_OFF: "shutting the computer down"}[self]  # fmt: skip
 
@@ -45,20 +45,19 @@ REBOOT_REQUESTS: dict[tuple[float, float], RebootRequest] = {
     (2, 0): RebootRequest.POWER_OFF,
     (2, 2): RebootRequest.POWER_OFF,
 }
-"""REBOOT_SHUTDOWN_ACTION for the autopilot, for the computer on board -> what happens. The rest is not offered.
+"""REBOOT_SHUTDOWN_ACTION of parameters 1 and 2 -> request; other pairs are denied.
 
-The autopilot shut down is the computer turned off: a program that has only ended could not be begun again from afar."""
+Shutting down the autopilot shuts down the computer: a program that has only ended could not be started remotely."""
 
 
 def parse_reboot_request(params: Sequence[float]) -> RebootRequest | None:
-    """What parameters 1..4 of PREFLIGHT_REBOOT_SHUTDOWN ask for; None for what is not offered.
+    """Return the request in parameters 1..4 of PREFLIGHT_REBOOT_SHUTDOWN; None if it is not offered.
 
-    3 and 4 are an action and the component it is for. Other components are no part of this vehicle: what is asked of
-    them is passed over where we are asked for something, too (MAVSDK 4 sends NaN for all but the first, older ones
-    1, 1, 1, 1 and 2, 2, 2, 2).
+    Parameters 3 and 4 are an action and its component. An action for another component is ignored, because this vehicle
+    has no other (MAVSDK 4 sends NaN for all but the first, older ones 1, 1, 1, 1 and 2, 2, 2, 2).
     """
-    program, computer, action, of = map(value_or_default, params[:4])
-    if action and of in OWN_COMPONENTS:
+    program, computer, action, component = map(value_or_default, params[:4])
+    if action and component in OWN_COMPONENTS:
         if program not in (0, action):
             return None
         program = action

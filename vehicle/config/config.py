@@ -1,6 +1,7 @@
-"""The file of settings, rover.toml: read, checked and explained; what a driver or sensor makes of its part is theirs.
+"""The configuration file rover.toml: its keys, and checks with one line for each error.
 
-To add a key: a field here, with a docstring, which is its help in the sample (template.py) and the schema (schema.py).
+To add a key, add a field here, with a docstring: that is its help in the template (template.py) and the JSON schema
+(schema.py).
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ from link.runtime.toml_file import TomlError, find_unsupported, parse_toml, read
 from vehicle.accessories import settings as accessory_settings
 from vehicle.accessories.settings import Accessories
 from vehicle.config.conflicts import find_conflicts
-from vehicle.motors import DRIVERS, PROFILE_PARAMS, PROFILES, MotorError, UnknownDriverError, settings_type
-from vehicle.motors.settings import RETIRED, CommonMotorSettings, NoSettings
+from vehicle.motors import MotorError, UnknownDriverError
+from vehicle.motors.drivers import DRIVERS, profile_params, profile_settings, settings_type
+from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import PARAMETERS, ParamError, Params
 from vehicle.sensors.suite import SensorSettings
 
@@ -26,41 +28,41 @@ DEFAULT_FILE = "rover.toml"
 
 
 class ConfigError(Exception):
-    """A file of settings cannot be used. Each of `problems` is one line: file, key, what is wrong, what to do."""
+    """The configuration file is invalid. Each of `problems` is one line: file, key, error and remedy."""
 
     def __init__(self, *problems: str) -> None:
-        more = f" (and {len(problems) - 1} more, see `vehicle check`)" if len(problems) > 1 else ""
+        more = f" (and {len(problems) - 1} more; see `vehicle check`)" if len(problems) > 1 else ""
         super().__init__(problems[0] + more)
         self.problems = problems
 
 
 class Identity(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Who this vehicle is."""
+    """Identity of this vehicle."""
 
     system: Annotated[int, msgspec.Meta(ge=1, le=255)] | None = None
-    """MAVLink system id; without it the parameter MAV_SYSID, which is 1 until it is set."""
+    """MAVLink system id; without it the parameter MAV_SYSID applies (default 1)."""
 
 
 class LogSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What is written down. The brief log always goes to stderr, and in a service to the journal."""
+    """Log files. The brief log always goes to stderr, and for a service to the journal."""
 
     file: str | None = None
-    """Append the log here, with times and tracebacks."""
+    """Append the log to this file, with times and tracebacks."""
     verbose: bool = False
-    """Log more."""
+    """Log more details."""
     motors: str | None = None
-    """Append each change of the motors here: CLOCK_MONOTONIC ns and the throttles."""
+    """Append each change of the motor outputs to this file: CLOCK_MONOTONIC ns and the throttles."""
     tlog: str | None = None
-    """Folder for the telemetry log of each drive; without it `logs` in the folder of `state`."""
+    """Folder for the telemetry log of each drive; without it `logs` in the state folder."""
 
 
 class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The whole file."""
+    """The configuration file."""
 
     endpoints: tuple[str, ...] = ()
-    """Links to ground stations. Whoever reaches one can ask for control: open them only to networks that you trust."""
+    """Links to ground stations. Every station that can reach one may request control: use trusted networks only."""
     state: str | None = None
-    """Folder that keeps what ground stations set; without it the service's own, or one in your home."""
+    """Folder for parameters and plans set by ground stations; without it the service's own, or one in your home."""
     identity: Identity = Identity()
     motors: dict[str, Any] = {}
     accessories: Accessories = Accessories()
@@ -70,24 +72,24 @@ class Config(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def load(path: str | Path) -> Config:
-    """The settings of a file. Raises ConfigError."""
+    """Read a configuration file. Raises ConfigError."""
     try:
-        return _understood(read_toml(path), str(path))
+        return _build(read_toml(path), str(path))
     except TomlError as error:
         absent = isinstance(error.__cause__, FileNotFoundError)
-        hint = f"; `vehicle init {path}` writes one to begin with" if absent else ""
+        hint = f"; `vehicle init {path}` writes a template" if absent else ""
         raise ConfigError(f"{error}{hint}") from error
 
 
 def parse_config(text: str, name: str) -> Config:
-    """The settings of a file's text. Raises ConfigError."""
+    """Parse the text of a configuration file. Raises ConfigError."""
     try:
-        return _understood(parse_toml(text, name), name)
+        return _build(parse_toml(text, name), name)
     except TomlError as error:
         raise ConfigError(str(error)) from error
 
 
-def _understood(table: Mapping[str, Any], name: str) -> Config:
+def _build(table: Mapping[str, Any], name: str) -> Config:
     problems = [f"{name}: {problem}" for problem in list(find_unsupported(table)) or _problems(table)]
     if problems:
         raise ConfigError(*problems)
@@ -95,7 +97,7 @@ def _understood(table: Mapping[str, Any], name: str) -> Config:
 
 
 def _problems(table: Mapping[str, Any]) -> list[str]:
-    """One for each section that has any, as far as the sections after it can be judged; all of [params]."""
+    """Return one line for each section with an error, and for each error in [params] and [accessories]."""
     kinds = get_type_hints(Config, include_extras=True) | {"params": dict[str, Any]}
     problems: list[str] = []
     for key, value in table.items():
@@ -124,29 +126,25 @@ def _endpoint_problems(endpoints: list[str]) -> list[str]:
 def _motor_problems(table: Mapping[str, Any]) -> list[str]:
     if not isinstance(table.get("driver"), str):
         return [f"motors.driver: missing; add it, one of {', '.join(DRIVERS)}, or your own as module:Class"]
-    retired = [f"motors.{key}: {words}" for key, words in RETIRED.items() if key in table]
-    if retired:
-        return retired
     name = table["driver"]
     try:
         kind = settings_type(name)
     except UnknownDriverError as error:
         return [f"motors.driver: {error}"]
-    except MotorError:  # its library is missing: no mistake in the file, and said when the driver is opened
+    except MotorError:  # its library is missing, which is not an error in the file; opening the driver reports it
         return []
-    settings = {**PROFILES.get(name, {}), **{key: value for key, value in table.items() if key != "driver"}}
-    beside = {key: value for key, value in settings.items() if key in CommonMotorSettings.__struct_fields__}
-    own = {key: value for key, value in settings.items() if key not in beside}
-    return _problem(beside, CommonMotorSettings) + _problem(
-        own, kind or NoSettings, CommonMotorSettings.__struct_fields__
-    )
+    settings = {**profile_settings(name), **{key: value for key, value in table.items() if key != "driver"}}
+    common_keys = CommonMotorSettings.__struct_fields__
+    common = {key: value for key, value in settings.items() if key in common_keys}
+    own = {key: value for key, value in settings.items() if key not in common}
+    return _problem(common, CommonMotorSettings) + _problem(own, kind or NoSettings, common_keys)
 
 
-def _problem(table: Mapping[str, Any], kind: Any, also: tuple[str, ...] = ()) -> list[str]:
+def _problem(table: Mapping[str, Any], kind: Any, other_keys: tuple[str, ...] = ()) -> list[str]:
     try:
         msgspec.convert(dict(table), kind)
     except msgspec.ValidationError as error:
-        return [explain_error(error, kind, "motors", also)]
+        return [explain_error(error, kind, "motors", other_keys)]
     return []
 
 
@@ -169,8 +167,8 @@ def _param_problem(name: str, value: Any) -> str | None:
 
 def _contradictions(table: Mapping[str, Any]) -> list[str]:
     if "system" in table.get("identity", {}) and "MAV_SYSID" in table.get("params", {}):
-        return ["params.MAV_SYSID: identity.system says the same thing; keep one of them"]
-    usual = PROFILE_PARAMS.get(table.get("motors", {}).get("driver", ""), {})
+        return ["params.MAV_SYSID: identity.system sets the same value; remove one of them"]
+    usual = profile_params(table.get("motors", {}).get("driver", ""))
     try:
         Params({**usual, **table.get("params", {})})
     except ParamError as error:
@@ -188,4 +186,4 @@ _CHECKS: dict[str, Callable[[Any], list[str]]] = {
     "accessories": _accessory_problems,
     "params": _param_problems,
 }
-"""Section -> what its types cannot say."""
+"""Section -> checks beyond its types."""

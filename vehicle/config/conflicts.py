@@ -1,9 +1,9 @@
-"""Two parts of a file that want the same pin, chip or port: on its own each is right, together they do not start.
+"""Conflicts between parts of the configuration file that use the same pin, chip or port.
 
-A type of settings that takes something has a property `taken`, its names; a driver of somebody else's may have one.
-What several may have together, where they say the same of it, is in its `shared`: name -> what it says.
-An accessory keeps away from all that motors hang on, also from pins that they only may come out at: it must never move
-one.
+Settings that occupy hardware have a property `taken` with its names; a driver from outside may have one too. Hardware
+that several parts may share with the same settings is in the property `shared`: name -> those settings.
+An accessory must not use any pin of the motors, not even one that they may use, depending on device tree overlays: an
+accessory must never move a motor.
 """
 
 from __future__ import annotations
@@ -18,61 +18,62 @@ from link.endpoint import parse_endpoint
 from vehicle.accessories.output import AccessorySpec
 from vehicle.accessories.settings import Accessories, build_spec, iter_tables
 from vehicle.drive.mixer import MIXERS
-from vehicle.motors import PROFILES, MotorError, settings_type
+from vehicle.motors import MotorError
+from vehicle.motors.drivers import profile_settings, settings_type
 from vehicle.motors.settings import CommonMotorSettings, pin_name, port_name
 from vehicle.sensors.suite import SensorSettings
 
 
 def find_conflicts(table: Mapping[str, Any]) -> list[str]:
-    """A line for each thing that is taken twice. `table` is the whole file, right in all its parts."""
-    holders: dict[str, tuple[str, str | None]] = {}
+    """Return one line for each conflict. `table` is the whole file, without errors in its sections."""
+    owners: dict[str, tuple[str, str | None]] = {}
     problems = []
-    for holder, name, word in _taken(table):
-        first, said = holders.setdefault(name, (holder, word))
-        if first == holder or (word is not None and word == said):
+    for owner, name, shared_as in _taken(table):
+        first, first_shared_as = owners.setdefault(name, (owner, shared_as))
+        if first == owner or (shared_as is not None and shared_as == first_shared_as):
             continue
-        if word is None or said is None:
-            problems.append(f"{holder}: {name} is taken by {first} already; one of them needs another")
+        if shared_as is None or first_shared_as is None:
+            problems.append(f"{owner}: {name} is already used by {first}; change one of them")
         else:
-            problems.append(f"{holder}: {name} is {said} in {first}; say the same here")
+            problems.append(f"{owner}: {name} is {first_shared_as} in {first}; set the same here")
     return problems + _near_motors(table)
 
 
-def find_motor_conflicts(outputs: Iterable[AccessorySpec], kind: DriveType) -> list[str]:
-    """A line for each servo that has the number of a motor."""
+def find_motor_conflicts(specs: Iterable[AccessorySpec], kind: DriveType) -> list[str]:
+    """Return one line for each servo with the number of a motor."""
     motors = MIXERS[kind].servos
     return [
-        f"accessories: {output.name} is a motor where DRIVE_TYPE is {kind:d}; it needs another number"
-        for output in outputs
-        if output.kind == "servo" and output.number in motors
+        f"accessories: {spec.name} is a motor with DRIVE_TYPE {kind:d}; use another number"
+        for spec in specs
+        if spec.kind == "servo" and spec.number in motors
     ]
 
 
 def _taken(table: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
-    """Holder, what it takes, and what it says of it where others may have it too."""
+    """Yield section, name of its hardware, and the settings for it if it may be shared."""
     for index, text in enumerate(table.get("endpoints", ())):
         if path := parse_endpoint(text).path:
             yield f"endpoints[{index}]", port_name(path), None
     parts = _motors(table["motors"]) if "motors" in table else {}
     sensors = msgspec.convert(table.get("sensors", {}), SensorSettings)
     parts |= {"sensors.encoders": sensors.encoders, "sensors.battery": sensors.battery}
-    for holder, settings in [*parts.items(), *_accessories(table)]:
+    for owner, settings in [*parts.items(), *_accessories(table)]:
         for name in getattr(settings, "taken", ()):
-            yield holder, name, None
-        for name, word in getattr(settings, "shared", {}).items():
-            yield holder, name, word
+            yield owner, name, None
+        for name, shared_as in getattr(settings, "shared", {}).items():
+            yield owner, name, shared_as
 
 
 def _motors(table: Mapping[str, Any]) -> dict[str, Any]:
     driver = table["driver"]
-    settings = {**PROFILES.get(driver, {}), **{key: value for key, value in table.items() if key != "driver"}}
-    around = msgspec.convert({"safety": settings.pop("safety", None)}, CommonMotorSettings)
+    settings = {**profile_settings(driver), **{key: value for key, value in table.items() if key != "driver"}}
+    common = msgspec.convert({"safety": settings.pop("safety", None)}, CommonMotorSettings)
     try:
         kind = settings_type(driver)
-    except MotorError:  # its library is missing: said when the driver is opened
+    except MotorError:  # its library is missing; opening the driver reports it
         kind = None
     own = None if kind is None else msgspec.convert(settings, kind)
-    return {"motors": own, "motors.safety": around.safety}
+    return {"motors": own, "motors.safety": common.safety}
 
 
 def _accessories(table: Mapping[str, Any]) -> Iterator[tuple[str, AccessorySpec]]:
@@ -82,12 +83,12 @@ def _accessories(table: Mapping[str, Any]) -> Iterator[tuple[str, AccessorySpec]
 
 
 def _near_motors(table: Mapping[str, Any]) -> list[str]:
-    """Pins by which motors are spoken to, or at which they may be, depending on an overlay that nobody sees here."""
+    """Return one line for each accessory on a pin that the motors may use, depending on device tree overlays."""
     motors = _motors(table["motors"])["motors"] if "motors" in table else None
     pins = {pin_name(pin) for pin in getattr(motors, "pins_nearby", ())}
     return [
-        f"{holder}: {name} may be the motors'; it needs another"
-        for holder, output in _accessories(table)
-        for name in output.taken
+        f"{owner}: {name} may be used by the motors; use another pin"
+        for owner, spec in _accessories(table)
+        for name in spec.taken
         if name in pins
     ]

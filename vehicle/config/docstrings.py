@@ -1,4 +1,4 @@
-"""What the source says of each field of a class: help that cannot differ from the code, because it is in it."""
+"""Reads the docstrings of the fields of a class from its source, as help for the user."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import textwrap
 
 
 def field_docs(kind: type) -> dict[str, str]:
-    """The docstring behind each field of a class and of those it is made from, as their source has it."""
+    """Return field -> first paragraph of its docstring, for a class and its bases."""
     kinds = [each for each in reversed(kind.__mro__) if "__annotations__" in vars(each)]
     return {name: text for each in kinds for name, text in _own_docs(each).items()}
 
@@ -29,5 +29,5 @@ def _own_docs(kind: type) -> dict[str, str]:
 
 
 def first_paragraph(text: str | None) -> str:
-    """The first paragraph, as one line."""
+    """Return the first paragraph of a docstring as one line."""
     return " ".join(inspect.cleandoc(text or "").partition("\n\n")[0].split())

@@ -1,4 +1,4 @@
-"""The parameters that a vehicle with this file would run with, for the programs beside it: check and motor-test."""
+"""The parameters that a vehicle would use with a configuration file, for `vehicle check` and `vehicle motor-test`."""
 
 from __future__ import annotations
 
@@ -7,43 +7,48 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.config.config import Config
-from vehicle.motors import PROFILE_PARAMS
+from vehicle.motors.drivers import profile_params
 from vehicle.params import Params, merge_params
+from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.motor_copy import default_state_folder
 from vehicle.storage.param_store import ParamStore
 
 SERVICE = Path("/var/lib/mavhelm")
-"""Where the service keeps things: StateDirectory in vehicle/cli/systemd_unit.py."""
+"""State folder of the service: StateDirectory in vehicle/cli/systemd_unit.py."""
 
 
 @dataclass(frozen=True, slots=True)
 class EffectiveParams:
-    """What is in force, and where it is from."""
+    """The parameters, and where they come from."""
 
     params: Params
     folder: Path
-    """Where the vehicle keeps what ground stations set."""
+    """State folder of the vehicle."""
     saved_count: int
-    """How many of the kept ones count."""
+    """Number of saved parameters in use."""
     left_out: tuple[str, ...]
-    """Kept ones that do not fit any more, a line each."""
+    """Saved parameters that are not valid any more, a line each."""
     damage: str | None
-    """Why the kept ones could not be read, and what to do."""
+    """Why the saved parameters could not be read, and what to do."""
 
 
 def load_effective_params(config: Config, folder: str | None = None) -> EffectiveParams:
-    """As vehicle/runtime/factory.py does it: defaults, a known car's, kept ones, the file's. `folder` wins over the file's."""
-    where = state_folder_of(folder or config.state)
-    store = ParamStore(where)
-    usual = PROFILE_PARAMS.get(config.motors.get("driver", ""), {})
+    """Merge parameters as vehicle/runtime/factory.py does: defaults, a known car's, saved ones, those of the file.
+
+    `folder` replaces the state folder of the file.
+    """
+    state = state_folder_of(folder or config.state)
+    store = ParamStore(FileWriter(state))
+    usual = profile_params(config.motors.get("driver", ""))
     params, left_out = merge_params(config.params, kept=store.values, usual=usual)
     count = len(store.values.keys() - config.params.keys()) - len(left_out)
-    damage = store.damage and f"{store.damage}; start the vehicle and set one from a ground station, which ends this"
-    return EffectiveParams(params, where, count, tuple(left_out), damage)
+    remedy = "start the vehicle and set a parameter from a ground station to repair it"
+    damage = store.damage and f"{store.damage}; {remedy}"
+    return EffectiveParams(params, state, count, tuple(left_out), damage)
 
 
 def state_folder_of(configured: str | None) -> Path:
-    """The folder of the vehicle: of the service where there is one, which this program is not."""
+    """Return the state folder of the vehicle: that of the service if it exists, as this program is not the service."""
     if configured:
         return Path(configured)
     beside_service = "STATE_DIRECTORY" not in os.environ and os.path.lexists(SERVICE)

@@ -1,4 +1,4 @@
-"""What one run of the vehicle is to be: said by the command line and the file, read by the daemon."""
+"""Settings of one run of the vehicle, from the command line and the configuration file, for the daemon."""
 
 from __future__ import annotations
 
@@ -14,41 +14,41 @@ from vehicle.sim.body import SimulatedHome
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
-    """Wishes for the simulated rover."""
+    """Settings of the simulated rover."""
 
     home: SimulatedHome = field(default_factory=SimulatedHome)
     battery: float = 1.0
-    """Charge at the start, 0..1."""
+    """Charge at the start, 0 to 1."""
     seed: int = 1
-    """Of the sensors' noise."""
+    """Seed of the sensor noise."""
     truth: str | None = None
-    """File to append to where it really is."""
+    """File to which the true position is appended."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunSettings:
-    """What the command line or a file asks for."""
+    """The settings of one run."""
 
     endpoints: tuple[str, ...]
     motors: Mapping[str, Any] = field(default_factory=lambda: {"driver": "simulated"})
-    """The driver's name as `driver`, and its settings; a simulation has its own."""
+    """The driver's name as `driver`, and its settings; ignored in a simulation."""
     accessories: Accessories = field(default_factory=Accessories)
-    """Relays and servos; a simulation has simulated ones of the same numbers."""
+    """Relays and servos; a simulation has simulated ones with the same numbers."""
     config: Path | None = None
-    """The file that says so; safe-stop is told the same one."""
+    """The configuration file; safe-stop is called with the same one."""
     sensors: SensorSettings | None = None
-    """None: a rover that measures nothing. A simulation has its own."""
+    """None for a rover without sensors; ignored in a simulation."""
     simulation: Simulation | None = None
     pinned: Mapping[str, float] = field(default_factory=dict)
-    """Parameters that the file of settings sets, and no ground station changes."""
+    """Parameters set in the configuration file, which ground stations cannot change."""
     params: Mapping[str, float] = field(default_factory=dict)
-    """Parameters of this run."""
+    """Parameters of this run only."""
     motor_log: str | None = None
     state: Path | None = None
-    """Folder that keeps what ground stations set; None: nothing is kept."""
+    """State folder for parameters and plans; None: nothing is saved."""
     logs: Path | None = None
     """Folder of telemetry logs; None: nothing is recorded."""
 
 
 class SettingsError(Exception):
-    """What was asked for cannot be had; the text is one line."""
+    """The settings cannot be used; the text is one line."""

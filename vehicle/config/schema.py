@@ -1,4 +1,4 @@
-"""The JSON schema of rover.toml, with which editors check and complete it: `vehicle schema` prints it."""
+"""The JSON schema of rover.toml, for checks and completion in editors; `vehicle schema` prints it."""
 
 from __future__ import annotations
 
@@ -8,28 +8,29 @@ from typing import Any
 
 import msgspec
 
-from vehicle.accessories import DRIVERS as ACCESSORIES
+from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
 from vehicle.accessories.settings import COMMON
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
 from vehicle.config.docstrings import field_docs
 from vehicle.config.template import parameter_help
-from vehicle.motors import DRIVERS, PROFILES, MotorError, settings_type
+from vehicle.motors import MotorError
+from vehicle.motors.drivers import DRIVERS, profile_settings, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import TABLE, Parameter
 
 
 def build_schema() -> str:
-    """The JSON schema."""
+    """Return the JSON schema."""
     kinds = {name: kind for name in DRIVERS if (kind := _settings(name)) is not None}
     accessories = {
-        (kind, name): settings_type_of(kind, name) or NoSettings for kind in COMMON for name in ACCESSORIES[kind]
+        (kind, name): settings_type_of(kind, name) or NoSettings for kind in COMMON for name in ACCESSORY_DRIVERS[kind]
     }
     structs = [Config, CommonMotorSettings, *COMMON.values(), *dict.fromkeys([*kinds.values(), *accessories.values()])]
     _, parts = msgspec.json.schema_components(structs, ref_template="#/$defs/{name}")
     _describe(parts, _structs(structs))
-    whole = parts.pop("Config")
-    around = parts.pop("CommonMotorSettings")
+    config = parts.pop("Config")
+    common_motor = parts.pop("CommonMotorSettings")
     own = {kind.__name__: parts.pop(kind.__name__) for kind in dict.fromkeys([*kinds.values(), *accessories.values()])}
     common = {kind: parts.pop(each.__name__) for kind, each in COMMON.items()}
     for which, known in common.items():
@@ -39,18 +40,18 @@ def build_schema() -> str:
             if of == which
         ]
         parts["Accessories"]["properties"][f"{which}s"]["items"] = {"oneOf": [*variants, _own(known)]}
-    drivers = [_driver_schema(name, own[kind.__name__], around) for name, kind in kinds.items()]
-    whole["properties"]["motors"] = {"oneOf": [*drivers, _OWN_DRIVER]}
-    whole["properties"]["params"] = {
+    drivers = [_driver_schema(name, own[kind.__name__], common_motor) for name, kind in kinds.items()]
+    config["properties"]["motors"] = {"oneOf": [*drivers, _OWN_DRIVER]}
+    config["properties"]["params"] = {
         "type": "object", "additionalProperties": False,
         "properties": {parameter.name: _parameter_schema(parameter) for parameter in TABLE},
     }  # fmt: skip
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "rover.toml"}
-    return json.dumps({**whole, **head, "$defs": parts}, indent=1) + "\n"
+    return json.dumps({**config, **head, "$defs": parts}, indent=1) + "\n"
 
 
 def _settings(name: str) -> type | None:
-    """None for a driver whose library is missing here."""
+    """Return the settings of a driver, None if its library is missing."""
     try:
         return settings_type(name) or NoSettings
     except MotorError:
@@ -69,7 +70,7 @@ def _accessory_schema(name: str, own: Mapping[str, Any], common: Mapping[str, An
 
 
 def _own(common: Mapping[str, Any]) -> dict[str, Any]:
-    """One of somebody's own, whose settings nobody knows here."""
+    """Return the schema of an accessory with a driver from outside, whose own settings are unknown."""
     return {
         **_OWN_DRIVER,
         "properties": {**_OWN_DRIVER["properties"], **common["properties"]},
@@ -85,13 +86,13 @@ _OWN_DRIVER: dict[str, Any] = {
 }
 
 
-def _driver_schema(name: str, own: Mapping[str, Any], around: Mapping[str, Any]) -> dict[str, Any]:
-    known = PROFILES.get(name, {})
+def _driver_schema(name: str, own: Mapping[str, Any], common: Mapping[str, Any]) -> dict[str, Any]:
+    known = profile_settings(name)
     return {
         "type": "object",
         "title": name,
         "description": own.get("description", ""),
-        "properties": {"driver": {"const": name}, **own["properties"], **around["properties"]},
+        "properties": {"driver": {"const": name}, **own["properties"], **common["properties"]},
         "required": ["driver", *(key for key in own.get("required", ()) if key not in known)],
         "additionalProperties": False,
     }
@@ -106,7 +107,7 @@ def _parameter_schema(parameter: Parameter) -> dict[str, Any]:
 
 
 def _structs(kinds: Iterable[type]) -> dict[str, type]:
-    """Every struct in these, by name."""
+    """Return all structs used by `kinds`, by name."""
     found: dict[str, type] = {}
     waiting: list[Any] = [msgspec.inspect.type_info(kind) for kind in kinds]
     while waiting:

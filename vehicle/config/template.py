@@ -1,4 +1,4 @@
-"""The commented file of settings that `vehicle init` writes: every key and its default, from the tables in the code."""
+"""The commented configuration file that `vehicle init` writes, with every key and its default."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ from typing import Any
 
 import msgspec
 
-from vehicle.accessories import DRIVERS as ACCESSORY_DRIVERS
-from vehicle.accessories.settings import COMMON, Accessories, Kind
+from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
+from vehicle.accessories.drivers import FIRST_NUMBER, Kind
+from vehicle.accessories.settings import COMMON, Accessories
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
 from vehicle.config.docstrings import field_docs, first_paragraph
-from vehicle.motors import DRIVERS, PROFILE_PARAMS, PROFILES, MotorError, settings_type
+from vehicle.motors import MotorError
+from vehicle.motors.drivers import DRIVERS, DriverEntry, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings
 from vehicle.params import TABLE, Parameter
 from vehicle.sensors.suite import SensorSettings
@@ -23,30 +25,15 @@ WIDTH = 116
 
 SIMULATED: dict[str, Any] = {"driver": "simulated"}
 LISTENING = ["udpin:0.0.0.0:14550"]
-"""The two things that the sample sets, so that it runs as it is: 14550 is the port that ground stations know."""
+"""The two values that the template sets, so that it runs unchanged: 14550 is the usual port of ground stations."""
 
-EXAMPLES: dict[str, dict[str, Any]] = {
-    "gpio": {"bridges": [
-        {"wiring": "two-inputs", "forward": 5, "backward": 6}, {"wiring": "phase-enable", "enable": 13, "phase": 16}]},
-    "pca9685": {"channels": [{"channel": 0}, {"channel": 1}]},
-    "sysfs-pwm": {"outputs": [
-        {"drives": "bridge", "device": "fe20c000.pwm", "channel": 0, "direction": 5},
-        {"drives": "servo", "device": "fe20c000.pwm", "channel": 1}]},
-    "roboclaw": {"port": "/dev/serial0"},
-    "sabertooth": {"port": "/dev/serial0"},
-}  # fmt: skip
-"""Driver -> what has no default."""
-AROUND: dict[str, Any] = {
+COMMON_MOTOR: dict[str, Any] = {
     "safety": {"estop_pin": 17, "enable_pin": 22, "heartbeat_pin": 27},
 }
 SENSORS: dict[str, Any] = {
     "battery": {"kind": "ina219"},
     "gps": {},
     "encoders": {"wheels": [{"a": 23, "b": 24}, {"a": 25, "b": 26}]},
-}
-ACCESSORIES: dict[Kind, dict[str, dict[str, Any]]] = {
-    "relay": {"gpio": {"number": 0, "pin": 16}},
-    "servo": {"pca9685": {"number": 9, "channel": 0, "address": 0x41}},
 }
 TOP: dict[str, Any] = {
     "state": "/var/lib/mavhelm",
@@ -55,103 +42,111 @@ TOP: dict[str, Any] = {
 }
 
 HEAD = """\
-# Settings of the vehicle daemon. `vehicle --config rover.toml` runs with them, `vehicle check rover.toml` tries them.
+# Configuration of the vehicle. `vehicle --config rover.toml` runs with it, `vehicle check rover.toml` checks it.
 #
-# A line like "#key = value", without a space, is a setting: take the # away to set it. What is shown is the default, or
-# an example where there is none. An unknown key is an error, so that a slip of the pen is not silently ignored.
-# Editors that know JSON schemas can check and complete this file: vehicle schema > rover.schema.json
+# A line like "#key = value", without a space after #, is a setting: remove the # to set it. The value shown is the
+# default, or an example if there is no default. An unknown key is an error, so that a typing error is not ignored.
+# Editors with JSON schema support can check and complete this file: vehicle schema > rover.schema.json
 
 """
 
 
 def build_template() -> str:
-    """The sample file."""
+    """Return the text of the file."""
     config = msgspec.convert({**TOP, "endpoints": LISTENING, "motors": SIMULATED}, Config)
     sensors = msgspec.convert(SENSORS, SensorSettings)
-    around = msgspec.convert(AROUND, CommonMotorSettings)
+    common_motor = msgspec.convert(COMMON_MOTOR, CommonMotorSettings)
     parts = [
         HEAD,
         _line("endpoints", list(config.endpoints), Config, active=True),
         _line("state", config.state, Config),
         "\n[identity]\n" + _body(config.identity, "identity"),
         f"\n[motors]\n# One of {', '.join(DRIVERS)}; or your own as module:Class.\n"
-        "# docs/pi.md has the wiring of each.\n" + 'driver = "simulated"\n',
-        *(_driver(name) for name in DRIVERS if name != "simulated"),
-        "\n# ---- for any driver\n" + _body(around, "motors"),
+        "# docs/pi.md describes the wiring of each.\n" + 'driver = "simulated"\n',
+        *(_driver(name, entry) for name, entry in DRIVERS.items() if name != "simulated"),
+        "\n# ---- for any driver\n" + _body(common_motor, "motors"),
         "\n[sensors]\n" + _body(sensors, "sensors"),
-        f"\n[accessories]\n{_comment(first_paragraph(Accessories.__doc__))}# docs/pi.md has their wiring.\n",
-        *(_accessory(kind, name) for kind, drivers in ACCESSORIES.items() for name in drivers),
-        "\n[params]\n# A parameter that is set here is set here only: ground stations can read it and not change it.\n",
+        f"\n[accessories]\n{_comment(first_paragraph(Accessories.__doc__))}# docs/pi.md describes their wiring.\n",
+        *(
+            _accessory(kind, name, entry)
+            for kind, drivers in ACCESSORY_DRIVERS.items()
+            for name, entry in drivers.items()
+            if name != "simulated"
+        ),
+        "\n[params]\n# Ground stations can read a parameter that is set here, but cannot change it.\n",
         *(_parameter(parameter) for parameter in TABLE),
         "\n[log]\n" + _body(config.log, "log"),
     ]
     return "".join(parts)
 
 
-def _driver(name: str) -> str:
-    if name in PROFILES:
-        usual = ", ".join(f"{key} = {value:g}" for key, value in PROFILE_PARAMS.get(name, {}).items())
-        also = f"# Unless you set them, its parameters are {usual}.\n" if usual else ""
-        return f'\n# ---- {name}: a known car, with its settings\n{also}#driver = "{name}"\n'
+def _driver(name: str, entry: DriverEntry) -> str:
+    """Return the commented settings of one motor driver."""
+    heading = f"\n# ---- {name}: {entry.title}\n"
+    if entry.profile:
+        params = ", ".join(f"{key} = {value:g}" for key, value in entry.params.items())
+        note = f"# Its parameter defaults: {params}.\n" if params else ""
+        return f'{heading}{note}#driver = "{name}"\n'
     try:
         kind = settings_type(name) or NoSettings
-    except MotorError as error:  # its library is missing here
-        return f'\n# ---- {name}: {error}\n#driver = "{name}"\n'
-    settings: msgspec.Struct = msgspec.convert(EXAMPLES[name], kind)
-    return f'\n# ---- {name}: {first_paragraph(kind.__doc__)}\n#driver = "{name}"\n{_body(settings, "motors")}'
+    except MotorError as error:  # its library is not installed
+        return f'{heading}# {error}\n#driver = "{name}"\n'
+    settings: msgspec.Struct = msgspec.convert(entry.example, kind)
+    return f'{heading}#driver = "{name}"\n{_body(settings, "motors")}'
 
 
-def _accessory(kind: Kind, name: str) -> str:
-    """A table for one, with every key."""
-    kinds = (COMMON[kind], settings_type_of(kind, name) or NoSettings)
-    also = f"One of {', '.join(ACCESSORY_DRIVERS[kind])}; or your own as module:Class."
-    head = f'\n#[[accessories.{kind}s]]\n{_comment(also)}#driver = "{name}"\n'
-    return head + "".join(_plain(ACCESSORIES[kind][name], each) for each in kinds)
+def _accessory(kind: Kind, name: str, entry: DriverEntry) -> str:
+    """Return the commented table of one accessory driver, with every key."""
+    structs = (COMMON[kind], settings_type_of(kind, name) or NoSettings)
+    known = f"{name}: {entry.title}. One of {', '.join(ACCESSORY_DRIVERS[kind])}; or your own as module:Class."
+    header = f'\n#[[accessories.{kind}s]]\n{_comment(known)}#driver = "{name}"\n'
+    example = {"number": FIRST_NUMBER[kind], **entry.example}
+    return header + "".join(_plain(example, each) for each in structs)
 
 
 def _plain(example: Mapping[str, Any], kind: Any) -> str:
-    """The keys of a table without tables, as far as `kind` knows them."""
+    """Return the keys of a table without subtables, as far as `kind` has them."""
     names = kind.__struct_fields__
     struct = msgspec.convert({key: value for key, value in example.items() if key in names}, kind)
     return "".join(_line(key, getattr(struct, key), kind) for key in names)
 
 
 def _body(struct: msgspec.Struct, path: str) -> str:
-    """Every key of a table: plain ones first, as TOML wants it, then the tables inside."""
+    """Return every key of a table: plain keys first, as TOML requires, then the subtables."""
     kind = type(struct)
-    plain, inside = [], []
+    plain, subtables = [], []
     tag = kind.__struct_config__.tag
     if tag is not None:
         plain.append(f"#{kind.__struct_config__.tag_field} = {_value(tag)}\n")
     for name in kind.__struct_fields__:
         value = getattr(struct, name)
         if isinstance(value, msgspec.Struct):
-            inside.append(_table(f"[{path}.{name}]", name, kind, value, f"{path}.{name}"))
+            subtables.append(_table(f"[{path}.{name}]", name, kind, value, f"{path}.{name}"))
         elif isinstance(value, tuple) and value and isinstance(value[0], msgspec.Struct):
-            inside += [_table(f"[[{path}.{name}]]", name, kind, each, f"{path}.{name}") for each in value]
+            subtables += [_table(f"[[{path}.{name}]]", name, kind, each, f"{path}.{name}") for each in value]
         else:
             plain.append(_line(name, value, kind))
-    return "".join(plain + inside)
+    return "".join(plain + subtables)
 
 
 def _table(header: str, name: str, owner: type, value: msgspec.Struct, path: str) -> str:
-    about = field_docs(owner).get(name) or first_paragraph(type(value).__doc__)
-    return f"\n{_comment(about)}#{header}\n" + _body(value, path)
+    text = field_docs(owner).get(name) or first_paragraph(type(value).__doc__)
+    return f"\n{_comment(text)}#{header}\n" + _body(value, path)
 
 
 def _line(name: str, value: Any, owner: type, *, active: bool = False) -> str:
     if value is None:
         return ""
-    about = f"{field_docs(owner).get(name, '')}{_state(owner, name)}"
-    return f"{_comment(about)}{'' if active else '#'}{name} = {_value(value)}\n"
+    text = f"{field_docs(owner).get(name, '')}{_default_note(owner, name)}"
+    return f"{_comment(text.strip())}{'' if active else '#'}{name} = {_value(value)}\n"
 
 
-def _state(owner: type, name: str) -> str:
-    """What the value shown is, where it is not the default."""
+def _default_note(owner: type, name: str) -> str:
+    """Return a note if the value shown is not the default."""
     field = next(field for field in msgspec.structs.fields(owner) if field.name == name)
     if field.default is None:
-        return " Not set unless you set it."
-    return " Must be set." if field.required else ""
+        return " Not set by default."
+    return " Required." if field.required else ""
 
 
 def _parameter(parameter: Parameter) -> str:
@@ -159,7 +154,7 @@ def _parameter(parameter: Parameter) -> str:
 
 
 def parameter_help(parameter: Parameter) -> str:
-    """What it does and what it may be."""
+    """Return description and range of a parameter."""
     unit = f" {parameter.unit}" if parameter.unit else ""
     return f"{parameter.description} ({parameter.low:g} to {parameter.high:g}{unit})"
 

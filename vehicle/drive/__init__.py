@@ -1,1 +1,1 @@
-"""From MANUAL_CONTROL to motor outputs: demand, mixer, slew rate, and the last gate before the motors."""
+"""The path from MANUAL_CONTROL to the motors: demand, mixer, slew rate, and the last gate."""

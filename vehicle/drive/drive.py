@@ -1,4 +1,4 @@
-"""From a demand to motor values: dead band, expo, limits, mixer, ramps, fit, gate; not who may drive."""
+"""From a demand to motor values: dead band, expo, limits, mixer, ramps, scaling and the last gate."""
 
 from __future__ import annotations
 
@@ -15,14 +15,17 @@ from vehicle.params import Params
 SATURATED, SPEED, SLEW, REVERSE_DELAY = (
     each.value for each in (DriveLimit.SATURATED, DriveLimit.SPEED, DriveLimit.SLEW, DriveLimit.REVERSE_DELAY)
 )
-"""Bits as plain numbers: sums of flags cost a microsecond each, and a demand is to be at the motors within 30."""
+"""Flags as plain numbers: adding IntFlags costs a microsecond each, and a demand shall reach the motors within 30."""
 LIMITED_THROTTLE_MAX = 0.5
-"""Largest throttle while a failsafe limits the speed (vehicle.md, battery low)."""
+"""Largest throttle while a failsafe limits the speed (docs/safety.md, battery low)."""
 
 
 class Drive:
-    """The motors' side of the rover. Ramps are per motor, so that a stop makes every motor's value fall from the first
-    cycle on; ramps before the mixer would leave a saturated motor at full for a while."""
+    """The motor outputs, updated with each demand and in each cycle.
+
+    Ramps are per motor, so that after a stop every motor's value falls from the first cycle on. Ramps before the mixer
+    would leave a saturated motor at full for a while.
+    """
 
     def __init__(self, params: Params, now: float) -> None:
         self.kind = DriveType(int(params["DRIVE_TYPE"]))
@@ -33,51 +36,53 @@ class Drive:
         self._slews = [Slew() for _ in self.mixer.motors]
         self._driven = self.mixer.driven_count
         self._gate = Gate(len(self._slews), self._driven)
-        self._tune()
+        self._load_params()
         self._tested: int | None = None
-        """The motor that a test turns."""
+        """Index of the motor that a motor test turns, or None."""
         self._at = now
 
     @property
     def limits(self) -> DriveLimit:
-        """Why the outputs differ from the demand, as far as this side knows."""
+        """Why the outputs differ from the demand, as far as this module limits them."""
         return DriveLimit(self._limits)
 
     @property
     def wheels(self) -> tuple[float, ...]:
-        """What each wheel does now, -1..1, ahead positive, steering to the right positive; the motors' `outputs` differ
-        by how they are wired."""
+        """Value of each wheel now, -1..1, positive forward or to the right.
+
+        The motor values in `outputs` differ by the wiring of the motors.
+        """
         return self._gate.wheels
 
     @property
     def driven_wheels(self) -> tuple[float, ...]:
-        """Of `wheels` those that move the rover."""
+        """The values of the wheels that are driven, without a steering servo."""
         return self._gate.wheels[: self._driven]
 
     @property
     def rejected_cycles(self) -> int:
-        """Cycles in a row in which the gate got values that are no values."""
+        """Cycles in a row in which the gate rejected the values."""
         return self._gate.refused
 
     def update(self, demand: Demand | None, clearance: Clearance, *, limited: bool, now: float) -> Outputs:
-        """The outputs of this moment. `limited`: a failsafe asks for half speed."""
+        """Return the outputs of this moment. `limited`: a failsafe limits the throttle to one half."""
         permit = clearance.permit
         dt, self._at = max(0.0, now - self._at), now
         self._limits = 0
-        if self._tuned != self._params.generation:
-            self._tune()
+        if self._params_generation != self._params.generation:
+            self._load_params()
         trial = clearance.motor_test if permit is Permit.TEST else None
         motor = None if trial is None else trial.motor
-        if permit is Permit.NONE or motor != self._tested:  # no test ramps down, nor into another one or a drive
+        if permit is Permit.NONE or motor != self._tested:  # a motor test ends without a ramp
             for slew in self._slews:
                 slew.reset()
         self._tested = motor
         wanted = demand if permit is Permit.DRIVE else None
-        wheels = self._ramped(self._targets(wanted, limited) if trial is None else self._alone(trial), dt)
+        wheels = self._ramped(self._targets(wanted, limited) if trial is None else self._tested_motor(trial), dt)
         self._note_limits()
-        motors = scale_outputs(wheels, self._driven, self._fits)
+        motors = scale_outputs(wheels, self._driven, self._scalings)
         self.outputs = self._gate.filter(wheels, motors, permit, 100 / self._params["MOT_DECEL"], now, trial)
-        if self.wheels != wheels:  # refused: no ramp goes on from there
+        if self.wheels != wheels:  # rejected: no ramp continues from there
             for slew in self._slews:
                 slew.reset()
         return self.outputs
@@ -95,8 +100,8 @@ class Drive:
         share = pivot_scale(throttle, steering, sideways, self._params["MOT_PIVOT_MAX"] / 100)
         return tuple([share * value for value in mixed.throttles])
 
-    def _alone(self, trial: MotorTest) -> tuple[float, ...]:
-        """One motor, the others at rest."""
+    def _tested_motor(self, trial: MotorTest) -> tuple[float, ...]:
+        """Return the throttle of the tested motor and zero for the others."""
         return tuple(trial.throttle if index == trial.motor else 0.0 for index in range(len(self._slews)))
 
     def _cap(self, throttle: float, limited: bool) -> float:
@@ -111,14 +116,14 @@ class Drive:
         pairs = zip(self._slews, targets, self._rates, strict=True)
         return tuple([slew.step(target, dt, rates) for slew, target, rates in pairs])
 
-    def _tune(self) -> None:
-        """What follows from parameters, as long as they do not change."""
-        params, self._tuned = self._params, self._params.generation
-        self._fits = build_output_scaling(params)
+    def _load_params(self) -> None:
+        """Cache what depends on parameters, until one of them changes."""
+        params, self._params_generation = self._params, self._params.generation
+        self._scalings = build_output_scaling(params)
         self._at_limit = MixerLimits(params["MOT_STR_THR_MIX"], params["MOT_THST_ASYM"])
         accel, decel = params["MOT_SLEWRATE"] / 100, params["MOT_DECEL"] / 100
         wheel = SlewLimits(accel, decel, params["MOT_REV_DELAY"])
-        servo = SlewLimits(accel, decel)  # its gears do not mind a reversal; the rover would go straight on meanwhile
+        servo = SlewLimits(accel, decel)  # a servo may reverse at once, and a delay would delay the turn
         self._rates = [wheel if at < self._driven else servo for at in range(len(self._slews))]
 
     def _note_limits(self) -> None:
@@ -130,7 +135,7 @@ class Drive:
 
 
 def shape_demand(demand: Demand, params: Params) -> tuple[float, float, float]:
-    """Throttle, steering and sideways as the driver means them: dead band and softness."""
+    """Return throttle, steering and sideways after dead band and expo."""
     throttle, steering, sideways = demand.throttle or 0.0, demand.steering or 0.0, demand.sideways or 0.0
     if demand.direct:
         return throttle, steering, sideways

@@ -1,4 +1,4 @@
-"""Is there a person behind the demand, and is it new? ROVER_OPERATOR_PRESENCE, for ground stations that send it."""
+"""ROVER_OPERATOR_PRESENCE: whether an operator is active, and how old the demand is."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ _WRAP = 2**32
 
 
 class OperatorPresence:
-    """The newest word on the operator."""
+    """The newest ROVER_OPERATOR_PRESENCE of the ground station in control."""
 
     def __init__(self) -> None:
         self.known = False
-        """This driver sends ROVER_OPERATOR_PRESENCE."""
+        """The ground station sends ROVER_OPERATOR_PRESENCE."""
         self.echo_age = 0.0
-        """s since what the driver has seen of us was sent: no demand with it is older. 0 where it saw nothing."""
+        """Age in s of the newest vehicle data that the operator has seen; no demand with it is older. 0 if none."""
         self._session: int | None = None
         self._input_at = -math.inf
         self._input_lost = False
 
     def handle(self, message: RoverOperatorPresence, since_boot: float, now: float) -> bool:
-        """Take the newest; True where a new driving session began."""
+        """Handle a message; return True if a new driving session began."""
         new_session = self.known and message.session_id != self._session
         self.known = True
         self._session = message.session_id
@@ -34,10 +34,13 @@ class OperatorPresence:
         return new_session
 
     def is_lost(self, timeout: float, now: float) -> bool:
-        """No key or stick event for `timeout` s, or the input device is gone."""
+        """Return True if there was no key or stick event for `timeout` s, or the input device is lost."""
         return self.known and (self._input_lost or now - self._input_at > timeout)
 
 
 def _echo_age(echo: int, since_boot: float) -> float:
-    """0 means "none seen yet". An echo from the future is one of a former boot and comes out as weeks old."""
+    """Return the age of the echoed boot time in s; 0 if there is none yet.
+
+    The echo of a former boot seems to be from the future and comes out as weeks old.
+    """
     return ((boot_ms(since_boot) - echo) % _WRAP) / 1000 if echo else 0.0

@@ -1,4 +1,4 @@
-"""How fast one motor may change: slower up than down, and a pause before it reverses."""
+"""Slew rate of one motor: acceleration, deceleration, and a pause before reversing."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 ROUNDING = 1e-9
-"""Steps that add up to the whole way may miss it by a rounding error; nobody waits a cycle for that."""
+"""Steps that add up to the whole distance may miss it by a rounding error, which shall not cost a cycle."""
 
 
 class SlewLimits(NamedTuple):
@@ -18,26 +18,26 @@ class SlewLimits(NamedTuple):
 
 
 class Slew:
-    """The ramp of one motor."""
+    """The value of one motor and its ramp."""
 
     def __init__(self) -> None:
         self.value = 0.0
         self.limited = False
         """The last step did not reach its target because of a rate."""
         self.waiting = False
-        """The last step stood at zero because of the reverse delay."""
+        """The last step stayed at zero because of the reverse delay."""
         self._direction = 0.0
         self._rested = math.inf
 
     def reset(self) -> None:
-        """Stand at zero at once: emergency stop, disarmed."""
+        """Set the value to zero at once: emergency stop or disarmed."""
         self.value = 0.0
         self.limited = self.waiting = False
 
     def step(self, target: float, dt: float, limits: SlewLimits) -> float:
-        """Move towards `target` for `dt` s; returns the new value."""
+        """Move towards `target` for `dt` s; return the new value."""
         self.waiting = False
-        if math.isnan(target):  # a ramp would make a number of it, and the gate would not see
+        if math.isnan(target):  # a ramp would turn NaN into a number and hide it from the gate
             self.value = target
             return target
         self._rested = 0.0 if self.value else self._rested + dt

@@ -1,8 +1,8 @@
-"""Exceptions in words: anybody's driver may raise anything, and whoever reads of it reads one line."""
+"""Formats an exception as one line."""
 
 from __future__ import annotations
 
 
 def format_error(error: BaseException) -> str:
-    """What it says, or its type where it says nothing."""
+    """Return the message of an exception on one line, or its type if the message is empty."""
     return " ".join(str(error).split()) or type(error).__name__

@@ -1,7 +1,7 @@
-"""Brushed motors on H-bridges at the pins of a Raspberry Pi, through gpiozero and lgpio: PWM made in software.
+"""Brushed motors on H-bridges at GPIO pins of a Raspberry Pi: software PWM by gpiozero and lgpio.
 
-lgpio makes 0.1 Hz to 10 kHz, and gpiozero hands it whole percents (rounded down), so an output moves in 1 % steps.
-Good for wheels; no good for servos and ESCs: 1 % of their 20 ms is 200 us. Those are driven by pca9685 or sysfs-pwm.
+lgpio generates 0.1 Hz to 10 kHz, and gpiozero passes whole percents (rounded down), so the resolution is 1 %. That is
+enough for wheels, but not for servos and ESCs: 1 % of their 20 ms is 200 us. Use pca9685 or sysfs-pwm for those.
 A pin keeps its level when the process is killed: a bridge without a timeout of its own needs `safe_stop`, a heartbeat
 pin, or both.
 """
@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import Annotated, Any
 
 import msgspec
+from msgspec.structs import astuple
 
 from vehicle.motors import check_throttles
 from vehicle.motors.pins import Motor, PhaseEnableMotor, translated
@@ -25,12 +26,9 @@ class TwoInputs(
     """IN1 and IN2, PWM on one and low on the other: DRV8833, DRV8871, L9110, MX1508, TB6612 and L298N with EN high."""
 
     forward: Pin
+    """PWM input for forward, IN1."""
     backward: Pin
-
-    @property
-    def pins(self) -> tuple[int, int]:
-        """Both."""
-        return self.forward, self.backward
+    """PWM input for backward, IN2."""
 
 
 class PhaseEnable(
@@ -43,48 +41,43 @@ class PhaseEnable(
     phase: Pin
     """Direction; low is forward."""
 
-    @property
-    def pins(self) -> tuple[int, int]:
-        """Both."""
-        return self.enable, self.phase
-
 
 class GpioSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Bridges in motor order, all with one PWM frequency."""
+    """H-bridges in motor order, all with the same PWM frequency."""
 
     bridges: Annotated[tuple[TwoInputs | PhaseEnable, ...], msgspec.Meta(min_length=1, max_length=8)]
     frequency: Annotated[float, msgspec.Meta(ge=10, le=10_000)] = 500.0
-    """Hz. Higher is quieter and costs the processor more; above 10 kHz lgpio refuses."""
+    """Hz. A higher frequency is quieter and needs more CPU time; lgpio rejects more than 10 kHz."""
 
     @property
     def pins(self) -> list[int]:
-        """Of all bridges."""
-        return [pin for bridge in self.bridges for pin in bridge.pins]
+        """The pins of all bridges."""
+        return [pin for bridge in self.bridges for pin in astuple(bridge)]
 
     def __post_init__(self) -> None:
         reject_duplicates(self.pins)
 
     @property
     def taken(self) -> list[str]:
-        """Pins."""
+        """The pins by name."""
         return [pin_name(pin) for pin in self.pins]
 
 
 class GpioMotors:
-    """Fits `vehicle.motors.Motors`. Disabled is every input low: the bridge lets go and the motor coasts."""
+    """Fits `vehicle.motors.Motors`. Disabled means every input low: the bridge is off and the motor coasts."""
 
     Settings = GpioSettings
 
     def __init__(self, settings: GpioSettings, *, pin_factory: Any = None) -> None:
-        """`pin_factory` is gpiozero's; None takes the one of this machine. Raises MotorError."""
+        """Open the pins. `pin_factory` is gpiozero's; None selects the one of this machine. Raises MotorError."""
         self.count = len(settings.bridges)
         self.enabled = False
         self._bridges: list[Any] = []
         with contextlib.ExitStack() as opened, translated("motor pins"):
             for bridge in settings.bridges:
-                motor = _motor(bridge, pin_factory)
+                motor = _open_bridge(bridge, pin_factory)
                 opened.callback(motor.close)
-                _pwm_frequency(motor, bridge, settings.frequency)
+                _set_frequency(motor, bridge, settings.frequency)
                 self._bridges.append(motor)
             opened.pop_all()
 
@@ -95,12 +88,12 @@ class GpioMotors:
             self.enabled = True
 
     def disable(self) -> None:
-        """Every input low."""
+        """Set every input low."""
         self.enabled = False
         self._stop()
 
     def set(self, throttles: Sequence[float]) -> None:
-        """PWM on each bridge; nothing while disabled."""
+        """Set the PWM of each bridge; no effect while disabled."""
         values = check_throttles(throttles, self.count)
         if self.enabled:
             with translated("motor pins"):
@@ -108,7 +101,7 @@ class GpioMotors:
                     bridge.value = value
 
     def close(self) -> None:
-        """Every input low, then the pins are let go."""
+        """Set every input low, then release the pins."""
         self.enabled = False
         with contextlib.ExitStack() as steps, translated("motor pins"):
             for bridge in self._bridges:
@@ -117,12 +110,12 @@ class GpioMotors:
             self._bridges = []
 
     def _stop(self) -> None:
-        with contextlib.ExitStack() as steps, translated("motor pins"):  # every bridge, also where one raises
+        with contextlib.ExitStack() as steps, translated("motor pins"):  # every bridge, even if one raises
             for bridge in self._bridges:
                 steps.callback(bridge.stop)
 
 
-def _motor(bridge: TwoInputs | PhaseEnable, pin_factory: Any) -> Any:
+def _open_bridge(bridge: TwoInputs | PhaseEnable, pin_factory: Any) -> Any:
     match bridge:
         case TwoInputs():
             return Motor(bridge.forward, bridge.backward, pwm=True, pin_factory=pin_factory)
@@ -130,7 +123,7 @@ def _motor(bridge: TwoInputs | PhaseEnable, pin_factory: Any) -> Any:
             return PhaseEnableMotor(bridge.phase, bridge.enable, pwm=True, pin_factory=pin_factory)
 
 
-def _pwm_frequency(motor: Any, bridge: TwoInputs | PhaseEnable, frequency: float) -> None:
+def _set_frequency(motor: Any, bridge: TwoInputs | PhaseEnable, frequency: float) -> None:
     match bridge:
         case TwoInputs():
             motor.forward_device.frequency = motor.backward_device.frequency = frequency

@@ -1,7 +1,7 @@
-"""A record of what the motors get, for tests and benchmarks that look at a vehicle from outside; it wraps any driver.
+"""A log of the motor outputs, for tests and benchmarks that observe a vehicle from outside; it wraps any driver.
 
-One line for each change: `<clock ns> <throttle> <throttle> ...`, written with one unbuffered write, so that a reader in
-another process sees it at once and a killed process loses nothing.
+Each change is one line, `<clock ns> <throttle> <throttle> ...`, in one unbuffered write, so that another process reads
+it at once and a killed process loses nothing.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from vehicle.motors import Motors
 
 
 class MotorLog:
-    """A file that takes lines until it cannot: a full disk must not stop a rover that drives."""
+    """A file to which lines are appended until a write fails: a full disk must not stop a driving rover."""
 
     def __init__(self, path: str) -> None:
         """Open `path` to append. Raises OSError."""
-        # Not blocking: it may be a pipe, and whoever reads that must not be able to hold up the motors.
+        # Non-blocking: the file may be a pipe, whose reader must not be able to block the motors.
         flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NONBLOCK
         self._descriptor = os.open(path, flags, 0o644)
         self.fault: OSError | None = None
-        """Why lines are missing at the end, or None."""
+        """The first failed write, or None."""
 
     def write(self, line: str) -> None:
-        """Append one line; after the first failure nothing more."""
+        """Append one line; no effect after the first failure."""
         if self.fault is None:
             try:
                 os.write(self._descriptor, line.encode())
@@ -33,7 +33,7 @@ class MotorLog:
 
 
 class LoggedMotors:
-    """Motors that tell of each change. `clock` gives ns of a clock that other processes share (CLOCK_MONOTONIC)."""
+    """Motors that log each change. `clock` returns ns of a clock that other processes share (CLOCK_MONOTONIC)."""
 
     def __init__(self, motors: Motors, write: Callable[[str], None], clock: Callable[[], int]) -> None:
         self.count = motors.count
@@ -49,13 +49,13 @@ class LoggedMotors:
         self._enabled = True
 
     def disable(self) -> None:
-        """Disable the motors; they stand, so that is written."""
+        """Disable the motors, and log neutral."""
         self._motors.disable()
         self._enabled = False
         self._write_change(self._neutral)
 
     def set(self, throttles: Sequence[float]) -> None:
-        """Set the motors; written once they have it, and only where they are enabled: else nothing turns."""
+        """Set the motors, then log the throttles if the motors are enabled."""
         self._motors.set(throttles)
         if self._enabled:
             self._write_change(tuple(throttles))

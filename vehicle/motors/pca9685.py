@@ -1,7 +1,7 @@
-"""ESCs and servos on a PCA9685 board over I2C; the board itself is vehicle/motors/pca9685_board.py.
+"""ESCs and servos on a PCA9685 board over I2C; the registers are in vehicle/motors/pca9685_board.py.
 
-The chip goes on with its last pulses when nobody speaks to it: it has no timeout. What ends them after the daemon is
-`safe_stop`, or a timer at its OE pin that `safety.heartbeat_pin` keeps awake.
+The chip has no timeout: it repeats its last pulses when the process is killed. `safe_stop` ends them, or an external
+timer at the OE pin that `safety.heartbeat_pin` retriggers.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from vehicle.motors.settings import channel_name, i2c_pins, reject_duplicates
 
 
 class Pca9685Channel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One output of the board."""
+    """One channel of the board."""
 
     channel: Number
     pulse: Pulse = Pulse()
@@ -33,6 +33,7 @@ class Pca9685Settings(BoardSettings, frozen=True, forbid_unknown_fields=True, kw
 
     channels: Annotated[tuple[Pca9685Channel, ...], msgspec.Meta(min_length=1, max_length=8)]
     idle: Idle = "neutral"
+    """Output while disabled: "neutral" pulses, or none ("off")."""
 
     def __post_init__(self) -> None:
         reject_duplicates([channel.channel for channel in self.channels])
@@ -41,24 +42,24 @@ class Pca9685Settings(BoardSettings, frozen=True, forbid_unknown_fields=True, kw
 
     @property
     def taken(self) -> list[str]:
-        """The channels."""
+        """The channels by name."""
         return [channel_name(channel.channel, self.chip) for channel in self.channels]
 
     @property
     def pins_nearby(self) -> tuple[int, ...]:
-        """Of the bus."""
+        """Pins of the I2C bus."""
         return i2c_pins(self.bus)
 
 
 class Pca9685Motors:
-    """Fits `vehicle.motors.Motors`. Opening never starts pulses that were not there."""
+    """Fits `vehicle.motors.Motors`. Opening the driver never starts pulses on a channel without any."""
 
     Settings = Pca9685Settings
 
     def __init__(
         self, settings: Pca9685Settings, *, bus: Bus | None = None, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        """Raises MotorError."""
+        """Set up the board and make the channels idle. Raises MotorError."""
         self.count = len(settings.channels)
         self.enabled = False
         self._settings = settings
@@ -73,21 +74,21 @@ class Pca9685Motors:
             raise
 
     def enable(self) -> None:
-        """Neutral pulses from now on. Raises MotorError where the chip is not as it was set up."""
+        """Start neutral pulses. Raises MotorError if the chip cannot be set up."""
         if not self.enabled:
-            self._board.retry(self._board.set_up)  # one that lost its power meanwhile has forgotten everything
+            self._board.retry(self._board.set_up)  # after a loss of power the registers have their defaults
             self._board.retry(self._all_neutral)
             self._error_budget.reset()
             self.enabled = True
 
     def disable(self) -> None:
-        """Neutral pulses or none, as `idle` says."""
+        """Output neutral pulses or none, according to `idle`."""
         self.enabled = False
         if self._board.is_open:
             self._board.retry(self._set_idle)
 
     def set(self, throttles: Sequence[float]) -> None:
-        """A width for each channel; nothing while disabled."""
+        """Set the pulse width of each channel; no effect while disabled."""
         values = check_throttles(throttles, self.count)
         if not self.enabled:
             return
@@ -100,14 +101,17 @@ class Pca9685Motors:
             self._error_budget.reset()
 
     def close(self) -> None:
-        """As disabled, then the bus is let go."""
+        """Disable the motors, then close the bus."""
         with contextlib.ExitStack() as steps:
             steps.callback(self._board.close)
             self.disable()
 
     def _set_idle(self) -> None:
-        """What `idle` says, on every channel that gives pulses; one that gives none is left so. A board that was set up
-        otherwise, as before its `frequency` was changed, would make another width of neutral: its pulses end."""
+        """Make each channel idle according to `idle`; a channel without pulses stays without.
+
+        A board that was set up differently, for example before `frequency` was changed, would output another width for
+        neutral: its pulses are stopped.
+        """
         neutral = self._settings.idle == "neutral" and self._board.ready
         for channel in self._settings.channels:
             if neutral and self._board.has_pulse(channel.channel):

@@ -1,7 +1,8 @@
-"""The PCA9685 board itself (Adafruit's 16-channel board and its many copies): registers, setup, pulses.
+"""The PCA9685 board (Adafruit's 16-channel board and its copies): registers, setup and pulses.
 
-What its channels are for is the matter of who drives them: vehicle/motors/pca9685.py, vehicle/accessories/pca9685.py.
-Both may be on one board, where they agree on its frequency. Registers are named as in NXP's data sheet, rev. 4, 7.3.
+Its users are the drivers in vehicle/motors/pca9685.py and vehicle/accessories/pca9685.py, which may share one board
+with the same frequency. Registers are named as in NXP's data sheet, rev. 4, section 7.3:
+https://www.nxp.com/docs/en/data-sheet/PCA9685.pdf
 """
 
 from __future__ import annotations
@@ -18,65 +19,65 @@ from vehicle.motors.settings import chip_name
 MODE1, MODE2, LED0_ON_L, PRE_SCALE = 0x00, 0x01, 0x06, 0xFE
 RESTART, AUTO_INCREMENT, SLEEP = 0x80, 0x20, 0x10
 AWAKE = AUTO_INCREMENT
-"""MODE1 in use: all-call and sub-addresses off, so that nobody else's broadcast moves a motor."""
+"""MODE1 in use: all-call and sub-addresses off, so that a broadcast on the bus moves no motor."""
 TOTEM_POLE = 0x04
-"""MODE2: outputs drive both ways and change at the end of a transfer, so that a width is never half old."""
+"""MODE2: totem-pole outputs that change at the end of a transfer, so that no pulse mixes an old and a new width."""
 FULL_OFF = 0x10
 STEPS = 4096
 TRIES = 3
 
 Number = Annotated[int, msgspec.Meta(ge=0, le=15)]
-"""Of a channel."""
+"""Number of a channel."""
 
 
 class BoardSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """The board, and how fast it gives pulses."""
+    """Address and frequency of a PCA9685 board."""
 
     bus: Annotated[int, msgspec.Meta(ge=0)] = 1
-    """/dev/i2c-N; 1 is the header's."""
+    """Number N of /dev/i2c-N; 1 is the bus of the header."""
     address: Annotated[int, msgspec.Meta(ge=0x08, le=0x77)] = 0x40
-    """On that bus, as its solder bridges have it: 0x40 is 64, 0x41 is 65."""
+    """I2C address, set by the solder bridges of the board: 0x40 is 64, 0x41 is 65."""
     frequency: Annotated[float, msgspec.Meta(ge=40, le=400)] = 50.0
-    """Hz, for all 16 channels of the board. Analogue servos take 50 only."""
+    """Hz, for all 16 channels of the board. Analogue servos accept 50 only."""
     oscillator: Annotated[float, msgspec.Meta(ge=23e6, le=27e6)] = 25e6
-    """Hz; the chip's own varies by some percent: measure a pulse and correct here."""
+    """Hz; the frequency of the chip's oscillator varies by some percent: measure a pulse and correct it here."""
 
     @property
     def chip(self) -> str:
-        """As vehicle/config/conflicts.py knows it."""
+        """Name of the board in vehicle/config/conflicts.py."""
         return chip_name(self.bus, self.address)
 
     @property
     def shared(self) -> dict[str, str]:
-        """What others may have too, who say the same of it: the board."""
+        """What several parts of a file may use with the same settings: the board."""
         return {self.chip: f"a PCA9685 of {self.frequency:g} Hz with an oscillator of {self.oscillator:g} Hz"}
 
     @property
     def prescale(self) -> int:
-        """PRE_SCALE for `frequency` (data sheet 7.3.5)."""
+        """Value of PRE_SCALE for `frequency` (data sheet, section 7.3.5)."""
         return round(self.oscillator / (STEPS * self.frequency)) - 1
 
     @property
     def step(self) -> float:
-        """s, the smallest change of a width: 4.88 us at 50 Hz."""
+        """Resolution of a pulse width in s: 4.88 us at 50 Hz."""
         return (self.prescale + 1) / self.oscillator
 
 
 class Pca9685Board:
-    """Open until `close`. What it cannot do is an OSError, or a MotorError of `certain`."""
+    """An open board. Its methods raise OSError if the chip does not respond; `retry` raises MotorError instead."""
 
     def __init__(self, settings: BoardSettings, bus: Bus | None = None) -> None:
-        """Raises MotorError where there is no such bus."""
+        """Open the bus. Raises MotorError."""
         self._settings = settings
-        self._bus: Bus | None = bus if bus is not None else _opened(settings.bus)
+        self._bus: Bus | None = bus if bus is not None else _open_bus_number(settings.bus)
 
     @property
     def is_open(self) -> bool:
-        """Not closed yet."""
+        """Whether the board is not closed yet."""
         return self._bus is not None
 
     def retry(self, step: Callable[[], None]) -> None:
-        """Run `step` until it works. Raises MotorError where it does not."""
+        """Run `step`, up to TRIES times. Raises MotorError if it fails every time."""
         for left in reversed(range(TRIES)):
             try:
                 return step()
@@ -86,14 +87,14 @@ class Pca9685Board:
         return None
 
     def describe(self, error: OSError) -> str:
-        """One line."""
+        """Return an error of the chip as one line."""
         settings = self._settings
         return (
             f"PCA9685 at 0x{settings.address:02x} on I2C bus {settings.bus}: {explain_bus_error(error, settings.bus)}"
         )
 
     def set_up(self) -> None:
-        """Mode and frequency, read back. Frequency can only be set asleep, which stops all 16 channels for it."""
+        """Set mode and frequency, and read them back. Setting the frequency stops all 16 channels briefly."""
         bus, address, prescale = self._open_bus, self._settings.address, self._settings.prescale
         if self.ready:
             return
@@ -107,24 +108,24 @@ class Pca9685Board:
 
     @property
     def ready(self) -> bool:
-        """It is as it was set up, and has not lost its power since."""
+        """Whether mode and frequency are set: the chip has not lost its power since `set_up`."""
         return self._registers() == (AWAKE, TOTEM_POLE, self._settings.prescale)
 
     def has_pulse(self, channel: int) -> bool:
-        """A channel gives pulses, by this process or one before it."""
+        """Return whether a channel outputs pulses, from this or an earlier process."""
         return not self._open_bus.read_byte_data(self._settings.address, _register(channel) + 3) & FULL_OFF
 
     def set_pulse(self, channel: int, width: float) -> None:
-        """Pulses of `width` s. One transfer: on at 0, off at the width, full-off cleared."""
+        """Output pulses of `width` s. One transfer sets on at 0, off at the width, and clears full-off."""
         off = round(width / self._settings.step)
         self._open_bus.write_i2c_block_data(self._settings.address, _register(channel), [0, 0, off & 0xFF, off >> 8])
 
     def stop(self, channel: int) -> None:
-        """No pulses."""
+        """Stop the pulses of a channel."""
         self._open_bus.write_byte_data(self._settings.address, _register(channel) + 3, FULL_OFF)
 
     def close(self) -> None:
-        """Let go of the bus; the board goes on as it is. May come twice."""
+        """Close the bus; the board keeps its outputs. May be called twice."""
         bus, self._bus = self._bus, None
         if bus is not None:
             bus.close()
@@ -142,11 +143,11 @@ class Pca9685Board:
 
 
 def _register(channel: int) -> int:
-    """The first of a channel, LEDn_ON_L; ON_H, OFF_L and OFF_H follow."""
+    """Return the first register of a channel, LEDn_ON_L; ON_H, OFF_L and OFF_H follow."""
     return LED0_ON_L + 4 * channel
 
 
-def _opened(number: int) -> Bus:
+def _open_bus_number(number: int) -> Bus:
     try:
         return open_bus(number)
     except (OSError, ImportError) as error:

@@ -1,4 +1,4 @@
-"""gpiozero, imported in the one way that suits a daemon, and its faults as MotorError; no device itself."""
+"""gpiozero, imported in a way that suits a daemon, with its errors translated to MotorError."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from vehicle.motors import MotorError
 
 
 def _import_lgpio() -> tuple[type[BaseException], ...]:
-    """Import lgpio away from the working directory; its error class, where it is installed.
+    """Import lgpio outside the working directory; return its error class, if lgpio is installed.
 
-    At import lgpio changes into $LG_WD, creates a pipe there and fails where it may not, as in a service with a
-    read-only system (seen with lgpio 0.2.2.0). Pipe and directory are not needed by name once it is open.
+    During import, lgpio changes to the directory $LG_WD and creates a pipe there, which fails in a service with a
+    read-only file system (seen with lgpio 0.2.2.0). The names of pipe and directory are not needed after that.
     """
-    home, wish = os.getcwd(), os.environ.get("LG_WD")
+    home, configured = os.getcwd(), os.environ.get("LG_WD")
     with tempfile.TemporaryDirectory(prefix="lgpio-") as directory:
-        os.environ["LG_WD"] = wish or directory
+        os.environ["LG_WD"] = configured or directory
         try:
             return (import_module("lgpio").error,)
         except ImportError:
             return ()
         finally:
             os.chdir(home)
-            if wish is None:
+            if configured is None:
                 del os.environ["LG_WD"]
 
 
 _lgpio_errors = _import_lgpio()
-# Not gpiozero's search through four libraries: two of them are dead, one has no PWM, and the reason why lgpio did not
-# work would be lost.
+# Skip gpiozero's search through four libraries: two of them are unmaintained, one has no PWM, and the reason why lgpio
+# does not work would be lost.
 os.environ.setdefault("GPIOZERO_PIN_FACTORY", "lgpio")
 
 try:
@@ -49,22 +49,22 @@ __all__ = ["DigitalInputDevice", "DigitalOutputDevice", "Motor", "PhaseEnableMot
 
 
 HINTS = {
-    "unable to locate Pi revision": "is this a Raspberry Pi? Elsewhere simulated pins do (docs/pi.md, Without a Pi)",
+    "unable to locate Pi revision": "is this a Raspberry Pi? Elsewhere use simulated pins (docs/pi.md, Without a Pi)",
     "No module named 'lgpio'": INSTALL_HINT,
     "can not open gpiochip": "add yourself to its group: sudo usermod -aG gpio $USER, log in again",
 }
-"""What gpiozero and lgpio say -> what to do."""
+"""Start of an error text of gpiozero or lgpio -> what to do."""
 
 
-def _in_words(error: BaseException) -> str:
-    words = format_error(error)
-    return "; ".join([words, *(hint for start, hint in HINTS.items() if words.startswith(start))])
+def _describe(error: BaseException) -> str:
+    text = format_error(error)
+    return "; ".join([text, *(hint for start, hint in HINTS.items() if text.startswith(start))])
 
 
 @contextlib.contextmanager
-def translated(doing: str) -> Iterator[None]:
-    """Whatever a pin raises meanwhile is a MotorError. `doing` begins its text."""
+def translated(what: str) -> Iterator[None]:
+    """Turn the errors of pins into a MotorError, whose text starts with `what`."""
     try:
         yield
     except FAULTS as error:
-        raise MotorError(f"{doing}: {_in_words(error)}") from error
+        raise MotorError(f"{what}: {_describe(error)}") from error

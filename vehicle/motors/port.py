@@ -1,4 +1,4 @@
-"""A serial port to a motor controller that never makes the control loop wait; frames go out whole or not at all."""
+"""A serial port to a motor controller that never blocks the control loop; a frame is sent completely or not at all."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ import serial
 from link.transport.serial_faults import serial_error_text
 
 SEND_QUEUE_MAX = 64
-"""Bytes that may wait in the kernel: about eight frames. More are old demands, and the newest must not stand behind."""
+"""Bytes that may wait in the kernel: about eight frames. More would delay the newest demand behind old ones."""
 
 
 class SerialPort:
-    """Opened by path, and again by path after it was lost: a USB adapter may be unplugged. All raise OSError."""
+    """A port that is opened again by its path after it was lost, as with a USB adapter. All methods raise OSError."""
 
     def __init__(self, path: str, baud: int) -> None:
         self.path = path
@@ -26,33 +26,33 @@ class SerialPort:
 
     @property
     def is_open(self) -> bool:
-        """It was opened, and no fault has closed it since."""
+        """Whether the port was opened and no error has closed it since."""
         return self._serial is not None
 
     def open(self) -> bool:
-        """True where it was closed before."""
+        """Open the port if it is closed. Returns True if it was."""
         if self._serial is not None:
             return False
-        # exclusive: two writers would mix their frames. No flow control, and no time in which pyserial may wait.
+        # exclusive: two writers would mix their frames. No flow control, and zero timeouts: pyserial never blocks.
         try:
             self._serial = serial.Serial(self.path, self._baud, timeout=0, write_timeout=0, exclusive=True)
-        except (OSError, termios.error) as error:  # termios's own are no OSErrors: it went while it was set up
+        except (OSError, termios.error) as error:  # termios.error is not an OSError: the port vanished during setup
             raise OSError(serial_error_text(self.path, OSError(*error.args))) from error
         self.discard_input()
         return True
 
     def write(self, frame: bytes) -> None:
-        """Not pyserial's own write: in its non-blocking mode it spins for ever on a full buffer (3.5)."""
+        """Send a frame. Not pyserial's write, which loops forever on a full buffer in non-blocking mode (3.5)."""
         with self._closing():
             if self._serial.out_waiting > SEND_QUEUE_MAX:
-                raise BlockingIOError(f"{self.path}: the port does not take what is sent")
+                raise BlockingIOError(f"{self.path}: the port does not send (its buffer is full)")
             written = os.write(self._serial.fileno(), frame)
             if written != len(frame):
                 termios.tcflush(self._serial.fileno(), termios.TCOFLUSH)
-                raise BlockingIOError(f"{self.path}: the port took half a frame")
+                raise BlockingIOError(f"{self.path}: the port accepted only part of a frame")
 
     def read(self, wait: float = 0.0) -> bytes:
-        """What has come, at most 256 bytes; after `wait` s at the latest."""
+        """Return received bytes, at most 256; empty after `wait` s without any."""
         with self._closing():
             if not select.select([self._serial.fileno()], [], [], wait)[0]:
                 return b""
@@ -62,25 +62,25 @@ class SerialPort:
             return data
 
     def discard_input(self) -> None:
-        """Forget what has come."""
+        """Discard the received bytes."""
         with self._closing():
             self._serial.reset_input_buffer()
 
     def discard_output(self) -> None:
-        """Forget what waits to be sent."""
+        """Discard the bytes that wait to be sent."""
         with self._closing():
             self._serial.reset_output_buffer()
 
     def close(self) -> None:
-        """Let go of it; may come twice."""
+        """Close the port; may be called twice."""
         port, self._serial = self._serial, None
         if port is not None:
-            with contextlib.suppress(OSError):  # a port that is gone cannot even be closed properly
+            with contextlib.suppress(OSError):  # closing a vanished port fails
                 port.close()
 
     @contextlib.contextmanager
     def _closing(self) -> Any:
-        """A port that fails is closed, so that `open` may try it anew; a full one is not."""
+        """Close the port on an error, so that `open` can open it again; a full buffer is not such an error."""
         if self._serial is None:
             raise OSError(f"{self.path}: not open")
         try:

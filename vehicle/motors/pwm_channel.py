@@ -1,4 +1,7 @@
-"""One channel of a PWM chip in /sys/class/pwm: found, exported, and written to in an order the kernel takes."""
+"""One channel of a PWM chip in /sys/class/pwm: finding it, exporting it, and writing its values.
+
+Interface: https://docs.kernel.org/driver-api/pwm.html
+"""
 
 from __future__ import annotations
 
@@ -12,44 +15,44 @@ from vehicle.motors import MotorError
 
 ROOT = Path("/sys/class/pwm")
 RULES_WAIT = 1.0
-"""s that udev may take after an export until its rule lets the group `gpio` write."""
+"""s to wait after an export until a udev rule lets the group `gpio` write."""
 
 
 def write_file(path: Path, text: str) -> None:
-    """How sysfs takes a value: in one write."""
+    """Write a value in one write, as sysfs requires."""
     path.write_text(text)
 
 
 class SysfsPwmChannel:
-    """One exported channel. Every order of writes below is one the kernel takes: duty is never more than period."""
+    """One exported channel. The order of writes suits the kernel: the duty never exceeds the period."""
 
     def __init__(self, directory: Path, frequency: float, write: Callable[[Path, str], None]) -> None:
         self.period = round(1e9 / frequency)
-        """ns"""
+        """Period in ns."""
         self._directory = directory
         self._write = write
 
     @property
     def is_running(self) -> bool:
-        """The output is enabled, by us or by a process before us."""
+        """Whether the output is enabled, by this or an earlier process."""
         return self._read("enable") == 1
 
     def set_period(self) -> None:
-        """Ours, in place of another; without a pulse in between."""
+        """Set the period if it differs, without a pulse in between."""
         if self._read("period") != self.period:
             self.set_duty(0)
             self._write_value("period", self.period)
 
     def set_duty(self, nanoseconds: int) -> None:
-        """Length of the pulse."""
+        """Set the pulse width in ns."""
         self._write_value("duty_cycle", nanoseconds)
 
     def start(self) -> None:
-        """Let the duty out."""
+        """Enable the output."""
         self._write_value("enable", 1)
 
     def stop(self) -> None:
-        """Duty 0 first: some drivers leave the pin at the level it had."""
+        """Set duty 0, then disable the output: some kernel drivers leave the pin at its last level."""
         with contextlib.ExitStack() as steps:
             steps.callback(self._write_value, "enable", 0)
             self.set_duty(0)
@@ -62,7 +65,7 @@ class SysfsPwmChannel:
 
 
 def export_channel(root: Path, device: str, channel: int, write: Callable[[Path, str], None]) -> Path:
-    """The channel's directory. Raises MotorError, OSError."""
+    """Export a channel if needed and return its directory. Raises MotorError, OSError."""
     chip = _chip(root, device)
     channels = int((chip / "npwm").read_text())
     if channel >= channels:
@@ -70,7 +73,7 @@ def export_channel(root: Path, device: str, channel: int, write: Callable[[Path,
     directory = chip / f"pwm{channel}"
     if not directory.exists():
         write(chip / "export", str(channel))
-        _await_rules(directory / "enable")
+        _wait_for_udev(directory / "enable")
     return directory
 
 
@@ -79,12 +82,12 @@ def _chip(root: Path, device: str) -> Path:
     for chip, real in chips.items():
         if device in real.parts:
             return chip
-    there = ", ".join(real.parent.parent.name for real in chips.values()) or "none (dtoverlay=pwm-2chan is missing?)"
-    raise MotorError(f"hardware PWM: no device {device!r}; there is {there}")
+    found = ", ".join(real.parent.parent.name for real in chips.values()) or "none (dtoverlay=pwm-2chan is missing?)"
+    raise MotorError(f"hardware PWM: no device {device!r}; there is {found}")
 
 
-def _await_rules(path: Path) -> None:
-    """Before the control loop runs; a write that is still not allowed then says so."""
+def _wait_for_udev(path: Path) -> None:
+    """Wait until `path` is writable, at most RULES_WAIT s. Blocks, before the control loop runs."""
     never, waited = threading.Event(), 0.0
     while waited < RULES_WAIT and not os.access(path, os.W_OK):
         never.wait(0.02)

@@ -1,14 +1,13 @@
-"""Dimension Engineering Sabertooth (two motors) in packetized serial mode: one wire to it, none back.
+"""Dimension Engineering Sabertooth (two motors) in packetized serial mode: a transmit line only, no replies.
 
-It stops its motors when it has heard nothing for its serial timeout, which is off by default, is forgotten with its
-power (user guide 2x12, command 14), and can be set but not read back. So this driver sets it at each enable and again
-each second, and still does not enable a motor before a person has said that it works: pull the signal wire while the
-wheels turn in the air, see them stop, and write `timeout_proven = true`.
+The controller stops its motors after its serial timeout without a frame. The timeout is off by default, is lost with
+the power (user guide 2x12, command 14), and cannot be read back. So this driver sets the timeout at each enable and
+again each second, and enables no motor before the user has tested the timeout: pull the signal wire while the wheels
+turn in the air, see them stop, and set `timeout_proven = true`.
 """
 
 from __future__ import annotations
 
-import contextlib
 import time
 from collections.abc import Callable, Sequence
 from typing import Annotated, Literal
@@ -16,61 +15,48 @@ from typing import Annotated, Literal
 import msgspec
 
 from vehicle.motors import check_throttles
-from vehicle.motors.serial_controller import SerialController, tenths
-from vehicle.motors.settings import port_name, uart_pins
+from vehicle.motors.serial_controller import SerialController, SerialSettings
 
 BAUDING = bytes([170])
-"""First byte after power-up for models that measure the baud rate; others drop it."""
-AHEAD = (0, 4)
-"""Command of motor 1 and 2; one more is backwards."""
+"""First byte after power-up for models that detect the baud rate; others ignore it."""
+FORWARD = (0, 4)
+"""Command for forward of motor 1 and 2; plus one is backward."""
 SET_TIMEOUT = 14
 FULL = 127
 REPEATS = 3
-"""Nobody acknowledges a stop, so it is sent three times."""
+"""A stop is not acknowledged, so it is sent three times."""
 
 
-class SabertoothSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class SabertoothSettings(SerialSettings, frozen=True, forbid_unknown_fields=True):
     """One Sabertooth: motor 1 is the left one, motor 2 the right one."""
 
-    port: str
     baud: Literal[2400, 9600, 19200, 38400] = 9600
-    """9600 is the factory's; at 2400 a write to both motors takes 33 ms, longer than a control cycle."""
+    """Baud rate; 9600 is the default of the controller. At 2400 a write to both motors takes 33 ms, longer than a
+    control cycle."""
     address: Annotated[int, msgspec.Meta(ge=128, le=135)] = 128
     timeout: Annotated[float, msgspec.Meta(ge=0.1, le=0.5)] = 0.3
-    """s of silence until the controller stops; steps of 0.1."""
+    """s without a frame until the controller stops, in steps of 0.1."""
     timeout_proven: bool = False
     """You have pulled the signal wire while the wheels turned in the air, and they stopped."""
 
-    @property
-    def taken(self) -> list[str]:
-        """The port."""
-        return [port_name(self.port)]
-
-    @property
-    def pins_nearby(self) -> tuple[int, ...]:
-        """Where it may come out."""
-        return uart_pins(self.port)
-
 
 class SabertoothMotors:
-    """Fits `vehicle.motors.Motors`. It cannot know whether a Sabertooth is there."""
+    """Fits `vehicle.motors.Motors`. The driver cannot detect whether a Sabertooth is connected."""
 
     Settings = SabertoothSettings
 
     def __init__(self, settings: SabertoothSettings, *, clock: Callable[[], float] = time.monotonic) -> None:
-        """Raises MotorError where the port cannot be opened."""
+        """Open the port and stop the motors. Raises MotorError if the port cannot be opened."""
         self.count = 2
         self.enabled = False
         self._settings = settings
-        self._controller = SerialController(f"Sabertooth {settings.address}", settings.port, settings.baud, clock)
+        name = f"Sabertooth {settings.address}"
+        self._controller = SerialController(name, settings.port, settings.baud, settings.timeout, clock)
         self.port = self._controller.port
-        with contextlib.ExitStack() as opened:
-            opened.callback(self.port.close)
-            self.disable()
-            opened.pop_all()
+        self._controller.open(self.disable)
 
     def enable(self) -> None:
-        """Raises MotorError unless the timeout was proven by hand."""
+        """Enable the motors. Raises MotorError unless `timeout_proven` is set."""
         if self.enabled:
             return
         self.prove()
@@ -81,7 +67,7 @@ class SabertoothMotors:
         self.enabled = True
 
     def prove(self) -> None:
-        """Raises MotorError unless the timeout was proven by hand."""
+        """Raise MotorError unless `timeout_proven` is set."""
         if not self._settings.timeout_proven:
             raise self._controller.build_error(
                 "its timeout cannot be read back: pull its signal wire with the wheels in the air, "
@@ -89,35 +75,35 @@ class SabertoothMotors:
             )
 
     def disable(self) -> None:
-        """Stop both, ahead of all that still waits to be sent. Raises MotorError where the port does not take it."""
+        """Stop both motors, ahead of all that waits to be sent. Raises MotorError if the port cannot send."""
         self.enabled = False
         with self._controller.raise_errors():
             self.port.open()
             self.port.discard_output()
-            # Two half frames at most: the one that was cut, and what follows until its end is found again.
+            # At most two frames are damaged: the truncated one, and the next until the controller is synchronised.
             self.port.write(BAUDING + self._timeout() + self._drive((0.0, 0.0)) * REPEATS)
 
     def set(self, throttles: Sequence[float]) -> None:
-        """A frame for each motor; nothing while disabled."""
+        """Send a frame for each motor; no effect while disabled."""
         values = check_throttles(throttles, self.count)
         if not self.enabled:
             return
         with self._controller.tolerate_errors() as now:
-            reminder = BAUDING + self._timeout() if self._controller.is_timeout_due(now) else b""
-            self.port.write(reminder + self._drive(values))
+            timeout = BAUDING + self._timeout() if self._controller.is_timeout_due(now) else b""
+            self.port.write(timeout + self._drive(values))
             self._controller.error_budget.reset()
 
     def close(self) -> None:
-        """As disabled, then the port is let go."""
+        """Disable the motors, then close the port."""
         self._controller.close(self.disable)
 
     def _timeout(self) -> bytes:
-        return self._packet(SET_TIMEOUT, tenths(self._settings.timeout))
+        return self._packet(SET_TIMEOUT, self._controller.timeout_tenths)
 
     def _drive(self, throttles: Sequence[float]) -> bytes:
         return b"".join(
-            self._packet(ahead + (throttle < 0.0), round(abs(throttle) * FULL))
-            for ahead, throttle in zip(AHEAD, throttles, strict=True)
+            self._packet(forward + (throttle < 0.0), round(abs(throttle) * FULL))
+            for forward, throttle in zip(FORWARD, throttles, strict=True)
         )
 
     def _packet(self, command: int, value: int) -> bytes:

@@ -1,8 +1,9 @@
-"""An emergency stop, a power switch and a sign of life on GPIO pins, around any driver; they work without the rover.
+"""Safety pins around any motor driver: an emergency stop, a power switch and a heartbeat on GPIO pins.
 
-The stop is a normally closed contact to ground: pressed, unplugged and broken are the same. While it is open no motor
-can be enabled, `set` raises, and the enable pin is off at the edge already, from gpiozero's own thread. The rover asks
-for it each cycle and latches its emergency stop (vehicle/safety/state_machine.py): closing the contact starts and releases nothing.
+The stop is a normally closed contact to ground: pressed, unplugged and broken have the same effect. While the contact
+is open no motor can be enabled, `set` raises, and the enable pin is switched off at the edge, from gpiozero's thread.
+The rover reads the stop in each cycle and latches its emergency stop (vehicle/safety/state_machine.py): closing the
+contact starts and releases nothing.
 """
 
 from __future__ import annotations
@@ -19,14 +20,14 @@ PRESSED = "the emergency stop is pressed, or its wire is open"
 
 
 class SafetyPins:
-    """The pins themselves. Made with the power off."""
+    """The pins. The power is off after construction."""
 
     def __init__(self, safety: SafetyPinSettings, *, pin_factory: Any = None) -> None:
-        """Raises MotorError."""
+        """Open the pins. Raises MotorError."""
         self.tripped = False
         """The stop was open at some time since the power was switched on."""
-        self._noticed = False
-        """... since `pressed` was asked last."""
+        self._opened_since_poll = False
+        """The stop was open at some time since the last `poll_pressed`."""
         self._enable = self._estop = self._heartbeat = None
         with contextlib.ExitStack() as opened, translated("safety pins"):
             opened.callback(self.close)
@@ -42,34 +43,34 @@ class SafetyPins:
             opened.pop_all()
 
     def poll_pressed(self) -> bool:
-        """The stop is open, or was since the last call. Raises MotorError where it cannot be read."""
-        noticed = self._noticed
-        if noticed:  # and only then, or an edge in gpiozero's thread between the two lines would be forgotten
-            self._noticed = False
-        return self._open() or noticed
+        """Return whether the stop is open, or was since the last call. Raises MotorError if it cannot be read."""
+        opened = self._opened_since_poll
+        if opened:  # conditional: an edge in gpiozero's thread between these two lines would be lost otherwise
+            self._opened_since_poll = False
+        return self._is_open() or opened
 
     def require_closed(self) -> None:
-        """Raises StopPressedError where the stop is open, or was since the power was switched on; MotorError."""
-        if self._open():
+        """Raise StopPressedError if the stop is open, or was since the power was switched on. Raises MotorError."""
+        if self._is_open():
             self._trip()
         if self.tripped:
             raise StopPressedError(PRESSED)
 
     def power_on(self) -> None:
-        """Let the motors have power. Raises MotorError where the stop is open."""
+        """Switch the power of the motors on. Raises MotorError if the stop is open."""
         self.tripped = False
         self.require_closed()
         with translated("enable pin"):
             if self._enable is not None:
                 self._enable.on()
         try:
-            self.require_closed()  # pressed in between: its edge came before `on`
+            self.require_closed()  # the stop may have opened before `on`
         except MotorError:
             self.power_off()
             raise
 
     def power_off(self) -> None:
-        """No power, and no sign of life."""
+        """Switch the power and the heartbeat off."""
         with translated("enable pin"), contextlib.ExitStack() as steps:
             for pin in (self._heartbeat, self._enable):
                 if pin is not None:
@@ -77,13 +78,13 @@ class SafetyPins:
         self.tripped = False
 
     def toggle_heartbeat(self) -> None:
-        """Change the heartbeat pin."""
+        """Toggle the heartbeat pin."""
         if self._heartbeat is not None:
             with translated("heartbeat pin"):
                 self._heartbeat.toggle()
 
     def close(self) -> None:
-        """Power off and let the pins go. May come twice."""
+        """Switch the power off and release the pins. May be called twice."""
         pins = [pin for pin in (self._heartbeat, self._enable, self._estop) if pin is not None]
         with translated("safety pins"), contextlib.ExitStack() as steps:
             for pin in pins:
@@ -91,19 +92,19 @@ class SafetyPins:
             steps.callback(self.power_off)
         self._enable = self._estop = self._heartbeat = None
 
-    def _open(self) -> bool:
+    def _is_open(self) -> bool:
         with translated("emergency stop"):
             return self._estop is not None and not self._estop.is_active
 
     def _trip(self) -> None:
-        """Also called from gpiozero's thread at the edge."""
-        self.tripped = self._noticed = True
+        """Latch the stop and switch the power off. Also called from gpiozero's thread at the edge."""
+        self.tripped = self._opened_since_poll = True
         if self._enable is not None:
             self._enable.off()
 
 
 class GuardedMotors:
-    """Any motors, behind safety pins. Fits `vehicle.motors.Motors`."""
+    """Motors of any driver behind safety pins. Fits `vehicle.motors.Motors`."""
 
     def __init__(self, motors: Motors, pins: SafetyPins) -> None:
         self.count = motors.count
@@ -112,36 +113,36 @@ class GuardedMotors:
         self._enabled = False
 
     def enable(self) -> None:
-        """The driver first, from neutral, then the power. Raises StopPressedError while the stop is open."""
+        """Enable the driver, then switch the power on. Raises StopPressedError while the stop is open."""
         if not self._enabled:
-            self._pins.tripped = False  # what was while there was no power is the rover's to remember
+            self._pins.tripped = False  # a stop without power is latched by the rover
         self._pins.require_closed()
         self._motors.enable()
         if not self._enabled:
             self._power_on()
 
     def disable(self) -> None:
-        """The power first, then the driver."""
+        """Switch the power off, then disable the driver."""
         self._enabled = False
         _both(self._pins.power_off, self._motors.disable)
 
     def set(self, throttles: Sequence[float]) -> None:
-        """Set the motors and beat. Raises StopPressedError while the stop is open."""
+        """Set the motors and toggle the heartbeat. Raises StopPressedError while the stop is open."""
         self._pins.require_closed()
         self._motors.set(throttles)
         if self._enabled:
             self._pins.toggle_heartbeat()
 
     def prove(self) -> None:
-        """What the driver has to prove; the pins need no proof."""
+        """Run the arming check of the driver. Raises MotorError."""
         arming_check(self._motors)()
 
     def stop_pressed(self) -> str | None:
-        """Why the stop stops, or None: see vehicle.motors.stop_input."""
+        """Return why the stop is active, or None: see vehicle.motors.estop_reader."""
         return PRESSED if self._pins.poll_pressed() else None
 
     def close(self) -> None:
-        """Power off, driver closed, pins let go."""
+        """Switch the power off, close the driver, then release the pins."""
         self._enabled = False
         with contextlib.ExitStack() as steps:
             steps.callback(self._pins.close)

@@ -1,4 +1,4 @@
-"""From a table of settings, as a TOML file has it, to checked values; and what may be put around any driver."""
+"""Motor settings: converting a TOML table to checked values, and the settings that all drivers share."""
 
 from __future__ import annotations
 
@@ -19,55 +19,55 @@ T = TypeVar("T")
 
 
 def pin_name(number: int) -> str:
-    """As vehicle/config/conflicts.py knows a pin."""
+    """Return the name of a pin in vehicle/config/conflicts.py."""
     return f"GPIO {number}"
 
 
 def chip_name(bus: int, address: int) -> str:
-    """As vehicle/config/conflicts.py knows a chip."""
+    """Return the name of a chip in vehicle/config/conflicts.py."""
     return f"address 0x{address:02x} on I2C bus {bus}"
 
 
 def channel_name(number: int, chip: str) -> str:
-    """As vehicle/config/conflicts.py knows an output of a chip."""
+    """Return the name of a channel of a chip in vehicle/config/conflicts.py."""
     return f"channel {number} at {chip}"
 
 
 def port_name(path: str) -> str:
-    """As vehicle/config/conflicts.py knows a serial port: /dev/serial0 is another name of one."""
+    """Return the name of a serial port in vehicle/config/conflicts.py: links such as /dev/serial0 are resolved."""
     return os.path.realpath(path)
 
 
 def uart_pins(path: str) -> tuple[int, ...]:
-    """Pins of the header at which a serial port may come out; none for one of USB."""
+    """Return the header pins that a serial port may use; none for a USB port."""
     return (14, 15) if path.startswith(HEADER_UARTS) or port_name(path).startswith(HEADER_UARTS) else ()
 
 
 def i2c_pins(bus: int) -> tuple[int, ...]:
-    """Pins of the header at which an I2C bus may come out."""
+    """Return the header pins that an I2C bus may use."""
     return I2C_PINS.get(bus, ())
 
 
 HEADER_UARTS = ("/dev/serial", "/dev/ttyAMA", "/dev/ttyS")
 I2C_PINS = {0: (0, 1), 1: (2, 3)}
-"""Without overlays."""
+"""I2C bus -> its header pins without overlays."""
 
 
 class SafetyPinSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Pins beside the motors: an emergency stop, a power switch and a sign of life (vehicle/motors/safety_pins.py)."""
+    """Safety pins: an emergency stop, a power switch and a heartbeat (vehicle/motors/safety_pins.py)."""
 
     estop_pin: Pin | None = None
-    """Normally closed contact to ground; open, a broken wire too, is stop."""
+    """Normally closed contact to ground; open, also by a broken wire, means stop."""
     enable_pin: Pin | None = None
-    """High while the motors may turn: standby of the bridges, output enable, a relay."""
+    """High while the motors may turn: for the standby input of bridges, an output enable, or a relay."""
     enable_active_high: bool = True
-    """False for an enable that is active low, such as OE of a PCA9685."""
+    """False for an enable input that is active low, such as OE of a PCA9685."""
     heartbeat_pin: Pin | None = None
-    """Changes with each write to enabled motors; a retriggerable timer cuts the power when it stands still."""
+    """Toggles with each write to enabled motors; a retriggerable timer cuts the power when it stops toggling."""
 
     @property
     def pins(self) -> list[int]:
-        """Those that are used."""
+        """The configured pins."""
         return [pin for pin in (self.estop_pin, self.enable_pin, self.heartbeat_pin) if pin is not None]
 
     def __post_init__(self) -> None:
@@ -75,17 +75,17 @@ class SafetyPinSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
 
     @property
     def taken(self) -> list[str]:
-        """Pins."""
+        """The pins by name."""
         return [pin_name(pin) for pin in self.pins]
 
 
 class CommonMotorSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What every driver takes beside its own settings."""
+    """Settings that every driver has beside its own."""
 
     safety: SafetyPinSettings | None = None
 
     def open_safety_pins(self) -> SafetyPins | None:
-        """The safety pins, with the power off. Raises MotorError."""
+        """Open the safety pins, with the power off; None without any. Raises MotorError."""
         if self.safety is None:
             return None
         from vehicle.motors.safety_pins import SafetyPins
@@ -93,7 +93,7 @@ class CommonMotorSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=Tru
         return SafetyPins(self.safety)
 
     def wrap(self, motors: Motors, guard: SafetyPins | None) -> Motors:
-        """`motors` with all this around them."""
+        """Return `motors` behind the safety pins, if there are any."""
         if guard is None:
             return motors
         from vehicle.motors.safety_pins import GuardedMotors
@@ -102,26 +102,18 @@ class CommonMotorSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=Tru
 
 
 class NoSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Of a driver that has none of its own."""
-
-
-RETIRED = {
-    "shape": "is parameters now; in [params], for each motor: MOT1_REVERSED = 1, MOT1_MIN and MOT1_MAX in %",
-    "limits": "is parameters now; in [params]: MOT1_MAX and MOT2_MAX in % for driving, MOT_PIVOT_MAX for turning",
-}
-"""Keys of older files -> what to write instead. vehicle/config/config.py refuses them; here they are passed over, because
-safe-stop must stop the motors with any file."""
+    """Settings of a driver without settings of its own."""
 
 
 def split_table(table: Mapping[str, Any]) -> tuple[CommonMotorSettings, dict[str, Any]]:
-    """What goes around the driver, and the rest, which is its own. Raises MotorSettingsError."""
+    """Split a table into the common settings and the driver's own. Raises MotorSettingsError."""
     names = CommonMotorSettings.__struct_fields__
-    around = convert({key: value for key, value in table.items() if key in names}, CommonMotorSettings)
-    return around, {key: value for key, value in table.items() if key not in names and key not in RETIRED}
+    common = convert({key: value for key, value in table.items() if key in names}, CommonMotorSettings)
+    return common, {key: value for key, value in table.items() if key not in names}
 
 
 def convert(table: Mapping[str, Any], kind: type[T]) -> T:
-    """`table` as a `kind`. Raises MotorSettingsError, one line that says where."""
+    """Convert `table` to a `kind`. Raises MotorSettingsError with one line that names the key."""
     try:
         return msgspec.convert(dict(table), kind)
     except msgspec.ValidationError as error:
@@ -129,14 +121,14 @@ def convert(table: Mapping[str, Any], kind: type[T]) -> T:
 
 
 def format_validation_error(error: msgspec.ValidationError) -> str:
-    """What is wrong and where, to stand after the name of the table."""
+    """Return key and error, to follow the name of the table."""
     what, _, path = str(error).partition(" - at `$")
     where = path.strip(".`")
     return f": {where}: {what}" if where else f": {what}"
 
 
 def reject_duplicates(numbers: list[int]) -> None:
-    """Raises ValueError where a pin or channel has two jobs."""
+    """Raise ValueError if a pin or channel is used twice."""
     doubles = sorted({number for number in numbers if numbers.count(number) > 1})
     if doubles:
         raise ValueError(f"{', '.join(map(str, doubles))} is used twice")

@@ -1,4 +1,4 @@
-"""Motors that turn nothing: they hold their throttles for the simulated rover (vehicle/sim) and for tests to see."""
+"""Motors without hardware: they keep their throttles for the simulated rover (vehicle/sim) and for tests."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from vehicle.motors import check_throttles
 
 
 class SimulatedMotors:
-    """Fits `vehicle.motors.Motors`; `outputs` is what wheels would get."""
+    """Fits `vehicle.motors.Motors`; `outputs` holds the effective throttles."""
 
     def __init__(self, count: int = 2) -> None:
         self.count = count
@@ -17,7 +17,7 @@ class SimulatedMotors:
 
     @property
     def outputs(self) -> tuple[float, ...]:
-        """What each wheel gets now, -1..1; neutral while disabled."""
+        """Effective throttle of each motor, -1 to 1; neutral while disabled."""
         return self._throttles if self.enabled else self._neutral
 
     def enable(self) -> None:
@@ -27,14 +27,14 @@ class SimulatedMotors:
             self.enabled = True
 
     def disable(self) -> None:
-        """No power: `outputs` is neutral until enabled and set again."""
+        """Disable the motors: `outputs` is neutral until they are enabled and set again."""
         self.enabled = False
         self._throttles = self._neutral
 
     def set(self, throttles: Sequence[float]) -> None:
-        """Hold `throttles`. Raises MotorError as every driver does."""
+        """Keep `throttles`. Raises MotorError for an invalid value."""
         self._throttles = check_throttles(throttles, self.count)
 
     def close(self) -> None:
-        """Neutral and disabled; there is no hardware to let go of."""
+        """Disable the motors."""
         self.disable()

@@ -1,7 +1,7 @@
-"""Hardware PWM of the Raspberry Pi through /sys/class/pwm: bridges without noise, and servo pulses without jitter.
+"""Hardware PWM of the Raspberry Pi through /sys/class/pwm: inaudible bridges and servo pulses without jitter.
 
-A chip is found by its device (`fe20c000.pwm`), because its number moves between kernels.
-The hardware goes on with its last duty when the process is killed: `safe_stop` is what ends it.
+A chip is found by its device (`fe20c000.pwm`), because its number differs between kernels.
+The hardware keeps its last duty when the process is killed: `safe_stop` ends it.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from vehicle.motors.settings import Pin, pin_name, reject_duplicates
 
 Number = Annotated[int, msgspec.Meta(ge=0, le=7)]
 PWM_PINS = (12, 13, 18, 19)
-"""Of the header, on every Pi."""
+"""Header pins with hardware PWM, on every Pi."""
 
 
 class BridgePwm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="drives", tag="bridge"):
     """An H-bridge with a PWM and a direction input."""
 
     device: str
-    """Of the chip, as in its path below /sys/devices."""
+    """Device of the PWM chip, as in its path below /sys/devices."""
     channel: Number
     direction: Pin
     """Low is forward."""
     frequency: Annotated[float, msgspec.Meta(ge=50, le=100_000)] = 20_000.0
-    """Hz; 20 kHz cannot be heard."""
+    """Hz; 20 kHz is inaudible."""
 
 
 class ServoPwm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="drives", tag="servo"):
@@ -55,7 +55,7 @@ class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     outputs: Annotated[tuple[Output, ...], msgspec.Meta(min_length=1, max_length=4)]
     idle: Idle = "neutral"
-    """For servo outputs; a bridge without duty is always off."""
+    """Output of servos while disabled: "neutral" pulses, or none ("off"). A bridge is always off then."""
 
     def __post_init__(self) -> None:
         names = [(output.device, output.channel) for output in self.outputs]
@@ -65,17 +65,17 @@ class SysfsPwmSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def pins(self) -> list[int]:
-        """Directions of bridges."""
+        """The direction pins of bridges."""
         return [output.direction for output in self.outputs if isinstance(output, BridgePwm)]
 
     @property
     def taken(self) -> list[str]:
-        """Pins."""
+        """The pins by name."""
         return [pin_name(pin) for pin in self.pins]
 
     @property
     def pins_nearby(self) -> tuple[int, ...]:
-        """Where the hardware PWM may come out: which of them is an overlay's matter."""
+        """Pins that the hardware PWM may use; an overlay selects them."""
         return PWM_PINS
 
 
@@ -88,17 +88,17 @@ class BridgeOutput:
         self._backward = False
 
     def set_idle(self) -> None:
-        """No duty, output off."""
+        """Set duty 0 and switch the output off."""
         self._channel.stop()
         self._channel.set_period()
 
     def start(self) -> None:
-        """Duty 0, then on."""
+        """Set duty 0, then switch the output on."""
         self._channel.set_duty(0)
         self._channel.start()
 
     def set(self, throttle: float) -> None:
-        """The duty is 0 while the direction changes, so that no full pulse goes the wrong way."""
+        """Set the duty; it is 0 while the direction changes, so that no pulse drives the wrong way."""
         if throttle != 0.0 and (throttle < 0.0) != self._backward:
             self._channel.set_duty(0)
             self._backward = throttle < 0.0
@@ -106,12 +106,12 @@ class BridgeOutput:
         self._channel.set_duty(round(abs(throttle) * self._channel.period))
 
     def close(self) -> None:
-        """Let go of the pin."""
+        """Release the direction pin."""
         self._direction.close()
 
 
 class ServoOutput:
-    """One motor behind an ESC, or a steering servo."""
+    """One ESC or steering servo."""
 
     def __init__(self, channel: SysfsPwmChannel, pulse: Pulse, idle: Idle) -> None:
         self._channel = channel
@@ -119,7 +119,7 @@ class ServoOutput:
         self._idle = idle
 
     def set_idle(self) -> None:
-        """What `idle` says where there are pulses; where there are none, none."""
+        """Make the output idle according to `idle`; an output without pulses stays without."""
         if self._channel.is_running and self._idle == "neutral":
             self._channel.set_period()
             self.set(0.0)
@@ -128,16 +128,16 @@ class ServoOutput:
             self._channel.set_period()
 
     def start(self) -> None:
-        """Neutral, then on."""
+        """Set neutral, then switch the output on."""
         self.set(0.0)
         self._channel.start()
 
     def set(self, throttle: float) -> None:
-        """The width of the pulse."""
+        """Set the pulse width."""
         self._channel.set_duty(round(self._pulse.width(throttle) * 1e9))
 
     def close(self) -> None:
-        """Nothing to let go of: the channel stays exported, so that its permissions stay too."""
+        """Return: the channel stays exported, so that its permissions stay too."""
 
 
 class SysfsPwmMotors:
@@ -153,7 +153,7 @@ class SysfsPwmMotors:
         write: Callable[[Path, str], None] | None = None,
         pin_factory: Any = None,
     ) -> None:
-        """`root`, `write` and `pin_factory` are for tests. Raises MotorError."""
+        """Export the channels and make them idle. Raises MotorError. `root`, `write`, `pin_factory` are for tests."""
         root, write = root or pwm_channel.ROOT, write or pwm_channel.write_file
         self.count = len(settings.outputs)
         self.enabled = False
@@ -178,14 +178,14 @@ class SysfsPwmMotors:
             self.enabled = True
 
     def disable(self) -> None:
-        """Every output calm, also where one fails."""
+        """Make every output idle, even if one fails."""
         self.enabled = False
         with _translated(), contextlib.ExitStack() as steps:
             for output in self._outputs:
                 steps.callback(output.set_idle)
 
     def set(self, throttles: Sequence[float]) -> None:
-        """Set each output; nothing while disabled."""
+        """Set each output; no effect while disabled."""
         values = check_throttles(throttles, self.count)
         if self.enabled:
             with _translated():
@@ -193,7 +193,7 @@ class SysfsPwmMotors:
                     output.set(value)
 
     def close(self) -> None:
-        """As disabled, then the pins are let go."""
+        """Disable the motors, then release the pins."""
         with contextlib.ExitStack() as steps:
             for output in self._outputs:
                 steps.callback(output.close)

@@ -1,4 +1,4 @@
-"""Where the rover believes to be and how it moves: what vehicle/navigation/estimator.py makes of the sensors. Numbers only."""
+"""The estimated position and motion, the result of vehicle/navigation/estimator.py."""
 
 from __future__ import annotations
 
@@ -9,35 +9,35 @@ from vehicle.navigation.geo import Origin, Point
 
 
 class Estimate(NamedTuple):
-    """What is believed now; None where nothing is known. SI, rad, yaw clockwise from north; built each cycle."""
+    """The estimate of a cycle; None if unknown. SI units, rad, yaw clockwise from north."""
 
     yaw: float | None = None
     yaw_rate: float | None = None
     speed: float | None = None
-    """Along the nose, negative backwards."""
+    """m/s forward, negative backward."""
     sideways: float = 0.0
-    """To the right, of drives that can."""
+    """m/s to the right, for drives that can move sideways."""
     place: Point = Point(0.0, 0.0)
     moving_place: bool = False
-    """`place` follows the rover: by wheels and heading from the start, or by GPS."""
+    """`place` follows the rover: by wheels and heading since the start, or by GPS."""
     origin: Origin | None = None
-    """Where 0/0 is; None before the first 3D fix."""
+    """Global position of 0/0; None before the first 3D fix."""
     accuracy: float = math.inf
-    """m; of the place on the globe."""
+    """m; accuracy of the global position."""
     resets: int = 0
-    """How often `place` has jumped: another origin, or a GPS that was right though it was far off."""
+    """Number of jumps of `place`: a new origin, or a GPS position far off that proved to be right."""
     good: bool = False
-    """The place is good enough to drive by: a fix lately, a heading, and accuracy."""
+    """The position is good enough to drive by: a recent fix, a heading, and sufficient accuracy."""
 
     @property
     def velocity(self) -> Point:
-        """m/s north and east; 0 where the speed or heading is not known."""
+        """m/s north and east; 0 if the speed or the heading is unknown."""
         yaw = self.yaw or 0.0
         return Point(0.0, 0.0).offset(yaw, self.speed or 0.0).offset(yaw + math.pi / 2, self.sideways)
 
     @property
     def ground_speed(self) -> float:
-        """m/s, whichever way; 0 where it is not known."""
+        """m/s in any direction; 0 if unknown."""
         return math.hypot(self.speed or 0.0, self.sideways)
 
     @property

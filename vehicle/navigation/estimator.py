@@ -1,16 +1,16 @@
-"""Where the rover is and how it moves: a complementary filter over gyro, compass, wheels and GPS. It steers nothing.
+"""Position and motion estimate: a complementary filter over gyro, compass, wheels and GPS.
 
-Fast sensors carry the estimate from cycle to cycle, slow ones pull it back to the truth:
+Fast sensors carry the estimate from cycle to cycle, slow sensors correct it:
 
-    gyro - bias --integrate--> yaw <--HEADING_TIME-- compass + offset; the pull also teaches the gyro's bias
+    gyro - bias --integrate--> yaw <--HEADING_TIME-- compass + offset; the correction also teaches the gyro bias
     GPS course while moving --OFFSET_TIME--> offset of the compass (mounting, declination, iron in the chassis)
-    GPS speed while moving --SCALE_TIME--> scale of the wheels (tyres, and settings that are not quite right)
-    wheels * scale along yaw --integrate--> position <--POSITION_TIME-- GPS; one fix far off is left out, many are not
+    GPS speed while moving --SCALE_TIME--> scale of the wheels (tyres, and inaccurate parameters)
+    wheels * scale along yaw --integrate--> position <--POSITION_TIME-- GPS; a single outlier is ignored
 
-Each pull begins as a plain mean (gain 1/n) and settles at its time constant, so that the first seconds are not lost.
-Receivers of this class wander by decimetres over half a minute: POSITION_TIME hides the wander as far as the drift of
-wheels and heading allows. Without wheels the GPS gives the speed; without compass its course gives the heading.
-A drive that can move sideways has a course that is not its heading: its wheels say by how much, or else the GPS.
+Each correction begins as a plain mean (gain 1/n) and settles at its time constant, so that the first seconds are used.
+GPS receivers of this class wander by decimetres over half a minute: POSITION_TIME hides the wander as far as the drift
+of wheels and heading allows. Without wheels the GPS gives the speed; without a compass its course gives the heading.
+The course of a drive that can move sideways differs from its heading: the wheels measure by how much, or else the GPS.
 """
 
 from __future__ import annotations
@@ -25,47 +25,50 @@ from vehicle.navigation.wheel_odometry import WheelOdometry
 from vehicle.readings import Readings
 
 HEADING_TIME = 3.0
-"""s; a magnetometer's noise is gone by then, a gyro's bias of 1 deg/s has made 3 degrees."""
+"""s; the noise of a magnetometer is averaged by then, and a gyro bias of 1 deg/s has made 3 degrees."""
 BIAS_TIME = 20.0
-"""s until the gyro's bias is learned."""
+"""s until the gyro bias is learned."""
 BIAS_MAX = 0.1
-"""rad/s: a larger one is no bias but a broken gyro."""
+"""rad/s; a larger value is not a bias but a broken gyro."""
 OFFSET_TIME = 60.0
-"""s of straight driving until the compass's offset is learned; one course is good to 4 degrees at 0.8 m/s."""
+"""s of straight driving until the compass offset is learned; a course is accurate to 4 degrees at 0.8 m/s."""
 POSITION_TIME = 100.0
-"""s; longer hides more of the wander, and shows more of what wheels and heading still have wrong."""
+"""s; a longer time hides more of the wander and shows more of the errors of wheels and heading."""
 COURSE_SPEED = 0.4
-"""m/s from which on the GPS knows a course: its velocity is good to 0.05 m/s."""
+"""m/s above which the GPS course is usable: the velocity is accurate to 0.05 m/s."""
 COURSE_RATE = 0.3
-"""rad/s of turn up to which course and heading are taken for the same."""
+"""rad/s up to which course and heading are considered equal."""
 WHEELLESS_TIME = 20.0
-"""s; the same without wheels: a speed that comes from fixes drifts away sooner."""
+"""s; POSITION_TIME without wheels: a speed that comes from fixes drifts sooner."""
 FIX_PERIOD = 0.2
-"""s between two fixes of usual receivers."""
+"""s between two fixes of common receivers."""
 GPS_LOST = 3.0
-"""s without a fix (vehicle.md, position lost)."""
+"""s without a fix until the position is lost (docs/safety.md)."""
 GPS_SAME = 1.0
-"""s after which an unchanged fix counts as a new one: a receiver at rest may repeat itself."""
+"""s after which an unchanged fix counts as a new one: a receiver at rest may repeat its position."""
 FIX_3D = 3
 OUTLIER_DISTANCE = 5.0
-"""m; a fix this far off, and more than three times the accuracy, is left out ..."""
+"""m; a fix this far off, and more than three times the accuracy, is ignored ..."""
 OUTLIERS_MAX = 10
-"""... but this many in a row are right and we are wrong."""
+"""... but this many in a row are right, and the estimate is wrong."""
 ACCURACY_MAX = 5.0
-"""m; with less the position is not good."""
+"""m; with a larger error the position is not good."""
 DRIFT = 0.03
-"""m of error for each metre by wheels."""
+"""m of error for each metre measured by the wheels."""
 BLIND_DRIFT = 0.1
 """m/s of error without wheels and GPS."""
 DT_MAX = 0.5
-"""s; after a longer gap nobody knows what happened."""
+"""s; a longer gap is not integrated."""
 
 
 class Estimator:
-    """The filter. `sense` each cycle."""
+    """The filter; call `update` in each cycle."""
 
     def __init__(self, aside: Sequence[int] = ()) -> None:
-        """`aside`: what a motion to the right gives to each wheel, of a drive that can (vehicle/drive/mixer.py, FOUR_WHEELS)."""
+        """Create the filter.
+
+        `aside`: factor of each wheel for motion to the right, if the drive can (vehicle/drive/mixer.py, FOUR_WHEELS).
+        """
         self.estimate = Estimate()
         self._wheels = WheelOdometry(aside)
         self._at: float | None = None
@@ -83,11 +86,11 @@ class Estimator:
         self._drift = 0.0
 
     def update(self, readings: Readings, now: float) -> Estimate:
-        """Take the readings of this cycle; numbers that cannot be are taken for missing ones."""
+        """Update the estimate with the readings of this cycle; impossible values count as missing."""
         dt = 0.0 if self._at is None else max(0.0, min(DT_MAX, now - self._at))
         self._at = now
         rate = valid_yaw_rate(readings)
-        self._turn(rate, _sane(readings.yaw, 1e6), dt)
+        self._turn(rate, _valid(readings.yaw, 1e6), dt)
         wheels, sideways = self._wheels.speed(readings), self._wheels.sideways_speed(readings)
         if wheels is not None:
             self._speed = wheels
@@ -96,12 +99,12 @@ class Estimator:
         self._move(dt, wheels is not None)
         fix = self._new_fix(readings, now)
         if fix is not None:
-            self._take_fix(fix, readings, now, rate, wheels is not None)
-        self.estimate = self._believed(rate, wheels, now)
+            self._apply_fix(fix, readings, now, rate, wheels is not None)
+        self.estimate = self._build_estimate(rate, wheels, now)
         return self.estimate
 
     def set_origin(self, origin: Origin) -> None:
-        """`origin` is 0/0 from now on, and the rover where it is on the globe. Nothing before the first fix."""
+        """Make `origin` 0/0; the rover keeps its global position. No effect before the first fix."""
         if self._origin is not None:
             self._reckoning.set_position(origin.to_local(*self._origin.to_global(self._reckoning.place)))
             self._origin = origin
@@ -109,7 +112,7 @@ class Estimator:
             self.estimate = self.estimate._replace(place=self._reckoning.place, origin=origin, resets=self._resets)
 
     def set_gyro_bias(self, bias: float) -> bool:
-        """What the gyro says at rest, rad/s; False where that is no bias."""
+        """Set the gyro bias, rad/s; return False if the value cannot be a bias."""
         fits = abs(bias) <= BIAS_MAX
         if fits:
             self._bias = bias
@@ -138,8 +141,8 @@ class Estimator:
         self._drift += DRIFT * math.hypot(way, right) if wheels else BLIND_DRIFT * dt
 
     def _new_fix(self, readings: Readings, now: float) -> tuple[float, float] | None:
-        """Latitude and longitude, once for each time that the receiver says something."""
-        latitude, longitude = _sane(readings.latitude, 90.0), _sane(readings.longitude, 180.0)
+        """Return latitude and longitude of a fix that has not been used yet, or None."""
+        latitude, longitude = _valid(readings.latitude, 90.0), _valid(readings.longitude, 180.0)
         if latitude is None or longitude is None or (readings.gps_fix or 0) < FIX_3D:
             return None
         fix = (latitude, longitude, readings.velocity_north, readings.velocity_east)
@@ -148,16 +151,16 @@ class Estimator:
         self._fix = fix
         return latitude, longitude
 
-    def _take_fix(
+    def _apply_fix(
         self, fix: tuple[float, float], readings: Readings, now: float, rate: float | None, wheels: bool
     ) -> None:
-        north, east = _sane(readings.velocity_north, 50.0), _sane(readings.velocity_east, 50.0)
+        north, east = _valid(readings.velocity_north, 50.0), _valid(readings.velocity_east, 50.0)
         if north is not None and east is not None:
-            self._take_aside(north, east, readings)
-            self._take_velocity(north, east, rate, readings.yaw is not None, wheels)
+            self._update_sideways(north, east, readings)
+            self._apply_velocity(north, east, rate, readings.yaw is not None, wheels)
         dt = min(GPS_SAME, now - self._fix_at)
         self._fix_at = now
-        if self._origin is None:  # what was driven before the first fix stays as it is
+        if self._origin is None:  # the distance driven before the first fix is kept
             self._origin = Origin(*Origin(*fix).to_global(Point(-self._reckoning.north, -self._reckoning.east)))
         error = self._origin.to_local(*fix)
         north_off, east_off = error.north - self._reckoning.north, error.east - self._reckoning.east
@@ -175,18 +178,18 @@ class Estimator:
         self._outliers += 1
         if self._outliers < OUTLIERS_MAX:
             return True
-        self._place_gain = AveragingGain(POSITION_TIME)  # begins with a gain of 1: the fix is believed
+        self._place_gain = AveragingGain(POSITION_TIME)  # begins with a gain of 1: the fix becomes the position
         self._outliers = 0
         self._resets += 1
         return False
 
-    def _take_aside(self, north: float, east: float, readings: Readings) -> None:
-        """Where the drive can move sideways and its wheels do not say so."""
+    def _update_sideways(self, north: float, east: float, readings: Readings) -> None:
+        """Estimate the sideways speed if the drive can move sideways and its wheels do not measure it."""
         if self._yaw is not None and self._wheels.sideways_speed(readings) is None:
             across = east * math.cos(self._yaw) - north * math.sin(self._yaw)
             self._sideways = (self._sideways + across) / 2
 
-    def _take_velocity(self, north: float, east: float, rate: float | None, compass: bool, wheels: bool) -> None:
+    def _apply_velocity(self, north: float, east: float, rate: float | None, compass: bool, wheels: bool) -> None:
         speed = math.hypot(north, east)
         along = speed if self._yaw is None else north * math.cos(self._yaw) + east * math.sin(self._yaw)
         if not wheels:
@@ -216,7 +219,7 @@ class Estimator:
     def _learn_bias(self, change: float) -> None:
         self._bias = max(-BIAS_MAX, min(BIAS_MAX, self._bias + change))
 
-    def _believed(self, rate: float | None, wheels: float | None, now: float) -> Estimate:
+    def _build_estimate(self, rate: float | None, wheels: float | None, now: float) -> Estimate:
         since = now - self._fix_at
         if wheels is None and since > GPS_LOST:
             self._speed, self._sideways = None, 0.0
@@ -236,9 +239,9 @@ class Estimator:
 
 
 def valid_yaw_rate(readings: Readings) -> float | None:
-    """rad/s as the gyro says it, where that is a number that can be."""
-    return _sane(readings.yaw_rate, 50.0)
+    """Return the turn rate of the gyro in rad/s, None if it is missing or impossible."""
+    return _valid(readings.yaw_rate, 50.0)
 
 
-def _sane(value: float | None, largest: float) -> float | None:
+def _valid(value: float | None, largest: float) -> float | None:
     return value if value is not None and -largest <= value <= largest else None  # NaN is not

@@ -1,4 +1,4 @@
-"""One area of the fence, a circle or a polygon: how deep a place lies in it, and how far its edge is on a course."""
+"""An area of the fence, a circle or a polygon: distance to its edge, also along a course."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ class FenceArea:
     corners: tuple[Point, ...]
     radius: float
     inclusion: bool
-    """It is where the rover may be."""
+    """The rover must stay inside."""
 
     def distance_to_edge(self, place: Point) -> float:
-        """m from its edge on the right side, negative on the wrong one."""
+        """Return the m to the edge on the allowed side, negative on the other."""
         depth = self.radius - self.corners[0].distance(place) if self.radius else self._depth(place)
         return depth if self.inclusion else -depth
 
     def distance_ahead(self, place: Point, course: float) -> float:
-        """m to its edge, straight on; infinite where that leads past it."""
+        """Return the m to the edge straight ahead; infinite if the course misses the area."""
         if self.radius:
             return _to_circle(self.corners[0], self.radius, place, course)
         return min(_to_edge(start, end, place, course) for start, end in self._edges())
@@ -33,7 +33,7 @@ class FenceArea:
         return zip(self.corners, (*self.corners[1:], self.corners[0]), strict=True)
 
     def _depth(self, place: Point) -> float:
-        """m from the edge of a polygon; negative outside."""
+        """Return the m to the edge of the polygon, negative outside of it."""
         nearest, within = math.inf, False
         for start, end in self._edges():
             nearest = min(nearest, _to_segment(start, end, place))
@@ -54,11 +54,11 @@ def _to_segment(start: Point, end: Point, place: Point) -> float:
 
 
 def _to_edge(start: Point, end: Point, place: Point, course: float) -> float:
-    """Where a ray meets a segment, m along the ray."""
+    """Return where a ray meets a segment, m along the ray."""
     north, east = math.cos(course), math.sin(course)
     edge_north, edge_east = end.north - start.north, end.east - start.east
     across = north * edge_east - east * edge_north
-    if not across:  # along each other: the neighbouring edges are met
+    if not across:  # parallel: the ray meets the neighbouring edges
         return math.inf
     to_north, to_east = start.north - place.north, start.east - place.east
     ahead = (to_north * edge_east - to_east * edge_north) / across
@@ -67,7 +67,7 @@ def _to_edge(start: Point, end: Point, place: Point, course: float) -> float:
 
 
 def _to_circle(centre: Point, radius: float, place: Point, course: float) -> float:
-    """Where a ray first meets a circle, m along the ray."""
+    """Return where a ray first meets a circle, m along the ray."""
     north, east = place.north - centre.north, place.east - centre.east
     away = north * math.cos(course) + east * math.sin(course)
     square = away * away - (north * north + east * east - radius * radius)

@@ -1,4 +1,4 @@
-"""Metres on a flat ground and degrees on the globe, and angles: geometry only, no state."""
+"""Local coordinates in metres, global coordinates in degrees, and angles: pure geometry."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 EARTH_RADIUS = 6378137.0
-"""m, WGS 84 at the equator; flat around the origin, good to centimetres over the kilometre that such a rover drives."""
+"""m, WGS 84 at the equator. A plane at the origin is accurate to centimetres over a kilometre."""
 
 
 class Point(NamedTuple):
@@ -16,20 +16,20 @@ class Point(NamedTuple):
     east: float
 
     def distance(self, other: Point) -> float:
-        """m from here to there."""
+        """Return the distance in m."""
         return math.hypot(other.north - self.north, other.east - self.east)
 
     def bearing(self, other: Point) -> float:
-        """rad clockwise from north, of there from here."""
+        """Return the bearing of `other` from here, rad clockwise from north."""
         return math.atan2(other.east - self.east, other.north - self.north)
 
     def offset(self, bearing: float, distance: float) -> Point:
-        """The point `distance` m from here."""
+        """Return the point at `distance` m and `bearing` from here."""
         return Point(self.north + distance * math.cos(bearing), self.east + distance * math.sin(bearing))
 
 
 class Home(NamedTuple):
-    """Where RTL goes: the first place on the globe, or the one that somebody has set."""
+    """The home position: the first known position, or the one set by a command."""
 
     latitude: float
     longitude: float
@@ -39,13 +39,13 @@ class Home(NamedTuple):
 
 
 class Origin(NamedTuple):
-    """The place on the globe that is 0/0 on the ground."""
+    """The global position of local 0/0."""
 
     latitude: float
     longitude: float
 
     def to_local(self, latitude: float, longitude: float) -> Point:
-        """Degrees as metres."""
+        """Convert degrees to metres."""
         east = math.remainder(longitude - self.longitude, 360.0)
         return Point(
             math.radians(latitude - self.latitude) * EARTH_RADIUS,
@@ -53,7 +53,7 @@ class Origin(NamedTuple):
         )
 
     def to_global(self, point: Point) -> tuple[float, float]:
-        """Metres as latitude and longitude."""
+        """Convert metres to latitude and longitude."""
         width = EARTH_RADIUS * max(1e-6, math.cos(math.radians(self.latitude)))
         return (
             self.latitude + math.degrees(point.north / EARTH_RADIUS),
@@ -62,5 +62,5 @@ class Origin(NamedTuple):
 
 
 def wrap_angle(angle: float) -> float:
-    """The same direction as -pi..pi."""
+    """Return the same direction as -pi..pi."""
     return math.remainder(angle, math.tau)

@@ -1,4 +1,7 @@
-"""Where RTL goes: the nearest of home and the rally points, by ArduRover's rules (RALLY_LIMIT_KM, RALLY_INCL_HOME)."""
+"""Return points for RTL: the nearest of home and the rally points (RALLY_LIMIT_KM, RALLY_INCL_HOME).
+
+The rules are ArduRover's.
+"""
 
 from __future__ import annotations
 
@@ -18,27 +21,30 @@ class ReturnPoint(NamedTuple):
 
     point: Point
     name: str
-    """As the driver reads it."""
+    """Name in a STATUSTEXT."""
 
 
 class ReturnPoints:
     """Home and the rally points."""
 
     def __init__(self, params: Params, home: Callable[[], Point | None], breach: Callable[[Point], float]) -> None:
-        """`breach` says how far a place lies beyond the fence, m: a rally point there is none."""
+        """Create the return points.
+
+        `breach` returns the m that a place lies outside the fence: a rally point there is ignored.
+        """
         self._params = params
         self._home = home
         self._breach = breach
         self._items: Items = ()
 
     def load(self, items: Items) -> None:
-        """Other rally points; they have passed the rules of vehicle/autonomy/mission/rules.py."""
+        """Use other rally points that have passed the rules of vehicle/autonomy/mission/rules.py."""
         self._items = items
 
     def nearest(self, estimate: Estimate) -> ReturnPoint | None:
-        """The nearest from here; None where there is no home and no rally point.
+        """Return the nearest point; None if there is neither home nor a rally point.
 
-        Home counts where RALLY_INCL_HOME says so, and where no rally point is within RALLY_LIMIT_KM (0: any distance).
+        Home counts if RALLY_INCL_HOME is set, and if no rally point is within RALLY_LIMIT_KM (0: any distance).
         """
         home, rally = self._home(), self._nearest_rally(estimate)
         if home is None or rally is None:

@@ -1,6 +1,6 @@
-"""Wanted speed and turn rate -> throttle and steering, closed over wheels and gyro. Where to go is decided elsewhere.
+"""Speed and turn-rate controllers: throttle and steering, closed over wheels and gyro.
 
-Each is feed-forward plus what the sensor says is missing (ArduRover's ATC_ settings). Without the sensor the
+Each controller is feed-forward plus a correction by the sensor (ArduRover's ATC_ parameters). Without the sensor the
 feed-forward drives alone: CRUISE_THROTTLE gives CRUISE_SPEED, and full steering 1 / ATC_STR_RAT_FF rad/s.
 """
 
@@ -15,17 +15,17 @@ from vehicle.navigation.estimate import Estimate
 from vehicle.params import Params
 
 INTEGRAL_MAX = 0.5
-"""Largest share of full throttle or steering that the integrals may take: a rover held fast must not wind up."""
+"""Largest share of full throttle or steering of an integral: a rover that is held must not wind up."""
 STEERING_SPEED_MIN = 0.2
-"""m/s; wheels that steer turn nothing at rest, so their angle is reckoned for this speed at least."""
+"""m/s; steered wheels turn nothing at rest, so that their angle is computed for this speed at least."""
 
 
 LONGEST_STEP = 0.1
-"""s; controllers reckon with no longer cycle than the one that zeroes the motors."""
+"""s; the longest cycle of the controllers, equal to the one that zeroes the motors."""
 
 
 class DesiredMotion(NamedTuple):
-    """What is wanted: m/s along the nose, and rad/s clockwise."""
+    """Desired speed in m/s forward and turn rate in rad/s clockwise."""
 
     speed: float
     turn_rate: float
@@ -35,7 +35,7 @@ STATIONARY = DesiredMotion(0.0, 0.0)
 
 
 class SpeedTurnController:
-    """The two controllers. `step` each cycle while it drives, `reset` when it does not."""
+    """The two controllers. Call `step` in each cycle while driving, `reset` otherwise."""
 
     def __init__(self, params: Params, kind: DriveType) -> None:
         self._params = params
@@ -45,12 +45,12 @@ class SpeedTurnController:
         self._at = 0.0
 
     def reset(self) -> None:
-        """Forget ramps and integrals."""
+        """Reset ramps and integrals."""
         self._speed = self._speed_trim = self._turn_trim = 0.0
 
     def step(self, wanted: DesiredMotion, estimate: Estimate, now: float) -> tuple[float, float]:
-        """Throttle and steering, -1..1."""
-        dt = self._passed(now)
+        """Return throttle and steering, -1..1, for the desired motion."""
+        dt = self._elapsed(now)
         throttle = self._throttle(wanted.speed, estimate.speed, dt)
         if wanted == STATIONARY:
             self._turn_trim = 0.0
@@ -58,10 +58,10 @@ class SpeedTurnController:
         return throttle, self._steering(wanted.turn_rate, estimate, dt)
 
     def steering_for_rate(self, rate: float, estimate: Estimate, now: float) -> float:
-        """Steering for a turn rate, where the throttle is somebody else's."""
-        return self._steering(rate, estimate, self._passed(now))
+        """Return the steering for a turn rate, if the throttle comes from elsewhere."""
+        return self._steering(rate, estimate, self._elapsed(now))
 
-    def _passed(self, now: float) -> float:
+    def _elapsed(self, now: float) -> float:
         dt, self._at = max(0.0, min(LONGEST_STEP, now - self._at)), now
         return dt
 
@@ -69,7 +69,7 @@ class SpeedTurnController:
         params, measured = self._params, estimate.yaw_rate
         speed = self._speed if estimate.speed is None else estimate.speed
         steering = self._feed_forward(rate, speed)
-        if measured is not None and not self._rests(speed):
+        if measured is not None and not self._is_at_rest(speed):
             error = rate - measured
             flip = -1.0 if self._kind is DriveType.ACKERMANN and speed < 0.0 else 1.0
             if abs(steering) < 1.0:
@@ -85,7 +85,7 @@ class SpeedTurnController:
         full = math.atan(params["WHEELBASE"] / params["TURN_RADIUS"])
         return clamp(math.atan(rate * params["WHEELBASE"] / reckoned) / full, 1.0)
 
-    def _rests(self, speed: float) -> bool:
+    def _is_at_rest(self, speed: float) -> bool:
         return self._kind is DriveType.ACKERMANN and abs(speed) < self._params["ATC_STOP_SPEED"]
 
     def _throttle(self, wanted: float, measured: float | None, dt: float) -> float:

@@ -1,1 +1,1 @@
-"""The daemon: links, control loop, signals, systemd and locks in one process."""
+"""The daemon process: links, control loop, signals, systemd, locks and log."""

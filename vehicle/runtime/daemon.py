@@ -1,8 +1,8 @@
-"""The rover daemon: links, rover, motors and signals joined in one process; what is decided is decided in the cores.
+"""The rover daemon: connects links, rover, motors and signals in one process; decisions are made in the cores.
 
-Whatever ends it (a signal, a broken driver, a fault in our own code) the order is the same: motors neutral and without
-power, last messages, exit code with one line. Exit codes: 0 asked to stop, 1 a fault, 2 the user's mistake, which a
-restart cannot mend, 80 to 82 what a ground station asked for (vehicle/commands/reboot.py).
+Whatever ends the daemon (a signal, a failed driver, an exception in the program), the order is the same: motors neutral
+and without power, last messages, exit code and one line in the log. Exit codes: 0 requested stop, 1 fault, 2 user
+error, which a restart cannot fix, 80 to 82 requests of a ground station (vehicle/commands/reboot.py).
 """
 
 from __future__ import annotations
@@ -20,9 +20,8 @@ from link.protocol.log_tap import LogTap
 from link.runner import Runner, open_links
 from link.runtime.command_line import USAGE_ERROR
 from link.runtime.event_loop import run_loop, running_loop
-from link.transport.transport import LinkError
-from vehicle.commands.dispatch import COMPONENT
-from vehicle.commands.inbound import INBOUND_IDS
+from link.transport.transport import Link, LinkError
+from vehicle.commands.context import COMPONENT
 from vehicle.config.run_settings import RunSettings, SettingsError
 from vehicle.control_loop import ControlLoop
 from vehicle.motors import MotorError, UnknownDriverError
@@ -33,14 +32,16 @@ from vehicle.runtime.host_info import HostMonitor, read_uid
 from vehicle.runtime.lock import lock_state_folder
 from vehicle.runtime.shutdown import CycleObserver, Shutdown
 from vehicle.runtime.systemd import Notifier
+from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.param_store import ParamStore
 from vehicle.storage.plan_store import PlanStore
+from vehicle.storage.store import Store
 from vehicle.telemetry.host import HostInfo
 
 log = logging.getLogger(__name__)
 
 PERIOD = 0.02
-"""s, the control cycle: 50 Hz is what servos and controllers of this size take, and ten times the driver's own rate."""
+"""s, the control cycle: 50 Hz is the rate of servos and motor controllers of this size."""
 
 LEVELS: dict[Severity, int] = {
     Severity.EMERGENCY: logging.CRITICAL,
@@ -52,18 +53,18 @@ LEVELS: dict[Severity, int] = {
     Severity.INFO: logging.INFO,
     Severity.DEBUG: logging.DEBUG,
 }
-"""Of STATUSTEXT -> of the log."""
+"""Severity of STATUSTEXT -> level of the log."""
 
 FAULT = 1
-"""Exit code, beside MISTAKE and those of vehicle/runtime/shutdown.py.
+"""Exit code beside USAGE_ERROR and those of vehicle/runtime/shutdown.py.
 
-The unit starts nothing again after MISTAKE, so whatever may be otherwise later is FAULT: a host name that is not known
-yet at boot, a port that a program still has.
+systemd does not restart the service after USAGE_ERROR, so an error that may disappear is a FAULT: a host name that is
+not resolved yet at boot, or a port that another program still uses.
 """
 
 
 def run(settings: RunSettings) -> int:
-    """Run until asked to stop; the exit code. What goes wrong becomes one line of the log."""
+    """Run until a stop is requested and return the exit code. An error is logged as one line."""
     try:
         return run_loop(_serve(settings))
     except (SettingsError, EndpointError, ParamError, UnknownDriverError) as error:
@@ -76,20 +77,25 @@ def run(settings: RunSettings) -> int:
         log.error("motor driver: %s", error, exc_info=True)
         return FAULT
     except Exception as error:
-        log.critical("%s (--log-file keeps the details)", _told(error), exc_info=True)
+        log.critical("%s (use --log-file for the traceback)", _describe_fault(error), exc_info=True)
         return FAULT
 
 
-def _told(error: Exception) -> str:
-    """A fault in one line. The machine stopped the motors before it let it through, or noted that it could not."""
+def _describe_fault(error: Exception) -> str:
+    """Return an exception as one line. ControlLoop stopped the motors first, or added a note that it could not."""
     notes = getattr(error, "__notes__", [])
     state = f"motors may still turn, cut their power: {'; '.join(notes)}" if notes else "motors neutral"
     return f"{state}; stopped by a fault in the program: {type(error).__name__}: {error}"
 
 
-def _journal(severity: Severity, text: str) -> None:
-    """What ground stations read, for who reads the journal: most of it happens while nobody looks."""
+def _log_status_text(severity: Severity, text: str) -> None:
+    """Log a STATUSTEXT."""
     log.log(LEVELS[severity], "%s", text)
+
+
+def _store(settings: RunSettings) -> Store | None:
+    """Return a store in the state folder, None if nothing is saved in this run."""
+    return None if settings.state is None else FileWriter(settings.state)
 
 
 async def _serve(settings: RunSettings) -> int:
@@ -98,15 +104,12 @@ async def _serve(settings: RunSettings) -> int:
     with contextlib.ExitStack() as opened:
         if settings.state is not None:
             opened.enter_context(lock_state_folder(settings.state))
-        keeper = None if settings.state is None else ParamStore(settings.state)
-        params = build_params(settings, keeper)
-        if keeper is not None:
-            opened.callback(keeper.close)
-        plans = None if settings.state is None else PlanStore(settings.state)
-        if plans is not None:
-            opened.callback(plans.close)
-            for damage in plans.damage.values():
-                log.warning("%s: %s", settings.state, damage)
+        param_store, plan_store = ParamStore(_store(settings)), PlanStore(_store(settings))
+        opened.callback(param_store.close)
+        opened.callback(plan_store.close)
+        params = build_params(settings, param_store)
+        for damage in plan_store.damage.values():
+            log.warning("%s: %s", settings.state, damage)
         notifier = Notifier()
         opened.callback(notifier.close)
         system = int(params["MAV_SYSID"])
@@ -115,42 +118,42 @@ async def _serve(settings: RunSettings) -> int:
         rover = Rover(
             params,
             now=now,
-            keeper=keeper,
-            plan_keeper=plans,
+            param_store=param_store,
+            plan_store=plan_store,
             recording=recorder,
             host=host,
-            told=_journal,
+            on_text=_log_status_text,
             rack=rack,
         )
-        meter = HostMonitor(host, lambda: loop.idle_time, time.time, now)
-        cycles = CycleObserver(rover, notifier, meter)
-        machine = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
-        tape = recorder.tape if recorder else None
+        host_monitor = HostMonitor(host, lambda: loop.idle_time, time.time, now)
+        cycles = CycleObserver(rover, notifier, host_monitor)
+        control_loop = build_control_loop(settings, params, rover, opened, cycles.handle_cycle, rack)
+        log_tap = recorder.log_tap if recorder else None
         try:
-            return await _drive(machine, settings.endpoints, system, notifier, cycles, tape)
+            links = open_links(settings.endpoints, system=system, component=COMPONENT, wanted=rover.message_ids)
+            status = f"system {system}, {', '.join(settings.endpoints)}"
+            return await _drive(control_loop, links, status, notifier, cycles, log_tap)
         except BaseException as error:
-            machine.abort(error, loop.time())
+            control_loop.abort(error, loop.time())
             raise
         finally:
-            machine.close()
+            control_loop.close()
 
 
 async def _drive(
-    machine: ControlLoop,
-    endpoints: Sequence[str],
-    system: int,
+    control_loop: ControlLoop,
+    links: Sequence[Link],
+    status: str,
     notifier: Notifier,
     cycles: CycleObserver,
-    tape: LogTap | None,
+    log_tap: LogTap | None,
 ) -> int:
-    links = open_links(endpoints, system=system, component=COMPONENT, wanted=INBOUND_IDS)
-    runner = Runner(machine, links, period=PERIOD, tape=tape)
-    ending = Shutdown(machine, runner, notifier.stopping)
-    cycles.shutdown = ending
-    ending.install_handlers(asyncio.get_running_loop())
+    runner = Runner(control_loop, links, period=PERIOD, log_tap=log_tap)
+    shutdown = Shutdown(control_loop, runner, notifier.stopping)
+    cycles.shutdown = shutdown
+    shutdown.install_handlers(asyncio.get_running_loop())
     gc.collect()
     gc.freeze()  # a collection of 100 000 start-up objects takes 35 ms, longer than a control cycle
-    status = f"system {system}, {', '.join(endpoints)}"
     log.info("ready, %s", status)
     notifier.ready(status)
-    return await ending.wait()
+    return await shutdown.wait()

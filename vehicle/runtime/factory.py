@@ -1,4 +1,4 @@
-"""The parts of a vehicle from its settings: parameters, motors, sensors, recorder; simulated or real. No loop."""
+"""Builds the parts of a vehicle from its settings: parameters, motors, sensors, recorder; simulated or real."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from vehicle.accessories.accessory_set import AccessorySet
 from vehicle.accessories.output import AccessorySpec, PulseRange
 from vehicle.accessories.settings import build_specs
 from vehicle.accessories.simulated import SimulatedAccessory
-from vehicle.commands.dispatch import COMPONENT
+from vehicle.commands.context import COMPONENT
 from vehicle.config.conflicts import find_conflicts, find_motor_conflicts
 from vehicle.config.run_settings import RunSettings, SettingsError, Simulation
 from vehicle.control_loop import ControlLoop
 from vehicle.drive.mixer import MIXERS
-from vehicle.motors import PROFILE_PARAMS, Motors, arming_check, estop_reader, open_motors
+from vehicle.motors import Motors, arming_check, estop_reader
+from vehicle.motors.drivers import open_motors, profile_params
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
 from vehicle.params import Params, merge_params
@@ -42,38 +43,42 @@ SIMULATED_ACCESSORIES = (
     *(AccessorySpec("relay", number, SimulatedAccessory) for number in (0, 1)),
     *(AccessorySpec("servo", number, SimulatedAccessory, pulses=PulseRange(1000, 1500, 2000)) for number in (9, 10)),
 )
-"""Accessories of a simulation that was told of none: so that there are some to try."""
+"""Accessories of a simulation without configured ones."""
 
 
-def build_params(settings: RunSettings, keeper: ParamStore | None) -> Params:
-    """Defaults, a known car's, what was kept, the file of settings, this run: the later wins. Raises ParamError."""
-    usual = {} if settings.simulation else PROFILE_PARAMS.get(settings.motors["driver"], {})
-    given, kept = {**settings.pinned, **settings.params}, keeper.values if keeper else {}
+def build_params(settings: RunSettings, store: ParamStore) -> Params:
+    """Merge defaults, those of a known car, saved, configured and this run's parameters; later values take precedence.
+
+    Raises ParamError.
+    """
+    usual = {} if settings.simulation else profile_params(settings.motors["driver"])
+    given, kept = {**settings.pinned, **settings.params}, store.values
     params, left_out = merge_params(given, kept=kept, usual=usual, pinned=settings.pinned.keys(), run=settings.params)
     for problem in left_out:
-        log.warning("a kept parameter is not used: %s", problem)
-    params.damage = keeper.damage if keeper else None
+        log.warning("a saved parameter is not used: %s", problem)
+    params.mark_damaged(store.damage)
     if params.damage:
-        consequence = "all parameters that were set have their defaults, and nobody can arm until one is set"
+        consequence = "all saved parameters have their defaults, and arming is denied until one is set"
         log.warning("%s: %s: %s", settings.state, params.damage, consequence)
     return params
 
 
 def build_accessories(settings: RunSettings, params: Params) -> AccessorySet:
-    """The accessories, not open yet. Raises SettingsError where one of them might be a motor."""
-    outputs = build_specs(settings.accessories)
-    problems = find_motor_conflicts(outputs, DriveType(int(params["DRIVE_TYPE"])))
-    if settings.simulation is None:  # the file was right with the motors that it names, which need not be these
+    """Return the accessories, not open yet. Raises SettingsError if one of them conflicts with a motor."""
+    specs = build_specs(settings.accessories)
+    problems = find_motor_conflicts(specs, DriveType(int(params["DRIVE_TYPE"])))
+    if settings.simulation is None:  # the file was checked with its own motors; --motors may name others
         problems += find_conflicts({"motors": settings.motors, "accessories": to_builtins(settings.accessories)})
     if problems:
         raise SettingsError(problems[0])
     if settings.simulation is not None:
-        outputs = [replace(output, make=SimulatedAccessory) for output in outputs]
-        return AccessorySet(outputs or SIMULATED_ACCESSORIES)
-    return AccessorySet(outputs)
+        specs = [replace(spec, make=SimulatedAccessory) for spec in specs]
+        return AccessorySet(specs or SIMULATED_ACCESSORIES)
+    return AccessorySet(specs)
 
 
 def build_recorder(settings: RunSettings, system: int, opened: contextlib.ExitStack) -> VehicleRecorder | None:
+    """Return the recorder, which `opened` closes; None if nothing is recorded."""
     if settings.logs is None:
         return None
     recorder = VehicleRecorder(settings.logs, system=system, component=COMPONENT)
@@ -89,29 +94,33 @@ def build_control_loop(
     completed: Callable[[float], None],
     rack: AccessorySet,
 ) -> ControlLoop:
-    """The rover in its body, with its accessories open; what must be closed after the motors is in `opened`. Raises
-    MotorError, SettingsError."""
+    """Return the rover with motors, sensors and opened accessories. Raises MotorError, SettingsError.
+
+    `opened` closes what must be closed after the motors.
+    """
     if settings.simulation is None:
-        motors, sensors = _body(settings, opened)
+        motors, sensors = _open_hardware(settings, opened)
     else:
-        motors, sensors = _simulated_body(settings.simulation, params)
+        motors, sensors = _build_simulation(settings.simulation, params)
     try:
-        logged = _logged(motors, settings.motor_log)
+        logged = _with_motor_log(motors, settings.motor_log)
         prove = arming_check(motors)
-        machine = ControlLoop(rover, logged, sensors, stop_input=estop_reader(motors), prove=prove, completed=completed)
+        control_loop = ControlLoop(
+            rover, logged, sensors, stop_input=estop_reader(motors), prove=prove, completed=completed
+        )
         opened.callback(rack.close)
         rack.open()
-        return machine
+        return control_loop
     except BaseException:
         motors.close()
         raise
 
 
-def _body(settings: RunSettings, opened: contextlib.ExitStack) -> tuple[Motors, Sensors]:
+def _open_hardware(settings: RunSettings, opened: contextlib.ExitStack) -> tuple[Motors, Sensors]:
     opened.callback(MotorLock(settings.motors).close)
     accessories = {name: tables for name, tables in to_builtins(settings.accessories).items() if tables}
-    parts = {"motors": dict(settings.motors), "accessories": accessories}
-    opened.enter_context(settings_copy(parts, settings.config))
+    tables = {"motors": dict(settings.motors), "accessories": accessories}
+    opened.enter_context(settings_copy(tables, settings.config))
     own = {key: value for key, value in settings.motors.items() if key != "driver"}
     motors = open_motors(settings.motors["driver"], own)
     if settings.sensors is None:
@@ -125,7 +134,7 @@ def _body(settings: RunSettings, opened: contextlib.ExitStack) -> tuple[Motors, 
         raise
 
 
-def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sensors]:
+def _build_simulation(simulation: Simulation, params: Params) -> tuple[Motors, Sensors]:
     kind = DriveType(int(params["DRIVE_TYPE"]))
     motors = SimulatedMotors(len(MIXERS[kind].motors))
     frame = ChassisDimensions(
@@ -138,19 +147,19 @@ def _simulated_body(simulation: Simulation, params: Params) -> tuple[Motors, Sen
         home=simulation.home,
         seed=simulation.seed,
     )
-    return motors, _watched(body, simulation.truth)
+    return motors, _with_truth_log(body, simulation.truth)
 
 
-def _watched(body: SimulatedBody, path: str | None) -> Sensors:
-    return body if path is None else RecordedBody(body, _lines("truth", path), time.monotonic_ns)
+def _with_truth_log(body: SimulatedBody, path: str | None) -> Sensors:
+    return body if path is None else RecordedBody(body, _line_writer("truth", path), time.monotonic_ns)
 
 
-def _logged(motors: Motors, path: str | None) -> Motors:
-    return motors if path is None else LoggedMotors(motors, _lines("motor", path), time.monotonic_ns)
+def _with_motor_log(motors: Motors, path: str | None) -> Motors:
+    return motors if path is None else LoggedMotors(motors, _line_writer("motor", path), time.monotonic_ns)
 
 
-def _lines(what: str, path: str) -> Callable[[str], None]:
-    """What appends lines to a file."""
+def _line_writer(what: str, path: str) -> Callable[[str], None]:
+    """Return the function that appends lines to a file. Raises SettingsError."""
     try:
         return MotorLog(path).write
     except OSError as error:

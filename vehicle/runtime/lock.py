@@ -1,7 +1,8 @@
-"""One program at a time for one set of motors, also where the hardware itself does not see to that (pins, I2C, PWM),
-and one vehicle for one folder of kept things: two would write over each other's parameters and plans.
+"""Locks: one program at a time for a set of motors, and one vehicle for a state folder.
 
-The locks are the kernel's, which forgets them with the process, however that ends. Stopping needs no lock.
+The hardware (pins, I2C, PWM) does not prevent two programs from driving the same motors, and two vehicles would
+overwrite each other's parameters and plans. The kernel releases the locks when the process ends, however it ends.
+Stopping motors needs no lock.
 """
 
 from __future__ import annotations
@@ -17,21 +18,22 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.config.run_settings import SettingsError
-from vehicle.motors import DRIVERS, MotorError
+from vehicle.motors import MotorError
+from vehicle.motors.drivers import DRIVERS
 from vehicle.motors.settings import port_name
 
 SIMULATED = "simulated"
 
 
 class InUseError(MotorError):
-    """Another program has these motors."""
+    """Another program uses these motors."""
 
 
 class MotorLock:
-    """Held until `close`, or until the process ends."""
+    """A lock on motors, held until `close` or until the process ends."""
 
     def __init__(self, motors: Mapping[str, Any]) -> None:
-        """`motors` is the table of settings. Raises InUseError, and MotorError where there are no locks."""
+        """Acquire the lock for the table [motors]. Raises InUseError, and MotorError if locks are not supported."""
         self._socket: socket.socket | None = None
         name = _name(motors)
         if name is None:
@@ -43,35 +45,36 @@ class MotorLock:
             holder.close()
             if error.errno != errno.EADDRINUSE:
                 raise MotorError(f"the lock of the motors: {error}") from error
-            words = "the motors are in use by another vehicle; end it first, a service by: sudo systemctl stop rover"
-            raise InUseError(words) from error
+            raise InUseError(
+                "the motors are in use by another vehicle; stop it first, a service with: sudo systemctl stop rover"
+            ) from error
         self._socket = holder
 
     def close(self) -> None:
-        """Let go."""
+        """Release the lock."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None
 
 
 def _name(motors: Mapping[str, Any]) -> str | None:
-    """The same for all names of one driver and of one serial port, and apart for each port.
+    """Return the name of the lock: one for each driver class and serial port. None for motors without a lock.
 
-    Simulated motors may run as often as you like, and a driver of your own may know better.
+    Simulated motors need no lock; a driver from outside has to protect its hardware itself.
     """
     driver = motors["driver"]
     if driver == SIMULATED or driver not in DRIVERS:
         return None
     port = port_name(str(motors["port"])) if "port" in motors else ""
-    # Hashed: the kernel takes 107 bytes, and a name in /dev/serial/by-id has 60 and more.
-    return f"\0mavhelm motors {hashlib.sha256(f'{DRIVERS[driver]} {port}'.encode()).hexdigest()}"
+    # Hashed: the kernel accepts 107 bytes, and a name in /dev/serial/by-id has 60 and more.
+    return f"\0mavhelm motors {hashlib.sha256(f'{DRIVERS[driver].path} {port}'.encode()).hexdigest()}"
 
 
 @contextlib.contextmanager
 def lock_state_folder(folder: Path) -> Iterator[None]:
-    """Hold `folder`, which is made where it is missing, to the end. Raises SettingsError where another vehicle does.
+    """Lock `folder`, which is created if needed. Raises SettingsError if another vehicle uses it.
 
-    One that cannot be made or opened is no matter here: whoever writes into it says so.
+    A folder that cannot be created or opened is ignored here: writing to it reports the error.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -83,9 +86,10 @@ def lock_state_folder(folder: Path) -> Iterator[None]:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         os.close(descriptor)
-        words = "is in use by another vehicle; end that, or name another folder with --state"
-        raise SettingsError(f"state folder {folder} {words}") from None
-    except OSError:  # a file system without locks
+        raise SettingsError(
+            f"state folder {folder} is in use by another vehicle; stop it, or set another folder with --state"
+        ) from None
+    except OSError:  # the file system does not support locks
         pass
     try:
         yield

@@ -1,7 +1,7 @@
-"""The daemon's log: lines to stderr and to a file, written by a thread of its own; what is logged is not decided here.
+"""The daemon's log: lines to stderr and to a file, written by a thread of its own.
 
-A terminal on hold (Ctrl-S) or a full pipe blocks whoever writes to it. The control loop must never wait for that while
-wheels turn, so it only puts lines in a queue; when the queue is full, the newest lines are lost and not the control.
+Writing to a paused terminal (Ctrl-S) or a full pipe blocks. The control loop must never wait for that while wheels
+turn, so it only puts lines in a queue; when the queue is full, the newest lines are lost.
 """
 
 from __future__ import annotations
@@ -15,14 +15,13 @@ from typing import ClassVar
 from link.runtime import journald
 
 QUEUE_LINES = 1000
-"""More than a start and an end write; what a daemon says more than this while nobody can read it is lost."""
+"""Size of the queue: more than the lines of a start and an end."""
 DRAIN = 1.0
-"""s that the end of the program waits for the last lines; a reader that takes longer is gone."""
+"""s that the end of the program waits for the last lines."""
 
 
 class _Brief(logging.Formatter):
-    """For a person and for the journal: one line, never a traceback, and nothing that a terminal would obey: some words
-    come from afar."""
+    """Formats a record as one line, without traceback and control characters: some texts come from the network."""
 
     SEVERITIES: ClassVar = {
         logging.DEBUG: journald.DEBUG,
@@ -34,12 +33,12 @@ class _Brief(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         mark = journald.priority_prefix(self.SEVERITIES.get(record.levelno, journald.INFO))
-        words = " ".join(record.getMessage().split())
-        return f"{mark}vehicle: " + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in words)
+        text = " ".join(record.getMessage().split())
+        return f"{mark}vehicle: " + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 class _Queued(logging.Handler):
-    """Puts formatted lines in the queue, with the descriptor where they go."""
+    """Puts formatted lines in the queue, with the descriptor to write to."""
 
     def __init__(self, lines: queue.Queue[tuple[int, bytes] | None], descriptor: int) -> None:
         super().__init__()
@@ -50,18 +49,18 @@ class _Queued(logging.Handler):
         try:
             self._lines.put_nowait((self._descriptor, (self.format(record) + "\n").encode(errors="backslashreplace")))
         except queue.Full:
-            return  # losing the newest line is the rule above
+            return  # the newest line is lost
 
 
 class DaemonLog:
-    """The running log. Make one, `close` it last."""
+    """The running log: create one first, and `close` it last."""
 
     def __init__(self, path: str | None = None, *, verbose: bool = False) -> None:
-        """`path` takes every line with its time and traceback. Raises OSError where it cannot be opened."""
+        """Start logging, also to the file `path` with times and tracebacks. Raises OSError if it cannot be opened."""
         self._lines: queue.Queue[tuple[int, bytes] | None] = queue.Queue(QUEUE_LINES)
         self._handlers = [self._handler(journald.STDERR, _Brief())]
         if path is not None:
-            # Not blocking: a pipe that nobody reads would be waited for, without a word.
+            # Non-blocking: opening a pipe without a reader would block.
             flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NONBLOCK
             full = logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s")
             self._handlers.append(self._handler(os.open(path, flags, 0o644), full))
@@ -73,7 +72,7 @@ class DaemonLog:
         self._thread.start()
 
     def close(self) -> None:
-        """Write what is left, for at most DRAIN s, and log no more."""
+        """Write the remaining lines, for at most DRAIN s, and stop logging."""
         for handler in self._handlers:
             logging.getLogger().removeHandler(handler)
         try:
@@ -93,4 +92,4 @@ class DaemonLog:
             try:
                 os.write(descriptor, line)
             except OSError:
-                continue  # the terminal is closed or the disk is full: there is nobody to tell
+                continue  # the terminal is closed or the disk is full: the error cannot be reported

@@ -1,4 +1,4 @@
-"""How a run ends: by a signal, by a fault in a callback, because a ground station asked; the motors always first."""
+"""Shutdown by a signal, by an exception in a callback, or on request of a ground station; the motors stop first."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ from vehicle.runtime.systemd import Notifier
 log = logging.getLogger(__name__)
 
 STOPPED = 0
-"""Exit code of a run that was asked to end."""
+"""Exit code of a requested stop."""
 
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
-"""Asked to stop: by the service manager, by Ctrl-C, by a terminal that was closed."""
+"""Requests to stop: from the service manager, by Ctrl-C, by closing the terminal."""
 
 
 class Shutdown:
-    """How the run ends from outside the cores: asked by a signal, or by a fault in a callback of the loop."""
+    """Ends the run: stops the motors, sends the last messages, and gives the exit code or the exception."""
 
-    def __init__(self, machine: ControlLoop, runner: Runner, stopping: Callable[[], None] = lambda: None) -> None:
-        """`stopping` is called once the motors stand."""
+    def __init__(self, control_loop: ControlLoop, runner: Runner, stopping: Callable[[], None] = lambda: None) -> None:
+        """Prepare a shutdown; `stopping` is called once the motors are stopped."""
         self._stopping = stopping
-        self._machine = machine
+        self._control_loop = control_loop
         self._runner = runner
         self._reason: str | None = None
         self._fault: Exception | None = None
         self._code = STOPPED
 
     def install_handlers(self, loop: asyncio.AbstractEventLoop) -> None:
-        """Take signals and what callbacks raise."""
+        """Handle signals and exceptions in callbacks of the loop."""
         for number in SIGNALS:
             loop.add_signal_handler(number, self._end, f"stopped by {number.name}, motors neutral")
         loop.set_exception_handler(lambda _, context: self._end("", context.get("exception"), context["message"]))
 
     async def wait(self) -> int:
-        """Run until the end. Raises what went wrong."""
+        """Run until the end and return the exit code. Raises the exception that ended the run."""
         await self._runner.run()
         if self._fault is not None:
             raise self._fault
@@ -51,39 +51,38 @@ class Shutdown:
         return self._code
 
     def handle_reboot_request(self, leave: RebootRequest) -> None:
-        """A ground station asked for it."""
+        """End the run with the exit code of a restart, reboot or power-off that a ground station requested."""
         if self._reason is None:
             self._code = int(leave)
-        self._end(f"{leave.label} as a ground station asked, motors neutral")
+        self._end(f"{leave.label} as requested by a ground station, motors neutral")
 
     def _end(self, reason: str, fault: Exception | None = None, message: str = "") -> None:
-        """The same order as everywhere: motors, last messages (Runner.run sends them), end."""
+        """Stop the motors, then the runner, which sends the last messages. Only the first call has an effect."""
         if self._reason is not None:
             return
         self._reason = reason
         self._fault = fault or (RuntimeError(message) if message else None)
         try:
-            self._machine.shutdown(asyncio.get_running_loop().time())
+            self._control_loop.shutdown(asyncio.get_running_loop().time())
         except Exception as error:
-            self._fault = MotorError(f"the motors did not stop when told, cut their power: {error}")
+            self._fault = MotorError(f"the motors could not be stopped, cut their power: {error}")
         self._stopping()
         self._runner.stop()
 
 
 class CycleObserver:
-    """What follows from a completed control cycle: the watchdog is fed, the host is looked at, and a wish to leave is
-    heard."""
+    """The daemon's work after a control cycle: feed the watchdog, update the host info, handle a reboot request."""
 
-    def __init__(self, rover: Rover, notifier: Notifier, meter: HostMonitor) -> None:
+    def __init__(self, rover: Rover, notifier: Notifier, host_monitor: HostMonitor) -> None:
         self.shutdown: Shutdown | None = None
         self._rover = rover
         self._notifier = notifier
-        self._meter = meter
+        self._host_monitor = host_monitor
 
     def handle_cycle(self, now: float) -> None:
-        """One more."""
+        """Feed the watchdog, update the host info, and handle a reboot request."""
         self._notifier.alive(now)
-        self._meter.update(now)
+        self._host_monitor.update(now)
         leave = self._rover.reboot_request(now)
         if leave is not None and self.shutdown is not None:
             self.shutdown.handle_reboot_request(leave)

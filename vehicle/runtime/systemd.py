@@ -1,7 +1,7 @@
-"""What systemd hears of the daemon (sd_notify): ready, alive, stopping; nothing where it was not started by systemd.
+"""Notifications to systemd (sd_notify): ready, watchdog, stopping; no effect if systemd did not start the daemon.
 
-Alive is never said by a timer of its own: only whoever has just completed a control cycle may say it, so a loop that
-hangs, or turns without driving, is ended by the watchdog.
+The watchdog is fed after completed control cycles only, not by a timer, so that it ends a loop that hangs or runs
+without driving. Protocol: https://www.freedesktop.org/software/systemd/man/sd_notify.html
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ import socket
 from collections.abc import Mapping
 
 WATCHDOG_DIVISOR = 4
-"""Times in a watchdog's time that it hears from a healthy daemon: with 1 s, each quarter, though a cycle is 0.02 s."""
+"""Notifications of a healthy daemon per watchdog timeout: with 1 s, one each 0.25 s, while a cycle takes 0.02 s."""
 
 
 class Notifier:
-    """Speaks to the socket that systemd names in the environment."""
+    """Sends to the socket that systemd sets in the environment."""
 
     def __init__(self, environment: Mapping[str, str] = os.environ) -> None:
         self._socket = _connected(environment.get("NOTIFY_SOCKET", ""))
@@ -25,45 +25,45 @@ class Notifier:
         self._due = -math.inf
 
     def ready(self, status: str) -> None:
-        """Everything is open, and the control loop runs."""
+        """Report that everything is open and the control loop runs."""
         self._send(f"READY=1\nSTATUS={status}")
 
     def alive(self, now: float) -> None:
-        """A control cycle was completed at `now`."""
+        """Feed the watchdog, if due, after a control cycle completed at `now`."""
         if now >= self._due and self._period < math.inf:
             self._due = now + self._period
             self._send("WATCHDOG=1")
 
     def stopping(self) -> None:
-        """The motors stand, the end has begun."""
+        """Report that the motors are stopped and the daemon ends."""
         self._send("STOPPING=1")
 
     def close(self) -> None:
-        """Say no more."""
+        """Close the socket."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None
 
     def _send(self, text: str) -> None:
         if self._socket is not None:
-            with contextlib.suppress(OSError):  # nobody listens, or it is full: the loop does not wait for that
+            with contextlib.suppress(OSError):  # no receiver, or a full buffer: the loop does not wait
                 self._socket.send(text.encode())
 
 
 def _connected(address: str) -> socket.socket | None:
     if not address:
         return None
-    speaker = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC | socket.SOCK_NONBLOCK)
+    notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC | socket.SOCK_NONBLOCK)
     try:
-        speaker.connect("\0" + address[1:] if address.startswith("@") else address)
+        notify.connect("\0" + address[1:] if address.startswith("@") else address)
     except OSError:
-        speaker.close()
+        notify.close()
         return None
-    return speaker
+    return notify
 
 
 def _watchdog(environment: Mapping[str, str]) -> float:
-    """s of the watchdog's time; infinite where there is none, or where it is meant for another process."""
+    """Return the timeout of the watchdog in s; infinite without one, or if it is for another process."""
     microseconds = environment.get("WATCHDOG_USEC", "")
-    meant = environment.get("WATCHDOG_PID", str(os.getpid())) == str(os.getpid())
-    return int(microseconds) / 1e6 if meant and microseconds.isascii() and microseconds.isdigit() else math.inf
+    ours = environment.get("WATCHDOG_PID", str(os.getpid())) == str(os.getpid())
+    return int(microseconds) / 1e6 if ours and microseconds.isascii() and microseconds.isdigit() else math.inf

@@ -1,4 +1,4 @@
-"""What must be right before the vehicle arms: one table of checks. To add one, write a function and add a line."""
+"""Pre-arm checks, as one table. To add a check, write a function and a row in CHECKS."""
 
 from __future__ import annotations
 
@@ -11,33 +11,33 @@ from vehicle.safety.states import SafetyState
 
 @dataclass(frozen=True, slots=True)
 class ArmingFacts:
-    """What the checks look at."""
+    """The facts that the checks evaluate."""
 
     params: Params
     state: SafetyState
     terminated: bool = False
     estop_reason: str | None = None
-    """Why the emergency stop's own input stops the vehicle."""
+    """Why the emergency stop button stops the vehicle, or None."""
     fault: str | None = None
     mode: str | None = None
-    """Why the mode cannot work now."""
+    """Why the mode is not available now, or None."""
     fence: str | None = None
-    """Why the fence, which counts, would stop nobody."""
+    """Why the enabled fence cannot be enforced, or None."""
     battery_low: bool = False
     battery_critical: bool = False
     battery_silent: bool = False
     computer: str | None = None
-    """What is wrong with the Pi's supply or temperature now."""
+    """Under-voltage or overheating of the Pi now, or None."""
     sticks_moving: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class ArmingCheck:
-    """`find` returns what is wrong, in words a driver understands, or None."""
+    """`find` returns the problem in a form that an operator understands, or None."""
 
     find: Callable[[ArmingFacts], str | None]
     hard: bool
-    """Arming by force does not skip it."""
+    """Arming by force does not skip the check."""
 
 
 def _emergency_stop(facts: ArmingFacts) -> str | None:
@@ -56,8 +56,8 @@ def _running(facts: ArmingFacts) -> str | None:
     return f"vehicle is in state {facts.state.value}" if facts.state in (SafetyState.BOOT, SafetyState.OFF) else None
 
 
-def _settings(facts: ArmingFacts) -> str | None:
-    """Each value is in its range; these must also fit together."""
+def _parameters(facts: ArmingFacts) -> str | None:
+    """Return the first contradiction between parameters; each single value is in its range already."""
     params = facts.params
     if params["BATT_LOW_VOLT"] and params["BATT_CRT_VOLT"] > params["BATT_LOW_VOLT"]:
         return "BATT_CRT_VOLT is above BATT_LOW_VOLT"
@@ -66,13 +66,13 @@ def _settings(facts: ArmingFacts) -> str | None:
     return None
 
 
-def _saved_settings(facts: ArmingFacts) -> str | None:
+def _saved_parameters(facts: ArmingFacts) -> str | None:
     damage = facts.params.damage
-    return f"{damage}, defaults in force; set one to go on" if damage else None
+    return f"{damage}, using defaults; set one to continue" if damage else None
 
 
 def _mode(facts: ArmingFacts) -> str | None:
-    return f"the mode cannot work: {facts.mode}" if facts.mode else None
+    return f"mode not available: {facts.mode}" if facts.mode else None
 
 
 def _fence(facts: ArmingFacts) -> str | None:
@@ -81,7 +81,7 @@ def _fence(facts: ArmingFacts) -> str | None:
 
 def _battery(facts: ArmingFacts) -> str | None:
     if facts.battery_silent:
-        return "battery sensor is silent"
+        return "no data from the battery sensor"
     if facts.battery_critical:
         return "battery critical"
     return "battery low" if facts.battery_low else None
@@ -99,8 +99,8 @@ CHECKS: tuple[ArmingCheck, ...] = (
     ArmingCheck(_emergency_stop, hard=True),
     ArmingCheck(_motor_driver, hard=True),
     ArmingCheck(_running, hard=True),
-    ArmingCheck(_settings, hard=True),
-    ArmingCheck(_saved_settings, hard=True),
+    ArmingCheck(_parameters, hard=True),
+    ArmingCheck(_saved_parameters, hard=True),
     ArmingCheck(_mode, hard=True),
     ArmingCheck(_fence, hard=True),
     ArmingCheck(_battery, hard=False),
@@ -110,6 +110,6 @@ CHECKS: tuple[ArmingCheck, ...] = (
 
 
 def find_problems(facts: ArmingFacts, *, force: bool = False) -> list[str]:
-    """What forbids to arm, worst first; empty where nothing does."""
+    """Return what prevents arming, most severe first; empty if nothing does."""
     found = (check.find(facts) for check in CHECKS if check.hard or not force)
     return [problem for problem in found if problem]

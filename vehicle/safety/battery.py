@@ -1,4 +1,4 @@
-"""Is the battery low, critical or silent? Judged from readings over time; what follows is vehicle/safety/failsafe.py's."""
+"""Detects a low or critical battery and a silent sensor; the failsafes act on it."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import math
 from vehicle.params import Params
 
 CRITICAL_TIMER = 3.0
-"""s below BATT_CRT_VOLT: shorter than BATT_LOW_TIMER, because a lithium cell is damaged there."""
+"""s below BATT_CRT_VOLT: shorter than BATT_LOW_TIMER, because a lithium cell is damaged at that voltage."""
 SENSOR_TIMEOUT = 5.0
 """s without a reading (ArduPilot's battery sensor timeout)."""
 
 
 class BatteryMonitor:
-    """Times since when the voltage has been too low, None while it is not."""
+    """Remembers when the voltage fell below each limit."""
 
     def __init__(self, params: Params) -> None:
         self._params = params
@@ -24,36 +24,39 @@ class BatteryMonitor:
 
     @property
     def present(self) -> bool:
-        """There is a battery sensor, or should be."""
+        """True if there is a battery sensor, or the configuration names one."""
         return self._expected or self._seen is not None
 
     def update(self, voltage: float | None, now: float, *, expected: bool = False) -> None:
-        """Take a reading; None or a bad number is no reading. `expected`: the vehicle should have this sensor."""
+        """Handle a reading; None and values that are not finite are no reading.
+
+        `expected`: the configuration names a battery sensor.
+        """
         self._expected = expected
         if voltage is None or not math.isfinite(voltage):
             return
         self._seen = now
-        self._low = self._began(self._low, voltage < self._params["BATT_LOW_VOLT"], now)
-        self._critical = self._began(self._critical, voltage < self._params["BATT_CRT_VOLT"], now)
+        self._low = self._low_since(self._low, voltage < self._params["BATT_LOW_VOLT"], now)
+        self._critical = self._low_since(self._critical, voltage < self._params["BATT_CRT_VOLT"], now)
 
     def low_since(self, now: float) -> float | None:
-        """When the failsafe "battery low" began, or None."""
-        return self._after(self._low, self._params["BATT_LOW_TIMER"], now)
+        """Return when the failsafe "battery low" began, or None."""
+        return self._timer_end(self._low, self._params["BATT_LOW_TIMER"], now)
 
     def critical_since(self, now: float) -> float | None:
-        """When the failsafe "battery critical" began, or None."""
-        return self._after(self._critical, CRITICAL_TIMER, now)
+        """Return when the failsafe "battery critical" began, or None."""
+        return self._timer_end(self._critical, CRITICAL_TIMER, now)
 
     def is_silent(self, now: float) -> bool:
-        """A battery sensor that there should be has never answered, or one that there was has stopped."""
+        """Return True if a sensor that was present or is expected has sent nothing for SENSOR_TIMEOUT."""
         return self._expected if self._seen is None else now - self._seen > SENSOR_TIMEOUT
 
     @staticmethod
-    def _began(since: float | None, low: bool, now: float) -> float | None:
+    def _low_since(since: float | None, low: bool, now: float) -> float | None:
         if not low:
             return None
         return now if since is None else since
 
     @staticmethod
-    def _after(since: float | None, timer: float, now: float) -> float | None:
+    def _timer_end(since: float | None, timer: float, now: float) -> float | None:
         return since + timer if since is not None and now >= since + timer else None

@@ -1,4 +1,4 @@
-"""What is told to the driver once as it begins and once as it ends, however often it comes and goes; stops nothing."""
+"""Notices about sensors, the Pi and the fence: sent once when a problem begins and once when it ends."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from vehicle.readings import Readings
 from vehicle.statustext import StatusTextQueue
 
 CLEAR_DELAY = 5.0
-"""s without a complaint until it is over: a loose wire or a weak supply comes and goes, and is one complaint."""
+"""s without the problem until it is over: a loose wire or a weak supply comes and goes, and counts as one problem."""
 
 
 class HealthNotices:
-    """Remembers what was told, and since when it has lasted."""
+    """The problems that have been reported and are not over."""
 
     def __init__(self, texts: StatusTextQueue) -> None:
         self.since: dict[str, float] = {}
-        """What was told and is not over -> when it began."""
+        """Name of the problem -> time when it began."""
         self._texts = texts
         self._seen: dict[str, float] = {}
-        """... -> when it was there last."""
+        """... -> time when it was last present."""
 
     def update(self, found: Mapping[str, str], now: float) -> None:
-        """Take what there is to complain of now, name -> words; tell what is new and what is over."""
+        """Set the problems present now (name -> text); report those that are new and those that are over."""
         for name, text in found.items():
             if name not in self.since:
                 self.since[name] = now
@@ -32,14 +32,14 @@ class HealthNotices:
             self._seen[name] = now
         for name in [name for name in self.since if now - self._seen[name] >= CLEAR_DELAY]:
             del self.since[name], self._seen[name]
-            self._texts.send(Severity.INFO, f"{name} is well again", now)
+            self._texts.send(Severity.INFO, f"{name} OK again", now)
 
 
 def sensor_notices(readings: Readings) -> dict[str, str]:
-    """What sensors that give nothing say of it."""
+    """Return a notice for each sensor that has failed."""
     return {f"{fault.sensor} sensor": f"{fault.sensor} sensor: {fault.reason}" for fault in readings.faults}
 
 
-def fence_notices(boundary: FenceAvoidance) -> dict[str, str]:
-    """That it would stop nobody: a driver in MANUAL needs no position, and goes on."""
-    return {"Fence": "Fence: position is not known, it stops nobody"} if boundary.lacks_position else {}
+def fence_notices(avoidance: FenceAvoidance) -> dict[str, str]:
+    """Return a notice if the fence cannot be enforced: MANUAL needs no position and continues."""
+    return {"Fence": "Fence not enforced: position is not known"} if avoidance.lacks_position else {}

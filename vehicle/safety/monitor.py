@@ -1,63 +1,62 @@
-"""What time does to the vehicle's safety: a late loop, failsafes, nobody who drives; and what may move at a moment.
+"""Periodic safety checks: late control loop, failsafes, automatic disarming, motor clearance.
 
-The verbs that it uses are vehicle/safety/state_machine.py's; what follows from which condition is vehicle/safety/failsafe.py, RULES;
-vehicle/drive/drive.py turns a Clearance into motor values.
+Commands change the state in vehicle/safety/state_machine.py; the failsafes and their actions are in
+vehicle/safety/failsafe.py; vehicle/drive/drive.py turns a Clearance into motor values.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from dialects.enums import Failsafe, Severity
+from dialects.enums import Severity
 from dialects.modes import Mode
 from vehicle.drive.control import Control
 from vehicle.drive.demand import Demand
 from vehicle.drive.gate import Clearance, MotorTest
 from vehicle.modes import MODES
 from vehicle.params import Params
-from vehicle.safety.failsafe import RULES, FailsafeAction, TriggeredStep
-from vehicle.safety.failsafe_inputs import FailsafeInputs, active_conditions
+from vehicle.safety.failsafe import RULES, FailsafeAction
+from vehicle.safety.failsafe_inputs import FailsafeInputs, MotionInputs
+from vehicle.safety.failsafe_state import TriggeredStep
 from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
 
 LATE_CYCLE_TIME = 0.1
-"""s between two cycles of 20 ms from which on the motors get zero for a cycle (vehicle.md, control loop late)."""
+"""s between two cycles of 20 ms from which on the outputs are zero for a cycle (docs/safety.md, control loop late)."""
 BAD_CYCLES_MAX = 3
-"""Cycles in a row with values that are not numbers, and the mode becomes HOLD."""
+"""Cycles in a row with values that are not numbers before the mode becomes HOLD."""
 
 
 class SafetyMonitor:
-    """`update` once a cycle; the rest at any moment."""
+    """Runs the periodic checks. Call `update` once a cycle, the other methods at any time."""
 
     def __init__(self, params: Params, safety: Safety, control: Control, texts: StatusTextQueue, now: float) -> None:
         self._params = params
         self._safety = safety
         self._control = control
         self._texts = texts
-        self._cycle = self._asked_at = now
+        self._last_cycle = self._last_activity = now
 
     def is_late(self, now: float) -> bool:
-        """The control loop has not run for too long. A much too late one disarms."""
-        gap = now - self._cycle
+        """Return True if the last cycle is older than LATE_CYCLE_TIME; disarm if older than FS_LOOP_TIMEOUT."""
+        gap = now - self._last_cycle
         if self._safety.armed and gap > self._params["FS_LOOP_TIMEOUT"]:
             self._safety.handle_loop_overrun(gap, now)
         return gap > LATE_CYCLE_TIME
 
-    def update(self, now: float, refused: int, hazards: Mapping[Failsafe, float], *, driving: bool) -> None:
-        """One cycle: find what fails, do what follows.
+    def update(self, now: float, refused: int, motion: MotionInputs, *, driving: bool) -> None:
+        """Evaluate the failsafes of this cycle and take their actions.
 
-        `refused`: cycles in a row with values that are not numbers; `driving`: it moves by itself.
+        `refused`: cycles in a row with values that are not numbers. `driving`: an autonomous mode moves the rover.
         """
         safety = self._safety
-        self._cycle = now
+        self._last_cycle = now
         safety.boot_done()
         self._control.expire_stale_demand(now)
-        self._update_failsafes(hazards, now)
+        self._update_failsafes(motion, now)
         if refused >= BAD_CYCLES_MAX and safety.armed and safety.mode is not Mode.HOLD:
             self._texts.send(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
             safety.hold()
         if driving:
-            self._asked_at = now
+            self._last_activity = now
         self._disarm_idle(now)
         if not safety.armed:
             safety.free_lost_owner(now)
@@ -65,56 +64,57 @@ class SafetyMonitor:
     def build_clearance(
         self, now: float, own: Demand | None, *, late: bool, trial: MotorTest | None = None
     ) -> Clearance:
-        """The facts about motion at this moment. `own` is what self-driving wants, `trial` the motor test under way."""
+        """Return the facts that decide about motion now.
+
+        `own` is the demand of the autonomous mode, `trial` the motor test in progress.
+        """
         safety = self._safety
-        offer = MODES[safety.mode]
-        if offer.autonomous:
-            cleared, age, timeout = safety.autonomy_confirmed, None if own is None else now - own.time, LATE_CYCLE_TIME
+        spec = MODES[safety.mode]
+        if spec.autonomous:
+            confirmed, timeout = safety.autonomy_confirmed, LATE_CYCLE_TIME
+            age = None if own is None else now - own.time
         else:
-            cleared, age, timeout = (
-                self._control.neutral_seen,
-                self._control.demand_age(now),
-                self._params["MAN_TIMEOUT"],
-            )
+            confirmed, timeout = self._control.neutral_seen, self._params["MAN_TIMEOUT"]
+            age = self._control.demand_age(now)
         return Clearance(
             armed=safety.armed,
             late=late,
-            held=safety.failsafes.lasting_action(now) >= FailsafeAction.NEUTRAL or not offer.moves,
-            neutral_seen=cleared,
+            held=safety.failsafes.lasting_action(now) >= FailsafeAction.NEUTRAL or not spec.moves,
+            neutral_seen=confirmed,
             demand_age=age,
             timeout=timeout,
             motor_test=trial,
         )
 
-    def _update_failsafes(self, hazards: Mapping[Failsafe, float], now: float) -> None:
+    def _update_failsafes(self, motion: MotionInputs, now: float) -> None:
         armed, failsafes = self._safety.armed, self._safety.failsafes
         before = failsafes.active
-        taken = failsafes.update(active_conditions(self._scene(hazards), now) if armed else {}, now)
+        taken = failsafes.check(self._failsafe_inputs(motion), now, armed=armed)
         if before and armed:
             for cause in before & ~failsafes.active:
-                self._texts.send(Severity.NOTICE, f"Failsafe over: {RULES[cause].label}", now)
+                self._texts.send(Severity.NOTICE, f"Failsafe cleared: {RULES[cause].label}", now)
         for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
             self._apply(step, now)
 
-    def _scene(self, hazards: Mapping[Failsafe, float]) -> FailsafeInputs:
+    def _failsafe_inputs(self, motion: MotionInputs) -> FailsafeInputs:
         safety = self._safety
         return FailsafeInputs(
             params=self._params,
             control=self._control,
             battery=safety.battery,
             computer=safety.computer,
-            driven=MODES[safety.mode].manual,
+            motion=motion,
+            manual=MODES[safety.mode].manual,
+            mission_running=safety.mode is Mode.AUTO,
             latched=safety.failsafes.latched,
             armed_at=safety.armed_at,
-            hazards=hazards,
-            alone=safety.mode is Mode.AUTO,
         )
 
     def _apply(self, step: TriggeredStep, now: float) -> None:
         safety = self._safety
         severity = Severity.CRITICAL if step.action >= FailsafeAction.HOLD else Severity.WARNING
-        words = RULES[step.cause].label
-        self._texts.send(severity, f"Failsafe: {words}: {step.action.label}", now)
+        label = RULES[step.cause].label
+        self._texts.send(severity, f"Failsafe: {label}: {step.action.label}", now)
         if step.action is FailsafeAction.NEUTRAL:
             self._control.require_neutral()
         elif step.action is FailsafeAction.HOLD or (
@@ -122,12 +122,12 @@ class SafetyMonitor:
         ):
             safety.hold()
         elif step.action is FailsafeAction.DISARM:
-            safety.disarm(words, now)
+            safety.disarm(label, now)
 
     def _disarm_idle(self, now: float) -> None:
         delay = self._params["DISARM_DELAY"]
         demand = self._control.demand
         if demand and self._control.requests_motion():
-            self._asked_at = demand.time
-        if delay and now - max(self._safety.armed_at, self._asked_at) > delay:
+            self._last_activity = demand.time
+        if delay and now - max(self._safety.armed_at, self._last_activity) > delay:
             self._safety.disarm(f"no demand for {delay:g} s", now)

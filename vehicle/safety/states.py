@@ -1,4 +1,4 @@
-"""The vehicle's safety state and what changes it, as one table.
+"""The safety states and their transitions, as one table.
 
 BOOT --ready--> SAFE --arm--> ARMED
                  ^ <--disarm--  |
@@ -6,7 +6,7 @@ BOOT --ready--> SAFE --arm--> ARMED
 ESTOP -----------+              v
   ^              +--repair--- FAULT
   +-- stop: from every state but OFF, in the same cycle
-OFF: the end, from every state
+OFF: after shutdown, from every state
 """
 
 from __future__ import annotations
@@ -15,22 +15,22 @@ from enum import Enum
 
 
 class SafetyState(Enum):
-    """Only in ARMED may a motor turn."""
+    """Motors may turn in ARMED only."""
 
     BOOT = "boot"
     SAFE = "safe"
-    """Disarmed and able to arm."""
+    """Disarmed and ready to arm."""
     ARMED = "armed"
     ESTOP = "estop"
-    """Emergency stop, by a command or the button, latched until it is released."""
+    """Emergency stop by a command or the button, latched until it is released."""
     FAULT = "fault"
     """The motor driver has failed."""
     OFF = "off"
-    """Shut down; nothing leads out."""
+    """Shut down; there is no transition to another state."""
 
 
 class SafetyEvent(Enum):
-    """What may happen to the state. What is not allowed leaves it as it is."""
+    """Events that may change the state. An event that is not allowed leaves the state unchanged."""
 
     READY = "ready"
     ARM = "arm"
@@ -63,5 +63,5 @@ TRANSITIONS: dict[tuple[SafetyState, SafetyEvent], SafetyState] = {
     }.items()
     for state, after in zip(SafetyState, row, strict=True)
 }  # fmt: skip
-"""(state, event) -> state, every cell. A driver fault during an emergency stop is kept by vehicle/safety/state_machine.py and
-comes back when the stop is released."""
+"""(state, event) -> next state, for every pair. vehicle/safety/state_machine.py remembers a motor driver fault during
+an emergency stop and restores FAULT when the stop is released."""

@@ -1,4 +1,4 @@
-"""What the rover feels: the Sensors protocol, and the body without any; the simulated one is vehicle/sim/body.py."""
+"""Sensors: the Sensors protocol, and a vehicle without any; the simulated sensors are in vehicle/sim/body.py."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from vehicle.readings import NO_READINGS, Readings
 
 
 class Sensors(Protocol):
-    """Everything a vehicle measures. `read` comes each control cycle, so it must never block: it gives the newest."""
+    """All sensors of a vehicle. `read` is called in each control cycle and must never block."""
 
     def read(self, now: float) -> Readings:
-        """The newest readings; None for what is not measured."""
+        """Return the newest readings; None for values that are not measured."""
 
 
 class NoSensors:
-    """A rover that measures nothing, as the cheapest one does."""
+    """A rover without sensors."""
 
     def read(self, now: float) -> Readings:
-        """Nothing is known."""
+        """Return empty readings."""
         return NO_READINGS

@@ -1,4 +1,4 @@
-"""The connection to gpsd: asks it to watch, keeps the newest fix, and comes back when it was lost."""
+"""GpsdClient: the connection to gpsd, which keeps the newest fix and reconnects after an error."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from vehicle.sensors.gpsd import GpsFix, GpsSky, parse
 from vehicle.sensors.latest import LatestValue
 
 MAX_AGE = 3.0
-"""s that a fix counts: the failsafe's time for a lost GPS; receivers give one each second at least."""
+"""s that a fix is valid: the time of the GPS failsafe; receivers report at least once per second."""
 SKY_AGE = 10.0
-"""s that the satellites count: gpsd reports them less often."""
+"""s that the satellite data are valid: gpsd reports them less often."""
 RETRY = (0.2, 5.0)
-"""s until the next attempt, doubled from the first to the last."""
+"""s until the next attempt: at first, and at most; the delay doubles in between."""
 LINE = 65_536
-"""bytes of the longest line: a SKY of 100 satellites has 12 000. A longer one is not gpsd's; begin anew."""
+"""Bytes of the longest line: a SKY of 100 satellites has 12 000. A longer one is not from gpsd: reconnect."""
 SILENCE = 60.0
-"""s without a line after which the connection is tried anew: a gpsd on another machine may be gone without a word."""
+"""s without a line until reconnecting: a gpsd on another machine may vanish without closing the connection."""
 WATCH = b'?WATCH={"enable":true,"json":true};\n'
 
 
 class GpsSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Where gpsd is."""
+    """Address of gpsd."""
 
     host: str = "127.0.0.1"
     port: Annotated[int, msgspec.Meta(ge=1, le=65535)] = 2947
@@ -34,14 +34,14 @@ class GpsSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True)
 class GpsReading:
-    """The newest fix, and the sky as far as it is known."""
+    """The newest fix and the newest satellite data."""
 
     fix: GpsFix
     sky: GpsSky
 
 
 class GpsdClient:
-    """A `Source`. Made inside a running event loop, where it has a task until it is closed."""
+    """A SensorSource. Construct it in a running event loop, where its task runs until `close`."""
 
     def __init__(self, settings: GpsSettings, *, clock: Callable[[], float] | None = None) -> None:
         loop = asyncio.get_running_loop()
@@ -57,25 +57,25 @@ class GpsdClient:
         return self._fix.fault
 
     def latest(self, now: float) -> GpsReading | None:
-        """None without a fresh report; a report without a fix is one."""
+        """Return the newest reading; None without a recent report. A report without a fix counts."""
         fix = self._fix.get(now)
         return None if fix is None else GpsReading(fix, self._sky.get(now) or GpsSky())
 
     def close(self) -> None:
-        """End the task."""
+        """Cancel the task."""
         self._task.cancel()
 
     async def _run(self) -> None:
         wait, longest = RETRY
         while True:
-            heard = False
+            received = False
             try:
                 async for line in self._lines():
-                    heard = self._take(line) or heard
+                    received = self._handle(line) or received
                 raise ConnectionError("the connection was closed")
             except (OSError, ValueError) as error:  # ValueError: a line that does not end
                 self._fix.set_fault(OSError(f"gpsd at {self._settings.host}:{self._settings.port}: {error}"))
-            wait = RETRY[0] if heard else min(2 * wait, longest)
+            wait = RETRY[0] if received else min(2 * wait, longest)
             await asyncio.sleep(wait)
 
     async def _lines(self) -> AsyncIterator[bytes]:
@@ -87,8 +87,8 @@ class GpsdClient:
         finally:
             writer.close()
 
-    def _take(self, line: bytes) -> bool:
-        """True where it was about the position."""
+    def _handle(self, line: bytes) -> bool:
+        """Store a report. Returns whether the line contained a fix or satellite data."""
         match parse(line):
             case GpsFix() as fix:
                 self._fix.update(fix, self._clock())

@@ -1,7 +1,7 @@
-"""What gpsd says, from its JSON to a position; pure, the connection is vehicle/sensors/gps.py.
+"""Parses the JSON reports of gpsd; the connection is in vehicle/sensors/gps.py.
 
-gpsd sends one object a line: TPV is the fix, SKY the satellites (man gpsd_json). The rest, bad lines and values that
-are no position are passed over.
+gpsd sends one object per line: TPV is the fix, SKY the satellites (https://gpsd.io/gpsd_json.html). Other objects,
+invalid lines and invalid values are ignored.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ STATUS_FIX = {2: 4, 3: 6, 4: 5}
 
 @dataclass(frozen=True, slots=True)
 class GpsFix:
-    """One report; degrees, m, m/s. None for what it did not say."""
+    """One TPV report; degrees, m, m/s. None for values that it lacks."""
 
     fix_type: int
     """GPS_FIX_TYPE."""
@@ -33,15 +33,15 @@ class GpsFix:
 
 @dataclass(frozen=True, slots=True)
 class GpsSky:
-    """How good it can be."""
+    """One SKY report: satellites and precision."""
 
     satellites: int | None = None
-    """In use."""
+    """Satellites in use."""
     hdop: float | None = None
 
 
 def parse(line: bytes) -> GpsFix | GpsSky | None:
-    """One line of gpsd's; None for what is not about the position. Never raises."""
+    """Parse one line of gpsd; None for any other object. Never raises."""
     try:
         report = json.loads(line)
     except (ValueError, RecursionError):
@@ -74,7 +74,7 @@ def _velocity(report: dict[str, Any]) -> tuple[float | None, float | None]:
     speed, track = _number(report, "speed", 1e3), _number(report, "track", 360.0)
     if speed is None or (track is None and speed):
         return None, None
-    heading = math.radians(track or 0.0)  # a receiver that stands has no track
+    heading = math.radians(track or 0.0)  # a receiver at rest reports no track
     return speed * math.cos(heading), speed * math.sin(heading)
 
 
@@ -82,7 +82,7 @@ def _sky(report: dict[str, Any]) -> GpsSky | None:
     satellites = _whole(report, "uSat")
     listed = report.get("satellites")
     if satellites is None and isinstance(listed, list):  # before gpsd 3.21
-        satellites = sum(1 for one in listed if isinstance(one, dict) and one.get("used") is True)
+        satellites = sum(1 for each in listed if isinstance(each, dict) and each.get("used") is True)
     hdop = _number(report, "hdop", 1e3)
     return None if satellites is None and hdop is None else GpsSky(satellites, hdop)
 
@@ -91,7 +91,7 @@ def _number(report: dict[str, Any], name: str, largest: float) -> float | None:
     value = report.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
-    return float(value) if abs(value) <= largest else None  # also false for NaN
+    return float(value) if abs(value) <= largest else None  # also rejects NaN
 
 
 def _whole(report: dict[str, Any], name: str) -> int | None:

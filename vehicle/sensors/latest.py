@@ -1,4 +1,4 @@
-"""The newest value of a sensor and how long it counts; a sensor that fails gives None after that, and never raises."""
+"""The newest value of a sensor, with a maximum age; after that a failed sensor gives None, and never raises."""
 
 from __future__ import annotations
 
@@ -11,38 +11,39 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 class SensorSource(Protocol[T_co]):
-    """One sensor."""
+    """One sensor that provides its newest value."""
 
     @property
     def fault(self) -> str | None:
-        """Why there is nothing new, one line; None while all is well."""
+        """Why there is no new value, one line; None without a fault."""
 
     def latest(self, now: float) -> T_co | None:
-        """The newest value; None where it is too old or there was none. Never blocks and never raises."""
+        """Return the newest value; None if there is none or it is too old. Never blocks and never raises."""
 
     def close(self) -> None:
-        """Let go of the hardware. May come twice."""
+        """Release the hardware. May be called twice."""
 
 
 class LatestValue(Generic[T]):
     """A value with its time."""
 
     def __init__(self, max_age: float) -> None:
-        """`max_age` s is how long a value counts."""
+        """`max_age` is how long a value is valid, in s."""
         self.fault: str | None = None
+        """Why there is no new value, one line."""
         self._max_age = max_age
-        self._newest: tuple[T, float] | None = None  # replaced as one, so that another thread never sees half of it
+        self._newest: tuple[T, float] | None = None  # one tuple, so that another thread reads a consistent pair
 
     def update(self, value: T, now: float) -> None:
-        """A new value."""
+        """Store a new value and clear the fault."""
         self._newest = value, now
         self.fault = None
 
     def set_fault(self, error: Exception) -> None:
-        """No new value this time."""
+        """Record why there is no new value."""
         self.fault = format_error(error)
 
     def get(self, now: float) -> T | None:
-        """The value, while it counts."""
+        """Return the value; None if it is too old."""
         newest = self._newest
         return newest[0] if newest is not None and now - newest[1] <= self._max_age else None

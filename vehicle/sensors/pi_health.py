@@ -1,4 +1,4 @@
-"""How the Raspberry Pi is: temperature, load, memory, supply, from files that the kernel keeps; cheap, but files."""
+"""Health of the Raspberry Pi: temperature, load, memory and supply voltage, from files of the kernel."""
 
 from __future__ import annotations
 
@@ -11,39 +11,39 @@ from typing import TypeVar
 from vehicle.readings import ComputerReadings
 
 PERIOD, MAX_AGE = 1.0, 5.0
-"""s between readings, and how long one counts."""
+"""s between readings, and how long one is valid."""
 
 THERMAL = "sys/class/thermal/thermal_zone0/temp"
 THROTTLED = "sys/devices/platform/soc*/soc*:firmware/get_throttled"
-"""What `vcgencmd get_throttled` prints, in hexadecimal; only on Raspberry Pi's own kernels. The device tree of a Pi 5
-writes the address of `soc` behind its name."""
+"""The output of `vcgencmd get_throttled`, in hexadecimal; only in the kernels of Raspberry Pi. The device tree of a
+Pi 5 appends the address to the name `soc`."""
 UNDER_VOLTAGE, CAPPED, SLOWED, WARM = 0x1, 0x2, 0x4, 0x8
-"""Bits of it that are about now; the same shifted by 16 are about any time since boot."""
+"""Bits for the present state; shifted by 16 they say whether it occurred since boot."""
 VOLTAGE_MONITOR = "rpi_volt"
-"""hwmon's name for the supply; on kernels without the file above."""
+"""Name of the supply in hwmon, for kernels without the file above."""
 
 T = TypeVar("T")
 
 
 class PiHealth:
-    """`sample` reads everything once; what this computer does not have is None."""
+    """Reads the files of the kernel; values that this computer does not provide are None."""
 
     def __init__(self, root: Path = Path("/")) -> None:
         """`root` is for tests."""
         self._root = root
 
     def sample(self) -> ComputerReadings:
-        """Never raises for a file that is missing or says something else."""
-        used, total = self._known(self._memory) or (None, None)
-        under_voltage, throttled = self._known(self._throttled) or (None, None)
+        """Read all values once. Never raises for a missing or unexpected file."""
+        used, total = self._try(self._memory) or (None, None)
+        under_voltage, throttled = self._try(self._throttled) or (None, None)
         if under_voltage is None:
-            under_voltage = self._known(self._monitor)
+            under_voltage = self._try(self._monitor)
         return ComputerReadings(
-            temperature=self._known(lambda: int(self._text(THERMAL)) / 1000),
-            load=self._known(lambda: float(self._text("proc/loadavg").split()[0]) / (os.cpu_count() or 1)),
+            temperature=self._try(lambda: int(self._text(THERMAL)) / 1000),
+            load=self._try(lambda: float(self._text("proc/loadavg").split()[0]) / (os.cpu_count() or 1)),
             memory_used=used,
             memory_total=total,
-            uptime=self._known(lambda: float(self._text("proc/uptime").split()[0])),
+            uptime=self._try(lambda: float(self._text("proc/uptime").split()[0])),
             under_voltage=under_voltage,
             throttled=throttled,
         )
@@ -52,7 +52,7 @@ class PiHealth:
         return (self._root / path).read_text()
 
     @staticmethod
-    def _known(read: Callable[[], T]) -> T | None:
+    def _try(read: Callable[[], T]) -> T | None:
         with contextlib.suppress(OSError, ValueError, IndexError, KeyError):
             return read()
         return None

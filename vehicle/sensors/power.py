@@ -1,7 +1,8 @@
-"""Voltage and current of the battery from an INA219 or INA260 on the I2C bus; what they mean is vehicle/safety/battery.py's.
+"""Battery voltage and current from an INA219 or INA260 on the I2C bus.
 
-Registers as in Texas Instruments' data sheets (SBOS448G, SBOS656C). No calibration register is used: the current comes
-from the shunt voltage itself, so a chip that lost its power gives right values again at once.
+Registers are as in Texas Instruments' data sheets (https://www.ti.com/lit/ds/symlink/ina219.pdf, SBOS448G, and
+https://www.ti.com/lit/ds/symlink/ina260.pdf, SBOS656C). The calibration register is not used: the current is computed
+from the shunt voltage, so a chip that lost its power gives correct values again at once.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from vehicle.hardware.i2c import Bus, explain_bus_error, open_bus
 from vehicle.motors.settings import chip_name
 
 PERIOD, MAX_AGE = 0.2, 2.0
-"""s between readings, and how long one counts: shorter than the 5 s after which the battery sensor counts as silent."""
+"""s between readings, and how long one is valid: less than the 5 s after which the battery sensor counts as failed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,42 +29,42 @@ class PowerReading:
 
 
 class PowerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The chip, and where it is."""
+    """Type and address of the chip."""
 
     kind: Literal["ina219", "ina260"]
     bus: Annotated[int, msgspec.Meta(ge=0)] = 1
     address: Annotated[int, msgspec.Meta(ge=0x40, le=0x4F)] = 0x40
     shunt: Annotated[float, msgspec.Meta(gt=0, le=1)] = 0.1
-    """ohm, of an INA219: 0.1 on most boards, which measures up to 3.2 A. An INA260 has its own inside."""
+    """Resistance of the shunt of an INA219 in ohm: 0.1 on most boards, for up to 3.2 A. An INA260 has its own."""
 
     @property
     def taken(self) -> list[str]:
-        """The chip."""
+        """The chip by name."""
         return [chip_name(self.bus, self.address)]
 
 
 @dataclass(frozen=True, slots=True)
 class PowerChip:
-    """How one kind of chip is read."""
+    """Configuration and conversion of one type of chip."""
 
     configuration: int
-    """For register 0: continuous, averaged over tens of ms, because motors draw in pulses."""
+    """Value of register 0: continuous, averaged over tens of ms, because motors draw current in pulses."""
     power: Callable[[int, int, float], PowerReading]
-    """From the registers 1 and 2, and the shunt's resistance."""
+    """Converts registers 1 and 2, with the resistance of the shunt."""
 
 
 def ina219(shunt_register: int, bus_register: int, shunt: float) -> PowerReading:
-    """10 uV a step over the shunt, signed; 4 mV a step on the bus, above three flag bits."""
+    """Convert 10 uV steps over the shunt, signed, and 4 mV steps on the bus, above three flag bits."""
     return PowerReading(voltage=(bus_register >> 3) * 0.004, current=signed(shunt_register) * 10e-6 / shunt)
 
 
 def ina260(current_register: int, bus_register: int, shunt: float) -> PowerReading:
-    """1.25 mA and 1.25 mV a step; its shunt is calibrated in the factory."""
+    """Convert 1.25 mA and 1.25 mV steps; the shunt is inside the chip."""
     return PowerReading(voltage=bus_register * 1.25e-3, current=signed(current_register) * 1.25e-3)
 
 
 def signed(register: int) -> int:
-    """16 bits as two's complement."""
+    """Return 16 bits as a two's complement number."""
     return register - 0x10000 if register & 0x8000 else register
 
 
@@ -74,7 +75,7 @@ CHIPS: dict[str, PowerChip] = {
 
 
 class PowerMonitor:
-    """`sample` reads the chip once. It opens the bus when it must, so a chip that is plugged in later is found."""
+    """Reads the chip. The bus is opened with the first sample, so a chip that is connected later is found."""
 
     def __init__(self, settings: PowerSettings, *, open_bus: Callable[[int], Bus] = open_bus) -> None:
         self._settings = settings
@@ -83,7 +84,7 @@ class PowerMonitor:
         self._bus: Bus | None = None
 
     def sample(self) -> PowerReading:
-        """Raises OSError, ImportError."""
+        """Read voltage and current once. Raises OSError, ImportError."""
         try:
             bus = self._ready()
             return self._chip.power(self._register(bus, 1), self._register(bus, 2), self._settings.shunt)
@@ -94,7 +95,7 @@ class PowerMonitor:
             raise OSError(f"{where}: {explain_bus_error(error, settings.bus)}") from error
 
     def close(self) -> None:
-        """Let go of the bus; the next sample opens it again."""
+        """Close the bus; the next sample opens it again."""
         bus, self._bus = self._bus, None
         if bus is not None:
             bus.close()

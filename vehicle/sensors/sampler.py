@@ -1,4 +1,4 @@
-"""A thread that reads a slow sensor again and again, so that the control loop never waits for a bus or a file."""
+"""Sampler: a thread that reads a slow sensor periodically, so that the control loop never waits for a bus or a file."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ T = TypeVar("T")
 
 
 class Sampler(Generic[T]):
-    """A `Source` around a function that may block and may raise."""
+    """A SensorSource around a function that may block and may raise."""
 
     def __init__(
         self, sample: Callable[[], T], *, period: float, max_age: float, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        """Read at once and then each `period` s; a value counts for `max_age` s. `clock` is that of `latest`'s now."""
+        """Start reading, each `period` s; a value is valid for `max_age` s. `clock` gives the time base of `latest`."""
         self._sample = sample
         self._period = period
         self._clock = clock
@@ -29,15 +29,15 @@ class Sampler(Generic[T]):
 
     @property
     def fault(self) -> str | None:
-        """Why there is nothing new."""
+        """Why there is no new value."""
         return self._latest.fault
 
     def latest(self, now: float) -> T | None:
-        """The newest value."""
+        """Return the newest value; None if it is too old."""
         return self._latest.get(now)
 
     def close(self) -> None:
-        """End the thread; one that hangs in its bus is left behind, it ends with the process."""
+        """Stop the thread; a thread that hangs in its bus is abandoned and ends with the process."""
         self._ending.set()
         self._thread.join(timeout=1.0)
 
@@ -45,7 +45,7 @@ class Sampler(Generic[T]):
         while True:
             try:
                 self._latest.update(self._sample(), self._clock())
-            except Exception as error:  # a sensor of somebody else's may raise anything: it is kept and told
+            except Exception as error:  # a sensor may raise anything; the error is reported as its fault
                 self._latest.set_fault(error)
             if self._ending.wait(self._period):
                 return

@@ -1,4 +1,4 @@
-"""All sensors of a real rover as one `Sensors`: each is asked for its newest value, none can stop the others."""
+"""SensorSuite: all sensors of a real rover as one `Sensors`; a failing sensor does not affect the others."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from vehicle.sensors.sampler import Sampler
 
 
 class SensorSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Which sensors there are; a table left out is a sensor that is not there."""
+    """The installed sensors; a sensor without a table is not installed."""
 
     battery: PowerSettings | None = None
     gps: GpsSettings | None = None
     encoders: EncoderSettings | None = None
     computer: bool = True
-    """Watch the Pi itself."""
+    """Monitor the Raspberry Pi itself."""
 
 
 @dataclass
 class SensorSources:
-    """What there is; any of them may be somebody else's."""
+    """The source of each installed sensor."""
 
     battery: SensorSource[PowerReading] | None = None
     gps: SensorSource[GpsReading] | None = None
@@ -43,11 +43,11 @@ class SensorSources:
     computer: SensorSource[ComputerReadings] | None = None
 
     def present(self) -> dict[str, SensorSource[Any]]:
-        """Those that there are, by the name that the driver reads."""
-        everything: dict[str, SensorSource[Any] | None] = {
+        """Return the installed sensors by the name that the operator reads."""
+        sources: dict[str, SensorSource[Any] | None] = {
             "battery": self.battery, "gps": self.gps, "encoders": self.encoders, "computer": self.computer
         }  # fmt: skip
-        return {name: source for name, source in everything.items() if source is not None}
+        return {name: source for name, source in sources.items() if source is not None}
 
 
 class SensorSuite:
@@ -56,15 +56,15 @@ class SensorSuite:
     def __init__(self, sources: SensorSources) -> None:
         self._present = sources.present()
         self._configured = tuple(self._present)
-        self._heard: dict[str, float] = {}
-        """When each gave something last, at first when it was asked first."""
+        self._last_value_at: dict[str, float] = {}
+        """Name -> time of the last value, at first that of the first `read`."""
 
     def read(self, now: float) -> Readings:
-        """The newest of everything."""
+        """Return the newest values of all sensors."""
         newest = {name: source.latest(now) for name, source in self._present.items()}
         for name, value in newest.items():
-            if value is not None or name not in self._heard:
-                self._heard[name] = now
+            if value is not None or name not in self._last_value_at:
+                self._last_value_at[name] = now
         values: dict[str, Any] = {}
         if (power := newest.get("battery")) is not None:
             values.update(battery_voltage=power.voltage, battery_current=power.current)
@@ -76,28 +76,28 @@ class SensorSuite:
         return Readings(computer=newest.get("computer"), configured=self._configured, faults=faults, **values)
 
     def _faults(self, now: float) -> tuple[SensorFault, ...]:
-        """Why a sensor gives nothing: what it says itself, or that it says nothing at all."""
-        found = [(name, source.fault or self._silence(name, now)) for name, source in self._present.items()]
+        """Return the sensors without new values: with their own fault, or with a timeout."""
+        found = [(name, source.fault or self._timeout(name, now)) for name, source in self._present.items()]
         return tuple(SensorFault(name, fault) for name, fault in found if fault is not None)
 
-    def _silence(self, name: str, now: float) -> str | None:
-        return f"silent for {SENSOR_TIMEOUT:g} s" if now - self._heard[name] > SENSOR_TIMEOUT else None
+    def _timeout(self, name: str, now: float) -> str | None:
+        return f"no data for {SENSOR_TIMEOUT:g} s" if now - self._last_value_at[name] > SENSOR_TIMEOUT else None
 
     def close(self) -> None:
-        """Let go of every sensor."""
+        """Close every sensor."""
         with contextlib.ExitStack() as steps:
             for source in self._present.values():
                 steps.callback(source.close)
 
 
 def open_sensors(settings: SensorSettings) -> SensorSuite:
-    """The sensors of `settings`, reading already. To be called in a running event loop.
+    """Open the sensors of `settings` and start reading them. Call it in a running event loop.
 
-    A sensor that is not there yet is looked for again and again; only encoders raise, MotorError, for want of pins.
+    Sensors that do not respond yet are tried again periodically; only encoders raise MotorError, if there are no pins.
     """
     sources = SensorSources()
     if settings.encoders is not None:
-        sources.encoders = Encoders(settings.encoders)  # first: it is the only one that raises
+        sources.encoders = Encoders(settings.encoders)  # first, because only this raises
     if settings.battery is not None:
         sources.battery = _sampled(PowerMonitor(settings.battery).sample, POWER_PERIOD, POWER_AGE)
     if settings.gps is not None:

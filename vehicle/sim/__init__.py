@@ -1,1 +1,1 @@
-"""A rover without hardware: chassis, battery and sensors, stepped with dt. It knows no messages and no clock."""
+"""A simulated rover: chassis, battery and sensors, stepped with dt. No messages and no clock."""

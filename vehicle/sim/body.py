@@ -1,7 +1,7 @@
-"""The sensors of the simulated rover: it moves with what the motors get, and says what a real rover would measure.
+"""The simulated rover: moves according to its motor outputs and produces the readings of a real rover.
 
-Readings are what sensors say and nothing else; where the rover really is, `motion` tells to tests only. Deterministic:
-the same outputs at the same times give the same readings; noise (noise.py), where wanted, comes from a seed.
+Readings contain sensor values only; the true position is in `motion`, for tests. The simulation is deterministic: the
+same outputs at the same times give the same readings; noise (noise.py) is optional and comes from a seed.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from vehicle.sim.chassis import Chassis, ChassisMotion, SkidChassis
 from vehicle.sim.noise import NoisySensors, SensorNoise, SimulatedFix
 
 LONGEST_STEP = 0.02
-"""s; one control cycle. Longer gaps are cut into such steps, so that the lag of motors and servo stays true."""
+"""s, one control cycle. Longer gaps are split into such steps, so that the lag of motors and servo is simulated."""
 
 LONGEST_GAP = 5.0
-"""s; a process that was stopped for longer loses the rest: the world of the simulator stops with it."""
+"""s; the simulation skips the rest of a longer pause of the process."""
 
 ELECTRONICS = 0.5
-"""A, a Raspberry Pi with camera and radio behind a converter."""
+"""A, for a Raspberry Pi with camera and radio behind a converter."""
 RUNNING = 1.2
-"""A for each motor at full throttle on level ground."""
+"""A per motor at full throttle on level ground."""
 STALL = 6.0
-"""A for each motor at full throttle before it turns; in between, by how far the wheel lags behind."""
+"""A per motor at full throttle before it turns; in between, in proportion to the lag of the wheel."""
 
 LEAN = 0.02
-"""rad for each m/s2: tyres and chassis give, so the nose lifts when pulling away and the body leans out of a turn."""
+"""rad per m/s2: tyres and chassis are elastic, so the nose rises on acceleration and the body rolls out of a turn."""
 LEAN_LAG = 0.1
-"""s; the same tyres swing no faster."""
+"""s: time constant of pitch and roll."""
 
 COMPUTER = ComputerReadings(
     temperature=48.0,
@@ -43,21 +43,21 @@ COMPUTER = ComputerReadings(
     under_voltage=False,
     throttled=False,
 )
-"""A Raspberry Pi without a worry."""
+"""A healthy Raspberry Pi."""
 
 
 class SimulatedHome(NamedTuple):
-    """Where the simulated rover starts."""
+    """Start position of the simulated rover."""
 
     latitude: float = -35.363262
-    """degrees. The default is the flying field in Canberra where ArduPilot's simulators start, so maps agree."""
+    """Degrees. The default is the start of ArduPilot's simulators, a flying field in Canberra."""
     longitude: float = 149.165237
     altitude: float = 584.0
-    """m above sea level."""
+    """m above mean sea level."""
 
 
 class SimulatedBody:
-    """Fits `vehicle.sensors.Sensors`. `outputs` gives what the motors get now (SimulatedMotors.outputs)."""
+    """Fits `vehicle.sensors.Sensors`. `outputs` returns the present motor outputs (SimulatedMotors.outputs)."""
 
     def __init__(
         self,
@@ -69,7 +69,7 @@ class SimulatedBody:
         seed: int | None = None,
         noise: SensorNoise | None = None,
     ) -> None:
-        """Without a `seed` the sensors are perfect; `noise` says how bad they are with one."""
+        """Without a `seed` the sensors are perfect; with one they have `noise`."""
         self._outputs = outputs
         self._chassis = chassis or SkidChassis()
         self._battery = battery or Battery()
@@ -79,20 +79,20 @@ class SimulatedBody:
         self._roll = self._pitch = 0.0
         self._origin = Origin(self._home.latitude, self._home.longitude)
         self._fix: tuple[SimulatedFix, tuple[float, float]] | None = None
-        """The newest, and its place on the globe: it is the same for several cycles."""
+        """The newest fix with its latitude and longitude, which are the same for several cycles."""
 
     @property
     def motion(self) -> ChassisMotion:
-        """The truth, which no sensor knows."""
+        """True position and motion."""
         return self._chassis.motion
 
     def read(self, now: float) -> Readings:
-        """Let the world move on to `now`, then measure it."""
+        """Advance the simulation to `now` and return the readings."""
         gap = 0.0 if self._time is None else min(now - self._time, LONGEST_GAP)
         self._time = now
         throttles = self._outputs()
         while gap > 1e-9:
-            dt = gap if gap < 1.5 * LONGEST_STEP else LONGEST_STEP  # a cycle a little late is one step all the same
+            dt = gap if gap < 1.5 * LONGEST_STEP else LONGEST_STEP  # a slightly late cycle is still one step
             self._step(throttles, dt)
             gap -= dt
         return self._measure()
@@ -109,7 +109,7 @@ class SimulatedBody:
             self._instruments.step(dt)
 
     def _motor_current(self, throttles: Sequence[float], strength: float) -> float:
-        """A from the battery. A motor takes more the further its wheel is behind, and by its duty of the time."""
+        """Return the current of all motors in A: it grows with the lag of the wheels, and is scaled by the duty."""
         if strength == 0.0:
             return 0.0
         top = self._chassis.top_speed * strength
@@ -147,5 +147,5 @@ class SimulatedBody:
 
 
 def _lean(acceleration: float, angle: float, keep: float) -> float:
-    settled = acceleration * LEAN
-    return settled + (angle - settled) * keep
+    final = acceleration * LEAN
+    return final + (angle - final) * keep

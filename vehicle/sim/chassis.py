@@ -1,4 +1,4 @@
-"""How a simulated rover moves: throttles in, speed, turn and place out. No energy (battery.py) or sensors (body.py)."""
+"""Motion of the simulated rover: speed, turn rate and position from the throttles, for each drive type."""
 
 from __future__ import annotations
 
@@ -10,58 +10,58 @@ from typing import Protocol
 from dialects.enums import DriveType
 
 AT_REST = 1e-3
-"""m/s; slower than this a driven-out wheel stands, as friction makes it do: else a stopped rover creeps for ever."""
+"""m/s; a slower wheel without throttle is at rest, as with friction; otherwise a stopped rover would creep forever."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChassisDimensions:
-    """The build of a rover. The numbers are those of a 40 cm kit with geared 12 V motors, the usual first rover."""
+    """Dimensions of a rover. The defaults are those of a 40 cm kit with geared 12 V motors."""
 
     top_speed: float = 1.5
-    """m/s at full throttle and nominal voltage: 230 turns a minute on a 12.5 cm wheel."""
+    """m/s at full throttle and nominal voltage: 230 rpm of a 12.5 cm wheel."""
     track_width: float = 0.35
     """m between left and right wheels."""
     wheelbase: float = 0.3
-    """m between the axles; matters to steered wheels only."""
+    """m between the axles; used for steered wheels only."""
     scrub: float = 2.0
-    """A skid-steered rover turns as if this much wider: its wheels slide sideways (1.5-2 on hard floors)."""
+    """Factor of the effective track width with skid steering, as wheels slide sideways (1.5 to 2 on hard floors)."""
     motor_lag: float = 0.15
-    """s until a motor has made 63 % of a change: gearbox and the weight of the rover. Shorter than the rover's own slew
-    (0.4 s), so that what a driver feels is mostly the slew, as with a real one."""
+    """s until a motor has reached 63 % of a change, from gearbox and mass. Shorter than the slew time of the rover
+    (0.4 s), which dominates the response, as with a real rover."""
     steering_max: float = 0.5
-    """rad at full steering (29 degrees, a usual car servo linkage): turning radius 0.55 m."""
+    """rad at full steering (29 degrees, typical of a model car): turning radius 0.55 m."""
     steering_rate: float = 5.0
-    """rad/s of a usual steering servo (0.2 s for 60 degrees)."""
+    """rad/s of a typical steering servo (0.2 s for 60 degrees)."""
 
 
 @dataclass(slots=True)
 class ChassisMotion:
-    """Where the rover is and how it moves. Angles clockwise from north, SI."""
+    """Position and motion of the rover in SI units; angles clockwise from north."""
 
     north: float = 0.0
     east: float = 0.0
     yaw: float = 0.0
-    """0..2 pi"""
+    """0 to 2 pi."""
     speed: float = 0.0
-    """Along the nose, negative backwards."""
+    """Forward speed; negative is backward."""
     sideways: float = 0.0
-    """To the right; only wheels with rollers can."""
+    """Speed to the right; only wheels with rollers allow it."""
     yaw_rate: float = 0.0
     acceleration: float = 0.0
-    """Along the nose."""
+    """Forward acceleration."""
     sway: float = 0.0
-    """Acceleration to the right, that of a turn too."""
+    """Acceleration to the right, including that of a turn."""
     wheel_speeds: tuple[float, ...] = (0.0, 0.0)
-    """Left and right, the driven axle, or each of four wheels, m/s."""
+    """m/s of left and right side, of the driven axle, or of each of four wheels."""
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """m/s north and east."""
+        """Velocity north and east, m/s."""
         ahead, across = math.cos(self.yaw), math.sin(self.yaw)
         return self.speed * ahead - self.sideways * across, self.speed * across + self.sideways * ahead
 
     def advance(self, speed: float, yaw_rate: float, dt: float, sideways: float = 0.0) -> None:
-        """Move for `dt` at the mean of old and new speed and turn."""
+        """Move for `dt` with the mean of old and new speed and turn rate."""
         along, right = (self.speed + speed) / 2 * dt, (self.sideways + sideways) / 2 * dt
         turn = (self.yaw_rate + yaw_rate) / 2 * dt
         middle = self.yaw + turn / 2
@@ -74,18 +74,18 @@ class ChassisMotion:
 
 
 class Chassis(Protocol):
-    """A kind of drive."""
+    """The motion of one drive type."""
 
     motion: ChassisMotion
     top_speed: float
     """m/s at full throttle and nominal voltage."""
 
     def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
-        """Move for `dt` > 0 with these motor outputs; `strength` is the voltage against the nominal one."""
+        """Move for `dt` > 0 with these motor outputs; `strength` is the ratio of voltage to nominal voltage."""
 
 
 class SkidChassis:
-    """Two driven sides, as a tank; `throttles` are left and right."""
+    """Two driven sides, like a tank; `throttles` are left and right."""
 
     def __init__(self, frame: ChassisDimensions | None = None) -> None:
         self._frame = frame or ChassisDimensions()
@@ -93,7 +93,7 @@ class SkidChassis:
         self.motion = ChassisMotion()
 
     def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
-        """Each side follows its throttle; the difference turns the rover."""
+        """Move: each side follows its throttle, and the difference turns the rover."""
         frame, motion = self._frame, self.motion
         top = frame.top_speed * strength
         left = _follow(motion.wheel_speeds[0], throttles[0] * top, frame.motor_lag, dt)
@@ -103,7 +103,7 @@ class SkidChassis:
 
 
 class AckermannChassis:
-    """A driven axle and steered front wheels, as a car; `throttles` are throttle and steering."""
+    """A driven axle and steered front wheels, like a car; `throttles` are throttle and steering."""
 
     def __init__(self, frame: ChassisDimensions | None = None) -> None:
         self._frame = frame or ChassisDimensions()
@@ -112,7 +112,7 @@ class AckermannChassis:
         self._angle = 0.0
 
     def step(self, throttles: Sequence[float], strength: float, dt: float) -> None:
-        """The axle follows the throttle, the servo its angle at its own rate (bicycle model)."""
+        """Move: the axle follows the throttle, the steering servo its target at its own rate (bicycle model)."""
         frame, motion = self._frame, self.motion
         speed = _follow(motion.speed, throttles[0] * frame.top_speed * strength, frame.motor_lag, dt)
         reach = frame.steering_rate * dt
@@ -122,12 +122,13 @@ class AckermannChassis:
 
 
 CORNERS: tuple[tuple[int, int, int], ...] = ((1, -1, 1), (1, 1, -1), (-1, -1, -1), (-1, 1, 1))
-"""Front left, front right, rear left, rear right: ahead and right of the middle, and the side to which it pushes when
-it turns ahead. Seen from above the rollers of mecanum wheels form an X, and so do the axles of omni wheels."""
+"""Front left, front right, rear left, rear right: each with its position forward and right of the centre, and the side
+to which it pushes when turning forward. Seen from above, the rollers of mecanum wheels form an X, and so do the axles
+of omni wheels."""
 
 
 class FourWheelChassis:
-    """Four driven corners that push ahead and aside alike: mecanum wheels, or omni wheels at 45 degrees."""
+    """Four driven corners that push forward and sideways equally: mecanum wheels, or omni wheels at 45 degrees."""
 
     def __init__(self, frame: ChassisDimensions | None = None) -> None:
         self._frame = frame or ChassisDimensions()
@@ -161,6 +162,6 @@ CHASSIS: dict[DriveType, Callable[[ChassisDimensions], Chassis]] = {
 
 
 def _follow(speed: float, wanted: float, lag: float, dt: float) -> float:
-    """First-order lag, exact for any dt."""
+    """Return the next value of a first-order lag, exact for any dt."""
     speed = wanted + (speed - wanted) * math.exp(-dt / lag)
     return 0.0 if wanted == 0.0 and abs(speed) < AT_REST else speed

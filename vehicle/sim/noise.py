@@ -1,4 +1,4 @@
-"""What cheap sensors make of the truth: noise, biases and a GPS that speaks five times a second. Seeded, no clock."""
+"""Errors of cheap sensors: noise, biases and a GPS with five fixes per second. Seeded, no clock."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 @dataclass(frozen=True, slots=True)
 class SensorNoise:
-    """Standard deviations. Biases are drawn once a seed, as one sensor differs from the next."""
+    """Standard deviations. Biases are drawn once for a seed, as they differ between sensors."""
 
     angle: float = 0.003
     """rad, roll and pitch of a cheap IMU."""
@@ -19,28 +19,28 @@ class SensorNoise:
     """rad/s"""
     gyro_bias: float = 0.01
     compass: float = 0.02
-    """rad; a magnetometer far enough from the motors ..."""
+    """rad; of a magnetometer at some distance from the motors."""
     compass_bias: float = 0.03
-    """... and not quite straight on its chassis."""
+    """rad; of a magnetometer that is not aligned exactly."""
     wheel: float = 0.02
     """m/s"""
     wheel_scale: float = 0.01
-    """Tyres are not as round as their data sheet."""
+    """Relative error of the wheel diameter."""
     gps: float = 0.05
-    """m from one fix to the next ..."""
+    """m, white noise of a fix."""
     gps_wander: float = 0.2
-    """... and m over gps_memory, a receiver with corrections (SBAS) in the open. A plain one wanders 1 m and more, and
-    no filter can tell that from driving: then a rover is 1 m beside its line, however well it steers."""
+    """m, slow drift of a receiver with corrections (SBAS) under open sky. Without corrections the drift is 1 m and
+    more, which no filter can distinguish from motion: the rover is 1 m beside its line, however well it steers."""
     gps_memory: float = 30.0
-    """s; it wanders and does not jump: errors this far apart no longer know of each other."""
+    """s, correlation time of the drift."""
     gps_velocity: float = 0.05
     """m/s"""
     gps_period: float = 0.2
-    """s"""
+    """s between two fixes."""
 
 
 class SimulatedFix(NamedTuple):
-    """m and m/s, north and east, as the receiver has them."""
+    """Position and velocity of a fix, north and east, m and m/s."""
 
     north: float
     east: float
@@ -49,7 +49,7 @@ class SimulatedFix(NamedTuple):
 
 
 class NoisySensors:
-    """The sensors of one rover. `step` lets their errors wander, the rest measures."""
+    """The sensors of one rover. `step` advances their drift; the other methods add errors to true values."""
 
     def __init__(self, seed: int, noise: SensorNoise | None = None) -> None:
         self._noise = noise = noise or SensorNoise()
@@ -62,7 +62,7 @@ class NoisySensors:
         self._fix_in = 0.0
 
     def step(self, dt: float) -> None:
-        """Let `dt` s pass."""
+        """Advance the drift by `dt` s."""
         keep = math.exp(-dt / self._noise.gps_memory)
         spread = self._noise.gps_wander * math.sqrt(1 - keep * keep)
         north, east = self._wander
@@ -70,23 +70,23 @@ class NoisySensors:
         self._fix_in -= dt
 
     def angle(self, true: float) -> float:
-        """Roll or pitch."""
+        """Return roll or pitch with noise."""
         return true + self._error(self._noise.angle)
 
     def gyro(self, true: float) -> float:
-        """Turn rate."""
+        """Return the turn rate with bias and noise."""
         return true + self._gyro_bias + self._error(self._noise.gyro)
 
     def compass(self, true: float) -> float:
-        """Heading, 0..2 pi."""
+        """Return the heading with bias and noise, 0 to 2 pi."""
         return (true + self._compass_bias + self._error(self._noise.compass)) % math.tau
 
     def wheels(self, true: Sequence[float]) -> tuple[float, ...]:
-        """Speed of each wheel; one that stands says so, for an encoder counts nothing then."""
+        """Return the speed of each wheel with errors; exactly 0 at rest, where an encoder counts nothing."""
         return tuple(speed and speed * self._scale + self._error(self._noise.wheel) for speed in true)
 
     def gps(self, true: SimulatedFix) -> SimulatedFix:
-        """The newest fix."""
+        """Return the newest fix; a new one every gps_period."""
         if self._fix is None or self._fix_in <= 1e-9:
             self._fix_in = self._noise.gps_period
             self._fix = SimulatedFix(

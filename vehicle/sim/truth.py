@@ -1,7 +1,6 @@
-"""A record of where the simulated rover really is, which none of its sensors knows: for tests and benchmarks that look
-at a vehicle from outside.
+"""A log of the true position of the simulated rover, for tests and benchmarks that observe a vehicle from outside.
 
-A line ten times a second: `<clock ns> <m north> <m east> <rad> <m/s>`, from where it started.
+Ten lines per second: `<clock ns> <m north> <m east> <rad> <m/s>`, relative to the start.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ PERIOD = 0.1
 
 
 class RecordedBody:
-    """Fits `vehicle.sensors.Sensors`. `write` takes lines; `clock` gives ns that other processes share."""
+    """Fits `vehicle.sensors.Sensors`. `write` appends lines; `clock` returns ns of CLOCK_MONOTONIC."""
 
     def __init__(self, body: SimulatedBody, write: Callable[[str], None], clock: Callable[[], int]) -> None:
         self._body = body
@@ -26,7 +25,7 @@ class RecordedBody:
         self._due = -math.inf
 
     def read(self, now: float) -> Readings:
-        """What the body's sensors say."""
+        """Return the readings of the body, and log its true position every PERIOD."""
         readings = self._body.read(now)
         if now >= self._due:
             self._due = now + PERIOD

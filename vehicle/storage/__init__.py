@@ -1,1 +1,1 @@
-"""What survives a restart: parameters, plans, logs."""
+"""Data that survives a restart: parameters, plans and logs."""

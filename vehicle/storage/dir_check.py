@@ -1,4 +1,4 @@
-"""Can the vehicle keep things in a folder? Tried with a file that has no name, so that nothing is left behind."""
+"""Checks that a folder is writable, with an unnamed temporary file, so that nothing is left behind."""
 
 from __future__ import annotations
 
@@ -9,53 +9,54 @@ import tempfile
 from pathlib import Path
 
 PROBE_SIZE = 65_536
-"""Bytes: more than all kept parameters, and what a full disk or a used-up quota refuses."""
+"""Bytes to write: more than all saved parameters, and enough for a full disk or an exhausted quota to fail."""
 
 
 def write_problem(folder: Path, setting: str) -> str | None:
-    """Why this user cannot write there and what to do, one line; None where nothing is in the way.
+    """Return why this user cannot write to `folder` and what to do, in one line; None without a problem.
 
-    A folder that is missing is not made here: it would belong to whoever checks, and not to who drives. `setting` is
-    what names another folder.
+    A missing folder is not created: it would belong to the user who checks, not to the user who runs the vehicle.
+    `setting` names the setting that selects another folder.
     """
-    there = next(each for each in (folder, *folder.parents) if os.path.lexists(each))
+    nearest = next(each for each in (folder, *folder.parents) if os.path.lexists(each))
     try:
-        if not _is_folder(there):
-            return f"{there} is no folder; remove it, or name another folder as {setting}"
-        if there != folder:
-            return None if os.access(there, os.W_OK | os.X_OK, effective_ids=True) else _forbidden(there, setting)
+        if not _is_folder(nearest):
+            return f"{nearest} is not a folder; remove it, or set another folder with {setting}"
+        if nearest != folder:
+            writable = os.access(nearest, os.W_OK | os.X_OK, effective_ids=True)
+            return None if writable else _permission_problem(nearest, setting)
         with tempfile.TemporaryFile(dir=folder, buffering=0) as file:
             if file.write(bytes(PROBE_SIZE)) != PROBE_SIZE:
-                return f"{folder} is full; make room, or name another folder as {setting}"
+                return f"{folder} is full; free some space, or set another folder with {setting}"
             os.fsync(file.fileno())
     except PermissionError:
-        return _forbidden(there, setting)
+        return _permission_problem(nearest, setting)
     except OSError as error:
-        return f"{folder} cannot be written, {error.strerror}; mend that, or name another folder as {setting}"
+        return f"{folder} cannot be written, {error.strerror}; fix that, or set another folder with {setting}"
     return None
 
 
 def _is_folder(path: Path) -> bool:
-    """Not Path.is_dir: newer Pythons say False also of what they may not look at. Raises PermissionError."""
+    """Like Path.is_dir, which hides a missing permission in newer Pythons. Raises PermissionError."""
     try:
         return stat.S_ISDIR(path.stat().st_mode)
-    except FileNotFoundError:  # a link to nowhere
+    except FileNotFoundError:  # a dangling link
         return False
 
 
-def _forbidden(folder: Path, setting: str) -> str:
-    me = _name(os.geteuid())
+def _permission_problem(folder: Path, setting: str) -> str:
+    user = _user_name(os.geteuid())
     try:
-        owner = _name(folder.stat().st_uid)
-    except OSError:  # behind a closed door, as what a service keeps that runs as nobody in particular
-        remedy = "nor looked at; run this with sudo"
+        owner = _user_name(folder.stat().st_uid)
+    except OSError:  # in a folder without access, such as the state folder of a service with DynamicUser=
+        remedy = "and cannot be examined; run this with sudo"
     else:
-        remedy = "chmod u+rwx it" if owner == me else f"it belongs to {owner}; run this as {owner}"
-    return f"{folder} may not be written by {me}, {remedy}, or name another folder as {setting}"
+        remedy = "chmod u+rwx it" if owner == user else f"it belongs to {owner}; run this as {owner}"
+    return f"{folder} is not writable by {user}, {remedy}, or set another folder with {setting}"
 
 
-def _name(user: int) -> str:
+def _user_name(uid: int) -> str:
     try:
-        return pwd.getpwuid(user).pw_name
+        return pwd.getpwuid(uid).pw_name
     except KeyError:
-        return f"user {user}"
+        return f"user {uid}"

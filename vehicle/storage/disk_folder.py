@@ -1,7 +1,7 @@
-"""A real folder, served: its own regular files and nothing else, read piece by piece in a thread of its own.
+"""DiskFolder: serves the regular files of one folder, read piece by piece in a thread of its own.
 
-Rules: a name leads to a file of this folder or nowhere (no link is followed, at no point: a file is opened by its name
-beside the folder, and must be a regular one); nothing is written; a file in memory is never more than PIECE.
+Rules: a name refers to a file in this folder or to nothing (no link is followed: a file is opened by its name within
+the folder, and must be a regular file); nothing is written; at most PIECE bytes of a file are in memory.
 """
 
 from __future__ import annotations
@@ -19,93 +19,92 @@ from link.services.ftp.files import Content, Entry, NotReadyError, Query, ReadOn
 from link.services.ftp.protocol import FtpError
 
 PIECE = 64 * 1024
-"""Bytes that are read at once: a sixth of a second of the fastest download."""
+"""Bytes read at once: a sixth of a second of the fastest download."""
 MAX_ENTRIES = 1000
-"""Files that are listed: the last ones by name."""
+"""Number of files in a listing: the last ones by name."""
 MAX_NAME = 100
-"""Characters: several lines of a listing fit into one message."""
-MAX_ASKED = 32
-"""Questions to the disk at once: one each for all clients of files (16) and logs (8)."""
+"""Characters in a name: several lines of a listing fit into one message."""
+MAX_PENDING = 32
+"""Concurrent requests to the disk: one for each client of FTP (16) and of the log protocol (8)."""
 MAX_SIZE = 2**32 - 1
-"""Bytes: FTP and the log protocol say no more. A longer file, which is none of ours, is not served."""
-FRESH = 1.0
-"""s in which an answer of the disk must be fetched; a client that no longer waits left it."""
+"""Bytes: sizes in FTP and in the log protocol have 32 bits. A longer file is not served."""
+RESULT_TIMEOUT = 1.0
+"""s after which a result is dropped: its client no longer waits."""
 CLOSE_TIMEOUT = 1.0
+"""s that closing waits for the thread."""
 
 
 class DiskFolder(ReadOnlyFolder):
-    """Files of `path` whose names end in `suffix`. Fits `ftp_files.Folder`; see `NotReadyError` for how it never waits.
+    """Files of `path` whose names end in `suffix`, as a `link.services.ftp.files.Folder`.
 
-    `removable` says in the thread whether a file may be removed now; who may ask for it at all is not decided here.
+    Methods never block: they raise NotReadyError until the thread has the result. `removable` is called in the thread
+    and returns whether a file may be removed now; access control is up to the caller.
     """
 
     def __init__(self, path: Path, *, suffix: str, removable: Callable[[str], bool]) -> None:
         self._path = path
         self._suffix = suffix
         self._removable = removable
-        self._worker = Worker("files", 2 * MAX_ASKED)
+        self._worker = Worker("files", 2 * MAX_PENDING)
         self._lock = threading.Lock()
-        self._asked: set[tuple[str, str]] = set()
-        self._answers: dict[tuple[str, str], tuple[float, Any]] = {}
+        self._pending: set[tuple[str, str]] = set()
+        self._results: dict[tuple[str, str], tuple[float, Any]] = {}
 
     def entries(self) -> list[Entry]:
-        """As they are now, by name; none where the folder cannot be read. Raises NotYetError."""
-        entries: list[Entry] = self._ask(("list", ""), self._scan)
+        """Return the files by name; empty if the folder cannot be read. Raises NotReadyError."""
+        entries: list[Entry] = self._request(("list", ""), self._scan)
         return entries
 
     def open(self, name: str, query: Query) -> Content | None:
-        """The file as long as it is now: one that grows does not, for who has it open. Raises NotYetError."""
+        """Return a file with its present size, which stays while it is open. Raises NotReadyError."""
         if query or not self._serves(name):
             return None
-        content: Content | None = self._ask(("open", name), lambda: self._found(name))
+        content: Content | None = self._request(("open", name), lambda: self._find(name))
         return content
 
     def remove(self, name: str) -> FtpError | None:
-        """Remove a file. Raises NotYetError."""
+        """Remove a file. Raises NotReadyError."""
         if not self._serves(name):
             return FtpError.NOT_FOUND
-        error: FtpError | None = self._ask(("remove", name), lambda: self._remove(name))
+        error: FtpError | None = self._request(("remove", name), lambda: self._remove(name))
         return error
 
     def clear(self) -> None:
-        """Remove all files that may be removed, soon."""
+        """Queue the removal of all removable files."""
         self._worker.submit(self._clear)
 
     def close(self) -> None:
-        """End the thread."""
+        """Stop the thread."""
         self._worker.close(CLOSE_TIMEOUT)
 
-    def fetch(self, name: str, offset: int, size: int, take: Callable[[bytes], None]) -> bool:
-        """Have `take` called in the thread with a part of a file, empty where there is none; False: try again later."""
-        return self._worker.submit(lambda: take(self._read(name, offset, size)))
+    def fetch(self, name: str, offset: int, size: int, receive: Callable[[bytes], None]) -> bool:
+        """Queue a read; the thread calls `receive`, without bytes on an error. Returns False if the queue is full."""
+        return self._worker.submit(lambda: receive(self._read(name, offset, size)))
 
     def _serves(self, name: str) -> bool:
-        """Is this a name that a file here could have? No path, nothing hidden, nothing that a listing cannot say."""
+        """Return whether a file here may have this name: no path, not hidden, printable ASCII."""
         plain = name.isascii() and name.isprintable() and "/" not in name and not name.startswith(".")
         return plain and name.endswith(self._suffix) and len(name) <= MAX_NAME
 
-    def _ask(self, key: tuple[str, str], job: Callable[[], Any]) -> Any:
-        """The disk's answer, once, where it is there and fresh; otherwise it is asked for. Raises NotYetError."""
+    def _request(self, key: tuple[str, str], job: Callable[[], Any]) -> Any:
+        """Return a result once, if the thread has it; otherwise queue `job` for it. Raises NotReadyError."""
         now = time.monotonic()
         with self._lock:
-            self._answers = {each: answer for each, answer in self._answers.items() if now - answer[0] < FRESH}
-            if key in self._answers:
-                return self._answers.pop(key)[1]
-            if (
-                key not in self._asked
-                and len(self._asked) < MAX_ASKED
-                and self._worker.submit(lambda: self._do(key, job))
-            ):
-                self._asked.add(key)
+            self._results = {each: result for each, result in self._results.items() if now - result[0] < RESULT_TIMEOUT}
+            if key in self._results:
+                return self._results.pop(key)[1]
+            room = key not in self._pending and len(self._pending) < MAX_PENDING
+            if room and self._worker.submit(lambda: self._run(key, job)):
+                self._pending.add(key)
         raise NotReadyError
 
     # ---- in the thread ----
 
-    def _do(self, key: tuple[str, str], job: Callable[[], Any]) -> None:
-        answer = job()
+    def _run(self, key: tuple[str, str], job: Callable[[], Any]) -> None:
+        result = job()
         with self._lock:
-            self._asked.discard(key)
-            self._answers[key] = (time.monotonic(), answer)
+            self._pending.discard(key)
+            self._results[key] = (time.monotonic(), result)
 
     def _scan(self) -> list[Entry]:
         try:
@@ -113,10 +112,10 @@ class DiskFolder(ReadOnlyFolder):
                 names = sorted(each.name for each in listing if self._serves(each.name))
         except OSError:
             return []
-        found = ((name, self._found(name)) for name in names[-MAX_ENTRIES:])
+        found = ((name, self._find(name)) for name in names[-MAX_ENTRIES:])
         return [Entry(name, content.size) for name, content in found if content is not None]
 
-    def _found(self, name: str) -> Content | None:
+    def _find(self, name: str) -> Content | None:
         try:
             status = os.stat(self._path / name, follow_symlinks=False)
         except OSError:
@@ -126,7 +125,7 @@ class DiskFolder(ReadOnlyFolder):
 
     def _read(self, name: str, offset: int, size: int) -> bytes:
         try:
-            # Not blocking: somebody may have put a pipe in place of the file.
+            # Non-blocking: the file may have been replaced by a pipe.
             descriptor = os.open(self._path / name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
         except OSError:
             return b""
@@ -139,7 +138,7 @@ class DiskFolder(ReadOnlyFolder):
             os.close(descriptor)
 
     def _remove(self, name: str) -> FtpError | None:
-        if self._found(name) is None:
+        if self._find(name) is None:
             return FtpError.NOT_FOUND
         if not self._removable(name):
             return FtpError.PROTECTED
@@ -155,46 +154,46 @@ class DiskFolder(ReadOnlyFolder):
 
 
 class _Piece(NamedTuple):
-    """A part of a file, in memory."""
+    """A part of a file in memory."""
 
     start: int
-    asked: int
-    """Bytes that were asked for; fewer are here where the file ends before."""
+    requested: int
+    """Number of bytes requested; `data` is shorter at the end of the file."""
     data: bytes
 
 
 class _DiskContent:
-    """A file by its name, with one piece of it in memory."""
+    """An open file, with one piece of it in memory."""
 
     def __init__(self, folder: DiskFolder, name: str, size: int) -> None:
         self._folder = folder
         self._name = name
         self._size = size
         self._piece = _Piece(0, 0, b"")
-        self._coming = False
+        self._fetching = False
 
     @property
     def size(self) -> int:
-        """Bytes."""
+        """Size in bytes."""
         return self._size
 
     def read(self, offset: int, size: int) -> bytes | None:
-        """From memory, or None and soon there. Fewer also where somebody cut the file, none where it is gone."""
+        """Return bytes from memory; None while they are being fetched. A truncated or removed file gives fewer."""
         size = min(size, self._size - offset)
         if size <= 0:
             return b""
-        start, asked, data = self._piece
-        if start <= offset and offset + size <= start + asked:
+        start, requested, data = self._piece
+        if start <= offset and offset + size <= start + requested:
             return data[offset - start : offset - start + size]
-        if not self._coming:
+        if not self._fetching:
             self._fetch(offset, max(size, PIECE))
         return None
 
     def _fetch(self, offset: int, size: int) -> None:
-        def take(data: bytes) -> None:
+        def receive(data: bytes) -> None:
             self._piece = _Piece(offset, size, data)
-            self._coming = False
+            self._fetching = False
 
-        self._coming = True  # before the thread hears of it: it may be done before fetch() returns
-        if not self._folder.fetch(self._name, offset, size, take):
-            self._coming = False
+        self._fetching = True  # before the job is queued: the thread may finish before fetch() returns
+        if not self._folder.fetch(self._name, offset, size, receive):
+            self._fetching = False

@@ -1,7 +1,8 @@
-"""The folder that keeps things over a restart: written by a thread, whole or not at all; the loop never waits.
+"""FileWriter: saves files in a folder, each completely or not at all, from a thread; the control loop never waits.
 
-A new file is written beside the old one, brought to the disk, and takes its name in one step: a power cut leaves the
-old file or the new one. A file that is damaged nevertheless is kept aside, and counts until a good one is written.
+A new file is written beside the old one, synced to the disk, and renamed over the old one in one step: after a power
+cut either the old or the new file exists. A file that is damaged all the same is renamed to `NAME.damaged`, and
+reported until a good one is written.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import TypeVar
 
 from link.runtime.worker import Worker
 from vehicle.storage.checksummed_file import CorruptFileError
+from vehicle.storage.store import PendingWrite
 
 CLOSE_TIMEOUT = 2.0
 """s that the end of the program waits for the last write; a disk that takes longer is broken."""
@@ -26,89 +28,86 @@ T = TypeVar("T")
 
 
 def read_file(path: Path, parse: Callable[[bytes], T]) -> T | None:
-    """What a file holds; None where there is none. `parse` raises DamagedError.
+    """Return the parsed content of a file, None if it does not exist. `parse` raises CorruptFileError.
 
-    Raises DamagedError, in words to be put behind the name of what is missing, also where a damaged file was found and
-    put aside before and no good one was written since.
+    Raises CorruptFileError, with a text that follows the name of the file, also if a damaged file was set aside earlier
+    and no good one has been written since.
     """
     aside = path.with_name(f"{path.name}.damaged")
     try:
-        return parse(_bytes(path))
+        return parse(_read_bytes(path))
     except FileNotFoundError:
         if aside.exists():
             raise CorruptFileError("damaged") from None
         return None
     except CorruptFileError:
-        with contextlib.suppress(OSError):  # read-only: then it stays where it is
+        with contextlib.suppress(OSError):  # on a read-only disk the file stays where it is
             path.replace(aside)
         raise CorruptFileError("damaged") from None
     except OSError as error:
         raise CorruptFileError(f"cannot be read, {error.strerror}") from error
 
 
-def _bytes(path: Path) -> bytes:
-    """Of a regular file: a pipe in its place would be waited for, and a device may have no end. Raises OSError."""
+def _read_bytes(path: Path) -> bytes:
+    """Read a regular file: opening a pipe would block, and a device may have no end. Raises OSError."""
     with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise OSError(errno.EINVAL, "no regular file", str(path))
+            raise OSError(errno.EINVAL, "not a regular file", str(path))
         return file.read()
 
 
-class PendingWrite:
-    """One wish to write a file, and how it went."""
-
-    def __init__(self) -> None:
-        self.done = False
-        """The file is on the disk, or a newer one of its name is, or there is a problem."""
-        self.problem: str | None = None
-
-
 class FileWriter:
-    """Writes files into one folder, one after the other, in a thread of its own."""
+    """Writes files into one folder, one after the other, in a thread of its own. A vehicle.storage.store.Store."""
 
     def __init__(self, folder: Path) -> None:
         self.problem: str | None = None
-        """Why the last file was not written; the one before is still there."""
+        """Why the last file was not written; the previous one is still there."""
         self._folder = folder
         self._lock = threading.Lock()
         self._newest: dict[str, tuple[Callable[[], bytes], list[PendingWrite]]] = {}
-        """What waits to be written: of each file what was wanted last, however slow the disk is, and whose wish it was
-        or would have been."""
+        """Name -> the newest content that waits to be written, however slow the disk is, and all requests that it
+        completes."""
         self._unwritten = 0
-        """Files that wait, or are being written."""
-        self._worker = Worker("scribe", limit=0)  # a file waits once, so that there are no more jobs than files
+        """Number of files that wait or are being written."""
+        self._worker = Worker("file writer", limit=0)  # unlimited: a file waits once, so jobs are at most the files
 
     @property
     def idle(self) -> bool:
-        """Everything that was wanted is written, or failed."""
+        """Every requested write is complete or has failed."""
         return not self._unwritten
 
+    def read(self, name: str, parse: Callable[[bytes], T]) -> T | None:
+        """Return the parsed content of a file, None if it does not exist. Blocks. Raises CorruptFileError."""
+        return read_file(self._folder / name, parse)
+
     def write(self, name: str, make: Callable[[], bytes]) -> PendingWrite:
-        """Have a file written. Returns at once; `make` gives its bytes, in the thread, unless a newer wish for the same
-        file comes before its turn."""
-        wish = PendingWrite()
+        """Queue a file for writing and return at once.
+
+        `make` builds the bytes, in the thread, unless a newer request for the same file replaces this one first.
+        """
+        request = PendingWrite()
         with self._lock:
-            _, wishes = self._newest.get(name, (make, []))
-            if not wishes:
+            _, requests = self._newest.get(name, (make, []))
+            if not requests:
                 self._unwritten += 1
                 self._worker.submit(partial(self._write_newest, name))
-            self._newest[name] = make, [*wishes, wish]
-        return wish
+            self._newest[name] = make, [*requests, request]
+        return request
 
     def close(self) -> None:
-        """Wait for what is being written."""
+        """Wait until the queued files are written, at most CLOSE_TIMEOUT s."""
         self._worker.close(CLOSE_TIMEOUT)
 
     def _write_newest(self, name: str) -> None:
         with self._lock:
-            make, wishes = self._newest.pop(name)
+            make, requests = self._newest.pop(name)
         try:
             self._write(self._folder / name, make())
             self.problem = None
         except OSError as error:
             self.problem = str(error.strerror)
-        for wish in wishes:
-            wish.problem, wish.done = self.problem, True
+        for request in requests:
+            request.problem, request.done = self.problem, True
         with self._lock:
             self._unwritten -= 1
 
@@ -124,10 +123,10 @@ class FileWriter:
         finally:
             os.close(descriptor)
         new.replace(path)
-        self._bring_names_to_disk()
+        self._sync_folder()
 
-    def _bring_names_to_disk(self) -> None:
-        """Without it the new file may be there after a power cut, and its name not."""
+    def _sync_folder(self) -> None:
+        """Sync the folder: after a power cut the new file could exist without its name otherwise."""
         folder = os.open(self._folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
             os.fsync(folder)

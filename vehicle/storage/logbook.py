@@ -1,13 +1,12 @@
-"""When the vehicle records, what it tells of that, and who may remove logs; writing them is the recorder's.
+"""Logbook: decides when to record telemetry logs, reports problems, and controls who may erase them.
 
-As ArduPilot does it: a new log at each arming, until some seconds after disarming; LOG_DISARMED 1 records from the
-start, in a log of its own. A vehicle that cannot record says so and drives all the same: a full card is no reason to
-strand it.
+As in ArduPilot, a new log starts at each arming and ends some seconds after disarming; with LOG_DISARMED 1 recording
+starts at boot, in a log of its own. A vehicle that cannot record reports it and can still be driven.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Protocol
 
@@ -19,43 +18,44 @@ from link.services.ftp.protocol import FtpError
 from link.services.param.values import REAL32
 from vehicle.drive.control import Control
 from vehicle.params import Params
+from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
 
 DISARM_PERSIST = 15.0
-"""s of recording after disarming: what the rover did then may be why (ArduPilot's HAL_LOGGER_ARM_PERSIST)."""
+"""s of recording after disarming: the log shows why the rover disarmed (ArduPilot's HAL_LOGGER_ARM_PERSIST)."""
 PARAMS_PER_CYCLE = 4
-"""Parameters that are recorded in one cycle: all of them take half a second, and no cycle takes long."""
+"""Parameters recorded in one cycle: all of them take half a second, and no cycle takes long."""
 
 
 class LogRecorder(Protocol):
-    """Writes logs; vehicle.storage.recorder.VehicleRecorder is one. Nothing here blocks or raises."""
+    """Writes logs: VehicleRecorder (vehicle/storage/recorder.py) or NullLogRecorder. Never blocks and never raises."""
 
     @property
     def problem(self) -> str | None:
-        """Why it does not record, or not all, in one line."""
+        """Why messages are not recorded, or not all, one line."""
 
     @property
     def folder(self) -> Folder:
-        """The logs, to be served."""
+        """The folder of logs, for FTP and the log protocol."""
 
     def start(self, files: int, megabytes_free: int) -> None:
-        """A new log; older ones go where there are more than `files` with it, or less is free."""
+        """Start a new log; remove the oldest logs to stay within `files` and to leave `megabytes_free`."""
 
     def stop(self) -> None:
-        """No log from now on."""
+        """Close the log."""
 
     def tick(self, now: float) -> None:
-        """Each cycle."""
+        """Pass the collected records to the writing thread. Called in each control cycle."""
 
     def remove_all(self) -> None:
-        """Remove all logs but the one that is being written."""
+        """Remove all logs except the current one."""
 
     def unix_time(self, name: str) -> int:
-        """Unix time of a log in s, 0 where it is not known."""
+        """Return the start of a log, Unix time in s; 0 if unknown."""
 
 
 class NullLogRecorder:
-    """Of a vehicle that has nowhere to record to."""
+    """The recorder of a vehicle without a log folder: records nothing."""
 
     problem: str | None = None
 
@@ -63,38 +63,38 @@ class NullLogRecorder:
         self.folder = MemoryFolder()
 
     def start(self, files: int, megabytes_free: int) -> None:
-        """Nothing."""
+        """Return without an effect."""
 
     def stop(self) -> None:
-        """Nothing."""
+        """Return without an effect."""
 
     def tick(self, now: float) -> None:
-        """Nothing."""
+        """Return without an effect."""
 
     def remove_all(self) -> None:
-        """There are none."""
+        """Return without an effect."""
 
     def unix_time(self, name: str) -> int:
-        """There are none."""
+        """Return 0."""
         return 0
 
 
 class Logbook:
-    """Decides, each cycle."""
+    """Starts and stops the recorder in each control cycle."""
 
     def __init__(
         self,
         params: Params,
         control: Control,
         texts: StatusTextQueue,
-        armed: Callable[[], bool],
+        safety: Safety,
         recording: LogRecorder | None,
     ) -> None:
         self.recording = recording or NullLogRecorder()
         self._params = params
         self._control = control
         self._texts = texts
-        self._armed = armed
+        self._safety = safety
         self._was_armed = False
         self._open = False
         self._until = float("-inf")
@@ -102,19 +102,19 @@ class Logbook:
 
     @property
     def is_healthy(self) -> bool | None:
-        """Could it record, or does it? None where it shall not."""
+        """Whether recording works; None if it is off (LOG_BACKEND_TYPE 0, or no log folder)."""
         if isinstance(self.recording, NullLogRecorder) or not self._params["LOG_BACKEND_TYPE"]:
             return None
         return self.recording.problem is None
 
     def tick(self, now: float) -> list[Outgoing]:
-        """Begin, go on or end. Returns what only the log is told: all parameters, in its first moments."""
-        armed = self._armed()
+        """Start or stop recording. Returns messages for the log only: all parameters, after the start of a log."""
+        armed = self._safety.armed
         if self._was_armed and not armed:
             self._until = now + DISARM_PERSIST
         wanted = self.is_healthy is not None and (armed or self._params["LOG_DISARMED"] or now < self._until)
         if wanted and (not self._open or (armed and not self._was_armed)):
-            self._texts.reset_once(_KEY)  # each log tells anew what is wrong with it
+            self._texts.reset_once(_KEY)  # each log reports its problem again
             self.recording.start(int(self._params["LOG_MAX_FILES"]), int(self._params["LOG_FILE_MB_FREE"]))
             self._opening = self._values()
         elif self._open and not wanted:
@@ -124,26 +124,25 @@ class Logbook:
         return [Outgoing(message, RECORDER) for message in islice(self._opening, PARAMS_PER_CYCLE)]
 
     def check_health(self, now: float) -> None:
-        """About once a second: does it work?"""
+        """Report a recording problem once. Called about once a second."""
         problem = self.recording.problem
         if problem and self.is_healthy is not None:
             self._texts.send_once(f"{_KEY} {problem}", Severity.WARNING, f"Log: {problem}", now)
 
     def folder(self) -> Folder:
-        """The logs for MAVLink FTP, where who is in control may remove them one by one."""
-        return _Logs(self.recording.folder, self._armed)
+        """Return the logs for MAVLink FTP, where files may be removed while disarmed."""
+        return _Logs(self.recording.folder, self._safety)
 
     def handle_log_erase(self, received: Received, now: float) -> None:
-        """LOG_ERASE: all of them, by who is in control and while nothing drives."""
-        refusal = self._control.denial_reason(received.system) or ("disarm first" if self._armed() else None)
+        """Handle LOG_ERASE: remove all logs, for the ground station in control and while disarmed."""
+        denial = self._control.denial_reason(received.system) or ("disarm first" if self._safety.armed else None)
         if not received.introduced:
-            refusal = "its HEARTBEAT is missing"
-        if refusal is None:
-            self.recording.remove_all()
-        text = (
-            f"GCS {received.system}: logs not erased: {refusal}" if refusal else f"Logs erased by GCS {received.system}"
-        )
-        self._texts.send(Severity.WARNING if refusal else Severity.NOTICE, text, now)
+            denial = "its HEARTBEAT is missing"
+        if denial is not None:
+            self._texts.send(Severity.WARNING, f"GCS {received.system}: logs not erased: {denial}", now)
+            return
+        self.recording.remove_all()
+        self._texts.send(Severity.NOTICE, f"Logs erased by GCS {received.system}", now)
 
     def _values(self) -> Iterator[m.Message]:
         count = len(self._params)
@@ -155,11 +154,11 @@ _KEY = "recording"
 
 
 class _Logs(ReadOnlyFolder):
-    """Fits `ftp_files.Folder`: only read, and removed from while disarmed."""
+    """The logs as a `link.services.ftp.files.Folder`: read-only; files may be removed while disarmed."""
 
-    def __init__(self, logs: Folder, armed: Callable[[], bool]) -> None:
+    def __init__(self, logs: Folder, safety: Safety) -> None:
         self._logs = logs
-        self._armed = armed
+        self._safety = safety
 
     def entries(self) -> Sequence[Entry]:
         return self._logs.entries()
@@ -168,4 +167,4 @@ class _Logs(ReadOnlyFolder):
         return self._logs.open(name, query)
 
     def remove(self, name: str) -> FtpError | None:
-        return FtpError.PROTECTED if self._armed() else self._logs.remove(name)
+        return FtpError.PROTECTED if self._safety.armed else self._logs.remove(name)

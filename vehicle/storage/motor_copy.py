@@ -1,8 +1,7 @@
-"""A copy of the settings of motors and accessories for as long as a vehicle drives them, for safe-stop: their file may
-change meanwhile.
+"""A copy of the motor and accessory settings of a running vehicle, for safe-stop: the file may change meanwhile.
 
-There is one for each file of settings, in the usual state folder, because a broken file cannot say where another one
-is. A vehicle that ends as it should has stopped its motors and takes the copy away; one that is killed leaves it.
+There is one copy for each configuration file, in the default state folder, because a broken file cannot name another
+one. A vehicle that ends normally has stopped its motors and removes the copy; a killed vehicle leaves it behind.
 """
 
 from __future__ import annotations
@@ -22,8 +21,8 @@ log = logging.getLogger(__name__)
 
 
 def default_state_folder() -> Path:
-    """Where the vehicle keeps things unless it is told otherwise: the service's folder, or one in your home."""
-    if "STATE_DIRECTORY" in os.environ:  # from systemd's StateDirectory=, also for ExecStopPost=
+    """Return the default state folder: the service's, or one in the user's home."""
+    if "STATE_DIRECTORY" in os.environ:  # from systemd's StateDirectory=, also set for ExecStopPost=
         return Path(os.environ["STATE_DIRECTORY"].partition(":")[0])
     from platformdirs import user_state_path
 
@@ -31,34 +30,34 @@ def default_state_folder() -> Path:
 
 
 @contextlib.contextmanager
-def settings_copy(parts: Mapping[str, Any], config: Path | None) -> Iterator[None]:
-    """Keep a copy of `parts`, the tables of the file `config` by name, [motors] for one, until the end; beyond it where
-    it ends by an exception.
+def settings_copy(tables: Mapping[str, Any], config: Path | None) -> Iterator[None]:
+    """Keep a copy of `tables` of the file `config`, by name, such as [motors], until the context ends.
 
-    A copy that cannot be written is a warning and no more: safe-stop then goes by the file.
+    The copy stays if the context ends with an exception. If it cannot be written, a warning is logged, and safe-stop
+    uses the file alone.
     """
     if config is None:
         yield
         return
     path = _path(config)
-    scribe = FileWriter(path.parent)
-    scribe.write(path.name, lambda: json.dumps(dict(parts), default=str).encode())
-    scribe.close()  # no wheel turns yet: there is time to wait for the disk
-    if scribe.problem:
-        log.warning("after a kill safe-stop will have to go by %s alone: %s: %s", config, path, scribe.problem)
+    writer = FileWriter(path.parent)
+    writer.write(path.name, lambda: json.dumps(dict(tables), default=str).encode())
+    writer.close()  # waits for the disk: no motor turns yet
+    if writer.problem:
+        log.warning("after a kill, safe-stop can use %s only: %s: %s", config, path, writer.problem)
     yield
     with contextlib.suppress(OSError):
         path.unlink()
 
 
 def load_settings_copy(config: Path) -> dict[str, Any] | None:
-    """The tables of what a killed vehicle drove by this file; None where none was killed, or nobody can tell."""
+    """Return the tables that a killed vehicle ran with, None if no usable copy exists."""
     try:
-        parts = json.loads(_path(config).read_bytes())
+        tables = json.loads(_path(config).read_bytes())
     except (OSError, ValueError):
         return None
-    motors = parts.get("motors") if isinstance(parts, dict) else None
-    return parts if isinstance(motors, dict) and isinstance(motors.get("driver"), str) else None
+    motors = tables.get("motors") if isinstance(tables, dict) else None
+    return tables if isinstance(motors, dict) and isinstance(motors.get("driver"), str) else None
 
 
 def _path(config: Path) -> Path:

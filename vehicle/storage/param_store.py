@@ -1,51 +1,56 @@
-"""The parameters that are kept over a restart; how a file is written whole is file_writer.py's."""
+"""ParamStore: the parameters that ground stations have set, saved for the next start."""
 
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 
 from vehicle.storage.checksummed_file import CorruptFileError
-from vehicle.storage.file_writer import FileWriter, read_file
 from vehicle.storage.param_file import decode, encode
+from vehicle.storage.store import NullStore, Store
 
 NAME = "parameters"
+"""Name of the file."""
 
 
 class ParamStore:
-    """Fits `vehicle.commands.params.ParamStoreLike`."""
+    """The saved parameters, all in one file of a store."""
 
-    def __init__(self, folder: Path) -> None:
-        """Reads what there is; never raises."""
+    def __init__(self, store: Store | None = None) -> None:
+        """Read the saved parameters; never raises. Without a `store` nothing is saved."""
         self.values: dict[str, float] = {}
-        """What is kept."""
+        """Name -> saved value."""
         self.damage: str | None = None
-        """Why the kept values could not be read: the vehicle has its defaults."""
-        self._writer = FileWriter(folder)
+        """Why the saved values could not be read: the vehicle has its defaults."""
+        self._store: Store = store or NullStore()
         try:
-            self.values = read_file(folder / NAME, decode) or {}
+            self.values = self._store.read(NAME, decode) or {}
         except CorruptFileError as error:
             self.damage = f"parameter file {error}"
 
     @property
+    def is_volatile(self) -> bool:
+        """Values end with the program."""
+        return isinstance(self._store, NullStore)
+
+    @property
     def problem(self) -> str | None:
-        """Why values are not kept, one line."""
-        return self._writer.problem
+        """Why values are not saved, one line."""
+        return self._store.problem
 
     @property
     def idle(self) -> bool:
         """Nothing is being written."""
-        return self._writer.idle
+        return self._store.idle
 
     def set(self, name: str, value: float) -> None:
-        """Have it written."""
+        """Change a value and queue the file for writing. Never blocks and never raises."""
         self.values[name] = value
         self.save()
 
     def save(self) -> None:
-        """Have all of them written."""
-        self._writer.write(NAME, partial(encode, dict(self.values)))
+        """Queue the file with all values for writing. Never blocks and never raises."""
+        self._store.write(NAME, partial(encode, dict(self.values)))
 
     def close(self) -> None:
-        """Wait for what is being written."""
-        self._writer.close()
+        """Wait until the file is written."""
+        self._store.close()

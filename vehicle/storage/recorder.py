@@ -1,4 +1,4 @@
-"""Records what the vehicle hears and says, in a folder of logs that it serves: recorder, files and folder joined."""
+"""VehicleRecorder: writes received and sent messages to telemetry logs, in a folder that the vehicle serves."""
 
 from __future__ import annotations
 
@@ -10,46 +10,46 @@ from vehicle.storage.disk_folder import DiskFolder
 from vehicle.storage.tlog_files import MEGABYTE, SUFFIX, LogFiles, LogLimits, log_time
 
 LOGS = "logs"
-"""In the folder that keeps things, unless another one is named."""
+"""Name of the default log folder, in the state folder."""
 
 
 class VehicleRecorder:
-    """Fits `vehicle.storage.logbook.LogRecorder`; `tape` is for the runner."""
+    """Fits `vehicle.storage.logbook.LogRecorder`; the runner writes to `log_tap`."""
 
     def __init__(self, folder: Path, *, system: int, component: int) -> None:
         self._files = LogFiles(folder)
         self._recorder = Recorder()
         self.folder = DiskFolder(folder, suffix=SUFFIX, removable=lambda name: name != self._files.current)
-        self.tape = LogTap(self._recorder.add, system=system, component=component)
+        self.log_tap = LogTap(self._recorder.add, system=system, component=component)
         self._recorder.check_writable(self._files.require_writable)
 
     @property
     def problem(self) -> str | None:
-        """Why it does not record, or not all, in one line."""
+        """Why messages are not recorded, or not all, one line."""
         return self._recorder.problem
 
     def start(self, files: int, megabytes_free: int) -> None:
-        """A new log. Never blocks and never raises."""
+        """Start a new log. Never blocks and never raises."""
         limits = LogLimits(files, megabytes_free * MEGABYTE)
         self._recorder.start(lambda: self._files.open(limits))
 
     def stop(self) -> None:
-        """Close it."""
+        """Close the log."""
         self._recorder.stop()
 
     def tick(self, now: float) -> None:
-        """Hand over what has come together."""
+        """Pass the collected records to the writing thread."""
         self._recorder.tick(now)
 
     def remove_all(self) -> None:
-        """Remove all logs but the one that is being written."""
+        """Remove all logs except the current one."""
         self.folder.clear()
 
     def unix_time(self, name: str) -> int:
-        """By its name."""
+        """Return the start of a log from its name, Unix time in s; 0 if unknown."""
         return log_time(name)
 
     def close(self) -> None:
-        """Write the rest and end."""
+        """Write what is left, then stop the threads."""
         self._recorder.close()
         self.folder.close()

@@ -1,7 +1,7 @@
-"""The vehicle's telemetry logs as files: numbered, the time in the name where it is known, the oldest removed first.
+"""The vehicle's telemetry log files: numbered, with the time in the name if it is known, the oldest removed first.
 
-Everything here is called in the recorder's thread, but for names and times. Names are ArduPilot's numbers with a time
-behind: 00000012_2026-11-21T14-05-09Z.tlog sorts by number, also where a clock was wrong.
+Everything here is called in the recorder's thread, except names and times. Names are ArduPilot's numbers followed by a
+time: 00000012_2026-11-21T14-05-09Z.tlog sorts by number even if the clock was wrong.
 """
 
 from __future__ import annotations
@@ -19,53 +19,53 @@ from link.tlog.recorder import RawFile
 
 SUFFIX = ".tlog"
 CLOCK_KNOWN = 1_767_225_600
-"""Unix time of 2026, when this program was young: a computer that says less has no clock and no network yet."""
+"""Unix time of 2026, the first year of this program: an earlier time means that the clock is not set yet."""
 FILE_SIZE_MAX = 32 * 1024 * 1024
-"""Bytes after which a new file begins, about two hours: more than this no ground station of ours fetches."""
+"""Bytes after which a new file starts, about two hours: the largest file that the ground station downloads."""
 FREE_SPACE_MIN = 8 * 1024 * 1024
-"""Bytes that stay free: parameters and the system's own log need room too (ArduPilot leaves as much)."""
+"""Bytes that stay free: parameters and the system log need space too (ArduPilot leaves as much)."""
 SYNC_INTERVAL = 5.0
-"""s between two times that a file is brought to the disk: what a cut of the power may take."""
+"""s between two syncs to the disk: the most that a power cut may lose."""
 MEGABYTE = 1024 * 1024
 _NAME = re.compile(r"(\d{8})(?:_(\d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ))?\.tlog")
 _TIME = "%Y-%m-%dT%H-%M-%SZ"
 
 
 class LogLimits(NamedTuple):
-    """What older logs may take."""
+    """Limits for the space of older logs."""
 
     files: int
-    """At most so many, with the new one."""
+    """Maximum number of logs, including the new one."""
     free: int
-    """Bytes that shall be free when a log begins."""
+    """Bytes that must be free when a log starts."""
 
 
 def log_name(number: int, unix_time: float) -> str:
-    """A log's name."""
+    """Return the file name of a log."""
     if unix_time < CLOCK_KNOWN:
         return f"{number:08}{SUFFIX}"
     return f"{number:08}_{datetime.datetime.fromtimestamp(unix_time, datetime.UTC).strftime(_TIME)}{SUFFIX}"
 
 
 def log_number(name: str) -> int | None:
-    """Its number, None where it is none of our logs."""
+    """Return the number of a log, None if `name` is not the name of a log."""
     found = _NAME.fullmatch(name)
     return int(found[1]) if found else None
 
 
 def log_time(name: str) -> int:
-    """When it was begun, Unix time in s; 0 where that is not known."""
+    """Return the start of a log, Unix time in s; 0 if unknown."""
     found = _NAME.fullmatch(name)
     if found is None or found[2] is None:
         return 0
     try:
         return int(datetime.datetime.strptime(found[2], _TIME).replace(tzinfo=datetime.UTC).timestamp())
-    except ValueError:  # digits, but no date
+    except ValueError:  # digits that are not a date
         return 0
 
 
 class LogFiles:
-    """The files of a folder."""
+    """The log files of a folder."""
 
     def __init__(
         self,
@@ -75,51 +75,51 @@ class LogFiles:
         free: Callable[[Path], int] = lambda folder: os.statvfs(folder).f_bavail * os.statvfs(folder).f_frsize,
     ) -> None:
         self.current: str | None = None
-        """The file that is being written."""
+        """Name of the file that is being written."""
         self._folder = folder
         self._clock = clock
         self._free = free
         self._last = 0
-        """The number of the last log: none is used twice, also when all were erased."""
+        """Number of the last log: a number is not used again, even after all logs were erased."""
 
     def require_writable(self) -> None:
-        """Raises OSError where nothing could be recorded now."""
+        """Create the folder if needed. Raises OSError if nothing can be recorded."""
         self._folder.mkdir(parents=True, exist_ok=True)
         if not os.access(self._folder, os.W_OK | os.X_OK):
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(self._folder))
 
     def open(self, limits: LogLimits) -> NumberedLog:
-        """A new log, and room for it. Raises OSError."""
+        """Start a new log after removing the oldest ones as needed. Raises OSError."""
         self.require_writable()
         self.remove_oldest(limits)
         return NumberedLog(self, limits)
 
     def open_next_file(self) -> RawFile:
-        """A new file. Raises OSError."""
+        """Create the file with the next number. Raises OSError."""
         self.require_free_space()
-        self._last = max([self._last, *map(_sure_number, self._names())]) + 1
+        self._last = max([self._last, *(log_number(name) or 0 for name in self._names())]) + 1
         self.current = log_name(self._last, self._clock())
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC | os.O_NOFOLLOW
         return RawFile(os.open(self._folder / self.current, flags, 0o644))
 
     def require_free_space(self) -> None:
-        """Raises OSError where the disk is all but full."""
+        """Raise OSError if the disk is nearly full."""
         if self._free(self._folder) < FREE_SPACE_MIN:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self._folder))
 
     def remove_oldest(self, limits: LogLimits) -> None:
-        """Remove the oldest. Raises OSError."""
+        """Remove the oldest logs until `limits` are met. Raises OSError."""
         names = self._names()
         while names and (len(names) >= limits.files or self._free(self._folder) < limits.free):
             os.unlink(self._folder / names.pop(0))
 
     def _names(self) -> list[str]:
-        """Our logs, the oldest first."""
+        """Return the names of the logs, the oldest first."""
         return sorted(name for name in os.listdir(self._folder) if log_number(name) is not None)
 
 
 class NumberedLog:
-    """One log: a file, and another when it has grown long. Fits `link.tlog.recorder.LogFile`."""
+    """One log, split into files of FILE_SIZE_MAX bytes. Fits `link.tlog.recorder.LogFile`."""
 
     def __init__(self, files: LogFiles, limits: LogLimits) -> None:
         self._files = files
@@ -129,34 +129,30 @@ class NumberedLog:
         self._synced = time.monotonic()
 
     def write(self, data: bytes) -> None:
-        """Raises OSError, also where somebody took the file away."""
+        """Append `data`. Raises OSError, also if the file was removed."""
         if self._size and self._size + len(data) > FILE_SIZE_MAX:
-            self._begin_next()
+            self._open_next()
         if time.monotonic() - self._synced >= SYNC_INTERVAL:
             self._check()
         self._file.write(data)
         self._size += len(data)
 
     def close(self) -> None:
-        """Raises OSError."""
+        """Sync and close the file. Raises OSError."""
         self._files.current = None
         try:
             self._file.sync()
         finally:
             self._file.close()
 
-    def _begin_next(self) -> None:
+    def _open_next(self) -> None:
         self._files.remove_oldest(self._limits)
         full, self._file, self._size = self._file, self._files.open_next_file(), 0
-        full.close()  # last: where there is no next one, close() is still to come, and twice would close another's file
+        full.close()  # last: if the next file cannot be opened, close() follows, and must not close a descriptor twice
 
     def _check(self) -> None:
         self._synced = time.monotonic()
         self._file.sync()
         self._files.require_free_space()
         if self._file.is_removed():
-            raise FileNotFoundError(errno.ENOENT, "somebody removed the file")
-
-
-def _sure_number(name: str) -> int:
-    return log_number(name) or 0
+            raise FileNotFoundError(errno.ENOENT, "the file was removed")

@@ -1,54 +1,55 @@
-"""How much of each link telemetry and bulk answers may fill, from what the links say of themselves."""
+"""How much of each link telemetry and bulk transfers may use, from the reports of the links."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from link.core import LinkReport, Peer
 from link.services.pacing import DEFAULT_RATE, BulkPacer
+from vehicle.safety.state_machine import Safety
 
 
 class LinkShares(NamedTuple):
-    """Of a link whose capacity is known; the rest is for acknowledgements and texts."""
+    """Shares of a link with a known capacity; the rest is for acknowledgements and texts."""
 
     telemetry: float
-    """All streams together."""
+    """All streams together, 0..1."""
     bulk: float
-    """Lists, files and logs."""
+    """Parameter lists, plans, files and logs, 0..1."""
 
 
 DEFAULT_SHARES = LinkShares(0.6, 0.3)
-"""30 to 50 % for parameters by the specification."""
+"""The parameter protocol recommends 30 to 50 % of the link for a list (mavlink.io/en/services/parameter.html)."""
 DISARMED_SHARES = LinkShares(0.3, 0.6)
-"""While bulk flows and nothing can be driven: a log takes half the time, and who waits for it reads no speedometer."""
+"""During a bulk transfer while disarmed: a log takes half the time, and telemetry matters less."""
 
 
 class Bandwidth:
-    """Bytes/s. `armed`: can the vehicle be driven now?"""
+    """Shares out the links, in bytes/s."""
 
-    def __init__(self, armed: Callable[[], bool]) -> None:
+    def __init__(self, safety: Safety) -> None:
         self.telemetry_rates: dict[int, float] = {}
-        """Link -> for all streams on it together; nobody knows that of a network."""
+        """Link -> bytes/s of all its streams; only for links with a known capacity."""
         self.pacer = BulkPacer(self._bulk)
-        """One for every service that sends more than one answer."""
-        self._armed = armed
+        """Paces every service that sends more than one answer."""
+        self._safety = safety
         self._room: dict[int, float] = {}
-        self._asked: set[int] = set()
-        """Links that bulk was sent on since the last report ..."""
+        self._used: set[int] = set()
+        """Links with bulk transfers since the last report."""
         self._busy: set[int] = set()
-        """... and before it: what bulk gains telemetry has given up by then."""
+        """Links with bulk transfers before the last report: telemetry has made room there by now."""
 
     def update(self, reports: Sequence[LinkReport]) -> None:
-        """Take what the links say."""
-        self._busy, self._asked = self._asked, set()
+        """Take the reports of the links, about once a second."""
+        self._busy, self._used = self._used, set()
         self._room = {each.index: each.capacity * each.headroom for each in reports if each.capacity is not None}
         self.telemetry_rates = {link: self._shares(link).telemetry * room for link, room in self._room.items()}
 
     def _bulk(self, peer: Peer) -> float:
-        self._asked.add(peer.link)
+        self._used.add(peer.link)
         room = self._room.get(peer.link)
         return DEFAULT_RATE if room is None else self._shares(peer.link).bulk * room
 
     def _shares(self, link: int) -> LinkShares:
-        return DISARMED_SHARES if link in self._busy and not self._armed() else DEFAULT_SHARES
+        return DISARMED_SHARES if link in self._busy and not self._safety.armed else DEFAULT_SHARES

@@ -1,6 +1,6 @@
-"""Messages about motion: attitude, position, speed, GPS, servos, channels. Builders only; None without the sensor.
+"""Builds messages about motion: attitude, position, speed, GPS, servos, channels; None without the sensor.
 
-Where the rover is comes from the estimate, what one sensor says (GPS_RAW_INT) from the readings.
+Position and motion come from the estimate; GPS_RAW_INT comes from the readings of the receiver.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ RSSI_UNKNOWN = 255
 
 
 def attitude(view: TelemetryView) -> m.Message | None:
-    """ATTITUDE."""
+    """Build ATTITUDE."""
     readings, estimate = view.readings, view.estimate
     if estimate.yaw is None:
         return None
@@ -34,7 +34,7 @@ def attitude(view: TelemetryView) -> m.Message | None:
 
 
 def vfr_hud(view: TelemetryView) -> m.Message:
-    """VFR_HUD: speed over ground, heading and throttle, also where only the throttle is known."""
+    """Build VFR_HUD: ground speed, heading and throttle, also if only the throttle is known."""
     readings, driving = view.readings, view.drive.driven_wheels
     speed = view.estimate.ground_speed
     return m.VfrHud(
@@ -48,7 +48,7 @@ def vfr_hud(view: TelemetryView) -> m.Message:
 
 
 def local_position_ned(view: TelemetryView) -> m.Message | None:
-    """LOCAL_POSITION_NED."""
+    """Build LOCAL_POSITION_NED."""
     estimate = view.estimate
     if not estimate.moving_place:
         return None
@@ -65,7 +65,7 @@ def local_position_ned(view: TelemetryView) -> m.Message | None:
 
 
 def global_position_int(view: TelemetryView) -> m.Message | None:
-    """GLOBAL_POSITION_INT."""
+    """Build GLOBAL_POSITION_INT."""
     globe, velocity = view.estimate.lat_lon, view.estimate.velocity
     if globe is None:
         return None
@@ -83,7 +83,7 @@ def global_position_int(view: TelemetryView) -> m.Message | None:
 
 
 def gps_global_origin(view: TelemetryView) -> m.Message | None:
-    """GPS_GLOBAL_ORIGIN: where 0/0 of LOCAL_POSITION_NED is. The first fix decides it, until somebody sets it."""
+    """Build GPS_GLOBAL_ORIGIN: 0/0 of LOCAL_POSITION_NED, from the first fix or DO_SET_GLOBAL_ORIGIN."""
     origin = view.estimate.origin
     if origin is None:
         return None
@@ -99,7 +99,7 @@ def gps_global_origin(view: TelemetryView) -> m.Message | None:
 
 
 def estimator_status(view: TelemetryView) -> m.Message:
-    """ESTIMATOR_STATUS: which parts of the estimate may be believed. Test ratios are not kept: 0."""
+    """Build ESTIMATOR_STATUS: which parts of the estimate are valid. Test ratios are not computed: 0."""
     estimate = view.estimate
     holds = {
         EstimatorFlag.ATTITUDE: estimate.yaw is not None,
@@ -109,14 +109,14 @@ def estimator_status(view: TelemetryView) -> m.Message:
     }
     return m.EstimatorStatus(
         time_usec=view.boot_us,
-        flags=sum(flag for flag, there in holds.items() if there),
+        flags=sum(flag for flag, valid in holds.items() if valid),
         vel_ratio=0.0, pos_horiz_ratio=0.0, pos_vert_ratio=0.0, mag_ratio=0.0, hagl_ratio=0.0, tas_ratio=0.0,
         pos_horiz_accuracy=to_float32(estimate.accuracy, math.nan), pos_vert_accuracy=math.nan,
     )  # fmt: skip
 
 
 def gps_raw_int(view: TelemetryView) -> m.Message | None:
-    """GPS_RAW_INT."""
+    """Build GPS_RAW_INT."""
     readings = view.readings
     if readings.gps_fix is None:
         return None
@@ -137,8 +137,10 @@ def gps_raw_int(view: TelemetryView) -> m.Message | None:
 
 
 def servo_output_raw(view: TelemetryView) -> m.Message:
-    """SERVO_OUTPUT_RAW: what each motor gets, as a pulse, at the servo numbers of ArduRover's default wiring; beside
-    them the servos that are accessories. 0: no pulses, or nothing there."""
+    """Build SERVO_OUTPUT_RAW: motors as pulses at the outputs of ArduRover's default wiring, and servo accessories.
+
+    0: no pulses, or no output.
+    """
     pulses = [0] * 16
     for servo, width in view.rack.values("servo").items():
         pulses[servo - 1] = width
@@ -148,7 +150,7 @@ def servo_output_raw(view: TelemetryView) -> m.Message:
 
 
 def relay_status(view: TelemetryView) -> m.Message | None:
-    """RELAY_STATUS: a bit for each relay, as the hardware has it; nothing where there is none."""
+    """Build RELAY_STATUS: a bit for each relay, as written to the hardware; None without relays."""
     relays = view.rack.values("relay")
     if not relays:
         return None
@@ -157,7 +159,7 @@ def relay_status(view: TelemetryView) -> m.Message | None:
 
 
 def rc_channels(view: TelemetryView) -> m.Message:
-    """RC_CHANNELS: what overrides hold, and the demand in use at the throttle and steering channels."""
+    """Build RC_CHANNELS: the overrides, and the demand in use on the throttle and steering channels."""
     control = view.control
     pulses = [m.UINT16_MAX] * RcOverride.COUNT
     for number, channel in control.override.channels.items():
@@ -171,24 +173,24 @@ def rc_channels(view: TelemetryView) -> m.Message:
 
 
 def above_home(view: TelemetryView) -> float:
-    """m; 0 where one of both is not known."""
+    """Return the altitude above home in m; 0 if either is unknown."""
     altitude = view.navigator.altitude
     return 0.0 if altitude is None or view.home is None else to_float32(altitude) - view.home.altitude
 
 
 def above_origin(view: TelemetryView) -> float:
-    """m; as home where it is not known."""
+    """Return the altitude above the origin in m; that of home if the altitude is unknown."""
     return above_home(view) + home_above_origin(view)
 
 
 def home_above_origin(view: TelemetryView) -> float:
-    """m; 0 until somebody gives the origin a height of its own."""
+    """Return the altitude of home above the origin in m; 0 until the origin is given an altitude."""
     altitude = view.navigator.origin_altitude
     return 0.0 if altitude is None or view.home is None else view.home.altitude - altitude
 
 
 def _heading(estimate: Estimate, scale: float, unknown: int) -> int:
-    """Yaw as 0..360 degrees x `scale`."""
+    """Return yaw as 0..360 degrees x `scale`."""
     if estimate.yaw is None:
         return unknown
     return scale_to_int(math.degrees(estimate.yaw) % 360, UINT16, scale, unknown)

@@ -1,7 +1,4 @@
-"""Messages about where the rover wants to go, how well it does, and where it may not: targets, path and fence.
-
-Builders only. They tell of the modes that drive by themselves, and None in the others.
-"""
+"""Builds messages about targets, path, mission and fence; most are None outside of autonomous modes."""
 
 from __future__ import annotations
 
@@ -19,32 +16,33 @@ from vehicle.telemetry.scaling import INT16, INT32, UINT16, scale_to_int, to_flo
 from vehicle.telemetry.view import TelemetryView
 
 NO_MISSION = m.UINT16_MAX
-"""`total` of MISSION_CURRENT; 0 would say that nobody counts."""
+"""`total` of MISSION_CURRENT without a mission; 0 would mean that the vehicle does not report it."""
 ABSOLUTE = 0
 """MAV_FRAME_GLOBAL"""
 ONLY_POSITION = 0xDF8
-"""POSITION_TARGET_TYPEMASK: everything else is to be ignored."""
+"""POSITION_TARGET_TYPEMASK: ignore everything but the position."""
 TURNING, HEADED = 0x5C7, 0x9C7
-"""... except a velocity with a turn rate, or with a yaw."""
+"""POSITION_TARGET_TYPEMASK: ignore everything but a velocity with a yaw rate, or with a yaw."""
 NO_BREACH, BOUNDARY = 0, 3
 """FENCE_BREACH; a rover has no altitude limits."""
 
 
 def position_target_global(view: TelemetryView) -> m.Message | None:
-    """POSITION_TARGET_GLOBAL_INT: the place that a mode goes to."""
+    """Build POSITION_TARGET_GLOBAL_INT: the position that the mode drives to."""
     goal, origin = _goal(view), view.estimate.origin
     if goal is None or origin is None:
         return None
     latitude, longitude = origin.to_global(goal)
     return m.PositionTargetGlobalInt(
         time_boot_ms=view.boot_ms, coordinate_frame=ABSOLUTE, type_mask=ONLY_POSITION,
-        lat_int=scale_to_int(latitude, INT32, 1e7), lon_int=scale_to_int(longitude, INT32, 1e7), alt=to_float32(view.readings.altitude),
+        lat_int=scale_to_int(latitude, INT32, 1e7), lon_int=scale_to_int(longitude, INT32, 1e7),
+        alt=to_float32(view.readings.altitude),
         vx=0.0, vy=0.0, vz=0.0, afx=0.0, afy=0.0, afz=0.0, yaw=0.0, yaw_rate=0.0,
     )  # fmt: skip
 
 
 def position_target_local(view: TelemetryView) -> m.Message | None:
-    """POSITION_TARGET_LOCAL_NED: that place on our ground, or in GUIDED the velocity that is asked for."""
+    """Build POSITION_TARGET_LOCAL_NED: the position that the mode drives to, or the velocity target of GUIDED."""
     goal = _goal(view)
     if goal is not None:
         return _local(view, LOCAL_NED, ONLY_POSITION, x=goal.north, y=goal.east, z=-above_origin(view))
@@ -58,7 +56,7 @@ def position_target_local(view: TelemetryView) -> m.Message | None:
 
 
 def nav_controller_output(view: TelemetryView) -> m.Message | None:
-    """NAV_CONTROLLER_OUTPUT: course, way to go, and m to the right of the line."""
+    """Build NAV_CONTROLLER_OUTPUT: course, distance to go in m, and cross-track error in m."""
     navigator, estimate = view.navigator, view.estimate
     if not MODES[view.safety.mode].autonomous or estimate.yaw is None:
         return None
@@ -79,12 +77,12 @@ def nav_controller_output(view: TelemetryView) -> m.Message | None:
 
 
 def mission_current(view: TelemetryView) -> m.MissionCurrent:
-    """MISSION_CURRENT: which item, of how many, and whether it is under way."""
+    """Build MISSION_CURRENT: the item, how many there are, and the mission state."""
     return mission_state(view.navigator, view.safety.mode)
 
 
 def mission_state(navigator: Navigator, mode: Mode) -> m.MissionCurrent:
-    """The same, for who has no view."""
+    """Build MISSION_CURRENT without a view, for the mission service."""
     mission = navigator.mission
     paused = mission.state is MissionState.ACTIVE and (navigator.paused or mode is not Mode.AUTO)
     state = m.MISSION_PAUSED if paused else mission.state
@@ -93,7 +91,7 @@ def mission_state(navigator: Navigator, mode: Mode) -> m.MissionCurrent:
 
 
 def fence_status(view: TelemetryView) -> m.Message | None:
-    """FENCE_STATUS, where there is a fence that counts: as in ArduPilot."""
+    """Build FENCE_STATUS; None while the fence is disabled, as in ArduPilot."""
     boundary = view.navigator.fence_avoidance
     if not boundary.fence.enabled:
         return None

@@ -1,7 +1,7 @@
-"""Attitude, position and motion once more, in the messages that libraries ask for: MAVSDK, MAVROS and visual odometry.
+"""Builds attitude, position and motion in the messages that MAVSDK, MAVROS and visual odometry use.
 
-They say nothing that build_motion.py does not, so that nobody is told them unasked: QGroundControl leaves ATTITUDE aside once
-it hears ATTITUDE_QUATERNION. Builders only; None without the sensor.
+They repeat what build_motion.py builds and are sent on request only: QGroundControl ignores ATTITUDE once it has
+received ATTITUDE_QUATERNION. None without the sensor.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ LOCAL_NED, BODY_FRD = 1, 12
 ESTIMATOR_AUTOPILOT = 8
 """MAV_ESTIMATOR_TYPE_AUTOPILOT"""
 ZGYRO = 32
-"""HIGHRES_IMU_UPDATED_ZGYRO: the one thing that a rover's gyro measures."""
+"""HIGHRES_IMU_UPDATED_ZGYRO: the only axis that a rover's gyro measures."""
 UNKNOWN_COVARIANCE = [math.nan, *[0.0] * 20]
 TERRAIN_UNKNOWN, CLEARANCE_UNKNOWN = -1001.0, -1.0
 
 
 def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
-    """w, x, y, z of a rotation by yaw, then pitch, then roll, in rad."""
+    """Return w, x, y, z of a rotation by yaw, then pitch, then roll, in rad."""
     (sr, cr), (sp, cp), (sy, cy) = ((math.sin(angle / 2), math.cos(angle / 2)) for angle in (roll, pitch, yaw))
     return (
         cr * cp * cy + sr * sp * sy,
@@ -35,7 +35,7 @@ def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, flo
 
 
 def attitude_quaternion(view: TelemetryView) -> m.Message | None:
-    """ATTITUDE_QUATERNION."""
+    """Build ATTITUDE_QUATERNION."""
     if view.estimate.yaw is None:
         return None
     return m.AttitudeQuaternion(
@@ -44,7 +44,7 @@ def attitude_quaternion(view: TelemetryView) -> m.Message | None:
 
 
 def highres_imu(view: TelemetryView) -> m.Message | None:
-    """HIGHRES_IMU: the gyro; all else is not a number."""
+    """Build HIGHRES_IMU: the gyro; NaN for everything else."""
     rate = view.readings.yaw_rate
     if rate is None:
         return None
@@ -57,7 +57,7 @@ def highres_imu(view: TelemetryView) -> m.Message | None:
 
 
 def odometry(view: TelemetryView) -> m.Message | None:
-    """ODOMETRY: where it is from the start, and its motion along its own axes."""
+    """Build ODOMETRY: the local position, and the velocity in the body frame."""
     estimate = view.estimate
     if not estimate.moving_place:
         return None
@@ -72,7 +72,7 @@ def odometry(view: TelemetryView) -> m.Message | None:
 
 
 def altitude(view: TelemetryView) -> m.Message | None:
-    """ALTITUDE, by GPS."""
+    """Build ALTITUDE from GPS."""
     amsl = view.readings.altitude
     if amsl is None:
         return None

@@ -1,4 +1,4 @@
-"""Messages about the vehicle's state: heartbeat, health, mode, control, demand, failsafes, identity. Builders only."""
+"""Builds messages about state: heartbeat, health, mode, control, demand, failsafes, version."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from vehicle.telemetry.scaling import INT8, INT16, INT32, UINT16, scale_to_int, 
 from vehicle.telemetry.view import TelemetryView
 
 VERSION = (0, 1, 0)
-"""Of this program, in AUTOPILOT_VERSION."""
+"""Version of this program, for AUTOPILOT_VERSION."""
 TAKEOVER_ALLOWED, SYSTEM_MANAGER = 2, 1
 """GCS_CONTROL_STATUS_FLAGS."""
 X_AXIS, R_AXIS = 0, 3
-"""ROVER_AXIS of throttle and steering: those of the specification (dialects/axes.py, Autopilot.GENERIC)."""
+"""ROVER_AXIS of throttle and steering, as in the specification (dialects/axes.py, Autopilot.GENERIC)."""
 NOT_USER_SELECTABLE, AUTO_MODE = 2, 4
 """MAV_MODE_PROPERTY."""
 UNKNOWN_VOLTAGES = [m.UINT16_MAX] * 9
@@ -26,7 +26,7 @@ CHARGE_OK, CHARGE_LOW, CHARGE_CRITICAL = 1, 2, 3
 
 
 def heartbeat(view: TelemetryView) -> m.Message:
-    """HEARTBEAT: armed, mode and state in the words every ground station knows."""
+    """Build HEARTBEAT: armed, mode and MAV_STATE."""
     return m.Heartbeat(
         type=VehicleType.GROUND_ROVER,
         autopilot=Autopilot.GENERIC,
@@ -54,7 +54,7 @@ def _system_status(view: TelemetryView) -> SystemState:
 
 
 def sys_status(view: TelemetryView) -> m.Message:
-    """SYS_STATUS: which sensors there are and whether they are well, and the battery."""
+    """Build SYS_STATUS: sensors present, enabled and healthy; battery and load."""
     readings, battery, fence = view.readings, view.safety.battery, view.navigator.fence_avoidance.fence
     has = {
         Sensor.MOTOR_OUTPUTS: True,
@@ -63,25 +63,25 @@ def sys_status(view: TelemetryView) -> m.Message:
         Sensor.BATTERY: battery.present,
         Sensor.GPS: readings.gps_fix is not None or "gps" in readings.configured,
         Sensor.GYRO: readings.yaw_rate is not None,
-        Sensor.ACCELEROMETER: readings.roll is not None,  # by what else would it know level
+        Sensor.ACCELEROMETER: readings.roll is not None,  # only an accelerometer measures level
         Sensor.COMPASS: readings.yaw is not None,
         Sensor.AHRS: view.estimate.yaw is not None,
         Sensor.LOGGING: view.logs is not None,
     }
-    ill = {
+    faulty = {
         Sensor.MOTOR_OUTPUTS: view.safety.motor_fault is not None,
         Sensor.GEOFENCE: view.navigator.fence_avoidance.breach_distance > 0.0,
         Sensor.PREARM: not view.safety.armed
-        and bool(view.safety.prearm_problems(view.now)),  # a moving stick forbids to arm
+        and bool(view.safety.prearm_problems(view.now)),  # a deflected stick forbids to arm
         Sensor.BATTERY: battery.is_silent(view.now) or battery.low_since(view.now) is not None,
         Sensor.GPS: (readings.gps_fix or 0) < 3,
         Sensor.AHRS: readings.gps_fix is not None and not view.estimate.good,
         Sensor.LOGGING: view.logs is False,
     }
-    present = sum(sensor for sensor, there in has.items() if there)
-    # MAVProxy takes a fence that does not count and whose health bit is 0 for a breached one.
+    present = sum(sensor for sensor, exists in has.items() if exists)
+    # MAVProxy shows a disabled fence as breached if its health bit is 0.
     off = 0 if fence.enabled else Sensor.GEOFENCE
-    health = off | sum(sensor for sensor, there in has.items() if there and not ill.get(sensor))
+    health = off | sum(sensor for sensor, exists in has.items() if exists and not faulty.get(sensor))
     return m.SysStatus(
         onboard_control_sensors_present=present,
         onboard_control_sensors_enabled=present & ~off,
@@ -95,7 +95,7 @@ def sys_status(view: TelemetryView) -> m.Message:
 
 
 def battery_status(view: TelemetryView) -> m.Message | None:
-    """BATTERY_STATUS of the one battery; nothing without a sensor."""
+    """Build BATTERY_STATUS of the one battery; None without a sensor."""
     readings, battery = view.readings, view.safety.battery
     if readings.battery_voltage is None:
         return None
@@ -115,7 +115,7 @@ def battery_status(view: TelemetryView) -> m.Message | None:
 
 
 def current_mode(view: TelemetryView) -> m.Message:
-    """CURRENT_MODE: what it is, and what the driver last chose."""
+    """Build CURRENT_MODE: the mode, and the one that the driver chose last."""
     mode = _mode(view)
     return m.CurrentMode(MODES[mode].standard, custom_mode=mode, intended_custom_mode=view.safety.intended)
 
@@ -125,20 +125,20 @@ def _mode(view: TelemetryView) -> Mode:
 
 
 def control_status(view: TelemetryView) -> m.Message:
-    """CONTROL_STATUS: which ground station is in control."""
+    """Build CONTROL_STATUS: the ground station in control."""
     flags = SYSTEM_MANAGER | (TAKEOVER_ALLOWED if view.control.takeover_allowed else 0)
     return m.ControlStatus(flags=flags, gcs_main=view.control.owner, gcs_secondary=[0] * 10)
 
 
 def system_time(view: TelemetryView) -> m.Message:
-    """SYSTEM_TIME; 0 for a wall clock nobody knows."""
+    """Build SYSTEM_TIME; 0 if the Unix time is unknown."""
     seconds = view.host.unix_time(view.now)
     unix = 0 if seconds is None else scale_to_int(seconds, (0, 2**63), 1e6)
     return m.SystemTime(time_unix_usec=unix, time_boot_ms=view.boot_ms)
 
 
 def limits(view: TelemetryView) -> DriveLimit:
-    """Why the outputs differ from the demand."""
+    """Return why the outputs differ from the demand."""
     safety, control = view.safety, view.control
     reasons = {
         DriveLimit.DISARMED: not safety.armed,
@@ -154,7 +154,7 @@ def limits(view: TelemetryView) -> DriveLimit:
 
 
 def drive_status(view: TelemetryView) -> m.Message:
-    """ROVER_DRIVE_STATUS: the driver's demand while it counts as fresh, what the wheels do, and why that differs."""
+    """Build ROVER_DRIVE_STATUS: the demand while it is fresh, the wheels, and why they differ."""
     control = view.control
     demand = None if control.is_demand_stale(view.now) else control.demand
     output = [scale_to_int(value, INT16, 10000) for value in view.drive.wheels]
@@ -171,7 +171,7 @@ def drive_status(view: TelemetryView) -> m.Message:
 
 
 def failsafe_status(view: TelemetryView) -> m.Message:
-    """ROVER_FAILSAFE_STATUS: what is wrong, what follows and when."""
+    """Build ROVER_FAILSAFE_STATUS: active conditions, and the next action with its time."""
     safety = view.safety
     step = safety.failsafes.next_step(view.now)
     return m.RoverFailsafeStatus(
@@ -185,7 +185,7 @@ def failsafe_status(view: TelemetryView) -> m.Message:
 
 
 def drive_info(view: TelemetryView) -> m.Message:
-    """ROVER_DRIVE_INFO: what the axes of MANUAL_CONTROL mean here."""
+    """Build ROVER_DRIVE_INFO: what the axes of MANUAL_CONTROL mean."""
     params = view.params
     return m.RoverDriveInfo(
         speed_max=params["SPEED_MAX"],
@@ -202,12 +202,12 @@ def drive_info(view: TelemetryView) -> m.Message:
 
 
 def extended_sys_state(view: TelemetryView) -> m.Message:
-    """EXTENDED_SYS_STATE: a rover is on the ground."""
+    """Build EXTENDED_SYS_STATE: a rover is always on the ground."""
     return m.ExtendedSysState(vtol_state=0, landed_state=1)
 
 
 def home_position(view: TelemetryView) -> m.Message | None:
-    """HOME_POSITION, once there is a home."""
+    """Build HOME_POSITION; None until home is known."""
     home = view.home
     if home is None:
         return None
@@ -221,46 +221,46 @@ def home_position(view: TelemetryView) -> m.Message | None:
 
 
 def autopilot_version(view: TelemetryView) -> m.Message:
-    """AUTOPILOT_VERSION: what we can do."""
+    """Build AUTOPILOT_VERSION: capabilities, version and unique id."""
     major, minor, patch = VERSION
-    nothing = [0] * 8
-    can = Capability.MISSION_INT | Capability.MISSION_FENCE | Capability.MISSION_RALLY | Capability.FTP
-    can |= Capability.SET_POSITION_TARGET_LOCAL | Capability.SET_POSITION_TARGET_GLOBAL
-    can |= Capability.SET_ATTITUDE_TARGET | Capability.COMMAND_INT | Capability.FLIGHT_TERMINATION
-    can |= Capability.MAVLINK2 | Capability.PARAM_C_CAST
+    unset = [0] * 8
+    capabilities = Capability.MISSION_INT | Capability.MISSION_FENCE | Capability.MISSION_RALLY | Capability.FTP
+    capabilities |= Capability.SET_POSITION_TARGET_LOCAL | Capability.SET_POSITION_TARGET_GLOBAL
+    capabilities |= Capability.SET_ATTITUDE_TARGET | Capability.COMMAND_INT | Capability.FLIGHT_TERMINATION
+    capabilities |= Capability.MAVLINK2 | Capability.PARAM_C_CAST
     return m.AutopilotVersion(
-        capabilities=can,
+        capabilities=capabilities,
         flight_sw_version=major << 24 | minor << 16 | patch << 8,
-        middleware_sw_version=0, os_sw_version=0, board_version=0, flight_custom_version=nothing,
-        middleware_custom_version=nothing, os_custom_version=nothing, vendor_id=0, product_id=0,
+        middleware_sw_version=0, os_sw_version=0, board_version=0, flight_custom_version=unset,
+        middleware_custom_version=unset, os_custom_version=unset, vendor_id=0, product_id=0,
         uid=int.from_bytes(view.host.uid[:8], "big"), uid2=list(view.host.uid.ljust(18, b"\0")),
     )  # fmt: skip
 
 
 def protocol_version(view: TelemetryView) -> m.Message:
-    """PROTOCOL_VERSION: MAVLink 2; version 1 is understood."""
+    """Build PROTOCOL_VERSION: MAVLink 2; version 1 is understood."""
     return m.ProtocolVersion(200, 100, 200, spec_version_hash=[0] * 8, library_version_hash=[0] * 8)
 
 
 def available_modes(view: TelemetryView) -> list[m.Message]:
-    """AVAILABLE_MODES, one message a mode. What a sensor is missing for cannot be selected now."""
+    """Build AVAILABLE_MODES, one message for each mode. A mode that lacks a sensor is not selectable."""
     return [
         m.AvailableModes(
-            number_modes=len(MODES), mode_index=index, standard_mode=offer.standard, custom_mode=mode,
-            properties=_properties(offer, view), mode_name=mode.name.encode(),
+            number_modes=len(MODES), mode_index=index, standard_mode=spec.standard, custom_mode=mode,
+            properties=_properties(spec, view), mode_name=mode.name.encode(),
         )
-        for index, (mode, offer) in enumerate(MODES.items(), start=1)
+        for index, (mode, spec) in enumerate(MODES.items(), start=1)
     ]  # fmt: skip
 
 
-def _properties(offer: ModeSpec, view: TelemetryView) -> int:
-    selectable = offer.selectable and view.navigator.has_sensor_for(offer.requirement)
-    automatic = AUTO_MODE if offer.autonomous and offer.requirement is ModeRequirement.POSITION else 0
+def _properties(spec: ModeSpec, view: TelemetryView) -> int:
+    selectable = spec.selectable and view.navigator.has_sensor_for(spec.requirement)
+    automatic = AUTO_MODE if spec.autonomous and spec.requirement is ModeRequirement.POSITION else 0
     return automatic | (0 if selectable else NOT_USER_SELECTABLE)
 
 
 def available_modes_monitor(view: TelemetryView) -> m.Message:
-    """AVAILABLE_MODES_MONITOR: its number changes when the modes that can be selected do."""
+    """Build AVAILABLE_MODES_MONITOR: its number changes with the set of selectable modes."""
     return m.AvailableModesMonitor(
         sum(1 << index for index, need in enumerate(ModeRequirement) if view.navigator.has_sensor_for(need))
     )

@@ -1,4 +1,4 @@
-"""What the vehicle tells of the program and the computer that it is; the daemon knows it (vehicle/runtime/host_info.py)."""
+"""The computer and the program, for telemetry; the daemon fills it in (vehicle/runtime/host_info.py)."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class HostInfo:
-    """Unknown unless somebody says it."""
+    """Facts about the host; the defaults mean unknown."""
 
     uid: bytes = b""
-    """16 bytes that are this computer's and no other's; empty: unknown."""
+    """Unique id of this computer, 16 bytes; empty: unknown."""
     load: float = 0.0
-    """Share of the control loop's time that was used in the last second, 0..1."""
+    """Share of the control loop's time that was busy in the last second, 0..1."""
     epoch: float | None = None
-    """Unix time, s, at the monotonic clock's zero. It changes: most Pis ask the network what time it is."""
+    """Unix time in s at zero of the monotonic clock. It changes when NTP sets the clock."""
 
     def unix_time(self, now: float) -> float | None:
-        """s since 1970 at `now`, where the computer knows it."""
+        """Return the Unix time in s at `now`; None if unknown."""
         return None if self.epoch is None else self.epoch + now

@@ -1,4 +1,4 @@
-"""What the links say of themselves, told on: ROVER_LINK_STATUS, and the faults that a driver must know of."""
+"""ROVER_LINK_STATUS, and warnings about link faults, from the reports of the links."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ ROUND_TRIP_UNKNOWN = m.UINT16_MAX
 
 
 class LinkStatusReporter:
-    """Remembers the newest report of each."""
+    """Keeps the newest report of each link."""
 
     def __init__(self, control: Control, texts: StatusTextQueue, ids: tuple[int, int]) -> None:
-        """`ids` are our own system and component."""
+        """`ids` are the system id and component id of the vehicle."""
         self._control = control
         self._texts = texts
         self._ids = ids
         self._reports: dict[int, LinkReport] = {}
 
     def update(self, reports: Sequence[LinkReport], now: float) -> list[m.Message]:
-        """Take the reports; returns what is told of each."""
+        """Take the reports of all links. Return one ROVER_LINK_STATUS for each."""
         self._reports = {report.index: report for report in reports}
         for report in reports:
             self._warn(report, now)
         return [self._status(report) for report in reports]
 
     def build_status(self, link: int) -> m.Message | None:
-        """ROVER_LINK_STATUS of one; None where it has not reported yet."""
+        """Build ROVER_LINK_STATUS of one link; None before its first report."""
         report = self._reports.get(link)
         return None if report is None else self._status(report)
 
     def _warn(self, report: LinkReport, now: float) -> None:
         for name in report.dialect_mismatch:
-            text = f"Dialect mismatch on {report.name}: {name} has another definition"
+            text = f"Dialect mismatch on {report.name}: {name} differs"
             self._texts.send_once(f"mismatch {report.name} {name}", Severity.WARNING, text, now)
         if report.own_id:
             system, component = self._ids
-            text = f"Somebody on {report.name} uses our own ids {system}/{component}"
+            text = f"Another system on {report.name} uses our ids {system}/{component}"
             self._texts.send_once(f"own id {report.name}", Severity.WARNING, text, now)
 
     def _status(self, report: LinkReport) -> m.Message:

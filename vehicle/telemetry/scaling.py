@@ -1,4 +1,4 @@
-"""Numbers into message fields: rounded, clamped to what the field holds, and its "unknown" for None and NaN."""
+"""Converts numbers to message fields: scaled, rounded, clamped, and "unknown" for None and NaN."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ INT8 = (-128, 127)
 
 
 def scale_to_int(value: float | None, bounds: tuple[int, int], scale: float = 1.0, unknown: int = 0) -> int:
-    """`value` x `scale` as an integer within `bounds`; `unknown` where there is no number."""
+    """Return `value` x `scale` as an integer within `bounds`; `unknown` for None and NaN."""
     if value is None or not math.isfinite(value):
         return unknown
     low, high = bounds
@@ -21,14 +21,14 @@ def scale_to_int(value: float | None, bounds: tuple[int, int], scale: float = 1.
 
 
 def to_float32(value: float | None, unknown: float = 0.0) -> float:
-    """`value` as a 32-bit float can hold it."""
+    """Return `value` clamped to the range of a 32-bit float; `unknown` for None and NaN."""
     if value is None or not math.isfinite(value):
         return unknown
     return max(-3.4e38, min(3.4e38, value))
 
 
 def parse_message_id(value: float) -> int | None:
-    """A message id from a command's parameter; None for what cannot be one (ids have 24 bits)."""
+    """Return the message id in a command parameter; None if it is not a whole number of 24 bits."""
     if not math.isfinite(value) or value != int(value) or not 0 <= value < 2**24:
         return None
     return int(value)

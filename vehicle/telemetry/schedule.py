@@ -1,4 +1,4 @@
-"""What one peer is told and when: its rates, its families of messages, and its share of the link."""
+"""The streams of one peer: its rates, its dialect level, and its share of the link."""
 
 from __future__ import annotations
 
@@ -13,41 +13,41 @@ from link.protocol.rate import TokenBucket
 from vehicle.telemetry.streams import STREAM_BY_ID, STREAMS, DialectLevel, Stream
 
 PEER_MESSAGE_RATE_MAX = 200.0
-"""Streamed messages/s to one peer: about 60 kbit/s of 40-byte frames, whatever it asks for."""
+"""Streamed messages/s to one peer at most: about 60 kbit/s of 40-byte frames."""
 MIN_INTERVAL = 0.02
-"""s: a stream cannot be faster than the control cycle."""
+"""s; a stream cannot be faster than the control cycle."""
 CHANGE_GAP = 0.05
-"""s between two messages of a stream that tells changes at once: 20 Hz."""
+"""s between two messages of a stream that is sent on change: 20 Hz."""
 PHASE = 0.02
-"""s between the first messages of neighbouring streams, so that they do not come in one burst."""
+"""s between the first messages of neighbouring streams, to spread the first burst."""
 BURST = 0.3
-"""s of a limit in messages that may go at once."""
+"""s; burst size of a limit in messages/s."""
 BYTES_BURST = 0.05
-"""s of a limit in bytes that may go at once, though always the longest message: on a slow link bursts are delays."""
+"""s; burst size of a limit in bytes/s, but never less than the largest frame: bursts delay a slow link."""
 STEADY = 0.5
-"""Share of a limit that one steady stream may fill, its changes included: the others must not starve."""
+"""Share of a limit that one steady stream may use, its changes included, so that the others do not starve."""
 LEAST_ROOM = 0.1
-"""Share of a limit that is left to the others where several steady ones want all of it."""
+"""Share of a limit that is left to the others if steady streams need all of it."""
 RADIO_STRETCH_MAX = 8.0
 """Largest factor by which a full radio stretches the intervals."""
 RADIO_SILENCE = 5.0
-"""s: a radio reports once a second; one that is gone slows nothing down."""
+"""s without RADIO_STATUS until its effect ends; a radio reports once a second."""
 EARLY = 1e-6
-"""s: so much before its time a message goes out, or rounding would make it wait for another cycle."""
+"""s; a message is due this much early, or rounding would delay it by a cycle."""
 
 
 class BandwidthShare(NamedTuple):
-    """What one peer may get of its link."""
+    """What one peer may use of its link."""
 
     messages: float = PEER_MESSAGE_RATE_MAX
-    """A second."""
+    """Messages/s."""
     bytes: float | None = None
-    """A second; None where nobody knows what the link takes."""
+    """Bytes/s; None if the capacity of the link is unknown."""
 
 
 @dataclass(slots=True)
 class _Clock:
-    """When one stream is due. Without an interval it is told when it changes, where it is `on`, and on request."""
+    """When one stream is due. Without an interval it is sent on request, and on change while `on`."""
 
     stream: Stream
     origin: float
@@ -57,46 +57,46 @@ class _Clock:
     sent: float = -math.inf
 
     def next(self, step: float, now: float) -> float:
-        """The next of the times `origin` + n x `step`. They are the same for all peers with this step, so that one
-        message serves them all; what was missed in a pause is left out."""
+        """Return the next of the times `origin` + n x `step`; times missed in a pause are skipped.
+
+        They are the same for all peers with this step, so that one message serves them all.
+        """
         number = math.floor((now + 2 * EARLY - self.origin) / step) + 1
         return self.origin + number * step - EARLY
 
 
 class StreamSchedule:
-    """The streams of one peer. It begins with those that everybody understands, one after the other.
-
-    `boot` is the time that all peers' streams are counted from.
-    """
+    """The streams of one peer, at first those of DialectLevel.COMMON, one after the other."""
 
     def __init__(self, boot: float, now: float) -> None:
+        """`boot` is the time from which the due times of all peers are counted."""
         self.level = DialectLevel.COMMON
-        """The last one that the peer has shown to speak."""
+        """The highest level that the peer has shown to understand."""
         self._clocks = {each.message.id: _Clock(each, boot + n * PHASE) for n, each in enumerate(STREAMS)}
         self._next = math.inf
         self._share = BandwidthShare()
         self._messages = TokenBucket(PEER_MESSAGE_RATE_MAX, PEER_MESSAGE_RATE_MAX * BURST)
         self._bytes: TokenBucket | None = None
         self._stretch, self._radio_heard = 1.0, -math.inf
-        """Factor on the intervals that a full radio asks for."""
+        """Factor on the intervals while the buffer of a radio is full."""
         self._narrow = 1.0
-        """Factor on the intervals for what was asked beyond the share."""
+        """Factor on the intervals if the requested rates exceed the share."""
         self._begin((DialectLevel.COMMON,), now)
 
-    def raise_level(self, family: DialectLevel, now: float) -> None:
-        """The peer understands `family` and those before it: their streams begin."""
-        if family > self.level:
-            self._begin([each for each in DialectLevel if self.level < each <= family], now)
-            self.level = family
+    def raise_level(self, level: DialectLevel, now: float) -> None:
+        """Start the streams up to `level`, which the peer understands."""
+        if level > self.level:
+            self._begin([each for each in DialectLevel if self.level < each <= level], now)
+            self.level = level
 
     def interval(self, message_id: int) -> float | None:
-        """s between two of a stream, None where it has no rate. Raises KeyError for a message that is no stream."""
+        """Return the interval of a stream in s, None without a rate. Raises KeyError if it is no stream."""
         return self._clocks[message_id].interval
 
     def set_interval(self, message_id: int, interval: float | None, now: float) -> None:
-        """Change a stream; None turns it off. Too fast is made slower, a fixed one stays.
+        """Set the interval of a stream; None turns it off. MIN_INTERVAL at least; a fixed rate stays.
 
-        Who asks again for what it has, as MAVProxy does all the time, gets no message for that.
+        An unchanged interval, which MAVProxy requests all the time, sends no message.
         """
         clock = self._clocks[message_id]
         on, interval = interval is not None, interval and max(MIN_INTERVAL, interval)
@@ -105,19 +105,19 @@ class StreamSchedule:
             self._narrow = self._narrowed()
 
     def set_default(self, message_id: int, now: float) -> None:
-        """Back to the table's rate."""
+        """Reset a stream to its rate in STREAMS."""
         if not STREAM_BY_ID[message_id].fixed_rate:
             self._set_default(STREAM_BY_ID[message_id], now)
             self._narrow = self._narrowed()
 
     def set_group(self, group: int, rate: float, now: float) -> None:
-        """REQUEST_DATA_STREAM: all streams of a group, 0 turns them off."""
+        """Set the rate of all streams of a REQUEST_DATA_STREAM group; 0 turns them off."""
         for stream in STREAMS:
             if stream.group is not None and group in (DataStream.ALL, stream.group):
                 self.set_interval(stream.message.id, _interval(rate), now)
 
     def set_share(self, share: BandwidthShare) -> None:
-        """Messages and bytes of all streams together. They slow down alike, steady ones last."""
+        """Limit messages and bytes of all streams together. They slow down alike, steady ones last."""
         if share == self._share:
             return
         self._share = share
@@ -131,7 +131,7 @@ class StreamSchedule:
         self._narrow = self._narrowed()
 
     def handle_radio_status(self, free: int, now: float) -> None:
-        """RADIO_STATUS: `free` percent of the radio's buffer. Slower when it fills, faster again when it is empty."""
+        """Slow down while the buffer of a radio fills, and speed up when it is empty; `free` is in percent."""
         self._radio_heard = now
         if free < 50:
             self._stretch = min(RADIO_STRETCH_MAX, self._stretch * 2)
@@ -139,24 +139,24 @@ class StreamSchedule:
             self._stretch = max(1.0, self._stretch / 2)
 
     def expedite(self, message_id: int, now: float) -> None:
-        """What a stream tells has changed: say so now, or as soon as CHANGE_GAP allows."""
+        """Make a stream due now, or as soon as CHANGE_GAP allows: its content has changed."""
         clock = self._clocks[message_id]
         if clock.on:
             clock.due = min(clock.due, max(now, clock.sent + max(CHANGE_GAP, self._least(clock.stream))))
             self._next = min(self._next, clock.due)
 
     def pop_due(self, now: float) -> list[Stream]:
-        """The streams that are due and have room; they count as told."""
+        """Return the streams that are due and have room; they count as sent."""
         if now < self._next:
             return []
         due = [each for each in self._clocks.values() if now >= each.due]
-        due.sort(key=lambda each: (not each.stream.steady, each.due))  # where room is short, all get their turn
+        due.sort(key=lambda each: (not each.stream.steady, each.due))  # if room is short, each gets its turn
         taken = [each.stream for each in due if self._take(each, now)]
         self._next = min(each.due for each in self._clocks.values())
         return taken
 
     def pop_if_due(self, message_id: int, now: float) -> bool:
-        """The same of one stream alone."""
+        """Return whether one stream is due and has room; it counts as sent then."""
         clock = self._clocks[message_id]
         return now >= clock.due and self._take(clock, now)
 
@@ -168,7 +168,7 @@ class StreamSchedule:
         return True
 
     def _next_due(self, clock: _Clock, now: float) -> float:
-        """When it is due again, as the link allows; a steady one may just have told a change."""
+        """Return when a stream is due again, as the link allows; a steady one may just have been expedited."""
         if clock.interval is None:
             return math.inf
         if clock.stream.steady:
@@ -177,7 +177,7 @@ class StreamSchedule:
         return clock.next(clock.interval * max(self._stretched(now), self._narrow), now)
 
     def _least(self, stream: Stream) -> float:
-        """s between two of a steady stream, or of a changing one, that leave room for the others."""
+        """Return the s between two messages of a steady or expedited stream that leave room for the others."""
         share = self._share
         return max(1 / share.messages, stream.size / share.bytes if share.bytes else 0.0) / STEADY
 
@@ -189,8 +189,8 @@ class StreamSchedule:
     def _room(self, stream: Stream, now: float) -> bool:
         return self._messages.consume(now) and (self._bytes is None or self._bytes.consume(now, stream.size))
 
-    def _begin(self, families: Collection[DialectLevel], now: float) -> None:
-        new = [stream for stream in STREAMS if stream.level in families and _is_default_on(stream)]
+    def _begin(self, levels: Collection[DialectLevel], now: float) -> None:
+        new = [stream for stream in STREAMS if stream.level in levels and _is_default_on(stream)]
         for number, stream in enumerate(new):
             self._set_default(stream, now + number * PHASE)
         self._narrow = self._narrowed()
@@ -208,7 +208,7 @@ class StreamSchedule:
         return max(1.0, messages, self._excess(self._share.bytes, lambda stream: stream.size))
 
     def _excess(self, limit: float | None, weight: Callable[[Stream], float]) -> float:
-        """How many times too much the streams are that can be slowed down, in messages or bytes."""
+        """Return by which factor the streams that can slow down exceed a limit, in messages or bytes."""
         if limit is None:
             return 1.0
         steady = others = 0.0
@@ -221,7 +221,7 @@ class StreamSchedule:
 
 
 def _is_default_on(stream: Stream) -> bool:
-    """It is told without being asked for: at its rate, or when it changes."""
+    """Return whether a stream is sent without a request: at its rate, or on change."""
     return stream.rate > 0 or stream.change_key is not None
 
 
@@ -230,4 +230,4 @@ def _interval(rate: float) -> float | None:
 
 
 _FIXED = sum(stream.size * stream.rate for stream in STREAMS if stream.fixed_rate)
-"""Bytes/s of the streams that do not ask for room."""
+"""Bytes/s of the streams that are sent without regard to the share."""

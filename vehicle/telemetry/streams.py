@@ -1,7 +1,7 @@
-"""Message -> rate: one table of what the vehicle tells, unasked or to whoever asks for it.
+"""STREAMS: one table of what the vehicle sends periodically, on change or on request.
 
-A receiver takes a message that its dialect lacks for a lost one: pymavlink counts each as a gap, and MAVProxy's `link`
-then shows a loss that is none. So each stream names its family, and only the first goes to everybody.
+A receiver counts a message that its dialect lacks as lost: pymavlink sees a gap in the sequence, and the `link` command
+of MAVProxy shows packet loss. So each stream names a dialect level, and only the lowest level goes to all peers.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from vehicle.telemetry.view import TelemetryView
 
 
 class DialectLevel(IntEnum):
-    """Who understands a message. Who speaks one speaks those before it."""
+    """Which peers understand a message. Each level includes those before it."""
 
     COMMON = 0
-    """Everybody: pymavlink's common.xml has it."""
+    """All peers: pymavlink's common.xml has the message."""
     NEWER = 1
-    """Who is built on today's common.xml, as QGroundControl: told to whoever has asked for one of them."""
+    """Peers with today's common.xml, such as QGroundControl: sent to peers that have requested one of them."""
     ROVER = 2
-    """Who has our dialect: told to whoever has asked for one of them, or has sent one."""
+    """Peers with the dialect of this project: sent to peers that have requested or sent one of them."""
 
 
 COMMON, NEWER, ROVER = DialectLevel
@@ -34,37 +34,38 @@ COMMON, NEWER, ROVER = DialectLevel
 
 @dataclass(frozen=True, slots=True)
 class Stream:
-    """One message and when it is told."""
+    """One message, and when it is sent."""
 
     message: type[m.Message]
     level: DialectLevel
     rate: float
-    """Hz for who speaks its family; 0: only on request, and when it changes."""
+    """Hz for peers at its level; 0: only on request, and on change."""
     build: Callable[[TelemetryView], m.Message | None]
-    """None where there is nothing to tell."""
+    """Returns None if there is nothing to send."""
     group: DataStream | None = None
     """The group of REQUEST_DATA_STREAM that it belongs to."""
     change_key: Callable[[TelemetryView], Hashable] | None = None
-    """What it tells at once, where it is on, when this changes."""
+    """The stream, if enabled, is sent at once when this value changes."""
     follows_demand: bool = False
-    """It changes with the driver's demand, and is told without waiting for a tick."""
+    """Sent after a demand without waiting for a tick."""
     fixed_rate: bool = False
-    """Its rate is not for others to choose."""
+    """Peers cannot change its rate."""
     steady: bool = False
-    """A full link does not slow it down."""
+    """A full link does not lower its rate."""
 
     @property
     def size(self) -> int:
-        """Bytes on the wire, at most."""
+        """Largest frame in bytes."""
         return int(self.message.unpacker.size) + MAVLINK2_OVERHEAD
 
 
 STREAMS: tuple[Stream, ...] = (
     Stream(m.Heartbeat, COMMON, 1, build_status.heartbeat, fixed_rate=True, steady=True,
            change_key=lambda view: (view.safety.state, view.safety.mode)),
-    # The driver echoes the time of this one (OPR_ECHO_MAX).
+    # The ground station echoes time_boot_ms of this one (OPR_ECHO_MAX).
     Stream(m.RoverDriveStatus, ROVER, 5, build_status.drive_status, steady=True, follows_demand=True,
-           change_key=lambda view: (view.control.demand and (view.control.demand.throttle, view.control.demand.steering),
+           change_key=lambda view: (view.control.demand and (view.control.demand.throttle,
+                                                         view.control.demand.steering),
                                 view.control.neutral_seen, view.safety.armed)),
     Stream(m.RoverFailsafeStatus, ROVER, 1, build_status.failsafe_status,
            change_key=lambda view: (view.safety.failsafes.active, view.safety.latched)),
@@ -92,7 +93,8 @@ STREAMS: tuple[Stream, ...] = (
            change_key=lambda view: view.navigator.goal(view.safety.mode)),
     Stream(m.NavControllerOutput, COMMON, 2, build_navigation.nav_controller_output, DataStream.EXTENDED_STATUS),
     Stream(m.FenceStatus, COMMON, 1, build_navigation.fence_status, DataStream.EXTENDED_STATUS,
-           change_key=lambda view: (view.navigator.fence_avoidance.fence.enabled, view.navigator.fence_avoidance.breach_distance > 0.0)),
+           change_key=lambda view: (view.navigator.fence_avoidance.fence.enabled,
+                                view.navigator.fence_avoidance.breach_distance > 0.0)),
     Stream(m.ServoOutputRaw, COMMON, 2, build_motion.servo_output_raw, DataStream.RC_CHANNELS),
     Stream(m.RcChannels, COMMON, 2, build_motion.rc_channels, DataStream.RC_CHANNELS),
     Stream(m.RelayStatus, COMMON, 0.5, build_motion.relay_status, DataStream.RC_CHANNELS,
@@ -109,7 +111,7 @@ STREAMS: tuple[Stream, ...] = (
     Stream(m.AutopilotVersion, COMMON, 0, build_status.autopilot_version),
     Stream(m.ProtocolVersion, NEWER, 0, build_status.protocol_version),
 )  # fmt: skip
-"""Stream by stream, the most important first. What only one asks for is in vehicle/commands/requests.py."""
+"""All streams, the most important first. Messages that are no stream are built in vehicle/commands/requests.py."""
 
 STREAM_BY_ID: dict[int, Stream] = {stream.message.id: stream for stream in STREAMS}
 
@@ -119,15 +121,15 @@ _LEVELS: dict[int, DialectLevel] = {
     m.ComponentMetadata.id: NEWER,
     m.RoverLinkStatus.id: ROVER,
 }
-"""Message -> family, also of those that are no stream."""
+"""Message -> level, also of messages that are no stream."""
 _COMMANDS: dict[int, DialectLevel] = {Command.REQUEST_OPERATOR_CONTROL: NEWER, Command.DO_SET_STANDARD_MODE: NEWER}
-_QUESTIONS = frozenset({Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL})
-"""Their parameter 1 is a message id."""
+_MESSAGE_REQUESTS = frozenset({Command.REQUEST_MESSAGE, Command.SET_MESSAGE_INTERVAL, Command.GET_MESSAGE_INTERVAL})
+"""Commands with a message id as parameter 1."""
 
 
 def level_of_command(message: m.CommandLong | m.CommandInt) -> DialectLevel:
-    """The family that a command shows its sender to speak."""
-    if message.command in _QUESTIONS:
+    """Return the level that the sender of a command has shown to understand."""
+    if message.command in _MESSAGE_REQUESTS:
         number = parse_message_id(message.param1)
         return COMMON if number is None else _LEVELS.get(number, COMMON)
     return _COMMANDS.get(message.command, COMMON)

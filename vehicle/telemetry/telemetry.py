@@ -1,4 +1,4 @@
-"""Who is told what: a schedule for each peer, a budget for each link, and one message for all who are due for it."""
+"""Streams of all peers: a schedule for each peer, a budget for each link, one message for all its peers."""
 
 from __future__ import annotations
 
@@ -13,104 +13,106 @@ from vehicle.telemetry.streams import STREAM_BY_ID, STREAMS, DialectLevel, Strea
 from vehicle.telemetry.view import TelemetryView
 
 LINK_MESSAGE_RATE_MAX = 1000.0
-"""Streamed messages/s on one link, in equal parts. 24 peers (link.protocol.channel.MAX_PEERS) get 41 each, and the usual streams
-are 39."""
+"""Streamed messages/s on one link, in equal parts. 24 peers (link.protocol.channel.MAX_PEERS) get 41 each; the default
+streams are 39."""
 MAX_PEERS = 64
-"""Schedules kept. Who connects beyond them waits for the next report of the links."""
+"""Schedules kept. Another peer gets none until one of these is gone."""
 
 _CHANGING = tuple(stream for stream in STREAMS if stream.change_key is not None)
-_OF_DEMAND = tuple(stream for stream in STREAMS if stream.follows_demand)
+_FOLLOWING_DEMAND = tuple(stream for stream in STREAMS if stream.follows_demand)
 
 
 class Telemetry:
-    """The streams of all peers. Nobody is told anything before attend() or a HEARTBEAT."""
+    """The streams of all peers. A peer gets its streams after `update_audience` or its first HEARTBEAT."""
 
     def __init__(self, system: int, now: float, *, logged: bool = False) -> None:
-        """`system` is ours; `now` the time of boot; `logged`: a log listens, too."""
+        """`system` is the system id of the vehicle, `now` the time of boot; `logged` adds the log as a peer."""
         self._system = system
         self._boot = now
         self._schedules: dict[Peer, StreamSchedule] = {}
         if logged:
             self._add(RECORDER, now)
             self._schedules[RECORDER].raise_level(DialectLevel.ROVER, now)
-        self._rooms: Mapping[int, float] = {}
+        self._rates: Mapping[int, float] = {}
         self._change_keys: dict[int, Hashable] = {}
-        """Message -> what was the newest when its changes were looked at."""
+        """Message -> the value that was compared last."""
 
-    # ---- who listens ----
+    # ---- peers ----
 
-    def update_audience(self, audience: Collection[Peer], rooms: Mapping[int, float], now: float) -> None:
-        """Who listens now: who is gone takes its rates along. `rooms`: link -> bytes/s for telemetry, where known."""
-        self._rooms = rooms
+    def update_audience(self, audience: Collection[Peer], rates: Mapping[int, float], now: float) -> None:
+        """Set who receives telemetry. A peer that is gone loses its rates. `rates`: link -> bytes/s, where known."""
+        self._rates = rates
         staying = {RECORDER, *audience}
         self._schedules = {peer: each for peer, each in self._schedules.items() if peer in staying}
         for peer in audience:
             self._add(peer, now)
         self._share_out()
 
-    def receive(self, received: Received, now: float) -> None:
-        """What a message shows of its sender, or asks for. Commands that ask are in vehicle/commands/requests.py."""
-        topic = _HANDLERS.get(type(received.message))
-        if topic is not None:
-            topic(self, received, received.message, now)
+    def observe(self, received: Received, now: float) -> None:
+        """Note what a message shows of its sender: that it listens, and which messages it understands."""
+        note = _OBSERVED.get(type(received.message))
+        if note is not None:
+            note(self, received, received.message, now)
 
-    def peers_at_level(self, family: DialectLevel) -> tuple[Peer, ...]:
-        """Who understands it."""
-        return tuple(peer for peer, each in self._schedules.items() if family <= each.level)
+    def peers_at_level(self, level: DialectLevel) -> tuple[Peer, ...]:
+        """Return the peers that understand a level."""
+        return tuple(peer for peer, each in self._schedules.items() if level <= each.level)
 
     def schedule_of(self, peer: Peer) -> StreamSchedule | None:
-        """What this one is told; None for who is told nothing."""
+        """Return the schedule of a peer; None if it receives no telemetry."""
         return self._schedules.get(peer)
 
-    def _handle_introduction(self, received: Received, _: m.Message, now: float) -> None:
-        """Who has introduced itself is told what everybody is told, beginning now."""
+    def handle_introduction(self, received: Received, _: m.Message, now: float) -> None:
+        """Start the streams of a peer that introduces itself."""
         if received.may_ask and received.peer not in self._schedules:
             self._add(received.peer, now)
             self._share_out()
 
-    def _command(self, received: Received, message: m.CommandLong | m.CommandInt, now: float) -> None:
-        self._handle_introduction(received, message, now)
-        self._raise_level(received, level_of_command(message), now)
-
-    def _presence(self, received: Received, _: m.Message, now: float) -> None:
-        self._raise_level(received, DialectLevel.ROVER, now)
-
-    def _raise_level(self, received: Received, family: DialectLevel, now: float) -> None:
+    def handle_request_data_stream(self, received: Received, message: m.RequestDataStream, now: float) -> None:
+        """Set the rate of a group of streams for the sender."""
         schedule = self._schedules.get(received.peer)
-        if schedule is not None and received.may_ask:
-            schedule.raise_level(family, now)
-
-    def _group(self, received: Received, message: m.RequestDataStream, now: float) -> None:
-        schedule = self._schedules.get(received.peer)
-        if schedule is not None and received.introduced and message.target_system == self._system:
+        if schedule is not None and message.target_system == self._system:
             schedule.set_group(message.req_stream_id, message.req_message_rate if message.start_stop else 0, now)
 
-    def _radio(self, received: Received, message: m.RadioStatus, now: float) -> None:
+    def handle_radio_status(self, received: Received, message: m.RadioStatus, now: float) -> None:
+        """Slow the streams of a peer down while the buffer of its radio is full."""
         schedule = self._schedules.get(received.peer)
         if schedule is not None:
             schedule.handle_radio_status(message.txbuf, now)
 
-    # ---- what is told ----
+    def _note_command(self, received: Received, message: m.CommandLong | m.CommandInt, now: float) -> None:
+        self.handle_introduction(received, message, now)
+        self._raise_level(received, level_of_command(message), now)
+
+    def _note_presence(self, received: Received, _: m.Message, now: float) -> None:
+        self._raise_level(received, DialectLevel.ROVER, now)
+
+    def _raise_level(self, received: Received, level: DialectLevel, now: float) -> None:
+        schedule = self._schedules.get(received.peer)
+        if schedule is not None and received.may_ask:
+            schedule.raise_level(level, now)
+
+    # ---- messages ----
 
     def build_due(self, view: TelemetryView) -> list[Outgoing]:
-        """The messages that are due at the time of `view`."""
-        self._look_for_changes(_CHANGING, view)
+        """Build the messages that are due at the time of `view`."""
+        self._expedite_changes(_CHANGING, view)
         wanted: dict[int, list[Peer]] = {}
         for peer, schedule in self._schedules.items():
             for stream in schedule.pop_due(view.now):
                 wanted.setdefault(stream.message.id, []).append(peer)
-        return _built(wanted.items(), view)
+        return _build(wanted.items(), view)
 
     def build_after_demand(self, view: TelemetryView) -> list[Outgoing]:
-        """What a changed demand makes worth telling at once; the rest is the next tick's."""
-        self._look_for_changes(_OF_DEMAND, view)
-        numbers = [stream.message.id for stream in _OF_DEMAND]
+        """Build what follows a changed demand at once; the rest waits for the next tick."""
+        self._expedite_changes(_FOLLOWING_DEMAND, view)
+        numbers = [stream.message.id for stream in _FOLLOWING_DEMAND]
         wanted = [
             (n, [peer for peer, each in self._schedules.items() if each.pop_if_due(n, view.now)]) for n in numbers
         ]
-        return _built(wanted, view)
+        return _build(wanted, view)
 
-    def _look_for_changes(self, streams: Iterable[Stream], view: TelemetryView) -> None:
+    def _expedite_changes(self, streams: Iterable[Stream], view: TelemetryView) -> None:
         for stream in streams:
             number, key = stream.message.id, stream.change_key(view) if stream.change_key else None
             if number in self._change_keys and key != self._change_keys[number]:
@@ -123,30 +125,27 @@ class Telemetry:
             self._schedules[peer] = StreamSchedule(self._boot, now)
 
     def _share_out(self) -> None:
-        """Each link in equal parts, so that what one peer asks for slows no other."""
+        """Give the peers of a link equal parts, so that the rates of one peer do not slow another down."""
         peers = Counter(peer.link for peer in self._schedules)
         for peer, schedule in self._schedules.items():
-            number, room = peers[peer.link], self._rooms.get(peer.link)
+            count, rate = peers[peer.link], self._rates.get(peer.link)
             schedule.set_share(
                 BandwidthShare(
-                    min(PEER_MESSAGE_RATE_MAX, LINK_MESSAGE_RATE_MAX / number), None if room is None else room / number
+                    min(PEER_MESSAGE_RATE_MAX, LINK_MESSAGE_RATE_MAX / count), None if rate is None else rate / count
                 )
             )
 
 
-_HANDLERS: dict[type[m.Message], Callable[[Telemetry, Received, Any, float], None]] = {
-    m.Heartbeat: Telemetry._handle_introduction,
-    m.CommandLong: Telemetry._command,
-    m.CommandInt: Telemetry._command,
-    m.RoverOperatorPresence: Telemetry._presence,
-    m.RequestDataStream: Telemetry._group,
-    m.RadioStatus: Telemetry._radio,
+_OBSERVED: dict[type[m.Message], Callable[[Telemetry, Received, Any, float], None]] = {
+    m.CommandLong: Telemetry._note_command,
+    m.CommandInt: Telemetry._note_command,
+    m.RoverOperatorPresence: Telemetry._note_presence,
 }
-"""Message -> what it changes."""
+"""Message -> what it shows of its sender."""
 
 
-def _built(wanted: Iterable[tuple[int, list[Peer]]], view: TelemetryView) -> list[Outgoing]:
-    """Each message once, for all who want it."""
+def _build(wanted: Iterable[tuple[int, list[Peer]]], view: TelemetryView) -> list[Outgoing]:
+    """Build each message once, for all peers that it is due for."""
     found: list[tuple[m.Message | None, list[Peer]]] = [
         (STREAM_BY_ID[number].build(view), peers) for number, peers in wanted if peers
     ]

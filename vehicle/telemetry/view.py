@@ -1,4 +1,4 @@
-"""What telemetry tells about, at one moment. Read only: builders in status.py and build_motion.py make messages of it."""
+"""What telemetry is built from: the vehicle at one moment. The builders of this package turn it into messages."""
 
 from __future__ import annotations
 
@@ -18,7 +18,11 @@ from vehicle.telemetry.host import HostInfo
 
 
 class TelemetryView(NamedTuple):
-    """The rover at the time `now`; made in each cycle and for each demand."""
+    """The vehicle at the time `now`; built for each cycle and each demand, used at once and never kept.
+
+    It refers to the parts of the vehicle instead of copying their values. A cycle builds two or three of 40 streams, so
+    copying all values would cost more than building the messages. The builders only read.
+    """
 
     now: float
     since_boot: float
@@ -32,16 +36,16 @@ class TelemetryView(NamedTuple):
     rack: AccessorySet
     """Relays and servos."""
     logs: bool | None = None
-    """Are they recorded as they should? None where none are wanted."""
+    """Logs are written. None if logging is off."""
 
     @property
     def estimate(self) -> Estimate:
-        """Where it is and how it moves."""
+        """Position, heading and speed."""
         return self.navigator.estimate
 
     @property
     def home(self) -> Home | None:
-        """Where RTL goes."""
+        """Home position, None until it is known."""
         return self.navigator.home
 
     @property

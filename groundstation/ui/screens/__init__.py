@@ -1,1 +1,1 @@
-"""What may fill the terminal: one module and one .tcss file a screen."""
+"""Screens: one module and one .tcss file each, listed in groundstation/screens.py."""

@@ -1,106 +1,79 @@
-"""The Drive screen: what a driver needs at one glance, and the questions that actions ask. It sends no drive keys."""
+"""Drive screen: the instruments, and the questions that actions ask. Drive keys take another way, see key_gate.py."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
 
 from textual import events
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
-from textual.screen import Screen
 from textual.widgets import Static
 
-from groundstation.input.keymap import CONFIRM_KEY, Keymap, OperatorAction
-from groundstation.intents import AnyIntent, StartSimulator
-from groundstation.snapshot import Snapshot, VehicleView
-from groundstation.ui.alerts import AlertContext, active_alerts
-from groundstation.ui.colours import BLUE, GREEN
-from groundstation.ui.key_gate import GateClosure
-from groundstation.ui.keynames import format_key
-from groundstation.ui.terminal import KeyRepeat
-from groundstation.ui.widgets.alert import AlertLine
-from groundstation.ui.widgets.chart import Chart, Series
-from groundstation.ui.widgets.footer import KeyFooter
-from groundstation.ui.widgets.heading_tape import HeadingTape, heading_degrees
-from groundstation.ui.widgets.horizon import Horizon, HorizonValue
-from groundstation.ui.widgets.keycaps import Keycaps, KeycapsValue
-from groundstation.ui.widgets.links import LinksPanel
-from groundstation.ui.widgets.log import LogPanel
-from groundstation.ui.widgets.rates import RatesPanel
-from groundstation.ui.widgets.speed import SpeedReadout, speed_text
-from groundstation.ui.widgets.status import StatusBar, StatusBarValue
-from groundstation.ui.widgets.sticks import StickBars, build_bars
-from groundstation.ui.widgets.track import TrackMap, TrackValue
-from groundstation.ui.widgets.waiting import WaitingPage
+from groundstation.input.keymap import CONFIRM_KEY
+from groundstation.intents import OperatorAction, StartSimulator
+from groundstation.snapshot import Snapshot
+from groundstation.ui.display_state import DisplayState
+from groundstation.ui.instruments import INSTRUMENTS, InstrumentRow
+from groundstation.ui.key_parser import KeyRepeat
+from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.widgets.instrument import Instrument
 
 MIN_CONSOLE_SIZE = (80, 24)
-"""Columns and rows below which the console would lose something that a driver must see."""
+"""Columns and rows below which something that a driver must see would not fit."""
 
 SLOW = 0.5
-"""s between pictures of what nobody drives by: charts and tables. Each moves all its lines, and over ssh that costs."""
+"""s between updates of charts and tables. Each update changes all their lines, which is expensive over SSH."""
 
 
-class DriveScreen(Screen[None]):
-    """One picture of one snapshot."""
+class DriveScreen(ConsoleScreen):
+    """The instruments of one display state."""
 
     CSS_PATH = "drive.tcss"
-    AUTO_FOCUS = ""
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (120, "-wide")]  # noqa: RUF012 - Textual declares it so
 
-    def __init__(
-        self, keymap: Keymap, send: Callable[[AnyIntent], None], ask_app: Callable[[OperatorAction], None]
-    ) -> None:
-        super().__init__()
-        self._keymap, self._send, self._ask_app = keymap, send, ask_app
-        self.snapshot = Snapshot()
-        """What is shown."""
+    def __init__(self, context: ScreenContext) -> None:
+        super().__init__(context)
+        self._state = DisplayState(Snapshot(), context.keymap)
+        self._instruments: dict[str, Instrument[Any]] = {}
         self._slow_at = -SLOW
         self.question: OperatorAction | None = None
         """The action that waits for its second key."""
 
+    @property
+    def snapshot(self) -> Snapshot:
+        """What is shown."""
+        return self._state.snapshot
+
     def compose(self) -> ComposeResult:
-        """Every instrument has its place; drive.tcss says where."""
-        simulator = self._keymap.get_keys("app.simulator")
-        self._status = StatusBar(StatusBarValue(self.snapshot), id="status")
-        self._track, self._tape = TrackMap(TrackValue(), id="track"), HeadingTape(None, id="tape")
-        self._speed, self._horizon = SpeedReadout(" -.--", id="speed"), Horizon(None, id="horizon")
-        self._sticks, self._keycaps = StickBars((), id="sticks"), Keycaps(self._keymap, id="keycaps")
-        self._speeds = Chart("speed", "m/s", (Series("", GREEN),), step=0.5, id="speeds")
-        self._battery = Chart("battery", "V", (Series("", BLUE),), step=0.5, id="battery")
-        self._rates, self._links, self._log = (
-            RatesPanel((), id="rates"),
-            LinksPanel((), id="links"),
-            LogPanel((), id="log"),
-        )
-        self._waiting = WaitingPage(format_key(simulator[0]) if simulator else "F5", id="waiting")
-        self._alert, self._footer = AlertLine((), id="alert"), KeyFooter(self._keymap, id="footer")
+        """Lay out the places of INSTRUMENTS; drive.tcss sets their sizes."""
         with Vertical(id="console"):
-            yield self._status
-            yield self._waiting
+            yield from self._build("top")
             with Horizontal(id="body"):
-                yield self._track
+                yield from self._build("left")
                 with Vertical(id="instruments"):
                     with Horizontal(id="motion") as motion:
                         motion.border_title = "motion"
-                        yield self._speed
-                        yield self._horizon
-                    yield self._tape
+                        yield from self._build("motion")
+                    yield from self._build("heading")
                     with Vertical(id="drive") as drive:
                         drive.border_title = "drive"
-                        yield self._sticks
-                        yield self._keycaps
-                    yield self._speeds
-                    yield self._battery
+                        yield from self._build("drive")
+                    yield from self._build("charts")
                 with Vertical(id="traffic"):
-                    yield self._rates
-                    yield self._links
-            yield self._log
-            yield self._alert
-            yield self._footer
+                    yield from self._build("traffic")
+            yield from self._build("bottom")
         yield Static(id="too-small")
 
+    def _build(self, place: str) -> Iterator[Instrument[Any]]:
+        for row in INSTRUMENTS:
+            if row.place == place:
+                self._instruments[row.id] = row.build(row.value(self._state), id=row.id)
+                yield self._instruments[row.id]
+
     def on_resize(self, event: events.Resize) -> None:
-        """A picture with holes would be worse than none."""
+        """Show the size that is needed instead of an incomplete console."""
         self.set_class(self.too_small, "-too-small")
         width, height = event.size
         self.query_one("#too-small", Static).update(
@@ -115,69 +88,54 @@ class DriveScreen(Screen[None]):
         width, height = self.size
         return width < MIN_CONSOLE_SIZE[0] or height < MIN_CONSOLE_SIZE[1]
 
-    def show_snapshot(
-        self,
-        snapshot: Snapshot,
-        *,
-        pressed: frozenset[str],
-        shut: GateClosure | None,
-        terminal: float | None,
-        alive: bool,
-    ) -> None:
-        """Give every instrument its part of the snapshot; each draws only what changed."""
-        self.snapshot = snapshot
-        vehicle = snapshot.vehicle
-        self.set_class(vehicle is None, "-waiting")
-        self._status.show(StatusBarValue(snapshot, terminal))
-        self._alert.show(tuple(active_alerts(AlertContext(snapshot, self._keymap, shut, self.question, alive))))
-        self._log.show(snapshot.texts)
-        if vehicle is None:
-            self._waiting.show(snapshot)
-            return
-        self._track.show(TrackValue.from_vehicle(vehicle))
-        self._speed.show(speed_text(vehicle))
-        self._horizon.show(HorizonValue.from_vehicle(vehicle))
-        self._tape.show(heading_degrees(vehicle))
-        self._sticks.show(build_bars(snapshot))
-        self.light_keycaps(pressed)
-        self._footer.show(vehicle.armed)
-        if self.has_class("-wide") and not 0 <= snapshot.uptime - self._slow_at < SLOW:
-            self._slow_at = snapshot.uptime
-            self._show_slow(snapshot, vehicle)
+    def show_state(self, now: DisplayState) -> None:
+        """Give every instrument its value; each redraws only the lines that changed."""
+        self._state = now
+        self.set_class(now.snapshot.vehicle is None, "-waiting")
+        slow = self._is_slow_due(now.snapshot)
+        for row in INSTRUMENTS:
+            if slow or not row.slow:
+                self._show(row)
 
-    def _show_slow(self, snapshot: Snapshot, vehicle: VehicleView) -> None:
-        self._speeds.add(snapshot.uptime, vehicle.speed)
-        self._battery.add(snapshot.uptime, vehicle.battery_voltage)
-        self._rates.show(snapshot.messages)
-        self._links.show(snapshot.links)
+    def _is_slow_due(self, snapshot: Snapshot) -> bool:
+        if snapshot.vehicle is None or not self.has_class("-wide") or 0 <= snapshot.uptime - self._slow_at < SLOW:
+            return False
+        self._slow_at = snapshot.uptime
+        return True
+
+    def _show(self, row: InstrumentRow) -> None:
+        self._instruments[row.id].show(row.value(self._state))
 
     def light_keycaps(self, pressed: frozenset[str]) -> None:
-        """Light the caps of keys that are down."""
-        self._keycaps.show(KeycapsValue.from_operator(self.snapshot.operator, pressed, self._keymap))
+        """Light the caps of keys that are down, without waiting for the next display state."""
+        self._state = replace(self._state, pressed=pressed)
+        for row in INSTRUMENTS:
+            if row.id == "keycaps":
+                self._show(row)
 
     def on_key(self, event: events.Key) -> None:
-        """What the screen itself does on keys; what drives and stops went its way in the input thread."""
+        """Handle answers and actions of the screen; keys that drive and stop were sent by the input thread."""
         if isinstance(event, KeyRepeat):
             return
-        action = self._keymap.get_action(event.key)
+        action = self.context.keymap.get_action(event.key)
         if self.question is not None:
             self._answer(event.key)
         elif action is not None:
             self.request_action(action)
         elif event.key == "enter" and self.snapshot.vehicle is None:
-            self._send(StartSimulator())
+            self.context.send(StartSimulator())
 
     def request_action(self, action: OperatorAction) -> None:
-        """Ask first where the action wants it. Intents without a question have been sent already."""
+        """Ask first where the action requires it. Intents without a question have been sent already."""
         vehicle = self.snapshot.vehicle
         if action.when_armed is not None and vehicle is not None and vehicle.armed:
             return
         if action.confirm and vehicle is not None:
             self.question = action
         elif action.intent is None:
-            self._ask_app(action)
+            self.context.perform(action)
 
     def _answer(self, key: str) -> None:
         action, self.question = self.question, None
         if key == CONFIRM_KEY and action is not None and action.intent is not None:
-            self._send(action.intent)
+            self.context.send(action.intent)

@@ -1,4 +1,4 @@
-"""The help screen: every key and what it does, from the table of actions."""
+"""Help screen: every key and what it does, from the table of actions, and what the status line means."""
 
 from __future__ import annotations
 
@@ -8,60 +8,85 @@ from textual import events
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 from textual.content import Content
-from textual.screen import Screen
 from textual.widgets import Static
 
-from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, Keymap
+from groundstation.input.keymap import CONFIRM_KEY
+from groundstation.intents import ACTIONS
+from groundstation.screens import SCREENS
 from groundstation.ui.colours import BLUE, DIM, RED, YELLOW
 from groundstation.ui.keynames import format_key
+from groundstation.ui.screens.screen import ConsoleScreen
 
 TITLES = {
     "drive": "Drive", "stop": "Stop", "speed": "Speed limits", "vehicle": "Vehicle", "app": "Ground station",
 }  # fmt: skip
 """Group of actions -> its heading, in this order."""
 
+STATUS_LINE = (
+    ("link", "bars for loss: 4 up to 2 %, 3 up to 10 %, 2 up to 25 %, then 1"),
+    ("loss", "frames of the vehicle lost over the last 5 s"),
+    ("rtt", "round trip to the vehicle and back (TIMESYNC)"),
+    ("sent", "MANUAL_CONTROL frames sent per second"),
+    ("cmd", "age of the demand that the motors obey; from 450 ms on they stop"),
+    ("key→motor", "time from a changed demand to the vehicle that applies it"),
+    ("tty", "round trip to this terminal; without answers keys do not drive"),
+    ("gps, batt", "GPS fix and satellites; battery voltage and charge"),
+)
+"""Readings of the status line, in its order, and their meaning."""
+
 _NOTES = (
-    "Any key that drives nothing is a stop key while the vehicle is driven. The emergency stop works on every screen.",
+    "Any key without a drive action stops the vehicle while it is driven. The emergency stop works on every screen.",
     "Keys drive only on the Drive screen and while this window has the focus; leaving either stops the vehicle.",
+    "The limits are the largest demand that a key sends: speed and turn, in percent of the full range.",
+    "Mouse reports are captured, so that the wheel cannot drive as arrow keys: Shift and drag selects text.",
 )
 
+_SCROLL_KEYS = ("up", "down", "pageup", "pagedown", "home", "end")
 
-class HelpScreen(Screen[None]):
-    """Two columns of text; any key that does not scroll goes back."""
 
+class HelpScreen(ConsoleScreen):
+    """Two columns of text; any key that does not scroll goes back, the key of another screen opens it."""
+
+    AUTO_FOCUS = "#page"
     CSS_PATH = "help.tcss"
 
-    def __init__(self, keymap: Keymap) -> None:
-        super().__init__()
-        self._keymap = keymap
-
     def compose(self) -> ComposeResult:
-        """One scrolling page."""
+        """Lay out one scrolling page."""
         with VerticalScroll(id="page") as page:
-            page.border_title = f"keys · map “{self._keymap.name}”"
+            page.border_title = f"keys · map “{self.context.keymap.name}”"
             page.border_subtitle = "↑ ↓ scroll · any other key goes back"
             yield Static(Content.assemble(*self._lines()))
 
     def on_key(self, event: events.Key) -> None:
-        """Back to the Drive screen."""
-        if event.key not in ("up", "down", "pageup", "pagedown", "home", "end"):
-            event.stop()
-            if self.is_current:  # the second key of one read comes here too, and would take the Drive screen away
-                self.dismiss()
+        """Go back to the Drive screen."""
+        action = self.context.keymap.get_action(event.key)
+        if event.key in _SCROLL_KEYS or (action is not None and action.id in _OTHER_SCREENS):
+            return
+        event.stop()
+        if self.is_current:  # the second key of one read comes here too, and would close the Drive screen
+            self.dismiss()
 
     def _lines(self) -> Iterator[tuple[str, str]]:
         for group, title in TITLES.items():
             yield f"{title}\n", f"bold {BLUE}"
             for action in ACTIONS.values():
-                keys = self._keymap.get_keys(action.id)
+                keys = self.context.keymap.get_keys(action.id)
                 if action.group == group and keys:
-                    yield f"  {_written(keys, confirm=action.confirm):<14}", RED if group == "stop" else YELLOW
+                    yield f"  {_key_list(keys, confirm=action.confirm):<14}", RED if group == "stop" else YELLOW
                     yield f"{action.help}\n", ""
             yield "\n", ""
+        yield "Status line\n", f"bold {BLUE}"
+        for name, meaning in STATUS_LINE:
+            yield f"  {name:<14}", YELLOW
+            yield f"{meaning}\n", ""
+        yield "\n", ""
         for note in _NOTES:
             yield f"{note}\n", DIM
 
 
-def _written(keys: tuple[str, ...], *, confirm: bool) -> str:
+_OTHER_SCREENS = frozenset(row.action for row in SCREENS if not row.target.endswith(f":{HelpScreen.__name__}"))
+
+
+def _key_list(keys: tuple[str, ...], *, confirm: bool) -> str:
     names = "  ".join(format_key(key) for key in keys)
     return f"{names}, then {CONFIRM_KEY}" if confirm else names

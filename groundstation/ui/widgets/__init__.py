@@ -1,1 +1,1 @@
-"""What the driver sees, a module an instrument."""
+"""Instruments: one module each, listed in groundstation/ui/instruments.py."""

@@ -1,16 +1,16 @@
-"""The line of the most urgent alert, and how many more there are."""
+"""Alert line: the most urgent alert, and the number of further ones."""
 
 from __future__ import annotations
 
 from textual.strip import Strip
 
 from groundstation.ui.alerts import Alert, AlertLevel
-from groundstation.ui.colours import AMBER, DEEP_RED, PANEL, TEXT, YELLOW, badge, style
+from groundstation.ui.colours import AMBER, DEEP_RED, PANEL, TEXT, WARNING, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 _LOOKS = {
     AlertLevel.HINT: style(TEXT, PANEL),
-    AlertLevel.WARNING: style(AMBER, "#33270f", bold=True),
+    AlertLevel.WARNING: style(AMBER, WARNING, bold=True),
     AlertLevel.DANGER: badge(DEEP_RED),
     AlertLevel.QUESTION: badge(YELLOW),
 }
@@ -18,10 +18,10 @@ _MARKS = {AlertLevel.HINT: "â€º", AlertLevel.WARNING: "!", AlertLevel.DANGER: "â
 
 
 class AlertLine(Instrument[tuple[Alert, ...]]):
-    """One line over the whole width."""
+    """One line over the full width."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """The first alert in its colour; hints count for nothing beside another one."""
+        """Draw the first alert in its colour; further hints are not counted."""
         if not self.value:
             return []
         first = self.value[0]

@@ -1,4 +1,4 @@
-"""Braille dots, two by four a cell, with words on top. It knows no map and no chart."""
+"""Canvas of braille dots, two by four per cell, with text on top. Used by maps and charts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from textual.strip import Strip
 from groundstation.ui.colours import style as style_of
 
 _BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
-"""Bit of each dot in U+2800, by row and column of the cell (Unicode chapter on Braille)."""
+"""Bit of each dot in U+2800, by row and column of the cell (Unicode standard, Braille patterns)."""
 
 _BLANK = style_of()
 
@@ -20,17 +20,17 @@ Point = tuple[float, float]
 
 
 class Canvas:
-    """A picture of `width` x `height` cells. Points are in dots from the top left; what lies outside is dropped."""
+    """`width` x `height` cells. Points are in dots from the top left; dots outside are dropped."""
 
     def __init__(self, width: int, height: int) -> None:
         self.width, self.height = width, height
         self.across, self.down = width * 2, height * 4
         self._dots = [bytearray(width) for _ in range(height)]
         self._styles: list[list[Style]] = [[_BLANK] * width for _ in range(height)]
-        self._words: list[dict[int, tuple[str, Style]]] = [{} for _ in range(height)]
+        self._texts: list[dict[int, tuple[str, Style]]] = [{} for _ in range(height)]
 
     def dot(self, x: int, y: int, style: Style) -> None:
-        """Set one dot. A cell has one colour: that of its last dot."""
+        """Set one dot. A cell has one colour, that of its last dot."""
         if 0 <= x < self.across and 0 <= y < self.down:
             row, column = y >> 2, x >> 1
             self._dots[row][column] |= _BITS[y & 3][x & 1]
@@ -41,19 +41,19 @@ class Canvas:
         x, y = start
         across, down = end[0] - x, end[1] - y
         steps = max(1, round(max(abs(across), abs(down))))
-        if steps > 4 * (self.across + self.down):  # far outside: not worth walking
+        if steps > 4 * (self.across + self.down):  # far outside: too many steps
             return
         for step in range(steps + 1):
             part = step / steps
             self.dot(round(x + across * part), round(y + down * part), style)
 
     def path(self, points: Sequence[Point], style: Style) -> None:
-        """Join points by lines."""
+        """Connect points by lines."""
         for start, end in pairwise(points):
             self.line(start, end, style)
 
     def fill(self, corners: Sequence[Point], style: Style) -> None:
-        """Fill a polygon, by the crossings of each row of dots with its edges."""
+        """Fill a polygon between the crossings of each row of dots with its edges."""
         edges = [*pairwise(corners), (corners[-1], corners[0])]
         top, bottom = min(y for _, y in corners), max(y for _, y in corners)
         for y in range(max(0, round(top)), min(self.down - 1, round(bottom)) + 1):
@@ -62,22 +62,22 @@ class Canvas:
                 for x in range(round(left), round(right) + 1):
                     self.dot(x, y, style)
 
-    def word(self, column: int, row: int, text: str, style: Style) -> None:
-        """Write over a cell and those right of it; cut at the edges."""
+    def write(self, column: int, row: int, text: str, style: Style) -> None:
+        """Write text from a cell to the right, cut at the edges."""
         if 0 <= row < self.height:
             for offset, character in enumerate(text):
                 if 0 <= column + offset < self.width:
-                    self._words[row][column + offset] = (character, style)
+                    self._texts[row][column + offset] = (character, style)
 
     def strips(self) -> list[Strip]:
-        """The picture, a strip a row, with one segment a run of one style."""
+        """Return one strip per row, with one segment per run of one style."""
         return [Strip(list(self._segments(row)), self.width) for row in range(self.height)]
 
     def _segments(self, row: int) -> Iterable[Segment]:
-        dots, styles, words = self._dots[row], self._styles[row], self._words[row]
+        dots, styles, texts = self._dots[row], self._styles[row], self._texts[row]
         run, run_style = "", _BLANK
         for column in range(self.width):
-            character, style = words.get(column) or (
+            character, style = texts.get(column) or (
                 chr(0x2800 + dots[column]) if dots[column] else " ",
                 styles[column],
             )

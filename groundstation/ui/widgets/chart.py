@@ -1,4 +1,4 @@
-"""A value over the last minute, in braille."""
+"""Chart of values over the last minute, in braille."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none
 
 SPAN = 60.0
-"""s that a chart shows."""
+"""Time range of a chart, s."""
 
 AXIS = 6
-"""Cells for the figures at its left."""
+"""Cells for the scale at the left."""
 
 Samples = tuple[tuple[float, tuple[float | None, ...]], ...]
 
@@ -31,23 +31,36 @@ class Series:
 
 
 class Chart(Instrument[Samples]):
-    """Some series on one scale; the newest at the right end."""
+    """Some series on one scale, the newest sample at the right edge."""
 
-    def __init__(self, title: str, unit: str, series: Sequence[Series], *, step: float, id: str) -> None:  # noqa: A002
-        super().__init__((), id=id)
+    def __init__(
+        self,
+        value: Samples,
+        *,
+        title: str,
+        unit: str,
+        series: Sequence[Series],
+        step: float,
+        id: str | None = None,  # noqa: A002
+    ) -> None:
+        super().__init__(value, id=id)
         self.border_title = title
         self._unit, self._series, self._step = unit, tuple(series), step
-        self._kept: deque[tuple[float, tuple[float | None, ...]]] = deque()
+        self._kept: deque[tuple[float, tuple[float | None, ...]]] = deque(value)
 
     def add(self, now: float, *values: float | None) -> None:
-        """Keep a sample; the oldest leave after SPAN."""
-        self._kept.append((now, tuple(finite_or_none(value) for value in values)))
-        while self._kept[0][0] < now - SPAN:
+        """Add one sample."""
+        self.show(((now, values),))
+
+    def show(self, value: Samples) -> None:
+        """Add samples and show those of the last SPAN seconds."""
+        self._kept.extend((at, tuple(map(finite_or_none, values))) for at, values in value)
+        while self._kept and self._kept[0][0] < self._kept[-1][0] - SPAN:
             self._kept.popleft()
-        self.show(tuple(self._kept))
+        super().show(tuple(self._kept))
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Grid and figures, then the lines, then their names with the newest values."""
+        """Draw grid and scale, then the lines, then their names with the newest values."""
         canvas = Canvas(width, height)
         low, high = _scale([value for _, values in self.value for value in values if value is not None], self._step)
         self._draw_grid(canvas, low, high)
@@ -58,7 +71,7 @@ class Chart(Instrument[Samples]):
 
     def _draw_grid(self, canvas: Canvas, low: float, high: float) -> None:
         for row, value in ((0, high), (canvas.height - 1, low)):
-            canvas.word(0, row, f"{value:{AXIS - 1}.1f}", style(DIM))
+            canvas.write(0, row, f"{value:{AXIS - 1}.1f}", style(DIM))
             for x in range(AXIS * 2, canvas.across, 8):
                 canvas.dot(x, row * 4 + (3 if row else 0), style(LINE))
 
@@ -73,11 +86,11 @@ class Chart(Instrument[Samples]):
         canvas.path(points, style(series.colour))
         if (last := self.value[-1][1][number]) is not None:
             text = f"{series.name} {last:.2f} {self._unit}".strip()
-            canvas.word(AXIS + 1 + number * (canvas.width - AXIS) // 2, 0, text, style(series.colour))
+            canvas.write(AXIS + 1 + number * (canvas.width - AXIS) // 2, 0, text, style(series.colour))
 
 
 def _scale(values: Sequence[float], step: float) -> tuple[float, float]:
-    """Bounds on whole steps around all values, at least two steps apart."""
+    """Return bounds on whole steps around all values, at least two steps apart."""
     if not values:
         return 0.0, 2 * step
     low, high = math.floor(min(values) / step) * step, math.ceil(max(values) / step) * step

@@ -1,11 +1,15 @@
-"""The keys worth knowing, from the table of actions."""
+"""Footer: the most important keys, from the table of actions."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from textual.strip import Strip
 
-from groundstation.input.keymap import ACTIONS, Keymap
+from groundstation.input.keymap import Keymap
+from groundstation.intents import ACTIONS
 from groundstation.ui.colours import DIM, PANEL, RED, TEXT, YELLOW, style
+from groundstation.ui.display_state import DisplayState
 from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
@@ -14,27 +18,37 @@ FOOTER_ITEMS: tuple[tuple[str | None, tuple[str, ...]], ...] = (
     ("E-STOP", ("stop.emergency",)),
     (None, ("vehicle.arm",)),
     ("Speed", ("speed.faster", "speed.slower")),
-    (None, ("drive.style",)),
     (None, ("app.help",)),
     (None, ("app.quit",)),
+    ("Hold/latch/step", ("drive.style",)),
     (None, ("vehicle.manual",)),
     (None, ("vehicle.hold",)),
     (None, ("vehicle.control",)),
 )
-"""A word where the action's own is too long, and the ids. The most important first: the last ones may find no room."""
+"""A label where the action's own is too long, and the ids. The most important first: the last ones may not fit."""
 
 
-class KeyFooter(Instrument[bool]):
-    """One line; the value says whether the vehicle is armed, because one key then means another thing."""
+@dataclass(frozen=True, slots=True)
+class FooterValue:
+    """What decides on the keys and their labels: one key disarms while armed and arms else."""
 
-    def __init__(self, keymap: Keymap, *, id: str | None = None) -> None:  # noqa: A002
-        super().__init__(False, id=id)
-        self._keymap = keymap
+    keymap: Keymap
+    armed: bool = False
+
+    @classmethod
+    def from_state(cls, now: DisplayState) -> FooterValue:
+        """Return the footer of a display state."""
+        vehicle = now.snapshot.vehicle
+        return cls(now.keymap, vehicle is not None and vehicle.armed)
+
+
+class KeyFooter(Instrument[FooterValue]):
+    """One line of keys with their actions."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Keys in yellow, those that stop in red."""
+        """Draw keys in yellow, stop keys in red."""
         parts: list[Part] = []
-        tail = [("│ ", style(DIM, PANEL)), ("^p", style(YELLOW, PANEL, bold=True)), (" All ", style(TEXT, PANEL))]
+        tail = [("│ ", style(DIM, PANEL)), ("^p", style(YELLOW, PANEL, bold=True)), (" Commands ", style(TEXT, PANEL))]
         for label, ids in FOOTER_ITEMS:
             item = self._item(label, ids)
             if item and length(parts) + length(item) + length(tail) <= width:
@@ -47,14 +61,14 @@ class KeyFooter(Instrument[bool]):
         if None in keys:
             return []
         action = ACTIONS[ids[0]]
-        word = label or ("Disarm" if self.value and action.when_armed is not None else action.label)
+        text = label or ("Disarm" if self.value.armed and action.when_armed is not None else action.label)
         colour = RED if action.group == "stop" else YELLOW
         return [
             (f" {' '.join(filter(None, keys))}", style(colour, PANEL, bold=True)),
-            (f" {word} ", style(TEXT, PANEL)),
+            (f" {text} ", style(TEXT, PANEL)),
         ]
 
     def _key(self, action_id: str) -> str | None:
-        keys = self._keymap.get_keys(action_id)
-        key = "space" if "space" in keys else main_key(self._keymap, action_id)
+        keymap = self.value.keymap
+        key = "space" if "space" in keymap.get_keys(action_id) else main_key(keymap, action_id)
         return None if key is None else format_key(key)

@@ -1,4 +1,4 @@
-"""The heading tape: a strip of the compass that slides under a caret."""
+"""Heading tape: a section of the compass that slides over a marker."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _NAMES = {0: "N", 45: "NE", 90: "E", 135: "SE", 180: "S", 225: "SW", 270: "W", 3
 
 
 def heading_degrees(vehicle: VehicleView | None) -> int | None:
-    """The heading as the tape shows it, 0..359."""
+    """Return the heading in degrees, 0..359, None where it is not known."""
     if vehicle is None or (heading := finite_or_none(vehicle.heading)) is None:
         return None
     return round(math.degrees(heading)) % 360
 
 
 def heading_marks(heading: int, width: int) -> str:
-    """The marks around a heading: names of the eight winds, numbers each 30 degrees, dots each 15."""
+    """Return the marks around a heading: the eight compass points, numbers every 30 degrees, dots every 15."""
     middle = width // 2
     cells = [" "] * width
     first = (heading - (middle + 3) * DEGREES_PER_CELL) // 15 * 15
@@ -37,10 +37,10 @@ def heading_marks(heading: int, width: int) -> str:
 
 
 class HeadingTape(Instrument[int | None]):
-    """The tape, and the heading in figures under its middle."""
+    """The tape, and the heading in digits under its middle."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Two lines."""
+        """Draw two lines."""
         if self.value is None:
             return [strip((" " * width, style())), strip(("no heading".center(width), style(DIM)))]
         marks = heading_marks(self.value, width)

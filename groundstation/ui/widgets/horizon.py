@@ -1,4 +1,4 @@
-"""The artificial horizon, in eighths of a cell."""
+"""Artificial horizon, in eighths of a cell."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class HorizonValue:
 
     @classmethod
     def from_vehicle(cls, vehicle: VehicleView | None) -> HorizonValue | None:
-        """Of a snapshot's vehicle, rounded to a third of a degree."""
+        """Return the attitude of a vehicle, rounded to a third of a degree."""
         if (
             vehicle is None
             or (roll := finite_or_none(vehicle.roll)) is None
@@ -38,7 +38,7 @@ class HorizonValue:
 
 
 def ground_fraction(attitude: HorizonValue, column: float, row: int, height: int) -> float:
-    """How much of a cell is ground, 0..1, counted from its bottom. `column` is from the middle."""
+    """Return the fraction of a cell that is ground, from its bottom. `column` counts from the middle."""
     # A cell is about twice as high as wide, hence half a row a column.
     slope = math.tan(max(-1.4, min(1.4, attitude.roll)))
     horizon = height / 2 + attitude.pitch / HALF_VIEW * height / 2 - slope * column / 2
@@ -46,10 +46,10 @@ def ground_fraction(attitude: HorizonValue, column: float, row: int, height: int
 
 
 class Horizon(Instrument[HorizonValue | None]):
-    """Sky over ground, and the vehicle's nose."""
+    """Sky over ground, and a mark for the vehicle's nose."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """A row is few runs, because blocks of both colours share one style."""
+        """Draw rows of few segments: blocks of both colours share one style."""
         attitude = self.value
         if attitude is None:
             return [strip(("no attitude".center(width) if row == height // 2 else " " * width, style(DIM)))

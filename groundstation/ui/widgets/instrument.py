@@ -1,4 +1,4 @@
-"""What all instruments are: a widget that draws one value as lines and redraws only the lines that changed."""
+"""Instrument: a widget that draws one value as lines and redraws only the lines that changed."""
 
 from __future__ import annotations
 
@@ -22,24 +22,24 @@ Part = tuple[str, Style]
 
 
 def strip(*parts: Part) -> Strip:
-    """A line of parts; empty ones are left out."""
+    """Return a line of parts without the empty ones."""
     return Strip([Segment(text, look) for text, look in parts if text])
 
 
 def length(parts: Iterable[Part]) -> int:
-    """Cells of parts; all our characters are one cell wide."""
+    """Return the width of parts in cells; all characters that we draw are one cell wide."""
     return sum(len(text) for text, _ in parts)
 
 
 def finite_or_none(value: float | None) -> float | None:
-    """A number that can be shown: what a vehicle tells may be NaN."""
+    """Return the number, None in place of NaN and infinity, which a vehicle may send."""
     return value if value is not None and math.isfinite(value) else None
 
 
 class Instrument(Widget, Generic[Value], can_focus=False):
-    """Shows the value given last. Subclasses say how by `draw`; everything they draw must come from the value.
+    """Shows the newest value. Subclasses implement `draw`, which must depend on nothing but the value and the size.
 
-    Most of what a frame costs is lines through the compositor, so a value that draws the same line costs nothing.
+    Lines in the compositor are the main cost of a frame, so a value that draws the same lines costs little.
     """
 
     def __init__(self, value: Value, *, id: str | None = None, classes: str | None = None) -> None:  # noqa: A002
@@ -54,11 +54,11 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         return self._value
 
     def show(self, value: Value) -> None:
-        """Show this from now on."""
+        """Show another value."""
         if value == self._value:
             return
         self._value = value
-        if not self.size or self.size != self._drawn_for:  # not laid out yet, or hidden: drawn when it comes to that
+        if not self.size or self.size != self._drawn_for:  # not laid out yet, or hidden: render_line draws later
             self._drawn_for = Size(0, 0)
             self.refresh()
             return
@@ -71,11 +71,11 @@ class Instrument(Widget, Generic[Value], can_focus=False):
             self.refresh(*changed)
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """The lines of the value at this size. Lines that are missing stay blank, those too many are not shown."""
+        """Return the lines of the value at this size. Missing lines stay blank, surplus lines are not shown."""
         raise NotImplementedError
 
     def render_line(self, y: int) -> Strip:
-        """Textual asks for each line that must be painted."""
+        """Return one line; Textual calls this for each line that it must paint."""
         if self.size != self._drawn_for:
             self._drawn_for = self.size
             self._strips = self.draw(*self.size) if self.size else []

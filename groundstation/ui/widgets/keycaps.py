@@ -1,4 +1,4 @@
-"""The drive keys as caps that light up while held, and beside them how the keys drive now."""
+"""Key caps: the drive keys, lit while held, and beside them how the keys drive now."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
 from groundstation.intents import DriveKeyDown, Stop
-from groundstation.snapshot import OperatorView
-from groundstation.ui.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, MUTED, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.display_state import DisplayState
 from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
@@ -19,20 +19,21 @@ GRID = (
     ("drive.left", "drive.stop", "drive.right"),
     ("drive.backward_left", "drive.backward", "drive.backward_right"),
 )
-"""Actions in their places, as on the keyboard around `k`."""
+"""Actions by position, as on the keyboard around `k`."""
 
 STYLES = {
     "hold": ("HOLD to drive", style(GREEN, bold=True)),
     "latch": (" LATCHED: drives on ", badge(RED)),
-    "step": (" STEP: keeps its speed ", badge(AMBER)),
+    "step": (" STEP: keeps driving ", badge(AMBER)),
 }
-"""Drive style -> how it is named; the styles that drive on without a hand are loud."""
+"""Drive style -> its label and colour; the styles that keep driving without a key held are in loud colours."""
 
 
 @dataclass(frozen=True, slots=True)
 class KeycapsValue:
-    """The lit actions, and the helm's settings in figures that can be seen to change."""
+    """The lit actions, and the operator's settings rounded to what can be seen to change."""
 
+    keymap: Keymap
     lit: frozenset[str] = frozenset()
     style: str = "hold"
     reports_releases: bool = False
@@ -42,65 +43,69 @@ class KeycapsValue:
     open: bool = False
 
     @classmethod
-    def from_operator(cls, helm: OperatorView, pressed: frozenset[str], keymap: Keymap) -> KeycapsValue:
-        """`pressed` are the keys that the screen saw go down, sooner than a snapshot can tell."""
+    def from_state(cls, now: DisplayState) -> KeycapsValue:
+        """Return the caps of a display state."""
+        operator = now.snapshot.operator
         return cls(
-            lit=lit_actions(frozenset(helm.held) | pressed, keymap),
-            style=helm.style,
-            reports_releases=helm.reports_releases,
-            stop_bound=round(helm.stop_bound, 2),
-            throttle_limit=round(100 * helm.throttle_limit),
-            steering_limit=round(100 * helm.steering_limit),
-            open=helm.gate_open,
+            keymap=now.keymap,
+            lit=lit_actions(frozenset(operator.held) | now.pressed, now.keymap),
+            style=operator.style,
+            reports_releases=operator.reports_releases,
+            stop_bound=round(operator.stop_bound, 2),
+            throttle_limit=round(100 * operator.throttle_limit),
+            steering_limit=round(100 * operator.steering_limit),
+            open=operator.gate_open,
         )
 
 
 def lit_actions(keys: frozenset[str], keymap: Keymap) -> frozenset[str]:
-    """The caps to light: an arrow lights the cap of its direction too, whatever letter is printed on it."""
+    """Return the actions whose caps to light: an arrow key lights the cap of its direction, too."""
     actions = (keymap.get_action(key) for key in keys)
     return frozenset(action.id for action in actions if action and isinstance(action.intent, (DriveKeyDown, Stop)))
 
 
 class Keycaps(Instrument[KeycapsValue]):
-    """Three rows of caps with three lines of text."""
-
-    def __init__(self, keymap: Keymap, *, id: str | None = None) -> None:  # noqa: A002
-        super().__init__(KeycapsValue(), id=id)
-        self._keymap = keymap
+    """Three rows of caps, with a line of text beside each."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """The text goes to the right end; what has no room is cut, never wrapped."""
+        """Draw caps to the left and text to the right; what does not fit is cut, never wrapped."""
         lines = []
-        for row, words in zip(GRID, self._words(), strict=True):
+        for row, text in zip(GRID, self._texts(), strict=True):
             caps = [part for action in row for part in self._cap(action)]
-            gap = max(1, width - length(caps) - length(words))
-            lines.append(strip(*caps, (" " * gap, style()), *words).crop(0, width))
+            gap = max(1, width - length(caps) - length(text))
+            lines.append(strip(*caps, (" " * gap, style()), *text).crop(0, width))
         return lines[:height]
 
     def _cap(self, action: str) -> list[Part]:
-        key = main_key(self._keymap, action)
+        key = main_key(self.value.keymap, action)
         name = "·" if key is None else "␣" if key == "space" else format_key(key)
         if action in self.value.lit:
             look = badge(DEEP_RED) if action == "drive.stop" else badge(YELLOW)
         elif not self.value.open:
-            look = style(DIM, FAINT)
+            look = style(MUTED, FAINT)
         else:
             look = style(RED if action == "drive.stop" else TEXT, FAINT, bold=True)
         return [(f" {name[:1]} ", look), (" ", style())]
 
-    def _words(self) -> tuple[list[Part], list[Part], list[Part]]:
+    def _texts(self) -> tuple[list[Part], list[Part], list[Part]]:
         value = self.value
         return (
-            [STYLES.get(value.style, (value.style, style(TEXT)))],
+            self._style(),
             self._bound(),
             [
-                ("limits ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
+                ("limits: speed ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
                 (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),
             ],
         )  # fmt: skip
 
+    def _style(self) -> list[Part]:
+        """Return the drive style and the key that changes it."""
+        keys = self.value.keymap.get_keys("drive.style")
+        label = STYLES.get(self.value.style, (self.value.style, style(TEXT)))
+        return [(f"{format_key(keys[0])} ", style(DIM)), label] if keys else [label]
+
     def _bound(self) -> list[Part]:
-        """What ends a drive, and how soon: without releases only a timer can tell that a key was let go."""
+        """Return what ends a drive, and how soon: without key releases only a timer can."""
         value = self.value
         if not math.isfinite(value.stop_bound):
             return [("only a key stops it", style(AMBER))]

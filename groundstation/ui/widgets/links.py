@@ -1,4 +1,4 @@
-"""What each link carries and loses."""
+"""Links panel: rate, loss and errors of each link."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from groundstation.ui.widgets.instrument import Instrument, finite_or_none, stri
 
 
 class LinksPanel(Instrument[tuple[LinkView, ...]]):
-    """Two lines a link: its name with its trouble, then its figures."""
+    """Two lines per link: its name, red with a problem, then its figures."""
 
     BORDER_TITLE = "links"
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """As many links as there is room for."""
+        """Draw as many links as fit."""
         lines = [line for link in self.value for line in _lines(link, width)]
         return lines[:height]
 

@@ -1,4 +1,4 @@
-"""What the vehicle says, and what was answered: the newest lines."""
+"""Log panel: the newest lines of STATUSTEXT, acknowledgements and the station's own events."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from groundstation.ui.widgets.instrument import Instrument, Part, strip
 
 _SEVERITIES = ("EMERG", "ALERT", "CRIT", "ERROR", "WARN", "NOTE", "INFO", "DEBUG")
 _COLOURS = (RED, RED, RED, RED, AMBER, BLUE, BLUE, DIM)
-_LABELS = {"ack": ("ACK", GREEN), "station": ("HERE", BLUE)}
-"""Label of a line -> its name and colour while it is no warning; the vehicle's own lines show their severity."""
+_LABELS = {"ack": ("ACK", GREEN), "station": ("GCS", BLUE)}
+"""Label of a line -> its name and colour below severity WARNING; STATUSTEXT lines show their severity."""
 
 
 class LogPanel(Instrument[tuple[LogLine, ...]]):
-    """A line a text, the newest at the bottom."""
+    """One line per text, the newest at the bottom."""
 
-    BORDER_TITLE = "vehicle says"
+    BORDER_TITLE = "log"
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Cut at the right end, never wrapped: a long text must not push others out."""
+        """Draw lines cut at the right edge, never wrapped: a long text must not push others out."""
         return [strip(*_line(line)).crop(0, width) for line in self.value[-height:]]
 
 
@@ -33,7 +33,7 @@ def _line(line: LogLine) -> list[Part]:
         name, colour = _SEVERITIES[severity], _COLOURS[severity]
     when = time.strftime("%H:%M:%S", time.localtime(line.time))
     parts = [(f" {when} ", style(DIM)), (f"{name:<5} ", style(colour, bold=severity <= 3))]
-    # Letters only: a control character from the wire must not reach the terminal.
+    # Printable only: a control character from the link must not reach the terminal.
     text = "".join(character if character.isprintable() else "�" for character in line.text)
     parts.append((text, style(TEXT if severity > 2 else RED, bold=severity <= 2)))
     if line.count > 1:

@@ -1,4 +1,4 @@
-"""Which messages come and go, and how often."""
+"""Messages panel: which messages are received and sent, and how often."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from groundstation.ui.widgets.instrument import Instrument, strip
 
 
 class RatesPanel(Instrument[tuple[MessageRate, ...]]):
-    """A line a message: received first, then sent."""
+    """One line per message: received first, then sent."""
 
     BORDER_TITLE = "messages"
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Names are cut from the right; a line that does not fit says how many are missing."""
+        """Draw names cut at the right; where rows do not fit, the last line has their number."""
         room = width - 15
         lines = [strip((f"{'':<{room}}{'Hz':>6} {'count':>7} ", style(DIM)))]
         rows = sorted(self.value, key=lambda each: (each.sent, each.name))

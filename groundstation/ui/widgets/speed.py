@@ -1,4 +1,4 @@
-"""The one number that matters, three rows high."""
+"""Speed readout, in digits three rows high."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ GLYPHS = {
 
 
 def speed_text(vehicle: VehicleView | None) -> str:
-    """The speed in m/s as five characters, so that the point stands still; dashes where it is not known."""
+    """Return the speed in m/s as five characters, so that the point does not move; dashes where it is not known."""
     if vehicle is None or (speed := finite_or_none(vehicle.speed)) is None:
         return " -.--"
     return f"{max(-9.99, min(99.99, speed)):5.2f}".replace("-0.00", " 0.00")
@@ -28,7 +28,7 @@ class SpeedReadout(Instrument[str]):
     """Speed along the nose in m/s."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """The figures in the middle of the height, the unit beside their foot."""
+        """Draw the digits in the middle of the height, the unit beside their last row."""
         rows = ["".join(GLYPHS[character][row] for character in self.value) for row in range(3)]
         look = style(DIM if "--" in self.value else GREEN, bold=True)
         lines = [strip((row, look), (" m/s" if number == 2 else "", style(DIM))) for number, row in enumerate(rows)]

@@ -1,4 +1,4 @@
-"""The top line: which vehicle, armed or not, who drives, and how well both ends hear each other."""
+"""Status bar: the vehicle, its mode, armed or not, who is in control, link quality and health."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from textual.strip import Strip
 
 from groundstation.snapshot import LinkView, Snapshot, VehicleView
-from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, GREEN, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
 
 STALE_COMMAND, OLD_COMMAND = 0.45, 0.2
-"""s: from 0.45 on the vehicle no longer obeys (its MAN_TIMEOUT); 0.2 is four missed frames at 20 Hz."""
+"""Age of a demand, s: from 0.45 on the vehicle no longer obeys (its MAN_TIMEOUT); 0.2 is four frames at 20 Hz."""
 
 _BARS = "▂▄▆█"
 _MODES = {"MANUAL": GREEN, "HOLD": AMBER}
@@ -19,7 +19,7 @@ _MODES = {"MANUAL": GREEN, "HOLD": AMBER}
 
 @dataclass(frozen=True, slots=True)
 class StatusBarValue:
-    """What the line shows, and what the snapshot does not know: the terminal's own round trip, s."""
+    """The snapshot, and what is not in it: the round trip to the terminal, s."""
 
     snapshot: Snapshot
     terminal: float | None = None
@@ -27,17 +27,17 @@ class StatusBarValue:
 
 @dataclass(frozen=True, slots=True)
 class StatusField:
-    """One reading; a small weight is kept longest where the line is short."""
+    """One reading; those of small weight stay longest where the line is short."""
 
     weight: int
     parts: tuple[Part, ...]
 
 
 class StatusBar(Instrument[StatusBarValue]):
-    """One line where it fits, else two."""
+    """One line where all fits, else two."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """The badges left, the rest right; on two lines the links go below."""
+        """Draw the badges left, the rest right; on two lines the link readings go below."""
         snapshot = self.value.snapshot
         badges, health = _badges(snapshot), _health(snapshot.vehicle)
         fields = [*_links(snapshot), *_command(snapshot), *_terminal(self.value.terminal)]
@@ -50,7 +50,7 @@ class StatusBar(Instrument[StatusBarValue]):
 
 
 def _fitting(fields: list[StatusField], room: int) -> list[Part]:
-    """The parts of the fields that find room: the least important are left out first, the order stays."""
+    """Return the parts of the fields that fit, in order; the least important are left out first."""
     kept: list[StatusField] = []
     for candidate in sorted(fields, key=lambda each: each.weight):
         if sum(length(each.parts) for each in (*kept, candidate)) <= room:
@@ -73,18 +73,18 @@ def _badges(snapshot: Snapshot) -> list[Part]:
     elif vehicle.armed:
         parts.append((" ARMED ", badge(DEEP_RED)))
     else:
-        parts.append((" DISARMED ", style(TEXT, "#27303c", bold=True)))
+        parts.append((" DISARMED ", style(TEXT, FAINT, bold=True)))
     return [*parts, (" ", style()), _driver(vehicle)]
 
 
 def _driver(vehicle: VehicleView) -> Part:
     if not vehicle.alive:
-        return (f"silent for {vehicle.silence:.0f} s", style(RED, bold=True))
+        return (f"link lost for {vehicle.silence:.0f} s", style(RED, bold=True))
     if vehicle.in_control:
         return ("you drive", style(GREEN, bold=True))
     if vehicle.driver:
         return (f"driven by {vehicle.driver}", style(AMBER, bold=True))
-    return ("nobody drives", style(DIM))
+    return ("no GCS in control", style(DIM))
 
 
 def _field(weight: int, name: str, text: str, colour: str = TEXT) -> StatusField:
@@ -99,7 +99,7 @@ def _links(snapshot: Snapshot) -> list[StatusField]:
     loss, trip = finite_or_none(link.loss), finite_or_none(link.round_trip)
     bars, colour = _quality(link, alive)
     strength = StatusField(
-        1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_BARS[bars:]} ", style("#2b3440")))
+        1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_BARS[bars:]} ", style(FAINT)))
     )
     return [
         strength,

@@ -1,4 +1,4 @@
-"""What is asked against what happens: centre-zero bars of the demand, of what the vehicle obeys, and of each motor."""
+"""Centre-zero bars: the demand sent, with a mark at the demand that the vehicle obeys, and each motor output."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _OUTPUT_NAMES = {1: ("motor",), 2: ("left", "right")}
 
 @dataclass(frozen=True, slots=True)
 class Bar:
-    """One bar, in percent; `obeyed` is where the vehicle says it is."""
+    """One bar, in percent; `obeyed` is what the vehicle reports (ROVER_DRIVE_STATUS)."""
 
     label: str
     colour: str
@@ -31,14 +31,14 @@ class Bar:
 
 
 def build_bars(snapshot: Snapshot) -> tuple[Bar, ...]:
-    """Throttle and steering as sent, then the motors."""
-    helm, vehicle = snapshot.operator, snapshot.vehicle
+    """Return throttle and steering as sent, then the motors."""
+    operator, vehicle = snapshot.operator, snapshot.vehicle
     obeyed = vehicle.demand if vehicle is not None and vehicle.demand is not None else (None, None)
     outputs = vehicle.outputs if vehicle is not None else ()
     names = _OUTPUT_NAMES.get(len(outputs)) or tuple(f"motor {number + 1}" for number in range(len(outputs)))
     return (
-        Bar("throttle", AMBER, _percent(helm.throttle), _percent(obeyed[0])),
-        Bar("steering", BLUE, _percent(helm.steering), _percent(obeyed[1])),
+        Bar("throttle", AMBER, _percent(operator.throttle), _percent(obeyed[0])),
+        Bar("steering", BLUE, _percent(operator.steering), _percent(obeyed[1])),
         *(Bar(name, GREEN, _percent(value)) for name, value in zip(names, outputs, strict=True)),
     )
 
@@ -49,14 +49,14 @@ def _percent(value: float | None) -> int | None:
 
 
 def bar_cells(bar: Bar, width: int) -> Iterator[Part]:
-    """The cells of a bar that grows from its middle, in eighths of a cell."""
+    """Return the cells of a bar that grows from its middle, in eighths of a cell."""
     half = (width - 1) // 2
     filled = abs(bar.percent or 0) / 100 * half
     whole, eighths = int(filled), int(filled % 1 * 8)
     on, trough = style(bar.colour, bar.colour), style(FAINT, PANEL)
     rest = half - whole - (1 if eighths else 0)
     if (bar.percent or 0) < 0:
-        # There are no blocks that grow from the right: the block of the rest in the colours swapped is one.
+        # No block characters grow from the right: the complementary block with swapped colours looks the same.
         part = _PARTIAL[8 - eighths] if eighths else ""
         left = [("░" * rest, trough), (part, style(PANEL, bar.colour)), (" " * whole, on)]
         right = [("░" * half, trough)]
@@ -69,7 +69,7 @@ def bar_cells(bar: Bar, width: int) -> Iterator[Part]:
 
 
 def _marked(parts: list[Part], at: int) -> Iterator[Part]:
-    """The parts with the mark of the obeyed demand over one cell, in that cell's own ground."""
+    """Yield the parts with the mark of the obeyed demand over one cell, on the background of that cell."""
     start = 0
     for text, look in parts:
         if start <= at < start + len(text):
@@ -83,10 +83,10 @@ def _marked(parts: list[Part], at: int) -> Iterator[Part]:
 
 
 class StickBars(Instrument[tuple[Bar, ...]]):
-    """The bars, one a line."""
+    """The bars, one per line."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """As many as there is room for: the demand first."""
+        """Draw as many as fit, the demand first."""
         return [self._line(bar, width) for bar in self.value[:height]]
 
     def _line(self, bar: Bar, width: int) -> Strip:

@@ -1,4 +1,4 @@
-"""The map: where the vehicle has been, where it is and points, and how far from home. North is up."""
+"""Track map: the path, position and heading of the vehicle, and its distance from home. North is up."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from groundstation.ui.widgets.canvas import Canvas, Point
 from groundstation.ui.widgets.instrument import Instrument, finite_or_none
 
 REACH = 150.0
-"""m: the map fits the track and home within this distance of the vehicle; farther ones leave the picture."""
+"""m: track points and home within this distance of the vehicle are kept in view, those farther away are not."""
 
 MIN_SCALE = 0.08
-"""m a dot: closer than this, GPS noise would dance over the map."""
+"""m per dot: at a smaller scale GPS noise would move the vehicle visibly."""
 
 _STEPS = (1.0, 1.4, 2.0, 3.0, 5.0, 7.0)
 _RINGS = (1.0, 2.0, 5.0)
@@ -25,7 +25,7 @@ _RINGS = (1.0, 2.0, 5.0)
 
 @dataclass(frozen=True, slots=True)
 class TrackValue:
-    """What the map shows; positions are (north, east) in m."""
+    """Contents of the map; positions are (north, east) in m."""
 
     position: Point | None = None
     heading: float | None = None
@@ -34,7 +34,7 @@ class TrackValue:
 
     @classmethod
     def from_vehicle(cls, vehicle: VehicleView | None) -> TrackValue:
-        """Of a snapshot's vehicle, rounded to what a dot can show."""
+        """Return the map of a vehicle, rounded to what a dot can show."""
         if vehicle is None or vehicle.position is None or not all(map(math.isfinite, vehicle.position)):
             return cls()
         north, east = vehicle.position
@@ -45,7 +45,7 @@ class TrackValue:
 
 @dataclass(frozen=True, slots=True)
 class MapView:
-    """A window on the ground: its middle (north, east), m a dot, and the distance of its rings."""
+    """The visible area: its middle (north, east), m per dot, and the spacing of its rings in m."""
 
     north: float
     east: float
@@ -53,16 +53,16 @@ class MapView:
     ring: float
 
     def to_canvas(self, point: Point, canvas: Canvas) -> Point:
-        """Where a (north, east) is on the canvas."""
+        """Return the position of a (north, east) point on the canvas."""
         north, east = point
         x = canvas.across / 2 + (east - self.east) / self.scale
         return x, canvas.down / 2 - (north - self.north) / self.scale
 
 
 def fit_view(value: TrackValue, across: int, down: int) -> MapView:
-    """The closest view in which the vehicle, its near track and home lie, in steps so that it seldom changes.
+    """Return the closest view that contains the vehicle, its near track and home, in steps so that it seldom changes.
 
-    A view that follows each metre would redraw the whole map ten times a second, over a thin line too.
+    A view that follows each metre would redraw the whole map ten times a second, also over a slow line.
     """
     vehicle = value.position or (0.0, 0.0)
     points = [point for point in (*value.track, value.home or vehicle) if math.dist(point, vehicle) < REACH]
@@ -98,20 +98,20 @@ class TrackMap(Instrument[TrackValue]):
     BORDER_TITLE = "track"
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Rings and home below, the track over them, the vehicle on top."""
+        """Draw rings and home, the track over them, and the vehicle on top."""
         canvas = Canvas(width, height)
         value = self.value
         if value.position is None:
-            canvas.word(max(0, width // 2 - 7), height // 2, "no position yet", style(DIM))
+            canvas.write(max(0, width // 2 - 7), height // 2, "no position yet", style(DIM))
             return canvas.strips()
         view = fit_view(value, canvas.across, canvas.down)
         _draw_rings(canvas, view, value.home or (0.0, 0.0))
         canvas.path([view.to_canvas(point, canvas) for point in (*value.track, value.position)], style(BLUE))
         if value.home is not None:
             x, y = view.to_canvas(value.home, canvas)
-            canvas.word(int(x) >> 1, int(y) >> 2, "⌂", style(AMBER, bold=True))
+            canvas.write(int(x) >> 1, int(y) >> 2, "⌂", style(AMBER, bold=True))
         _draw_vehicle(canvas, view.to_canvas(value.position, canvas), value.heading)
-        _draw_words(canvas, view, value)
+        _draw_labels(canvas, view, value)
         return canvas.strips()
 
 
@@ -124,27 +124,27 @@ def _draw_rings(canvas: Canvas, view: MapView, home: Point) -> None:
         for step in range(count := max(24, int(radius * 2.4))):
             angle = step * math.tau / count
             canvas.dot(round(x + radius * math.cos(angle)), round(y + radius * math.sin(angle)), style(LINE))
-        canvas.word((int(x + radius) >> 1) + 1, int(y) >> 2, _metres(view.ring * number), style(DIM))
+        canvas.write((int(x + radius) >> 1) + 1, int(y) >> 2, _metres(view.ring * number), style(DIM))
 
 
 def _draw_vehicle(canvas: Canvas, at: Point, heading: float | None) -> None:
     x, y = at
     if heading is None:
-        canvas.word(int(x) >> 1, int(y) >> 2, "●", style(YELLOW))
+        canvas.write(int(x) >> 1, int(y) >> 2, "●", style(YELLOW))
         return
     along, aside = math.sin(heading), math.cos(heading)
     corners = [(9.0, 0.0), (-4.5, 4.0), (-2.0, 0.0), (-4.5, -4.0)]  # dots ahead, dots to the right
     canvas.fill([(x + a * along + b * aside, y - a * aside + b * along) for a, b in corners], style(YELLOW))
 
 
-def _draw_words(canvas: Canvas, view: MapView, value: TrackValue) -> None:
-    canvas.word(canvas.width // 2, 0, "N", style(RED, bold=True))
+def _draw_labels(canvas: Canvas, view: MapView, value: TrackValue) -> None:
+    canvas.write(canvas.width // 2, 0, "N", style(RED, bold=True))
     bar = max(2, round(view.ring / view.scale / 2))
     if bar < canvas.width // 2:
-        canvas.word(1, canvas.height - 1, "├" + "─" * (bar - 1) + "┤ " + _metres(view.ring), style(DIM))
+        canvas.write(1, canvas.height - 1, "├" + "─" * (bar - 1) + "┤ " + _metres(view.ring), style(DIM))
     if value.home is not None and value.position is not None:
         text = f"home {math.dist(value.home, value.position):.1f} m"
-        canvas.word(canvas.width - len(text) - 1, canvas.height - 1, text, style(DIM))
+        canvas.write(canvas.width - len(text) - 1, canvas.height - 1, text, style(DIM))
 
 
 def _metres(distance: float) -> str:

@@ -1,60 +1,62 @@
-"""Commands that take a while: IN_PROGRESS, news of the progress, and one final COMMAND_ACK; COMMAND_CANCEL ends them.
+"""Long-running commands: IN_PROGRESS with progress, one final COMMAND_ACK, COMMAND_CANCEL.
 
-Rules (mavlink.io/en/services/command.html, "long running commands"): one of a kind at a time, another one meanwhile is
-TEMPORARILY_REJECTED; a cancelled one ends with CANCELLED, and a cancel that finds nothing to do is ignored.
+Rules (https://mavlink.io/en/services/command.html#long_running_commands): one of a kind at a time, a second one
+meanwhile is TEMPORARILY_REJECTED; a cancelled one ends with CANCELLED, and a cancel without a running command is
+ignored.
 
-To make a command one of these, let its handler's `run` (link/services/command/server.py) return a Job instead of a Result
-once the work has begun, and a Result where it is refused. The server does the rest:
+To make a command long-running, let its handler's `run` (link/services/command/server.py) return a CommandJob instead of
+a Result once the work has begun. The server does the rest:
 
-    class Survey:                                           # fits Job
+    class Survey:                                           # fits CommandJob
         percent = None                                      # or 0..100
         def step(self, now): return Result.ACCEPTED if now >= self._end else None
         def cancel(self, now): self._readings.clear()
 
-    Handler(lambda request, now: Survey(...) if allowed else Result.DENIED)
+    CommandHandler(lambda request, now: Survey(...) if allowed else Result.DENIED)
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from dialects.enums import Result
 from dialects.messages import CommandAck
 from link.core import Outgoing, Received
-
-if TYPE_CHECKING:
-    from link.services.command.server import CommandRequest
+from link.services.command.request import CommandRequest
 
 PROGRESS_PERIOD = 0.5
-"""s between two words of the progress: the client waits longer than its usual patience after each."""
+"""s between two progress reports: after each the client waits longer than usual."""
 REPEAT_WINDOW = 3.0
-"""s after the beginning, and after the end, in which the command or its cancel said again is answered as the first was:
-answers get lost. Later it is a new wish, unless it says itself that it is a repeat."""
+"""s after start and after the end in which a repeated command or cancel gets the same reply again, because replies get
+lost. Later it is a new command, unless it is marked as a repeat."""
 PROGRESS_UNKNOWN = 255
-"""`progress` of COMMAND_ACK where nobody knows."""
+"""`progress` of COMMAND_ACK when it is not known."""
 
 
 class CommandJob(Protocol):
-    """A command at work."""
+    """A long-running command."""
 
     @property
     def percent(self) -> int | None:
-        """How far it is, 0..100; None where nobody knows."""
+        """Progress, 0..100; None where not known."""
 
     def step(self, now: float) -> Result | None:
-        """Each cycle: None while it goes on, at its end the final result, and no call after that."""
+        """Run one cycle; return None while the command goes on, and its result once at the end."""
 
     def cancel(self, now: float) -> None:
-        """Stop, now; no call of `step` after that. Anybody may ask for it, as for every stop."""
+        """Stop at once; step() is not called after that.
+
+        Any ground station may cancel, as any may stop the vehicle.
+        """
 
 
 @dataclass(slots=True)
 class _Running:
     request: CommandRequest
     job: CommandJob
-    began: float
-    told: float
+    started_at: float
+    reported_at: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,22 +67,22 @@ class _EndedCommand:
 
 
 class CommandJobs:
-    """The long running commands of a server, at most one of a kind."""
+    """The long-running commands of a server, at most one of a kind."""
 
     def __init__(self) -> None:
         self._running: dict[int, _Running] = {}
         self._ended: dict[int, _EndedCommand] = {}
 
     def begin(self, request: CommandRequest, job: CommandJob, now: float) -> Outgoing:
-        """It is under way."""
+        """Add a command that has begun; return its first IN_PROGRESS."""
         self._running[request.command] = _Running(request, job, now, now)
         return _progress_ack(request, job)
 
     def reply_to_repeat(self, request: CommandRequest, now: float) -> Outgoing | None:
-        """To a command that is under way, or a repeat of one that has just ended; None where it is to be run."""
+        """Return the reply to a command under way, or to a repeat of one just ended; None: run it."""
         running = self._running.get(request.command)
         if running is not None:
-            again = running.request == request and (request.repeated or now - running.began < REPEAT_WINDOW)
+            again = running.request == request and (request.repeated or now - running.started_at < REPEAT_WINDOW)
             return _progress_ack(request, running.job) if again else ack(request, Result.TEMPORARILY_REJECTED)
         ended = self._ended.get(request.command)
         if ended is None or now - ended.at >= REPEAT_WINDOW or ended.request != request or not request.repeated:
@@ -88,29 +90,29 @@ class CommandJobs:
         return ack(request, ended.result)
 
     def cancel(self, command: int, received: Received, now: float) -> list[Outgoing]:
-        """Stop it; its client and who cancelled it hear of it. Nothing where nothing of the kind is under way."""
+        """Cancel a command; its client and the sender of the cancel get CANCELLED."""
         running = self._running.pop(command, None)
         if running is None:
             ended = self._ended.get(command)
             return [_ack_to(command, ended.result, received)] if ended and now - ended.at < REPEAT_WINDOW else []
         running.job.cancel(now)
-        words = [self._end(running.request, Result.CANCELLED, now)]
+        replies = [self._end(running.request, Result.CANCELLED, now)]
         if (received.system, received.component) != (running.request.system, running.request.component):
-            words.append(_ack_to(command, Result.CANCELLED, received))
-        return words
+            replies.append(_ack_to(command, Result.CANCELLED, received))
+        return replies
 
     def tick(self, now: float) -> list[Outgoing]:
-        """What is worth telling."""
-        words = []
+        """Run all jobs; return their progress and results."""
+        replies = []
         for command, running in list(self._running.items()):
             result = running.job.step(now)
             if result is not None:
                 del self._running[command]
-                words.append(self._end(running.request, result, now))
-            elif now - running.told >= PROGRESS_PERIOD:
-                running.told = now
-                words.append(_progress_ack(running.request, running.job))
-        return words
+                replies.append(self._end(running.request, result, now))
+            elif now - running.reported_at >= PROGRESS_PERIOD:
+                running.reported_at = now
+                replies.append(_progress_ack(running.request, running.job))
+        return replies
 
     def _end(self, request: CommandRequest, result: Result, now: float) -> Outgoing:
         self._ended[request.command] = _EndedCommand(request, result, now)
@@ -118,7 +120,7 @@ class CommandJobs:
 
 
 def ack(request: CommandRequest, result: Result, progress: int = 0) -> Outgoing:
-    """COMMAND_ACK to the sender of a request."""
+    """Return COMMAND_ACK to the sender of a request."""
     answer = CommandAck(request.command, result, progress, 0, request.system, request.component)
     return Outgoing(answer, request.peer)
 

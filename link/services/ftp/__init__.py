@@ -1,1 +1,1 @@
-"""MAVLink FTP."""
+"""MAVLink FTP (https://mavlink.io/en/services/ftp.html)."""

@@ -1,7 +1,8 @@
-"""The ground station's half of MAVLink FTP, only reading: downloads a file or lists a folder, until it is certain.
+"""Client half of MAVLink FTP, read-only: downloads a file or lists a folder.
 
-A file comes as bursts; what got lost is asked for piece by piece. What the vehicle says of a file's size is believed
-only as an upper bound, because ArduPilot only estimates it for the files that it makes when they are opened.
+A file arrives as bursts; lost pieces are requested one by one. The size that the vehicle reports is only an upper
+bound, because ArduPilot estimates it for files that it generates on open. Source:
+https://mavlink.io/en/services/ftp.html.
 """
 
 from __future__ import annotations
@@ -16,21 +17,21 @@ from link.services.ftp.protocol import MAX_DATA, SEQUENCE_MASK, FtpError, FtpOpc
 from link.services.ftp.reassembly import FileReassembly
 
 REPEAT_AFTER = 0.7
-"""s without an answer before a question is repeated: more than a round trip on a loaded 57600 baud radio (0.4 s)."""
+"""s without a reply before a request is repeated: longer than a round trip on a loaded 57600 baud radio (0.4 s)."""
 BURST_TIMEOUT = 1.0
-"""s without data before a burst is asked for again: at 40 % of a 57600 baud radio a message takes 0.12 s."""
+"""s without data before a burst is requested again: at 40 % of a 57600 baud radio a message takes 0.12 s."""
 TRIES = 16
-"""Questions without an answer before nobody is there: 11 s."""
+"""Requests without a reply before a job fails: 11 s."""
 WINDOW = 8
-"""Missing pieces asked for at once: 2 kB, a third of a second of a 57600 baud radio."""
+"""Missing pieces requested at once: 2 kB, a third of a second of a 57600 baud radio."""
 MAX_SIZE = 32 * 1024 * 1024
-"""Bytes of a download: a day's log; more is an attack on our memory."""
+"""Bytes of a download: a day's log. More would be an attack on our memory."""
 MAX_ENTRIES = 10_000
 END = bytes([FtpError.END_OF_FILE])
 
 
 class FtpOperation(Enum):
-    """What the client is at."""
+    """What the client is doing."""
 
     DOWNLOAD = "download"
     LIST = "list"
@@ -46,12 +47,12 @@ class FtpOutcome:
     data: bytes = b""
     entries: tuple[Entry, ...] = ()
     error: int | None = None
-    """MAV_FTP_ERR of the vehicle; None where it succeeded or nobody answered."""
+    """MAV_FTP_ERR of the vehicle; None after success or without a reply."""
 
 
 class _Phase(Enum):
-    ASKED = 0
-    """One question is out: to open, to list or to close."""
+    REQUEST = 0
+    """One request is open: OPEN, LIST or TERMINATE."""
     BURST = 1
     FILL = 2
 
@@ -63,8 +64,8 @@ class _FtpTransfer:
     job: FtpOperation
     path: str
     session: int
-    phase: _Phase = _Phase.ASKED
-    asked: FtpPacket | None = None
+    phase: _Phase = _Phase.REQUEST
+    pending: FtpPacket | None = None
     due: float = 0.0
     tries: int = 0
     file: FileReassembly = field(default_factory=lambda: FileReassembly(MAX_SIZE))
@@ -84,7 +85,7 @@ class FtpClient:
         self._outcomes: list[FtpOutcome] = []
 
     def download(self, path: str, now: float) -> None:
-        """Fetch a file. `path` is ASCII, e.g. "/logs/1.bin" or "@PARAM/param.pck"."""
+        """Download a file. `path` is ASCII, e.g. "/logs/1.bin" or "@PARAM/param.pck"."""
         self._begin(FtpOperation.DOWNLOAD, FtpOpcode.OPEN, path, now)
 
     def list_folder(self, path: str, now: float) -> None:
@@ -92,73 +93,73 @@ class FtpClient:
         self._begin(FtpOperation.LIST, FtpOpcode.LIST, path, now)
 
     def cancel(self) -> None:
-        """Give up the job under way without an outcome."""
+        """Cancel the job under way, without an outcome."""
         if self._work and self._work.job is FtpOperation.DOWNLOAD:
             self._send(self._packet(FtpOpcode.TERMINATE, self._work.session))
         self._work = None
 
     @property
     def busy(self) -> bool:
-        """Is a job under way?"""
+        """Whether a job is under way."""
         return self._work is not None
 
     @property
     def progress(self) -> tuple[int, int | None]:
-        """Bytes that are here, and of at most how many."""
+        """Bytes that have arrived, and the most that the file may have."""
         work = self._work
-        if work is None or work.phase is _Phase.ASKED:
+        if work is None or work.phase is _Phase.REQUEST:
             return 0, None
         return work.file.received.bytes, work.file.end
 
     def receive(self, received: Received, now: float) -> None:
-        """Take an answer of the vehicle; others are ignored."""
+        """Handle a reply of the vehicle; other messages are ignored."""
         message, work = received.message, self._work
         if work is None or received.system != self._target[0] or not isinstance(message, m.FileTransferProtocol):
             return
         if message.target_system != self._ids[0] or message.target_component not in (0, self._ids[1]):
             return
         packet = parse_packet(message)
-        match packet.asked:
-            case FtpOpcode.OPEN if self._answers(work, packet):
+        match packet.req_opcode:
+            case FtpOpcode.OPEN if self._is_reply(work, packet):
                 self._opened(work, packet, now)
-            case FtpOpcode.LIST if self._answers(work, packet):
+            case FtpOpcode.LIST if self._is_reply(work, packet):
                 self._listed(work, packet, now)
-            case FtpOpcode.BURST if work.phase is not _Phase.ASKED and packet.session == work.session:
+            case FtpOpcode.BURST if work.phase is not _Phase.REQUEST and packet.session == work.session:
                 self._burst(work, packet, now)
             case FtpOpcode.READ if work.phase is _Phase.FILL:
                 self._piece(work, packet, now)
 
     def tick(self, now: float) -> None:
-        """Repeat what is overdue, and give up at last."""
+        """Repeat overdue requests, and give up at last."""
         work = self._work
         if work is None or now < work.due:
             return
         if work.tries >= TRIES:
             self._fail(work, None)
-        elif work.phase is _Phase.ASKED and work.asked:
-            self._repeat(work, work.asked, now, REPEAT_AFTER)
+        elif work.phase is _Phase.REQUEST and work.pending:
+            self._repeat(work, work.pending, now, REPEAT_AFTER)
         elif work.phase is _Phase.BURST:
-            self._ask_burst(work, now)
+            self._request_burst(work, now)
         else:
             self._fill(work, now)
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What to send now; empties what it returns."""
+        """Return the messages to send now, and remove them."""
         outbox, self._outbox = self._outbox, []
         return outbox
 
     def outcomes(self) -> list[FtpOutcome]:
-        """Jobs that ended since the last call."""
+        """Return the jobs that ended since the last call."""
         outcomes, self._outcomes = self._outcomes, []
         return outcomes
 
-    # ---- beginning and ending ----
+    # ---- start and end ----
 
     def _begin(self, job: FtpOperation, op: FtpOpcode, path: str, now: float) -> None:
         self.cancel()
         self._session = (
             self._session + 1
-        ) & 0xFF  # a fresh one, so that late data of the last job is not taken for ours
+        ) & 0xFF  # a new session, so that late data of the last job is not taken for this one's
         work = self._work = _FtpTransfer(job, path, self._session)
         self._repeat(
             work, self._packet(op, work.session, path.encode("ascii", "replace")[:MAX_DATA]), now, REPEAT_AFTER
@@ -174,7 +175,7 @@ class FtpClient:
             self._fail(work, None)
             return
         work.file, work.tries = FileReassembly(announced), 0
-        self._ask_burst(work, now)
+        self._request_burst(work, now)
 
     def _finish(self, work: _FtpTransfer) -> None:
         self._work = None
@@ -185,7 +186,7 @@ class FtpClient:
 
     def _fail(self, work: _FtpTransfer, packet: FtpPacket | None) -> None:
         self._work = None
-        if work.phase is not _Phase.ASKED:
+        if work.phase is not _Phase.REQUEST:
             self._send(self._packet(FtpOpcode.TERMINATE, work.session))
         error = (packet.data[0] if packet.data else FtpError.FAIL) if packet else None
         self._outcomes.append(FtpOutcome(work.job, work.path, False, error=error))
@@ -203,7 +204,7 @@ class FtpClient:
             self._finish(work)
             return
         work.tries = 0
-        offset = (work.asked.offset if work.asked else 0) + len(lines)
+        offset = (work.pending.offset if work.pending else 0) + len(lines)
         path = work.path.encode("ascii", "replace")[:MAX_DATA]
         self._repeat(work, self._packet(FtpOpcode.LIST, work.session, path, offset), now, REPEAT_AFTER)
 
@@ -223,7 +224,7 @@ class FtpClient:
         if work.file.received.end >= work.file.end:
             self._start_filling(work, now)
         elif packet.burst_complete:
-            self._ask_burst(work, now)
+            self._request_burst(work, now)
 
     def _start_filling(self, work: _FtpTransfer, now: float) -> None:
         if work.phase is not _Phase.FILL:
@@ -245,7 +246,7 @@ class FtpClient:
         self._fill(work, now)
 
     def _fill(self, work: _FtpTransfer, now: float) -> None:
-        """Ask for what is missing, a few pieces at a time; done when nothing is."""
+        """Request a few of the missing pieces; finish if there are none."""
         if work.file.complete:
             self._finish(work)
             return
@@ -256,18 +257,20 @@ class FtpClient:
             self._send(packet)
         work.due = work.file.next_due(now + REPEAT_AFTER)
 
-    def _ask_burst(self, work: _FtpTransfer, now: float) -> None:
+    def _request_burst(self, work: _FtpTransfer, now: float) -> None:
         work.phase = _Phase.BURST
         self._repeat(
             work, self._packet(FtpOpcode.BURST, work.session, b"", work.file.received.end, MAX_DATA), now, BURST_TIMEOUT
         )
 
-    # ---- words ----
+    # ---- packets ----
 
-    def _answers(self, work: _FtpTransfer, packet: FtpPacket) -> bool:
-        asked = work.asked
+    def _is_reply(self, work: _FtpTransfer, packet: FtpPacket) -> bool:
+        pending = work.pending
         return (
-            asked is not None and packet.asked == asked.op and packet.sequence == (asked.sequence + 1) & SEQUENCE_MASK
+            pending is not None
+            and packet.req_opcode == pending.op
+            and packet.sequence == (pending.sequence + 1) & SEQUENCE_MASK
         )
 
     def _packet(
@@ -276,8 +279,8 @@ class FtpClient:
         self._sequence = (self._sequence + 1) & SEQUENCE_MASK
         return FtpPacket(self._sequence, op, session, data, offset, size=size)
 
-    def _repeat(self, work: _FtpTransfer, packet: FtpPacket, now: float, patience: float) -> None:
-        work.asked, work.due = packet, now + patience
+    def _repeat(self, work: _FtpTransfer, packet: FtpPacket, now: float, timeout: float) -> None:
+        work.pending, work.due = packet, now + timeout
         work.tries += 1
         self._send(packet)
 
@@ -286,7 +289,7 @@ class FtpClient:
 
 
 def _entry(line: bytes) -> Entry | None:
-    """A line of a listing; None for one that is neither file nor folder. Names are made fit for a terminal."""
+    """Parse a line of a listing; None if it is neither file nor folder. Names are made printable."""
     name, _, size = line[1:].decode("ascii", "replace").partition("\t")
     match line[:1]:
         case b"D":

@@ -1,7 +1,7 @@
-"""The files that are served: a tree of folders, each from its own provider, and nothing of the real file system.
+"""The served files: a tree of folders, each with its own provider, apart from the real file system.
 
-A path is taken apart here and nowhere else: at most one folder and one file, plain characters only, no `..`, no `.`.
-Providers see a name without any slash, so that no path can leave the tree, and there are no links to follow.
+Paths are parsed only here: at most one folder and one file, printable characters only, no `..`, no `.`. Providers get a
+name without any slash, so that no path can leave the tree, and there are no links to follow.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import NamedTuple, Protocol
 from link.services.ftp.protocol import FtpError
 
 Query = Mapping[str, str]
-"""What stands behind the `?` of a path."""
+"""The part of a path behind `?`."""
 
 
 class Entry(NamedTuple):
@@ -25,43 +25,46 @@ class Entry(NamedTuple):
 
 
 class Content(Protocol):
-    """A file that was opened."""
+    """An open file."""
 
     @property
     def size(self) -> int:
-        """Bytes. It does not change while the file is open."""
+        """Bytes; constant while the file is open."""
 
     def read(self, offset: int, size: int) -> bytes | None:
-        """Up to `size` bytes, fewer only at the end; None: not here yet, ask again at the next tick."""
+        """Return up to `size` bytes, fewer only at the end; None: not read yet, try again at the next tick."""
 
 
 class NotReadyError(Exception):
-    """The disk has not answered; the same question at a later tick gets its answer."""
+    """The disk has not answered; the same call at a later tick returns the result."""
 
 
 class Folder(Protocol):
-    """A provider of files. It is called inside the control loop and must not wait for a disk: all but `writable` may
-    raise NotYetError."""
+    """A provider of files.
+
+    It is called inside the control loop and must not wait for a disk: all methods but `writable` may raise
+    NotReadyError.
+    """
 
     def entries(self) -> Sequence[Entry]:
-        """The files, in an order that stays."""
+        """Return the files, in a stable order."""
 
     def open(self, name: str, query: Query) -> Content | None:
-        """The file, or None where there is none."""
+        """Open a file; None if it does not exist."""
 
     def writable(self, name: str) -> bool:
-        """May a file of this name be written at all?"""
+        """Return whether a file of this name may be written at all."""
 
     def store(self, name: str, data: bytes) -> FtpError | None:
-        """Write a whole file; returns why not."""
+        """Write a whole file; return an error or None."""
 
     def remove(self, name: str) -> FtpError | None:
-        """Remove a file; returns why not."""
+        """Remove a file; return an error or None."""
 
 
 @dataclass(frozen=True, slots=True)
 class BytesContent:
-    """Content that is in memory."""
+    """Content in memory."""
 
     data: bytes
 
@@ -71,39 +74,39 @@ class BytesContent:
         return len(self.data)
 
     def read(self, offset: int, size: int) -> bytes:
-        """Up to `size` bytes."""
+        """Return up to `size` bytes."""
         return self.data[offset : offset + size]
 
 
 class ReadOnlyFolder:
-    """The half of a Folder that writes, for one that does not."""
+    """The writing half of a Folder, for a read-only one."""
 
     def writable(self, name: str) -> bool:
-        """Never."""
+        """Return False."""
         return False
 
     def store(self, name: str, data: bytes) -> FtpError | None:
-        """Never."""
+        """Return PROTECTED."""
         return FtpError.PROTECTED
 
     def remove(self, name: str) -> FtpError | None:
-        """Never."""
+        """Return PROTECTED."""
         return FtpError.PROTECTED
 
 
 class GeneratedFolder(ReadOnlyFolder):
-    """Files that are made when somebody opens them, e.g. `param.pck`."""
+    """Files that are generated when they are opened, e.g. `param.pck`."""
 
     def __init__(self, makers: Mapping[str, Callable[[Query], bytes | None]]) -> None:
         self._makers = makers
 
     def entries(self) -> list[Entry]:
-        """Their sizes are those without a query."""
+        """Return the files with their sizes without a query."""
         made = ((name, make({})) for name, make in self._makers.items())
         return [Entry(name, len(data)) for name, data in made if data is not None]
 
     def open(self, name: str, query: Query) -> Content | None:
-        """None also for a query that its maker refuses."""
+        """Generate the file; None also for an invalid query."""
         make = self._makers.get(name)
         data = make(query) if make else None
         return None if data is None else BytesContent(data)
@@ -111,29 +114,29 @@ class GeneratedFolder(ReadOnlyFolder):
 
 @dataclass(slots=True)
 class MemoryFolder:
-    """Files in memory: the whole of a simulated vehicle's disk, and what a real one keeps small enough (missions)."""
+    """Files in memory: a simulated vehicle's disk, and small files of a real one (missions)."""
 
     files: dict[str, bytes] = field(default_factory=dict)
     accept: Callable[[str, bytes], FtpError | None] | None = None
-    """Says why a file may not be written, or None: it may. Without it the folder is only read."""
+    """Returns why a file may not be written, or None. Without it the folder is read-only."""
     changed: Callable[[str, bytes | None], None] = lambda name, data: None
-    """Is told what was written, or None for what was removed: the shell saves it."""
+    """Gets the data that was written, or None for a removed file, to save it."""
     capacity: int = 64
 
     def entries(self) -> list[Entry]:
-        """By name."""
+        """Return the files by name."""
         return [Entry(name, len(self.files[name])) for name in sorted(self.files)]
 
     def open(self, name: str, query: Query) -> Content | None:
-        """As it is now: a later store does not change what is open."""
+        """Open the file as it is now: a later store does not change what is open."""
         return BytesContent(self.files[name]) if name in self.files and not query else None
 
     def writable(self, name: str) -> bool:
-        """Is there anybody who accepts?"""
+        """Return whether the folder can be written."""
         return self.accept is not None
 
     def store(self, name: str, data: bytes) -> FtpError | None:
-        """In place of what had the name."""
+        """Write or replace a file."""
         if self.accept is None:
             return FtpError.PROTECTED
         if name not in self.files and len(self.files) >= self.capacity:
@@ -145,7 +148,7 @@ class MemoryFolder:
         return refused
 
     def remove(self, name: str) -> FtpError | None:
-        """Where files may be written they may be removed."""
+        """Remove a file, where files may be written."""
         if self.accept is None:
             return FtpError.PROTECTED
         if self.files.pop(name, None) is None:
@@ -163,14 +166,14 @@ class Location(NamedTuple):
 
 
 class FileTree:
-    """All that is served. `root` has the files at the top, `folders` the others by name, e.g. "logs" or "@PARAM"."""
+    """All served files: `root` at the top, `folders` by name below it, e.g. "logs" or "@PARAM"."""
 
     def __init__(self, root: Folder, folders: Mapping[str, Folder]) -> None:
         self._root = root
         self._folders = folders
 
     def find(self, raw: bytes) -> Location | None:
-        """Where the path `raw` (as it came) leads, or None where it leads nowhere or is none."""
+        """Return where the path `raw` (as received) leads, or None."""
         text = _text(raw)
         if text is None:
             return None
@@ -190,13 +193,13 @@ class FileTree:
         return None
 
     def listing(self, folder: Folder) -> list[Entry]:
-        """What is in a folder; in the root the other folders come first."""
+        """Return the entries of a folder; in the root the other folders come first."""
         folders = [Entry(name, None) for name in sorted(self._folders)] if folder is self._root else []
         return folders + list(folder.entries())
 
 
 def _text(raw: bytes) -> str | None:
-    """A path is ASCII; a NUL may end it but not stand inside."""
+    """Return the path as text; None unless it is printable ASCII with NUL only at the end."""
     ended, _, rest = raw.partition(b"\0")
     if rest.strip(b"\0") or not ended.isascii():
         return None
@@ -205,7 +208,7 @@ def _text(raw: bytes) -> str | None:
 
 
 def _parts(path: str) -> list[str] | None:
-    """`path` without one slash in front and one behind, at its slashes."""
+    """Split `path` at its slashes, without one at either end."""
     path = path.removeprefix("/").removesuffix("/")
     return path.split("/") if path else []
 

@@ -1,6 +1,6 @@
-"""MAVLink FTP on the wire: what is inside a FILE_TRANSFER_PROTOCOL message, and its checksum.
+"""MAVLink FTP packets: the payload of FILE_TRANSFER_PROTOCOL, and its CRC-32.
 
-Source: mavlink.io/en/services/ftp.html. The two halves are server.py and client.py.
+Source: https://mavlink.io/en/services/ftp.html.
 """
 
 from __future__ import annotations
@@ -14,14 +14,13 @@ from dialects.messages import FileTransferProtocol
 
 MAX_DATA = 239
 """Bytes of data in one message."""
-MAX_OFFSET = 0xFFFF_FFFF
 _HEADER = struct.Struct("<HBBBBBxI")
 _PAYLOAD = 251
 SEQUENCE_MASK = 0xFFFF
 
 
 class FtpOpcode(IntEnum):
-    """MAV_FTP_OPCODE: what is asked, and the two answers."""
+    """MAV_FTP_OPCODE: the requests, and the two replies."""
 
     NONE = 0
     TERMINATE = 1
@@ -48,7 +47,7 @@ class FtpError(IntEnum):
 
     FAIL = 1
     FAIL_ERRNO = 2
-    """The operating system's number follows. We never tell it."""
+    """The operating system's error number follows. Never sent here."""
     INVALID_SIZE = 3
     INVALID_SESSION = 4
     NO_SESSIONS = 5
@@ -61,40 +60,45 @@ class FtpError(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class FtpPacket:
-    """One question or answer."""
+    """One request or reply."""
 
     sequence: int
-    """An answer has its question's plus one."""
+    """A reply has its request's plus one."""
     op: int
     session: int = 0
     data: bytes = b""
     offset: int = 0
-    asked: int = 0
-    """In an answer: the Op it answers."""
+    req_opcode: int = 0
+    """In a reply: the opcode of its request."""
     burst_complete: bool = False
     size: int | None = None
-    """What the header says of the data's length; None: as long as it is. In a READ, how much is wanted."""
+    """Length of the data in the header; None: the actual length. In a READ, how much is requested."""
 
     def payload(self) -> bytes:
-        """The 251 bytes of the message."""
+        """Return the 251 bytes of the message's payload."""
         size = len(self.data) if self.size is None else self.size
-        head = _HEADER.pack(self.sequence, self.session, self.op, size, self.asked, self.burst_complete, self.offset)
+        head = _HEADER.pack(
+            self.sequence, self.session, self.op, size, self.req_opcode, self.burst_complete, self.offset
+        )
         return (head + self.data).ljust(_PAYLOAD, b"\0")
 
     def message(self, system: int, component: int) -> FileTransferProtocol:
-        """To `system` and `component`."""
+        """Return the message to `system` and `component`."""
         return FileTransferProtocol(0, system, component, self.payload())
 
 
 def parse_packet(message: FileTransferProtocol) -> FtpPacket:
-    """What the message says. `data` is never longer than its `size`, but may be shorter where the size is a lie."""
+    """Return the packet of a message. `data` is no longer than `size`, and shorter if `size` is wrong."""
     raw = bytes(message.payload)
-    sequence, session, op, size, asked, burst_complete, offset = _HEADER.unpack_from(raw)
+    sequence, session, op, size, req_opcode, burst_complete, offset = _HEADER.unpack_from(raw)
     data = raw[_HEADER.size : _HEADER.size + size]
-    return FtpPacket(sequence, op, session, data, offset, asked, bool(burst_complete), size)
+    return FtpPacket(sequence, op, session, data, offset, req_opcode, bool(burst_complete), size)
 
 
 def crc32(data: bytes, start: int = 0) -> int:
-    """MAVLink's CRC32 of `data`, going on from `start`: the common polynomial, but begun with 0 and not inverted at the
-    end (mavlink.io/en/crc.html), which PX4 uses for metadata files too."""
+    """Return MAVLink's CRC-32 of `data`, continued from `start`.
+
+    The common polynomial, but started with 0 and not inverted at the end (https://mavlink.io/en/crc.html). PX4 uses it
+    for metadata files as well.
+    """
     return zlib.crc32(data, start ^ 0xFFFF_FFFF) ^ 0xFFFF_FFFF

@@ -1,4 +1,4 @@
-"""A file that arrives in pieces: which bytes are here, which are missing, and which to ask for next."""
+"""Reassembly of a file from pieces: what has arrived, what is missing, what to request next."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 
 class RangeSet:
-    """A set of offsets, kept as ranges that neither touch nor overlap."""
+    """A set of offsets, stored as ranges that neither touch nor overlap."""
 
     def __init__(self) -> None:
         self._starts: list[int] = []
@@ -16,19 +16,19 @@ class RangeSet:
 
     @property
     def end(self) -> int:
-        """One past the last byte that is here; 0 when nothing is."""
+        """One past the last offset; 0 if the set is empty."""
         return self._ends[-1] if self._ends else 0
 
     @property
     def bytes(self) -> int:
-        """How many are here."""
+        """Number of offsets in the set."""
         return sum(self._ends) - sum(self._starts)
 
     def add(self, start: int, end: int) -> None:
-        """The bytes from `start` to `end` (not included) are here."""
+        """Add the offsets from `start` to `end` (excluded)."""
         if start >= end:
             return
-        first = bisect.bisect_left(self._ends, start)  # the first range that `start` touches or that lies behind it
+        first = bisect.bisect_left(self._ends, start)  # the first range that touches `start` or lies behind it
         after = bisect.bisect_right(self._starts, end)
         if first < after:
             start, end = min(start, self._starts[first]), max(end, self._ends[after - 1])
@@ -36,7 +36,7 @@ class RangeSet:
         self._ends[first:after] = [end]
 
     def gaps(self, end: int) -> Iterator[tuple[int, int]]:
-        """The ranges below `end` that are not here."""
+        """Yield the ranges below `end` that are not in the set."""
         at = 0
         for start, stop in zip(self._starts, self._ends, strict=True):
             if start >= end:
@@ -49,14 +49,14 @@ class RangeSet:
 
 
 class FileReassembly:
-    """A file in pieces: what has come, what is missing, and which of that was asked for lately."""
+    """A file in pieces, and the requests for missing ones."""
 
     def __init__(self, end: int) -> None:
         self.end = end
-        """The file is not longer than this."""
+        """Upper bound of the file's length."""
         self.received = RangeSet()
         self._data = bytearray()
-        self._asked: dict[int, tuple[int, float]] = {}
+        self._requested: dict[int, tuple[int, float]] = {}
 
     @property
     def data(self) -> bytes:
@@ -65,11 +65,11 @@ class FileReassembly:
 
     @property
     def complete(self) -> bool:
-        """Is all of it here?"""
+        """Whether the whole file has arrived."""
         return next(self.received.gaps(self.end), None) is None
 
     def add_piece(self, offset: int, data: bytes) -> None:
-        """Keep a piece; one that reaches beyond the end is none of this file."""
+        """Store a piece; one that reaches beyond the end is not of this file."""
         end = offset + len(data)
         if end <= self.end:
             self._data.extend(bytes(max(0, end - len(self._data))))
@@ -77,30 +77,30 @@ class FileReassembly:
             self.received.add(offset, end)
 
     def truncate(self, offset: int) -> None:
-        """There is nothing at `offset`: the file was shorter than it was said to be."""
+        """Shorten the file: there is nothing at `offset`."""
         self.end = min(self.end, offset)
 
     def mark_requested(self, key: int, offset: int, due: float) -> None:
-        """The piece at `offset` was asked for; its answer will bear `key` and is overdue at `due`."""
-        self._asked[key] = (offset, due)
+        """Record a request for the piece at `offset`; its reply has `key` and is overdue at `due`."""
+        self._requested[key] = (offset, due)
 
     def pop_request(self, key: int) -> int | None:
-        """The offset that was asked for under `key`, once."""
-        return self._asked.pop(key, (None, 0.0))[0]
+        """Remove and return the offset that was requested under `key`."""
+        return self._requested.pop(key, (None, 0.0))[0]
 
     def expire_requests(self, now: float) -> bool:
-        """Pieces that did not come may be asked for again; True when there was one."""
-        before = len(self._asked)
-        self._asked = {key: asked for key, asked in self._asked.items() if now < asked[1]}
-        return len(self._asked) < before
+        """Forget overdue requests, so that their pieces are requested again; return whether there were any."""
+        before = len(self._requested)
+        self._requested = {key: request for key, request in self._requested.items() if now < request[1]}
+        return len(self._requested) < before
 
     def next_due(self, default: float) -> float:
-        """When the first answer is overdue."""
-        return min((due for _, due in self._asked.values()), default=default)
+        """Return when the first reply is overdue."""
+        return min((due for _, due in self._requested.values()), default=default)
 
     def next_missing(self, window: int, size: int) -> list[tuple[int, int]]:
-        """Offset and length of the first missing pieces that are not asked for, so that `window` are under way."""
-        under_way = {offset for offset, _ in self._asked.values()}
+        """Return offset and length of the next pieces to request, so that `window` are under way."""
+        under_way = {offset for offset, _ in self._requested.values()}
         pieces = (
             (offset, min(size, end - offset))
             for start, end in self.received.gaps(self.end)

@@ -1,9 +1,9 @@
-"""The vehicle's half of MAVLink FTP: answers every question about a tree of files, and never touches any other.
+"""Server half of MAVLink FTP: serves a tree of files, and nothing else of the file system.
 
-Rules (mavlink.io/en/services/ftp.html): each question gets one ACK or NAK with its sequence plus one; a question that
-was repeated gets the stored answer and has no second effect; reading is for everybody, writing for who is allowed and
-only where a folder takes it. A burst is a run of answers, paced by the link. Its last message says so, at the end of
-the file too: MAVSDK takes an END_OF_FILE that it did not ask for as a failure.
+Rules (https://mavlink.io/en/services/ftp.html): each request gets one ACK or NAK with its sequence plus one. A repeated
+request gets the stored reply and has no second effect. Anyone may read; clients that are allowed to may write, where a
+folder accepts it. A burst is a series of replies, paced by the link. Its last message is marked as such, at the end of
+the file too: MAVSDK takes an END_OF_FILE that it did not request for a failure.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from link.services.ftp.sessions import Burst, FtpClientId, FtpSession, FtpSessio
 from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 
 BURST_LENGTH = 200
-"""Messages until a client must ask again: 48 kB, so that one who has gone costs no more."""
+"""Messages until a client must request more: 48 kB, so that a client that has gone costs no more."""
 MAX_CLIENTS = 16
-"""Stored answers, and questions that wait; the oldest is forgotten."""
+"""Stored replies, and requests that wait; the oldest is dropped."""
 FRAME_OVERHEAD = m.FileTransferProtocol.unpacker.size - MAX_DATA + MAVLINK2_OVERHEAD
 """Bytes of a frame around its data."""
 _Value = TypeVar("_Value")
 _CLOSING = (FtpOpcode.TERMINATE, FtpOpcode.RESET)
-"""What is closed cannot be asked again how its writing went."""
+"""Their errors are stored as well: after a close the client cannot find out in another way whether a write failed."""
 _OPENING = (FtpOpcode.OPEN, FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE)
 
 
 class FtpServer:
-    """Answers for one system and component. `allowed` says who may write."""
+    """Answers for one system and component. `allowed` returns whether the sender may write."""
 
     def __init__(
         self,
@@ -47,71 +47,76 @@ class FtpServer:
         self._pacer = pacer
         self._allowed = allowed
         self._sessions = FtpSessions()
-        self._answers = FtpHandlers(tree, self._sessions)
+        self._handlers = FtpHandlers(tree, self._sessions)
         self._waiting: dict[FtpClientId, FtpRequest] = {}
-        self._answered: dict[FtpClientId, tuple[FtpPacket, Outgoing]] = {}
+        self._stored_replies: dict[FtpClientId, tuple[FtpPacket, Outgoing]] = {}
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Answer one message; nothing where it is not for us or its sender may not ask."""
+        """Answer one message; nothing if it is not for us or its sender may not ask."""
         message = received.message
         if not isinstance(message, m.FileTransferProtocol) or not received.may_ask:
             return []
         if message.target_system != self._ids[0] or message.target_component not in (0, self._ids[1]):
             return []
-        request, client = parse_packet(message), client_id(received)
-        if request.op in (FtpOpcode.ACK, FtpOpcode.NAK):
+        packet, client = parse_packet(message), client_id(received)
+        if packet.op in (FtpOpcode.ACK, FtpOpcode.NAK):
             return []
-        again = self._said_again(client, request, now)
-        return again or self._attempt(FtpRequest(client, request, received.introduced and self._allowed(received)), now)
+        again = self._stored_reply(client, packet, now)
+        return again or self._attempt(FtpRequest(client, packet, received.introduced and self._allowed(received)), now)
 
     def tick(self, now: float) -> list[Outgoing]:
-        """Go on with bursts and with what had to wait; forget what is too old."""
+        """Continue bursts and waiting requests; drop what is too old."""
         self._sessions.expire(now)
         outgoing: list[Outgoing] = []
-        for question in list(self._waiting.values()):
-            outgoing += self._attempt(question, now)
+        for request in list(self._waiting.values()):
+            outgoing += self._attempt(request, now)
         for session in self._sessions.bursts():
             outgoing += self._burst(session, now)
         return outgoing
 
-    def _said_again(self, client: FtpClientId, request: FtpPacket, now: float) -> list[Outgoing]:
-        """The stored answer to the same question. To be the same, all of it must be: a client that starts anew begins
-        with the same sequence numbers. And a file that it opened must be open still."""
-        before = self._answered.get(client)
-        if before is None or before[0] != request:
+    def _stored_reply(self, client: FtpClientId, packet: FtpPacket, now: float) -> list[Outgoing]:
+        """Return the stored reply to a repeated request.
+
+        The whole request must be equal, because a restarted client begins with the same sequence numbers; and a file
+        that it opened must still be open.
+        """
+        before = self._stored_replies.get(client)
+        if before is None or before[0] != packet:
             return []
-        if request.op in _OPENING and self._sessions.get(client, request.session, now) is None:
+        if packet.op in _OPENING and self._sessions.get(client, packet.session, now) is None:
             return []
         return [before[1]]
 
-    def _attempt(self, question: FtpRequest, now: float) -> list[Outgoing]:
-        """Answer, or keep the question for the next tick. A client's newer question takes the place of its older."""
-        self._waiting.pop(question.client, None)
-        if question.request.op == FtpOpcode.BURST:
-            fault = self._begin_burst(question.client, question.request, now)
-            return [_nak(question, fault)] if fault else []
-        answer = self._answers.handle(question, now)
+    def _attempt(self, request: FtpRequest, now: float) -> list[Outgoing]:
+        """Reply, or keep the request for the next tick. A client's newer request replaces its older one."""
+        self._waiting.pop(request.client, None)
+        if request.packet.op == FtpOpcode.BURST:
+            fault = self._begin_burst(request.client, request.packet, now)
+            return [_nak(request, fault)] if fault else []
+        answer = self._handlers.handle(request, now)
         if answer is None:
-            _keep(self._waiting, question.client, question)
+            _keep(self._waiting, request.client, request)
             return []
-        outgoing = _nak(question, answer) if isinstance(answer, FtpError) else _ack(question, answer)
-        if not isinstance(answer, FtpError) or question.request.op in _CLOSING:
-            _keep(self._answered, question.client, (question.request, outgoing))
+        outgoing = _nak(request, answer) if isinstance(answer, FtpError) else _ack(request, answer)
+        if not isinstance(answer, FtpError) or request.packet.op in _CLOSING:
+            _keep(self._stored_replies, request.client, (request.packet, outgoing))
         return [outgoing]
 
-    def _begin_burst(self, client: FtpClientId, request: FtpPacket, now: float) -> FtpError | None:
-        """Asked again, it begins anew from where it is asked for: a client that lost something repeats its question
-        with the same sequence and another offset."""
-        session = self._sessions.get(client, request.session, now)
+    def _begin_burst(self, client: FtpClientId, packet: FtpPacket, now: float) -> FtpError | None:
+        """Start a burst at the requested offset, also during another one.
+
+        A client that has lost data repeats its request with the same sequence and another offset.
+        """
+        session = self._sessions.get(client, packet.session, now)
         if session is None or session.data is not None:
             return FtpError.INVALID_SESSION
         session.burst = None
-        if (request.size or 0) > MAX_DATA:
+        if (packet.size or 0) > MAX_DATA:
             return FtpError.INVALID_SIZE
-        if request.offset >= session.content.size:
+        if packet.offset >= session.content.size:
             return FtpError.END_OF_FILE
-        first = (request.sequence + 1) & SEQUENCE_MASK
-        session.burst = Burst(first, request.offset, request.size or MAX_DATA, BURST_LENGTH)
+        first = (packet.sequence + 1) & SEQUENCE_MASK
+        session.burst = Burst(first, packet.offset, packet.size or MAX_DATA, BURST_LENGTH)
         return None
 
     def _burst(self, session: FtpSession, now: float) -> list[Outgoing]:
@@ -129,7 +134,7 @@ class FtpServer:
 
 
 def _piece(session: FtpSession, burst: Burst, data: bytes) -> Outgoing:
-    """The next message of a burst; ends the burst after its last."""
+    """Return the next message of a burst; end the burst after its last."""
     end = burst.offset + len(data)
     complete = end >= session.content.size or burst.left <= 1
     packet = FtpPacket(burst.sequence, FtpOpcode.ACK, session.number, data, burst.offset, FtpOpcode.BURST, complete)
@@ -140,7 +145,7 @@ def _piece(session: FtpSession, burst: Burst, data: bytes) -> Outgoing:
 
 
 def _gone(session: FtpSession, burst: Burst) -> Outgoing:
-    """The file has ended before its size: somebody removed it."""
+    """End a burst with FAIL: the file has ended before its size, because it was removed."""
     session.burst = None
     return _to(
         session.client,
@@ -148,18 +153,18 @@ def _gone(session: FtpSession, burst: Burst) -> Outgoing:
     )
 
 
-def _ack(question: FtpRequest, data: bytes) -> Outgoing:
-    return _reply(question, FtpOpcode.ACK, data)
+def _ack(request: FtpRequest, data: bytes) -> Outgoing:
+    return _reply(request, FtpOpcode.ACK, data)
 
 
-def _nak(question: FtpRequest, error: FtpError) -> Outgoing:
-    return _reply(question, FtpOpcode.NAK, bytes([error]))
+def _nak(request: FtpRequest, error: FtpError) -> Outgoing:
+    return _reply(request, FtpOpcode.NAK, bytes([error]))
 
 
-def _reply(question: FtpRequest, op: FtpOpcode, data: bytes) -> Outgoing:
-    request = question.request
-    sequence = (request.sequence + 1) & SEQUENCE_MASK
-    return _to(question.client, FtpPacket(sequence, op, request.session, data, request.offset, request.op))
+def _reply(request: FtpRequest, op: FtpOpcode, data: bytes) -> Outgoing:
+    packet = request.packet
+    sequence = (packet.sequence + 1) & SEQUENCE_MASK
+    return _to(request.client, FtpPacket(sequence, op, packet.session, data, packet.offset, packet.op))
 
 
 def _to(client: FtpClientId, packet: FtpPacket) -> Outgoing:
@@ -167,7 +172,7 @@ def _to(client: FtpClientId, packet: FtpPacket) -> Outgoing:
 
 
 def _keep(table: dict[FtpClientId, _Value], client: FtpClientId, value: _Value) -> None:
-    """Put the newest last, and forget the oldest where there are too many."""
+    """Store a value as the newest, and drop the oldest if there are too many."""
     table.pop(client, None)
     table[client] = value
     if len(table) > MAX_CLIENTS:

@@ -1,4 +1,4 @@
-"""Open files of an FTP server: whose they are, how many there may be, and when they are forgotten."""
+"""Sessions of an FTP server: open files by client, their limits and expiry."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from link.services.ftp.protocol import FtpError
 
 MAX_SESSIONS = 16
 MAX_SESSIONS_PER_CLIENT = 4
-"""Open files a client: what the known clients open is one."""
+"""Open files of one client: known clients open one."""
 EXPIRY = 30.0
-"""s without a question until an open file is forgotten: longer than a client's retries (MAVProxy's last 10 s)."""
+"""s without a request until an open file is closed: longer than a client repeats (MAVProxy's last after 10 s)."""
 IDLE_AFTER = 5.0
-"""s after which an open file gives up its place to a client that has none."""
+"""s without a request after which an open file may be closed in favour of a client that has none."""
 MAX_FILE = 256 * 1024
-"""Bytes of a file that is written: a mission of 500 items as a .plan file is 150 kB."""
+"""Bytes of a written file: a mission of 500 items as a .plan file has 150 kB."""
 
 
 class FtpClientId(NamedTuple):
-    """Who asks."""
+    """A client, and where to reply."""
 
     peer: Peer
     system: int
@@ -29,39 +29,39 @@ class FtpClientId(NamedTuple):
 
 
 def client_id(received: Received) -> FtpClientId:
-    """Whom to answer."""
+    """Return the client of a message."""
     return FtpClientId(received.peer, received.system, received.component)
 
 
 @dataclass(slots=True)
 class Burst:
-    """Data on its way without being asked for piece by piece."""
+    """A burst under way."""
 
     sequence: int
-    """Of the next message."""
+    """Sequence of the next message."""
     offset: int
     size: int
-    """Bytes a message."""
+    """Bytes per message."""
     left: int
-    """Messages until the client has to ask again."""
+    """Messages until the client has to request more."""
 
 
 @dataclass(slots=True)
 class FtpSession:
-    """A file that is open."""
+    """An open file."""
 
     client: FtpClientId
     number: int
     last_used: float
     content: Content
     writes: Location | None = None
-    """Where it goes when it is closed, for a file that is written."""
+    """Where a written file is stored on close."""
     data: bytearray | None = None
     """What was written so far."""
     burst: Burst | None = None
 
     def write(self, offset: int, data: bytes) -> FtpError | None:
-        """Put `data` at `offset`; pieces may come in any order, what lies between them is zero."""
+        """Write `data` at `offset`. Pieces may come in any order; gaps are zero."""
         if self.data is None:
             return FtpError.PROTECTED
         if offset + len(data) > MAX_FILE:
@@ -74,15 +74,15 @@ class FtpSession:
 class FtpSessions:
     """The table of open files.
 
-    A client gets the number it asked for, also one that it had in use: MAVSDK and MAVProxy go on with the number they
-    sent, whatever the answer says, and one that asks twice has lost track of the first.
+    A client gets the session number that it requested, even one that it has in use: MAVSDK and MAVProxy continue with
+    the number they sent, whatever the reply says, and a client that opens twice has lost track of the first.
     """
 
     def __init__(self) -> None:
         self._open: dict[tuple[FtpClientId, int], FtpSession] = {}
 
     def add(self, session: FtpSession, now: float) -> FtpError | None:
-        """Keep an open file; returns why not."""
+        """Add an open file; return an error or None."""
         key = (session.client, session.number)
         if key not in self._open and (
             len(self.for_client(session.client)) >= MAX_SESSIONS_PER_CLIENT or not self._room(now)
@@ -92,32 +92,32 @@ class FtpSessions:
         return None
 
     def get(self, client: FtpClientId, number: int, now: float) -> FtpSession | None:
-        """The open file, which counts as used now."""
+        """Return the open file, and count it as used now."""
         session = self._open.get((client, number))
         if session is not None:
             session.last_used = now
         return session
 
     def for_client(self, client: FtpClientId) -> list[FtpSession]:
-        """All that a client has open."""
+        """Return all open files of a client."""
         return [session for session in self._open.values() if session.client == client]
 
     def close(self, session: FtpSession) -> None:
-        """Forget it."""
+        """Remove a session."""
         self._open.pop((session.client, session.number), None)
 
     def bursts(self) -> list[FtpSession]:
-        """Those with data on its way."""
+        """Return the sessions with a burst."""
         return [session for session in self._open.values() if session.burst]
 
     def expire(self, now: float) -> None:
-        """Forget what nobody has used for long. What was written is not kept: half a file is none."""
+        """Close files without a request for EXPIRY. Written data is dropped: half a file is useless."""
         for session in list(self._open.values()):
             if now - session.last_used >= EXPIRY:
                 self.close(session)
 
     def _room(self, now: float) -> bool:
-        """Is there a place, or one that can be made free?"""
+        """Return whether there is room, if need be by closing an idle file."""
         if len(self._open) < MAX_SESSIONS:
             return True
         oldest = min(self._open.values(), key=lambda session: session.last_used)

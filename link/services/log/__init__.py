@@ -1,1 +1,1 @@
-"""The log protocol: LOG_REQUEST_LIST, LOG_DATA."""
+"""Log protocol: LOG_REQUEST_LIST, LOG_DATA."""

@@ -1,8 +1,9 @@
-"""The log protocol of a vehicle: lists, sends and erases the files of a folder, by number.
+"""Server half of the log protocol: lists, sends and erases the files of a folder, by number.
 
-MAVLink FTP serves the same folder faster; this is for clients that know only LOG_REQUEST_LIST (MAVSDK, MAVProxy,
-QGroundControl). Numbers begin at 0, as QGroundControl expects of all but ArduPilot, and mean for each client what they
-meant in the last list that it asked for: the folder may have changed since.
+MAVLink FTP serves the same folder faster; this is for clients that use only LOG_REQUEST_LIST (MAVSDK, MAVProxy,
+QGroundControl). Numbers begin at 0, as QGroundControl expects of all vehicles but ArduPilot's. For each client they
+refer to the last list that it requested, because the folder may have changed since. Messages:
+https://mavlink.io/en/messages/common.html#LOG_REQUEST_LIST.
 """
 
 from __future__ import annotations
@@ -22,14 +23,14 @@ DATA_SIZE = 90
 """Bytes of log in one LOG_DATA."""
 MAX_CLIENTS = 8
 MAX_REQUESTS = 8
-"""Pieces a client may ask for at once: MAVProxy fills holes five at a time."""
+"""Requests a client may have open: MAVProxy fills gaps five at a time."""
 MAX_LOGS = 1000
 LIST_FRAME = m.LogEntry.unpacker.size + MAVLINK2_OVERHEAD
 DATA_FRAME = m.LogData.unpacker.size + MAVLINK2_OVERHEAD
 
 
 class _DataRequest(NamedTuple):
-    """A part of a log that a client asked for."""
+    """A part of a log that a client requested."""
 
     log: int
     start: int
@@ -38,28 +39,30 @@ class _DataRequest(NamedTuple):
 
 @dataclass(slots=True)
 class _LogClient:
-    """What is on its way to one peer."""
+    """Transfers to one peer."""
 
     logs: list[Entry] | None = None
-    """As it was told; None before it has asked."""
+    """The last list that was sent; None before the first request."""
     list_from: int | None = None
-    """Where the list begins that it waits for, and where it ends."""
+    """First entry of the requested list; `list_to` is the last."""
     list_to: int = 0
     listing: deque[m.LogEntry] = field(default_factory=deque)
     requests: deque[_DataRequest] = field(default_factory=deque)
     content: Content | None = None
     at: int = 0
-    """The next byte of the first wish."""
+    """Next byte of the first request."""
 
     @property
     def idle(self) -> bool:
-        """Is nothing on its way?"""
+        """Whether no transfer is under way."""
         return self.list_from is None and not self.listing and not self.requests
 
 
 class LogServer:
-    """Answers for one system and component. `when` gives a log's Unix time in s, 0 where it is not known; `erase` is
-    handed every wish to erase all logs."""
+    """Answers for one system and component.
+
+    `when` returns a log's Unix time in s, 0 where not known; `erase` gets every request to erase all logs.
+    """
 
     def __init__(
         self,
@@ -79,7 +82,7 @@ class LogServer:
         self._clients: dict[Peer, _LogClient] = {}
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Take one message; nothing where it is not for us or its sender may not ask. All answers come by tick()."""
+        """Handle one message, if it is for us and its sender may ask. tick() returns all replies."""
         message = received.message
         if not received.may_ask or getattr(message, "target_system", 0) != self._ids[0]:
             return []
@@ -89,9 +92,9 @@ class LogServer:
             case m.LogRequestList() if client := self._client(received.peer):
                 client.list_from, client.list_to = message.start, message.end
             case m.LogRequestData() if client := self._client(received.peer):
-                wish = _DataRequest(message.id, message.ofs, message.ofs + message.count)
-                if wish not in client.requests and len(client.requests) < MAX_REQUESTS:
-                    client.requests.append(wish)
+                request = _DataRequest(message.id, message.ofs, message.ofs + message.count)
+                if request not in client.requests and len(client.requests) < MAX_REQUESTS:
+                    client.requests.append(request)
             case m.LogRequestEnd() if client := self._clients.get(received.peer):
                 self._clients[received.peer] = _LogClient(client.logs)
             case m.LogErase():
@@ -99,7 +102,7 @@ class LogServer:
         return []
 
     def tick(self, now: float) -> list[Outgoing]:
-        """The next entries and data of all clients, as far as the disk has brought them and the links have room."""
+        """Return the next entries and data of all clients, as far as disk and links allow."""
         outgoing: list[Outgoing] = []
         for peer, client in self._clients.items():
             if not client.idle:
@@ -108,7 +111,7 @@ class LogServer:
 
     def _next_messages(self, peer: Peer, client: _LogClient, now: float) -> Iterator[m.Message]:
         with suppress(NotReadyError):
-            self._make_list(client)
+            self._build_list(client)
             while client.listing and self._pacer.consume(peer, LIST_FRAME, now):
                 yield client.listing.popleft()
             while client.requests and (data := self._next_data(client)) and self._pacer.consume(peer, DATA_FRAME, now):
@@ -118,7 +121,7 @@ class LogServer:
         return [entry for entry in self._logs.entries() if entry.size is not None][:MAX_LOGS]
 
     def _client(self, peer: Peer) -> _LogClient | None:
-        """The known one, or a new one in the place of one that wants nothing; None where all want something."""
+        """Return the client's transfers, if need be in the place of an idle client; None if all are busy."""
         if peer not in self._clients and len(self._clients) >= MAX_CLIENTS:
             leaving = next((each for each, client in self._clients.items() if client.idle), None)
             if leaving is None:
@@ -126,8 +129,8 @@ class LogServer:
             del self._clients[leaving]
         return self._clients.setdefault(peer, _LogClient())
 
-    def _make_list(self, client: _LogClient) -> None:
-        """What it asked for. Only a list from its beginning is a new numbering: a part fills what got lost of one."""
+    def _build_list(self, client: _LogClient) -> None:
+        """Build the requested list. Only a list from 0 renumbers: a part of one fills what got lost."""
         start = client.list_from
         if start is None:
             return
@@ -143,14 +146,14 @@ class LogServer:
             client.listing.append(m.LogEntry(0, 0, 0, 0, 0))
 
     def _next_data(self, client: _LogClient) -> m.LogData | None:
-        """The next data of the first wish; None while the disk has not brought it. Raises NotYetError."""
-        wish = client.requests[0]
+        """Return the next data of the first request; None while it is not read. Raises NotReadyError."""
+        request = client.requests[0]
         if client.content is None:
-            client.content, client.at = self._open(client, wish.log), wish.start
+            client.content, client.at = self._open(client, request.log), request.start
         if client.content is None:
-            return _data(wish.log, wish.start, b"")
-        data = client.content.read(client.at, max(0, min(DATA_SIZE, wish.end - client.at)))
-        return None if data is None else _data(wish.log, client.at, data)
+            return _data(request.log, request.start, b"")
+        data = client.content.read(client.at, max(0, min(DATA_SIZE, request.end - client.at)))
+        return None if data is None else _data(request.log, client.at, data)
 
     def _open(self, client: _LogClient, number: int) -> Content | None:
         logs = client.logs = self._entries() if client.logs is None else client.logs
@@ -158,7 +161,7 @@ class LogServer:
 
     @staticmethod
     def _sent(client: _LogClient, data: m.LogData) -> m.LogData:
-        """Go on behind `data`; data that is not full ends a log, and where the last was full an empty one does."""
+        """Advance behind `data`. Data that is not full ends a log; after a last full one an empty one does."""
         client.at = data.ofs + data.count
         if data.count < DATA_SIZE or client.at >= client.requests[0].end:
             client.requests.popleft()

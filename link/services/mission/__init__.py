@@ -1,1 +1,1 @@
-"""The mission protocol, for missions, fences and rally points."""
+"""Mission protocol, for missions, fences and rally points."""

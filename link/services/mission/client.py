@@ -1,6 +1,7 @@
-"""The mission protocol of a ground station: upload, download or clear one plan of a vehicle, until it is certain.
+"""Client half of the mission protocol: uploads, downloads or clears one plan of a vehicle.
 
-The vehicle leads an upload and the client a download; whoever waits repeats. The other half is server.py.
+The vehicle requests the items of an upload, and the client those of a download; whoever requests also repeats. Source:
+https://mavlink.io/en/services/mission.html.
 """
 
 from __future__ import annotations
@@ -15,17 +16,17 @@ from link.core import Outgoing, Received
 from link.services.mission.items import Items, MissionItem, from_message, to_message
 
 REPEAT_AFTER = 0.7
-"""s without an answer before the last word is said again: more than the vehicle's own patience
-(mission_upload.ASK_AGAIN), so that in an upload the vehicle repeats first."""
+"""s without an answer before the last message is repeated: longer than the vehicle's own timeout
+(upload.REQUEST_TIMEOUT), so that in an upload the vehicle repeats first."""
 TRIES = 16
-"""Repeats before nobody is there: 11 s, longer than the 8 s after which the vehicle forgets an upload. At 30 % loss
-each way all of them fail once in 48 000 items."""
+"""Repeats before a job fails: 11 s, longer than the 8 s after which the vehicle cancels an upload. At 30 % loss each
+way all of them fail once in 48 000 items."""
 RESTARTS = 2
-"""An upload that the vehicle has cancelled for lack of items is begun again so often."""
+"""How often an upload is restarted that the vehicle has cancelled for lack of items."""
 
 
 class MissionOperation(Enum):
-    """What the client is at."""
+    """What the client is doing."""
 
     UPLOAD = "upload"
     DOWNLOAD = "download"
@@ -39,16 +40,16 @@ class MissionOutcome:
     job: MissionOperation
     kind: MissionType
     result: int | None
-    """MAV_MISSION_RESULT; None: nobody answered."""
+    """MAV_MISSION_RESULT; None: no answer."""
     items: Items = ()
-    """What was downloaded."""
+    """Items of a download."""
     plan_id: int = 0
-    """Id of the vehicle's plan after an upload or a download (MISSION_CURRENT tells when it is another one); 0: it is
-    empty, or the vehicle has no ids."""
+    """Id of the vehicle's plan after an upload or a download (a different one in MISSION_CURRENT means that the plan
+    has changed); 0: the plan is empty, or the vehicle has no ids."""
 
     @property
     def done(self) -> bool:
-        """Did it work?"""
+        """Whether the job succeeded."""
         return self.result == MissionResult.ACCEPTED
 
 
@@ -59,14 +60,14 @@ class _MissionTransfer:
     job: MissionOperation
     kind: MissionType
     items: list[MissionItem]
-    """To upload, or downloaded so far."""
+    """Items to upload, or downloaded so far."""
     last: m.Message
-    """What was said last, and is said again."""
+    """The last message, which is repeated."""
     due: float
     sent: int = 1
     restarts: int = 0
     count: int | None = None
-    """Items of a download, once the vehicle has told."""
+    """Items of a download, once known."""
     plan_id: int = 0
 
 
@@ -86,21 +87,21 @@ class MissionClient:
         self._begin(MissionOperation.UPLOAD, kind, count, now, items)
 
     def download(self, kind: MissionType, now: float) -> None:
-        """Fetch the vehicle's plan."""
+        """Download the vehicle's plan."""
         self._begin(MissionOperation.DOWNLOAD, kind, m.MissionRequestList(*self._target, kind), now)
 
     def clear(self, kind: MissionType, now: float) -> None:
-        """Empty the vehicle's plan; MissionType.ALL empties all three."""
+        """Clear the vehicle's plan; MissionType.ALL clears all three."""
         self._begin(MissionOperation.CLEAR, kind, m.MissionClearAll(*self._target, kind), now)
 
     @property
     def busy(self) -> bool:
-        """Is a job under way?"""
+        """Whether a job is under way."""
         return self._work is not None
 
     @property
     def progress(self) -> tuple[int, int | None]:
-        """Items that went up or came down, and of how many."""
+        """Items that were transferred, and the total."""
         work = self._work
         if work is None:
             return 0, None
@@ -109,7 +110,7 @@ class MissionClient:
         return getattr(work.last, "seq", 0), len(work.items)
 
     def receive(self, received: Received, now: float) -> None:
-        """Take what the vehicle says of the plan; others are ignored."""
+        """Handle the vehicle's messages about the plan; others are ignored."""
         message, work = received.message, self._work
         if work is None or received.system != self._target[0] or not self._ours(message, work):
             return
@@ -130,7 +131,7 @@ class MissionClient:
                 self._acknowledged(work, message.type, now)
 
     def tick(self, now: float) -> None:
-        """Say the last word again when its answer is late, and give up at last."""
+        """Repeat the last message when its answer is late, and give up at last."""
         work = self._work
         if work is None or now < work.due:
             return
@@ -142,12 +143,12 @@ class MissionClient:
             self._outbox.append(Outgoing(work.last))
 
     def messages_to_send(self) -> list[Outgoing]:
-        """What to send now; empties what it returns."""
+        """Return the messages to send now, and remove them."""
         outbox, self._outbox = self._outbox, []
         return outbox
 
     def outcomes(self) -> list[MissionOutcome]:
-        """Jobs that ended since the last call."""
+        """Return the jobs that ended since the last call."""
         outcomes, self._outcomes = self._outcomes, []
         return outcomes
 
@@ -164,7 +165,7 @@ class MissionClient:
 
     @staticmethod
     def _sent_all(work: _MissionTransfer) -> bool:
-        """Can it be this job that is accepted? An answer to the job before, said twice, comes sooner."""
+        """Return whether MISSION_ACK can be for this job: a repeated one of the job before arrives earlier."""
         if work.job is MissionOperation.UPLOAD:
             return getattr(work.last, "seq", -1) == len(work.items) - 1
         return work.job is MissionOperation.CLEAR
@@ -178,7 +179,7 @@ class MissionClient:
             self._send(work, to_message(work.items[sequence], sequence, work.kind, self._target), now)
 
     def _next(self, work: _MissionTransfer, now: float) -> None:
-        """Ask for the next item of a download, or thank for the last."""
+        """Request the next item of a download, or acknowledge the last."""
         if len(work.items) == work.count:
             self._outbox.append(Outgoing(m.MissionAck(*self._target, MissionResult.ACCEPTED, work.kind)))
             self._finish(work, MissionResult.ACCEPTED)

@@ -1,7 +1,8 @@
-"""Reading the plans of a vehicle: item by item as the client asks, or a part of one, told without more questions.
+"""Plan downloads: single items on request, or a range of items at once.
 
-MISSION_REQUEST_PARTIAL_LIST has no sequence in the specification, only the words of its definition: "if start and end
-index are the same, just send one waypoint". So its answer is the items; what gets lost is asked for by number.
+MISSION_REQUEST_PARTIAL_LIST has no message sequence in the specification, only its description: "if start and end index
+are the same, just send one waypoint". So the reply is the items themselves; lost ones are requested by number. Source:
+https://mavlink.io/en/services/mission.html.
 """
 
 from __future__ import annotations
@@ -20,20 +21,20 @@ from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 MAX_CLIENTS = 8
 ITEM_FRAME = m.MissionItemInt.unpacker.size + MAVLINK2_OVERHEAD
 TO_THE_END = -1
-"""`end_index` that means the last item."""
+"""`end_index` for the last item."""
 
 
 class PlanDownloads:
-    """Answers who reads. `current` gives the index of the mission's item under way."""
+    """Serves downloads. `current` returns the index of the current mission item."""
 
-    def __init__(self, shelf: PlanTable, pacer: BulkPacer, current: Callable[[], int]) -> None:
-        self._shelf = shelf
+    def __init__(self, plans: PlanTable, pacer: BulkPacer, current: Callable[[], int]) -> None:
+        self._plans = plans
         self._pacer = pacer
         self._current = current
         self._under_way: dict[Peer, deque[Outgoing]] = {}
 
     def receive(self, received: Received) -> list[Outgoing] | None:
-        """The answer to a question; None where the message is none."""
+        """Return the reply to a request; None if the message is not one."""
         sender = sender_of(received)
         match received.message:
             case m.MissionRequestList() as message:
@@ -41,11 +42,11 @@ class PlanDownloads:
             case m.MissionRequestInt() | m.MissionRequest() as message:
                 return [self._item(message, sender)]
             case m.MissionRequestPartialList() as message:
-                return self._part(message, sender)
+                return self._begin_partial(message, sender)
         return None
 
     def tick(self, now: float) -> list[Outgoing]:
-        """The next items of parts, as far as the links have room."""
+        """Return the next items of ranges under way, as far as the links have room."""
         outgoing: list[Outgoing] = []
         for peer, items in list(self._under_way.items()):
             while items and self._pacer.consume(peer, ITEM_FRAME, now):
@@ -55,25 +56,25 @@ class PlanDownloads:
         return outgoing
 
     def _count(self, message: m.MissionRequestList, sender: Sender) -> Outgoing:
-        kind = self._shelf.kind(message.mission_type)
+        kind = self._plans.kind(message.mission_type)
         if kind is None:
             return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
-        count, plan_id = len(self._shelf[kind]), self._shelf.get_id(kind)
+        count, plan_id = len(self._plans[kind]), self._plans.get_id(kind)
         return Outgoing(m.MissionCount(sender.system, sender.component, count, kind, plan_id), sender.peer)
 
     def _item(self, message: m.MissionRequestInt | m.MissionRequest, sender: Sender) -> Outgoing:
-        kind = self._shelf.kind(message.mission_type)
+        kind = self._plans.kind(message.mission_type)
         if kind is None:
             return ack(sender, message.mission_type, MissionResult.UNSUPPORTED)
-        if message.seq >= len(self._shelf[kind]):
+        if message.seq >= len(self._plans[kind]):
             return ack(sender, kind, MissionResult.INVALID_SEQUENCE)
         return self._build_item(message.seq, kind, sender)
 
-    def _part(self, message: m.MissionRequestPartialList, sender: Sender) -> list[Outgoing]:
-        kind = self._shelf.kind(message.mission_type)
+    def _begin_partial(self, message: m.MissionRequestPartialList, sender: Sender) -> list[Outgoing]:
+        kind = self._plans.kind(message.mission_type)
         if kind is None:
             return [ack(sender, message.mission_type, MissionResult.UNSUPPORTED)]
-        count, first = len(self._shelf[kind]), message.start_index
+        count, first = len(self._plans[kind]), message.start_index
         last = count - 1 if message.end_index == TO_THE_END else message.end_index
         if not 0 <= first <= last < count:
             return [ack(sender, kind, MissionResult.INVALID_SEQUENCE)]
@@ -85,4 +86,4 @@ class PlanDownloads:
     def _build_item(self, index: int, kind: MissionType, sender: Sender) -> Outgoing:
         current = kind is MissionType.MISSION and self._current() == index
         target = (sender.system, sender.component)
-        return Outgoing(to_message(self._shelf[kind][index], index, kind, target, current=current), sender.peer)
+        return Outgoing(to_message(self._plans[kind][index], index, kind, target, current=current), sender.peer)

@@ -1,9 +1,9 @@
-"""Plans as files: the text format that MAVProxy, Mission Planner and QGroundControl read ("QGC WPL 110"), and a folder
-for MAVLink FTP whose files are the plans in force.
+"""Plans as files: the text format "QGC WPL 110", and a folder of MAVLink FTP with the plans in force.
 
-A line has, with tabs between: number, current, frame, command, parameters 1..4, latitude, longitude, altitude,
-autocontinue. ArduPilot's tools put home into line 0; here every line is an item, as on the wire. A line that begins
-with # is a comment.
+MAVProxy, Mission Planner and QGroundControl read the format (https://mavlink.io/en/file_formats/). A line has,
+separated by tabs: number, current, frame, command, parameters 1..4, latitude, longitude, altitude, autocontinue.
+ArduPilot's tools put home into line 0; here every line is an item, as in the protocol. A line that begins with # is a
+comment.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ FILE_TYPES: dict[str, MissionType] = {
 
 
 class PlanFileError(ValueError):
-    """A file that is no plan; the message is one clear line."""
+    """The file is not a plan; the message is one line."""
 
 
 def encode_plan(items: Sequence[MissionItem]) -> bytes:
-    """The file of a plan. Nothing of an item is lost, NaN included."""
+    """Return the file of a plan, without any loss, also of NaN."""
     lines = [HEADER, *(_line(number, item) for number, item in enumerate(items))]
     return ("\n".join(lines) + "\n").encode("ascii")
 
 
 def decode_plan(data: bytes) -> Items:
-    """The plan of a file. Raises PlanFileError."""
+    """Return the plan of a file. Raises PlanFileError."""
     text = data.decode("ascii", "replace")
     header, *lines = text.splitlines() or [""]
     if header.strip() != HEADER:
         raise PlanFileError(f"line 1 is not {HEADER!r}")
-    spoken = ((number, line) for number, line in enumerate(lines, start=2) if line.strip() and line[0] != "#")
-    return tuple(_item(number, line) for number, line in spoken)
+    numbered = ((number, line) for number, line in enumerate(lines, start=2) if line.strip() and line[0] != "#")
+    return tuple(_item(number, line) for number, line in numbered)
 
 
 def _line(number: int, item: MissionItem) -> str:
@@ -70,7 +70,7 @@ def _item(number: int, line: str) -> MissionItem:
 
 
 def _float32(text: str) -> float:
-    """As the wire would have it. Raises ValueError for what is too large for that."""
+    """Return the number as float32. Raises ValueError if it is too large."""
     value = float(text)
     try:
         return float(struct.unpack("<f", struct.pack("<f", value))[0])
@@ -85,39 +85,42 @@ class PlanFolder:
         self,
         server: MissionServer,
         in_use: Callable[[MissionType], str | None] = lambda kind: None,
-        refused: Callable[[MissionType, str], None] = lambda kind, why: None,
+        refused: Callable[[MissionType, str], None] = lambda kind, reason: None,
     ) -> None:
-        """`in_use` says why a plan may not be changed now, or None; `refused` is told why a file was not
-        taken: MAVLink FTP has no words for that, and some clients do not look."""
+        """Serve the plans of `server`.
+
+        `in_use` returns why a plan may not be changed now, or None; `refused` gets the reason why a file was rejected,
+        which MAVLink FTP cannot carry.
+        """
         self._server = server
         self._in_use = in_use
         self._refused = refused
         self._changes: dict[MissionType, tuple[bytes, PlanChange]] = {}
-        """What was written last, until its writer has heard how that went."""
+        """The last change by file, until its sender has got the result."""
 
     def writable(self, name: str) -> bool:
-        """Under the names of the plans."""
+        """Return whether `name` is that of a plan."""
         return name in FILE_TYPES
 
     def entries(self) -> list[Entry]:
-        """One file a plan, also where it is empty."""
+        """Return one file per plan, also for an empty one."""
         return [Entry(name, len(encode_plan(self._server.plan(kind)))) for name, kind in FILE_TYPES.items()]
 
     def open(self, name: str, query: Query) -> Content | None:
-        """The plan as it is now."""
+        """Return the plan as it is now."""
         return (
             BytesContent(encode_plan(self._server.plan(FILE_TYPES[name]))) if name in FILE_TYPES and not query else None
         )
 
     def store(self, name: str, data: bytes) -> FtpError | None:
-        """Put the plan in force, or say FAIL where it is none, breaks the rules or cannot be kept.
+        """Put the plan in force; return FAIL if it is invalid or cannot be saved.
 
-        Raises NotYetError until it is kept: the same again gets the answer.
+        Raises NotReadyError until it is saved; the same call again returns the result.
         """
         kind = FILE_TYPES.get(name)
         if kind is None:
             return FtpError.PROTECTED
-        change = self._said_before(kind, data) or self._begun(kind, data)
+        change = self._pending_change(kind, data) or self._begin_change(kind, data)
         if isinstance(change, FtpError):
             return change
         if change.verdict is None:
@@ -127,22 +130,24 @@ class PlanFolder:
         return None if change.verdict is MissionResult.ACCEPTED else FtpError.FAIL
 
     def remove(self, name: str) -> FtpError | None:
-        """The plan is empty after this. Raises NotYetError as `store` does."""
+        """Clear the plan. Raises NotReadyError as `store` does."""
         return self.store(name, HEADER.encode()) if name in FILE_TYPES else FtpError.NOT_FOUND
 
-    def _said_before(self, kind: MissionType, data: bytes) -> PlanChange | None:
-        """The change that this file has begun already. Not where it came to its end unheard and the plan is another one
-        by now: that is to be made again."""
+    def _pending_change(self, kind: MissionType, data: bytes) -> PlanChange | None:
+        """Return the change that this file has started already.
+
+        Not one that has ended without its sender getting the result while the plan has changed since: it is made again.
+        """
         before, change = self._changes.get(kind, (b"", None))
         if change is None or before != data:
             return None
         replaced = change.verdict is MissionResult.ACCEPTED and self._server.plan(kind) is not change.plans[kind]
         return None if replaced else change
 
-    def _begun(self, kind: MissionType, data: bytes) -> PlanChange | FtpError:
-        why = self._in_use(kind)
-        if why:
-            self._refused(kind, why)
+    def _begin_change(self, kind: MissionType, data: bytes) -> PlanChange | FtpError:
+        reason = self._in_use(kind)
+        if reason:
+            self._refused(kind, reason)
             return FtpError.PROTECTED
         try:
             items = decode_plan(data)

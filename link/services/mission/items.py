@@ -1,4 +1,4 @@
-"""One item of a mission, fence or rally plan, how it comes and goes on the wire, and what makes one invalid."""
+"""One item of a mission, fence or rally plan: conversion from and to messages, and validation."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from dialects import messages as m
 from dialects.enums import MissionResult
 
 DEGREES_SCALE = 1e7
-"""`x` and `y` of MISSION_ITEM_INT are degrees times this, in global frames."""
+"""Degrees x this are `x` and `y` of MISSION_ITEM_INT in global frames."""
 LOCAL_SCALE = 1e4
-"""...and metres times this in local ones."""
+"""Metres x this are `x` and `y` in local frames."""
 UNSET_COORDINATE = 0x7FFF_FFFF
-"""INT32_MAX: the integer that stands for NaN."""
+"""INT32_MAX: stands for NaN."""
 GLOBAL_FRAMES = frozenset({0, 3, 5, 6, 10, 11})
-"""MAV_FRAME with latitude and longitude: GLOBAL, _RELATIVE_ALT, _TERRAIN_ALT and their _INT."""
+"""MAV_FRAME with latitude and longitude: GLOBAL, _RELATIVE_ALT, _TERRAIN_ALT and their _INT variants."""
 FRAME_MISSION = 2
-"""MAV_FRAME_MISSION: the item has no place."""
+"""MAV_FRAME_MISSION: the item has no position."""
 MAX_LATITUDE, MAX_LONGITUDE = 90.0, 180.0
 _FAULTS = {
     1: MissionResult.INVALID_PARAM1,
@@ -32,14 +32,14 @@ _FAULTS = {
 
 @dataclass(frozen=True, slots=True)
 class MissionItem:
-    """One item, whichever message brought it. Its place in the plan is its index there."""
+    """One item, from either message. Its number is its index in the plan."""
 
     command: int
     """MAV_CMD."""
     frame: int
     """MAV_FRAME."""
     params: tuple[float, float, float, float]
-    """Parameters 1..4; NaN where the sender leaves it to the vehicle."""
+    """Parameters 1..4; NaN: the vehicle's default."""
     x: int
     """Latitude in 1e-7 degrees, or north in 1e-4 m, by frame."""
     y: int
@@ -49,12 +49,12 @@ class MissionItem:
 
     @property
     def latitude(self) -> float:
-        """Degrees; only in a global frame."""
+        """Degrees, in a global frame."""
         return self.x / DEGREES_SCALE
 
     @property
     def longitude(self) -> float:
-        """Degrees; only in a global frame."""
+        """Degrees, in a global frame."""
         return self.y / DEGREES_SCALE
 
 
@@ -63,14 +63,14 @@ Items = tuple[MissionItem, ...]
 
 
 class PositionRule(Enum):
-    """What a command does with latitude and longitude."""
+    """How a command uses latitude and longitude."""
 
     NONE = 0
-    """They are not looked at, nor is the frame."""
+    """Ignored, as is the frame."""
     OPTIONAL = 1
-    """0/0 or NaN means here."""
+    """0/0 or NaN means the current position."""
     NEEDED = 2
-    """They must be a place; 0/0 is none."""
+    """Required; 0/0 is not a position."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,22 +79,23 @@ class ItemRule:
 
     place: PositionRule = PositionRule.NONE
     ranges: Mapping[int, tuple[float, float]] = field(default_factory=dict)
-    """Parameter 1..4 or 7 -> smallest and largest value. One that is named here must be a number, others may be NaN."""
+    """Parameter 1..4 or 7 -> smallest and largest value. A parameter in the table must be a number, others may be
+    NaN."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlanRules:
-    """What one kind of plan may hold."""
+    """What one type of plan may contain."""
 
     commands: Mapping[int, ItemRule]
-    """The commands known; others are UNSUPPORTED."""
+    """The known commands; others are UNSUPPORTED."""
     capacity: int = 500
     frames: frozenset[int] = GLOBAL_FRAMES
     check: Callable[[Items], MissionResult] = lambda items: MissionResult.ACCEPTED
-    """Looks at the whole: jumps that lead nowhere, polygons without a third corner."""
+    """Validates the plan as a whole: jump targets, polygons with at least three corners."""
 
     def validate(self, items: Sequence[MissionItem]) -> MissionResult:
-        """ACCEPTED, or what is wrong with a whole plan."""
+        """Return ACCEPTED, or what is wrong with a whole plan."""
         if len(items) > self.capacity:
             return MissionResult.NO_SPACE
         wrong = self.first_invalid(items)
@@ -102,14 +103,14 @@ class PlanRules:
         return self.check(tuple(items)) if fault is None else fault
 
     def first_invalid(self, items: Sequence[MissionItem]) -> tuple[int, MissionItem] | None:
-        """The first item that is invalid by itself, and its number."""
+        """Return the first item that is invalid by itself, and its number."""
         return next((each for each in enumerate(items) if item_fault(each[1], self.commands, self.frames)), None)
 
 
 def item_fault(
     item: MissionItem, rules: Mapping[int, ItemRule], frames: frozenset[int] = GLOBAL_FRAMES
 ) -> MissionResult | None:
-    """Why an item is invalid, or None. `rules` are the commands known, `frames` those understood."""
+    """Return why an item is invalid, or None. `rules`: the known commands; `frames`: the supported frames."""
     rule = rules.get(item.command)
     if rule is None:
         return MissionResult.UNSUPPORTED
@@ -119,7 +120,7 @@ def item_fault(
 
 
 def describe_rejection(wrong: tuple[int, MissionItem] | None, verdict: MissionResult) -> str:
-    """What is wrong with a plan: an item, with its number, or how they fit together."""
+    """Return what is wrong with a plan: one item, with its number, or the plan as a whole."""
     if verdict is MissionResult.NO_SPACE:
         return "it has too many items"
     if wrong is None:
@@ -154,7 +155,7 @@ def _bad_place(item: MissionItem, place: PositionRule) -> MissionResult | None:
 
 
 def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
-    """The item of either message. Floats that are no int32 become NOWHERE."""
+    """Return the item of either message. Floats beyond int32 become UNSET_COORDINATE."""
     if isinstance(message, m.MissionItem):
         scale = DEGREES_SCALE if message.frame in GLOBAL_FRAMES else LOCAL_SCALE
         x, y = to_int32(message.x, scale), to_int32(message.y, scale)
@@ -172,17 +173,15 @@ def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:
 
 
 def to_int32(value: float, scale: float) -> int:
-    """`value` times `scale` as an int32; NOWHERE for what is none."""
+    """Return `value` times `scale` as an int32; UNSET_COORDINATE if it does not fit."""
     number = value * scale
-    return (
-        round(number) if -UNSET_COORDINATE - 1 <= number <= UNSET_COORDINATE else UNSET_COORDINATE
-    )  # NaN is not less than anything
+    return round(number) if -UNSET_COORDINATE - 1 <= number <= UNSET_COORDINATE else UNSET_COORDINATE  # false for NaN
 
 
 def to_message(
     item: MissionItem, sequence: int, kind: int, target: tuple[int, int], *, current: bool = False
 ) -> m.MissionItemInt:
-    """MISSION_ITEM_INT for item number `sequence` of the plan `kind`, to system and component `target`."""
+    """Return MISSION_ITEM_INT for item `sequence` of the plan `kind`, to `target` (system, component)."""
     return m.MissionItemInt(
         *target,
         sequence,

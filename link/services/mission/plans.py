@@ -1,7 +1,7 @@
-"""The plans in force and their ids, by which a ground station sees that a plan is not the one it knows.
+"""The plans in force and their ids, by which a ground station detects changes.
 
-The id of a plan is the CRC-32 of its items, 0 for an empty one, as MISSION_COUNT, MISSION_ACK and MISSION_CURRENT tell
-it: the same plan has the same id after a restart, and on another vehicle (mavlink.io/en/services/mission.html,
+The id of a plan is the CRC-32 of its items, 0 for an empty one, as in MISSION_COUNT, MISSION_ACK and MISSION_CURRENT.
+The same plan has the same id after a restart, and on another vehicle (https://mavlink.io/en/services/mission.html,
 "Detecting Mission/Plan Changes").
 """
 
@@ -19,7 +19,7 @@ _ITEM = struct.Struct("<HB?4fiif")
 
 
 class PlanTable:
-    """One plan of each kind that is offered, empty at first."""
+    """One plan of each supported type, empty at first."""
 
     def __init__(self, kinds: Iterable[MissionType]) -> None:
         self._plans: dict[MissionType, Items] = dict.fromkeys(kinds, ())
@@ -29,21 +29,21 @@ class PlanTable:
         return self._plans[kind]
 
     def get_id(self, kind: MissionType) -> int:
-        """uint32; 0: the plan is empty."""
+        """Return the plan's id, uint32; 0: the plan is empty."""
         return self._ids[kind]
 
     def kind(self, number: int) -> MissionType | None:
-        """The kind of plan with this MAV_MISSION_TYPE, where it is offered."""
+        """Return the plan type of this MAV_MISSION_TYPE, if it is supported."""
         return next((kind for kind in self._plans if kind == number), None)
 
     def set(self, kind: MissionType, items: Sequence[MissionItem]) -> None:
-        """Another plan in the place of the one before."""
+        """Replace a plan."""
         self._plans[kind] = tuple(items)
         self._ids[kind] = plan_id(items)
 
 
 def plan_id(items: Sequence[MissionItem]) -> int:
-    """uint32, 0 only for an empty plan. Values are those of the wire: float32, and one NaN is as good as another."""
+    """Return the id, uint32, 0 only for an empty plan. Floats count as float32, and all NaNs as equal."""
     data = b"".join(_bytes(item) for item in items)
     return zlib.crc32(data) or 1 if data else 0
 

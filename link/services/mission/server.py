@@ -1,10 +1,9 @@
-"""The mission protocol of a vehicle: its three plans (mission, fence, rally), uploaded, downloaded and cleared.
+"""Server half of the mission protocol: upload, download and clear of mission, fence and rally plans.
 
-Rules (mavlink.io/en/services/mission.html): an upload is asked for item by item and counts only when it is complete
-and valid; until then the old plan stays. One upload a plan at a time, a second sender is DENIED. Who uploads may end
-it by a MISSION_ACK with an error. What a plan means is the vehicle's work, and so is saving it; the last answer waits
-for that (commit.py). Reading is in download.py, ids are in plans.py; the other half is
-client.py.
+Rules (https://mavlink.io/en/services/mission.html): the items of an upload are requested one by one, and the plan
+counts only when it is complete and valid; until then the old plan stays. One upload of a plan at a time: a second
+sender is DENIED. The sender may end an upload with a MISSION_ACK that holds an error. The backend (the vehicle)
+interprets and saves plans; the final MISSION_ACK waits for that (commit.py). Downloads: download.py; ids: plans.py.
 """
 
 from __future__ import annotations
@@ -24,33 +23,36 @@ from link.services.mission.upload import PlanUpload, Sender, ack, sender_of
 from link.services.pacing import BulkPacer
 
 REPEAT_WINDOW = 10.0
-"""s in which the last item, said again because our answer was lost, is answered again."""
+"""s in which the last item, repeated because our MISSION_ACK was lost, is acknowledged again."""
 
 _Begin = m.MissionCount | m.MissionWritePartialList | m.MissionClearAll
 _Item = m.MissionItem | m.MissionItemInt
 
 
 class MissionBackend(PlanBackend, Protocol):
-    """What the vehicle says to its plans."""
+    """What the vehicle provides."""
 
     def authorize_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
-        """ACCEPTED, or the answer to who may not change this plan now."""
+        """Return ACCEPTED, or why this sender may not change this plan now."""
 
     def handle_plan_rejected(
         self, kind: MissionType, wrong: tuple[int, MissionItem] | None, verdict: MissionResult, now: float
     ) -> None:
-        """A plan was refused for this item, with its number, or as a whole: MISSION_ACK does not say which."""
+        """Report a rejected plan, with its invalid item and the item's number, if there is one.
+
+        MISSION_ACK does not name the item.
+        """
 
     def set_current_item(self, sequence: int, received: Received, now: float) -> None:
-        """Go on with this item of the mission, or tell the driver why not."""
+        """Continue with this item of the mission, or report why not."""
 
     def build_mission_current(self) -> m.MissionCurrent:
-        """Where the mission stands."""
+        """Return MISSION_CURRENT."""
 
 
 @dataclass(frozen=True, slots=True)
 class _EndedUpload:
-    """The end of an upload, to be said again when it got lost."""
+    """The end of an upload, to be acknowledged again when the MISSION_ACK got lost."""
 
     sender: Sender
     last: int
@@ -59,59 +61,61 @@ class _EndedUpload:
 
 
 class MissionServer:
-    """Keeps the plans of one system and component. `rules` has a line for each kind of plan that is offered."""
+    """Holds the plans of one system and component. `rules` has a row for each supported plan type."""
 
     def __init__(
         self,
-        planner: MissionBackend,
+        backend: MissionBackend,
         rules: Mapping[MissionType, PlanRules],
         *,
         system: int,
         component: int,
         pacer: BulkPacer | None = None,
     ) -> None:
-        self._planner = planner
+        self._backend = backend
         self._rules = rules
         self._ids = (system, component)
-        self._shelf = PlanTable(rules)
-        self._changes = PlanChanges(self._shelf, planner)
+        self._plans = PlanTable(rules)
+        self._changes = PlanChanges(self._plans, backend)
         self._downloads = PlanDownloads(
-            self._shelf, pacer or BulkPacer(), lambda: int(planner.build_mission_current().seq)
+            self._plans, pacer or BulkPacer(), lambda: int(backend.build_mission_current().seq)
         )
         self._uploads: dict[MissionType, PlanUpload] = {}
         self._ended: dict[MissionType, _EndedUpload] = {}
         self._now = 0.0
-        """Of the newest tick."""
+        """Time of the last tick."""
 
     def plan(self, kind: MissionType) -> Items:
-        """The plan in force."""
-        return self._shelf[kind]
+        """Return the plan in force."""
+        return self._plans[kind]
 
     def plan_id(self, kind: MissionType) -> int:
-        """Its id: another one for another plan, 0 for none."""
-        return self._shelf.get_id(kind)
+        """Return its id: different for another plan, 0 for an empty one."""
+        return self._plans.get_id(kind)
 
     @property
     def has_pending_changes(self) -> bool:
-        """A plan is on its way to where it is kept."""
+        """Whether a plan is being written."""
         return any(map(self._changes.pending, self._rules))
 
     def load(self, kind: MissionType, items: Sequence[MissionItem]) -> MissionResult:
-        """Put a saved plan in force, where it passes the rules; the planner is not told."""
+        """Put a saved plan in force if it is valid; the backend is not notified."""
         verdict = self._rules[kind].validate(items)
         if verdict is MissionResult.ACCEPTED:
-            self._shelf.set(kind, items)
+            self._plans.set(kind, items)
         return verdict
 
     def replace(
         self, plans: Mapping[MissionType, Sequence[MissionItem]], allowed: Callable[[MissionType], bool]
     ) -> PlanChange | None:
-        """Change plans in another way than by upload, e.g. as files: how that goes. None where it breaks the rules, of
-        which the planner is told, or where somebody is changing one of them."""
+        """Change plans other than by upload, e.g. as files, and return the change.
+
+        Returns None for an invalid plan, which the backend is notified of, or while one of the plans is being changed.
+        """
         for kind, items in plans.items():
             verdict = self._rules[kind].validate(items)
             if verdict is not MissionResult.ACCEPTED:
-                self._planner.handle_plan_rejected(kind, self._rules[kind].first_invalid(items), verdict, self._now)
+                self._backend.handle_plan_rejected(kind, self._rules[kind].first_invalid(items), verdict, self._now)
                 return None
         if any(self._uploads.get(kind) or self._changes.pending(kind) for kind in plans):
             return None
@@ -119,11 +123,11 @@ class MissionServer:
             {kind: tuple(items) for kind, items in plans.items()},
             lambda now: MissionResult.ACCEPTED if all(map(allowed, plans)) else MissionResult.DENIED,
         )
-        self._changes.begin(change, self._now)  # it answers nobody
+        self._changes.begin(change, self._now)  # has no reply
         return change
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Answer one message; nothing where it is not for us or its sender may not ask."""
+        """Answer one message; nothing if it is not for us or its sender may not ask."""
         message = received.message
         target = (getattr(message, "target_system", None), getattr(message, "target_component", None))
         if not received.may_ask or target[0] != self._ids[0] or target[1] not in (0, self._ids[1]):
@@ -134,7 +138,7 @@ class MissionServer:
         return self._handle_write(received, now) if received.introduced else []
 
     def tick(self, now: float) -> list[Outgoing]:
-        """Ask again for what did not come, give up what does not come at all."""
+        """Request missing items again; cancel uploads that have stopped."""
         self._now = now
         outgoing = self._downloads.tick(now) + self._changes.tick(now)
         for kind, upload in list(self._uploads.items()):
@@ -154,8 +158,8 @@ class MissionServer:
             case m.MissionAck() as message if message.type != MissionResult.ACCEPTED:
                 return self._handle_ack(message, sender_of(received), now)
             case m.MissionSetCurrent() as message:
-                self._planner.set_current_item(message.seq, received, now)
-                return [Outgoing(self._planner.build_mission_current())]
+                self._backend.set_current_item(message.seq, received, now)
+                return [Outgoing(self._backend.build_mission_current())]
         return []
 
     def _begin(self, message: _Begin, received: Received, now: float) -> list[Outgoing]:
@@ -179,8 +183,11 @@ class MissionServer:
                 return [self._begin_partial_upload(message, sender, kinds[0], now)]
 
     def _is_saving(self, kind: MissionType, message: _Begin, sender: Sender) -> bool:
-        """A sender whose last change is not kept yet waits: it says this again. An answer to the change would look like
-        one to this, so there is none any more, unless this asks for the same."""
+        """Return whether the sender's last change is still being written; it will repeat this request.
+
+        A reply to that change would look like one to this request, so there is none any more, unless this one repeats
+        it.
+        """
         change = self._changes.pending(kind)
         if change is None or change.sender != sender:
             return False
@@ -189,11 +196,11 @@ class MissionServer:
         return True
 
     def _may_begin(self, kind: MissionType, received: Received, now: float) -> MissionResult:
-        """The same sender may begin again at any time."""
+        """Return ACCEPTED if an upload may start. The same sender may start again at any time."""
         busy = self._changes.pending(kind) or self._uploads.get(kind)
         if busy and busy.sender != sender_of(received):
             return MissionResult.DENIED
-        return self._planner.authorize_write(received, kind, now)
+        return self._backend.authorize_write(received, kind, now)
 
     def _begin_upload(
         self, message: m.MissionCount, received: Received, kind: MissionType, now: float
@@ -218,46 +225,46 @@ class MissionServer:
         return upload.request_item(now)
 
     def _handle_item(self, message: _Item, received: Received, now: float) -> list[Outgoing]:
-        sender, kind = sender_of(received), self._shelf.kind(message.mission_type)
+        sender, kind = sender_of(received), self._plans.kind(message.mission_type)
         if kind is None:
             return []
         upload = self._uploads.get(kind)
         if upload is None or upload.sender != sender:
-            return self._said_again(self._ended.get(kind), message, sender, now)
+            return self._repeat_ack(self._ended.get(kind), message, sender, now)
         answer = upload.handle_item(message, now)
         if isinstance(answer, list):
             return answer
         if answer is not MissionResult.ACCEPTED:
-            self._planner.handle_plan_rejected(kind, upload.invalid_item, answer, now)
+            self._backend.handle_plan_rejected(kind, upload.invalid_item, answer, now)
         return self._end(upload, answer, received, now)
 
     def _end(self, upload: PlanUpload, verdict: MissionResult, received: Received, now: float) -> list[Outgoing]:
-        """The last item has come, or one that is wrong."""
+        """End an upload: its last item has come, or an invalid one."""
         kind, message = upload.kind, received.message
         self._uploads.pop(kind, None)
         self._ended.pop(kind, None)
         last = getattr(message, "seq", -1)
 
-        def told(verdict: MissionResult, now: float) -> list[Outgoing]:
+        def reply(verdict: MissionResult, now: float) -> list[Outgoing]:
             answer = ack(upload.sender, kind, verdict, self.plan_id(kind) if verdict is MissionResult.ACCEPTED else 0)
             self._ended[kind] = _EndedUpload(upload.sender, last, now, answer)
             return [answer]
 
         if verdict is not MissionResult.ACCEPTED:
-            return told(verdict, now)
-        # Since it began, the vehicle may have set off by the old plan.
+            return reply(verdict, now)
+        # The vehicle may have started to use the old plan since the upload began.
         change = PlanChange(
             {kind: upload.items},
-            lambda now: self._planner.authorize_write(received, kind, now),
-            told,
+            lambda now: self._backend.authorize_write(received, kind, now),
+            reply,
             upload.sender,
             message,
         )
         return self._changes.begin(change, now)
 
     def _handle_ack(self, message: m.MissionAck, sender: Sender, now: float) -> list[Outgoing]:
-        """Whoever uploads has thought better of it, or wants to be asked in another way."""
-        kind = self._shelf.kind(message.mission_type)
+        """Handle an error from the uploader: it cancels, or wants requests of the other kind."""
+        kind = self._plans.kind(message.mission_type)
         upload = None if kind is None else self._uploads.get(kind)
         if kind is None or upload is None or upload.sender != sender:
             return []
@@ -267,7 +274,7 @@ class MissionServer:
         return []
 
     @staticmethod
-    def _said_again(ended: _EndedUpload | None, message: _Item, sender: Sender, now: float) -> list[Outgoing]:
+    def _repeat_ack(ended: _EndedUpload | None, message: _Item, sender: Sender, now: float) -> list[Outgoing]:
         if ended is None or ended.sender != sender or message.seq != ended.last or now - ended.at > REPEAT_WINDOW:
             return []
         return [ended.ack]
@@ -281,7 +288,7 @@ class MissionServer:
         sender = sender_of(received)
         change = PlanChange(
             dict.fromkeys(kinds, ()),
-            lambda now: _first_refusal(self._planner.authorize_write(received, kind, now) for kind in kinds),
+            lambda now: _first_refusal(self._backend.authorize_write(received, kind, now) for kind in kinds),
             lambda verdict, now: [ack(sender, message.mission_type, verdict)],
             sender,
             message,
@@ -290,5 +297,5 @@ class MissionServer:
 
 
 def _first_refusal(verdicts: Iterable[MissionResult]) -> MissionResult:
-    """ACCEPTED where there is none."""
+    """Return the first verdict that is not ACCEPTED, or ACCEPTED."""
     return next((verdict for verdict in verdicts if verdict is not MissionResult.ACCEPTED), MissionResult.ACCEPTED)

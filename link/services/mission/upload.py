@@ -1,4 +1,4 @@
-"""One plan on its way to the vehicle: which item comes next, when it is asked for, and how it all ends."""
+"""State of one upload: which item is requested next, and when again, and how the upload ends."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from link.core import Outgoing, Peer, Received
 from link.services.mission.items import Items, MissionItem, PlanRules, from_message, item_fault
 
 REQUEST_TIMEOUT = 0.5
-"""s after which an item is asked for again: longer than a loaded 57600 baud radio takes (0.18 s each way), and short
-enough that an item at 30 % loss has 16 tries before it is given up."""
+"""s after which an item is requested again: longer than a loaded 57600 baud radio takes (0.18 s each way), and short
+enough for 16 attempts at an item (at 30 % loss) before the upload is cancelled."""
 MIN_REQUEST_INTERVAL = 0.2
-"""s after which a wrong item is answered by asking again at once; sooner, both ends would say everything twice."""
+"""s after which a wrong item leads to an immediate new request; sooner, both ends would send everything twice."""
 UPLOAD_TIMEOUT = 8.0
-"""s without an item until an upload is cancelled (ArduPilot's time)."""
+"""s without an item until an upload is cancelled (as in ArduPilot)."""
 
 
 class Sender(NamedTuple):
-    """Who a message came from."""
+    """The sender of a message."""
 
     peer: Peer
     system: int
@@ -28,17 +28,17 @@ class Sender(NamedTuple):
 
 
 def sender_of(received: Received) -> Sender:
-    """Whom to answer."""
+    """Return the sender to reply to."""
     return Sender(received.peer, received.system, received.component)
 
 
 def ack(sender: Sender, kind: int, verdict: MissionResult, plan_id: int = 0) -> Outgoing:
-    """MISSION_ACK. `plan_id` is the id of the new plan at the end of an upload."""
+    """Return MISSION_ACK. `plan_id`: id of the new plan at the end of an upload."""
     return Outgoing(m.MissionAck(sender.system, sender.component, verdict, kind, plan_id), sender.peer)
 
 
 class PlanUpload:
-    """Items `first` to `end` (not included) of a plan. What stands before and after them in `items` stays."""
+    """Items `first` to `end` (excluded) of a plan. Those before and after them in `items` stay."""
 
     def __init__(
         self,
@@ -57,33 +57,34 @@ class PlanUpload:
         self._items = list(items)
         self._next = first
         self._end = end
-        self._heard = self._asked = now
+        self._last_item_at = self._requested_at = now
         self._as_int = True
         self._only_int = False
         self.float_requested = False
         """MISSION_REQUEST was sent."""
         self.invalid_item: tuple[int, MissionItem] | None = None
-        """The item that ended it, and its number; None where the plan as a whole is no good."""
+        """The item that ended the upload, and its number; None if the plan as a whole is invalid."""
 
     @property
     def items(self) -> Items:
-        """What has come, and what stood there before."""
+        """The items so far: those received, and those that stay."""
         return tuple(self._items)
 
     def request_item(self, now: float) -> Outgoing:
-        """The question for the next item."""
-        self._asked = now
+        """Return the request for the next item."""
+        self._requested_at = now
         self.float_requested |= not self._as_int
         request = m.MissionRequestInt if self._as_int else m.MissionRequest
         return Outgoing(request(self.sender.system, self.sender.component, self._next, self.kind), self.sender.peer)
 
     def handle_item(self, message: m.MissionItem | m.MissionItemInt, now: float) -> list[Outgoing] | MissionResult:
-        """Take an item; returns what to say to it, or how the upload ends.
+        """Handle an item; return the messages to send, or how the upload ends.
 
-        One that was not asked for is dropped: a repeat in silence, a later one by asking again for what is missing.
+        An item that was not requested is dropped: a repeated one silently, a later one with a new request for the
+        missing one.
         """
         if message.seq != self._next:
-            skipped = message.seq > self._next and now - self._asked >= MIN_REQUEST_INTERVAL
+            skipped = message.seq > self._next and now - self._requested_at >= MIN_REQUEST_INTERVAL
             return [self.request_item(now)] if skipped else []
         item = from_message(message)
         fault = item_fault(item, self._rules.commands, self._rules.frames)
@@ -91,24 +92,26 @@ class PlanUpload:
             self.invalid_item = self._next, item
             return fault
         self._items[self._next : self._next + 1] = [item]
-        self._next, self._heard = self._next + 1, now
+        self._next, self._last_item_at = self._next + 1, now
         return [self.request_item(now)] if self._next < self._end else self._rules.check(self.items)
 
     def is_overdue(self, now: float) -> bool:
-        """Has its sender been silent for too long?"""
-        return now - self._heard >= UPLOAD_TIMEOUT
+        """Return whether no item has come for UPLOAD_TIMEOUT."""
+        return now - self._last_item_at >= UPLOAD_TIMEOUT
 
     def repeat_request(self, now: float) -> list[Outgoing]:
-        """The question once more when its answer is late, each second time as the older MISSION_REQUEST: some scripts
-        wait for nothing else."""
-        if now - self._asked < REQUEST_TIMEOUT:
+        """Return the request again when its answer is late.
+
+        Every second time it is the older MISSION_REQUEST, because some scripts handle no other.
+        """
+        if now - self._requested_at < REQUEST_TIMEOUT:
             return []
         self._as_int = self._only_int or not self._as_int
         return [self.request_item(now)]
 
     def use_int_only(self, now: float) -> list[Outgoing]:
-        """Ask by MISSION_REQUEST_INT from now on: MAVSDK refuses MISSION_REQUEST with UNSUPPORTED."""
+        """Use only MISSION_REQUEST_INT from now on: MAVSDK answers MISSION_REQUEST with UNSUPPORTED."""
         if self._only_int:
-            return []  # the refusal of an older question
+            return []  # the rejection of an older request
         self._as_int = self._only_int = True
         return [self.request_item(now)]

@@ -1,1 +1,1 @@
-"""The parameter protocol."""
+"""Parameter protocol."""

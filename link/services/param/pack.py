@@ -1,9 +1,9 @@
-"""All parameters as one file, `@PARAM/param.pck`: ArduPilot's packed format, which MAVProxy and Mission Planner ask for
-first because it is a fifth of the messages.
+"""All parameters as one file, `@PARAM/param.pck`, in ArduPilot's packed format.
 
-Header: magic, number of parameters inside, number of all, each uint16. Each parameter: a byte of type (low) and flags
-(high; 1: its default follows), a byte of how many characters it shares with the name before (low) and how many more
-there are less one (high), those characters, the value, the default where flagged. All little endian.
+MAVProxy and Mission Planner request it first, because it takes a fifth of the messages. Header: magic, number of
+parameters in the file, total number, each uint16. Each parameter: a byte of type (low nibble) and flags (high; 1: the
+default follows), a byte of how many characters are shared with the previous name (low) and how many follow less one
+(high), those characters, the value, the default where flagged. All little-endian.
 """
 
 from __future__ import annotations
@@ -14,16 +14,15 @@ from collections.abc import Mapping, Sequence
 from link.services.param.server import ParamDefinition, ParamValues
 from link.services.param.values import same_float32
 
-PATH = "@PARAM/param.pck"
 MAGIC, MAGIC_DEFAULTS = 0x671B, 0x671C
 FLOAT = 4
-"""ArduPilot's AP_PARAM_FLOAT: all our parameters are."""
+"""ArduPilot's AP_PARAM_FLOAT, the type of all our parameters."""
 HAS_DEFAULT = 1
 MAX_SHARED = 15
 
 
 def pack(table: Sequence[ParamDefinition], values: ParamValues, query: Mapping[str, str] | None = None) -> bytes | None:
-    """The file; None for a bad `query`, which is what stood behind the `?` of its path: withdefaults, start, count."""
+    """Return the file; None for an invalid `query` (withdefaults, start, count; behind the path's `?`)."""
     try:
         options = {key: int(text) for key, text in (query or {}).items()}
     except ValueError:
@@ -50,6 +49,6 @@ def _one(setting: ParamDefinition, value: float, before: str, *, with_default: b
 
 
 def _shared(before: str, name: str) -> int:
-    """How many characters both begin with, leaving at least one of `name`."""
+    """Return how many characters both names share at their start, leaving at least one of `name`."""
     longest = min(len(before), len(name) - 1, MAX_SHARED)
     return next((at for at in range(longest) if before[at] != name[at]), longest)

@@ -1,8 +1,8 @@
-"""The parameter protocol of a vehicle: list, read and set over a table; saving what is set is the vehicle's work.
+"""Server half of the parameter protocol: lists, reads and sets the parameters of a table.
 
-Rules (mavlink.io/en/services/parameter.html): a set is always answered; what is refused is answered by PARAM_ERROR and
-by the value that stays, in this order, because MAVSDK takes the first answer that names the parameter. Every value is
-REAL32, the only type that all ground stations read alike. The other half is client.py.
+Rules (https://mavlink.io/en/services/parameter.html): a set is always answered. A rejected one is answered with
+PARAM_ERROR and then with the current value, in this order, because MAVSDK takes the first answer that names the
+parameter. Every value is REAL32, the only type that all ground stations read alike. The vehicle saves what is set.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
 from link.services.param.values import NAME_SIZE, REAL32, same_float32, shortest_float32
 
 RUN_PERIOD = 1.0
-"""s between the starts of two lists to one peer: less than the 2 s after which MAVProxy asks again."""
+"""s between the starts of two lists to one peer: less than the 2 s after which MAVProxy repeats its request."""
 MAX_RUNS = 16
 VALUE_FRAME = m.ParamValue.unpacker.size + MAVLINK2_OVERHEAD
 
 
 class ParamDefinition(Protocol):
-    """One line of the parameter table."""
+    """One row of the parameter table."""
 
     @property
     def name(self) -> str:
@@ -33,7 +33,7 @@ class ParamDefinition(Protocol):
 
     @property
     def default(self) -> float:
-        """Its value until it is set."""
+        """Value until the parameter is set."""
 
     @property
     def low(self) -> float:
@@ -45,7 +45,7 @@ class ParamDefinition(Protocol):
 
     @property
     def unit(self) -> str:
-        """As people write it, e.g. "m/s"; empty where there is none."""
+        """Unit as it is displayed, e.g. "m/s"; empty where there is none."""
 
     @property
     def description(self) -> str:
@@ -53,43 +53,43 @@ class ParamDefinition(Protocol):
 
     @property
     def whole(self) -> bool:
-        """Only whole numbers."""
+        """Integers only."""
 
     @property
     def safety(self) -> bool:
-        """Never changed while armed."""
+        """Cannot be changed while armed."""
 
     @property
     def needs_reboot(self) -> bool:
-        """Counts only after a restart."""
+        """Takes effect after a restart."""
 
     @property
     def read_only(self) -> bool:
-        """Never set by a ground station."""
+        """Cannot be set by a ground station."""
 
 
 class ParamValues(Protocol):
-    """The settings in force."""
+    """The current values."""
 
     def __getitem__(self, name: str, /) -> float:
-        """The value now."""
+        """Return the current value."""
 
     def set(self, name: str, value: float) -> None:
-        """Put a checked value in force. Raises ValueError, one line, where it contradicts another."""
+        """Set a checked value. Raises ValueError, one line, if it contradicts another parameter."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParamRejection:
-    """Why a value is not taken."""
+    """Why a value was rejected."""
 
     fault: ParamErrorCode
     reason: str
-    """One line for the driver."""
+    """One line for the operator."""
 
 
 @dataclass(slots=True)
 class _Run:
-    """A list on its way to one peer."""
+    """A list under way to one peer."""
 
     start: float
     next: int = 0
@@ -98,8 +98,8 @@ class _Run:
 class ParamServer:
     """Answers for one system and component.
 
-    `allowed` says who may set, `armed` whether safety settings are locked, `changed` is told every value that was set,
-    `say` gets a line for the driver when one was refused.
+    `allowed` returns whether the sender may set parameters, `armed` whether safety parameters are locked. `changed`
+    gets every value that was set, `send_text` a line for the operator when a set was rejected.
     """
 
     def __init__(
@@ -113,18 +113,18 @@ class ParamServer:
         allowed: Callable[[Received], bool] = lambda received: True,
         armed: Callable[[], bool] = lambda: False,
         changed: Callable[[str, float], None] = lambda name, value: None,
-        say: Callable[[str, float], None] = lambda text, now: None,
+        send_text: Callable[[str, float], None] = lambda text, now: None,
     ) -> None:
         self._table = tuple(table)
         self._index = {setting.name: index for index, setting in enumerate(self._table)}
         self._values = values
         self._ids = (system, component)
         self._pacer = pacer
-        self._allowed, self._armed, self._changed, self._say = allowed, armed, changed, say
+        self._allowed, self._armed, self._changed, self._send_text = allowed, armed, changed, send_text
         self._runs: dict[Peer, _Run] = {}
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
-        """Answer one message; nothing where it is not for us or its sender may not ask."""
+        """Answer one message; nothing if it is not for us or its sender may not ask."""
         message = received.message
         if not isinstance(message, m.ParamRequestList | m.ParamRequestRead | m.ParamSet) or not received.may_ask:
             return []
@@ -140,7 +140,7 @@ class ParamServer:
                 return self._set(message, received, now) if received.introduced else []
 
     def tick(self, now: float) -> list[Outgoing]:
-        """The next values of every list under way, as far as the links have room."""
+        """Return the next values of every list under way, as far as the links have room."""
         outgoing: list[Outgoing] = []
         for peer, run in list(self._runs.items()):
             while run.start <= now and run.next < len(self._table) and self._pacer.consume(peer, VALUE_FRAME, now):
@@ -151,11 +151,11 @@ class ParamServer:
         return outgoing
 
     def broadcast(self, names: Iterable[str]) -> list[Outgoing]:
-        """Tell everybody the values of parameters that the vehicle itself has changed."""
+        """Return the values of parameters that the vehicle itself has changed, for all peers."""
         return [Outgoing(self._value(self._index[name])) for name in names]
 
     def _begin(self, peer: Peer, now: float) -> None:
-        """One run a peer: asked again while one is under way, it goes on; asked again soon after, it waits its turn."""
+        """Start a list. A request during a list is ignored; one soon after it waits for RUN_PERIOD."""
         run = self._runs.get(peer)
         if run is None and len(self._runs) < MAX_RUNS:
             self._runs[peer] = _Run(now)
@@ -171,12 +171,12 @@ class ParamServer:
     def _set(self, message: m.ParamSet, received: Received, now: float) -> list[Outgoing]:
         name, index = message.param_id, self._index.get(message.param_id)
         if index is None:
-            self._say(f"No parameter {m.printable(name)}", now)
+            self._send_text(f"No parameter {m.printable(name)}", now)
             return [self._fault(message._param_id_raw, -1, ParamErrorCode.DOES_NOT_EXIST, received)]
-        refusal = self._rejection(self._table[index], message, received) or self._apply(name, message.param_value)
-        if refusal:
-            self._say(f"{name} not changed: {refusal.reason}", now)
-            fault = self._fault(message._param_id_raw, index, refusal.fault, received)
+        rejection = self._rejection(self._table[index], message, received) or self._apply(name, message.param_value)
+        if rejection:
+            self._send_text(f"{name} not changed: {rejection.reason}", now)
+            fault = self._fault(message._param_id_raw, index, rejection.fault, received)
             return [fault, Outgoing(self._value(index), received.peer)]
         return [Outgoing(self._value(index))]
 
@@ -195,7 +195,7 @@ class ParamServer:
         if not self._allowed(received):
             return ParamRejection(ParamErrorCode.PERMISSION_DENIED, "you are not in control")
         if setting.read_only:
-            return ParamRejection(ParamErrorCode.READ_ONLY, "it is read only")
+            return ParamRejection(ParamErrorCode.READ_ONLY, "it is read-only")
         if message.param_type != REAL32:
             return ParamRejection(ParamErrorCode.TYPE_MISMATCH, "its type is REAL32")
         unchanged = same_float32(message.param_value, self._values[setting.name])
@@ -214,14 +214,14 @@ class ParamServer:
 
 
 def check_value(setting: ParamDefinition, value: float) -> ParamRejection | None:
-    """Why `value` is not one for `setting`, or None. Bounds count as float32, for that is how values arrive."""
+    """Return why `value` is invalid for `setting`, or None. Values are compared as float32."""
     if not math.isfinite(value):
-        return ParamRejection(ParamErrorCode.VALUE_OUT_OF_RANGE, f"{value} is no number")
+        return ParamRejection(ParamErrorCode.VALUE_OUT_OF_RANGE, f"{value} is not a number")
     value = shortest_float32(value)
     if not setting.low <= value <= setting.high:
         return ParamRejection(
             ParamErrorCode.VALUE_OUT_OF_RANGE, f"{value:g} is not in {setting.low:g} to {setting.high:g}"
         )
     if setting.whole and value != int(value):
-        return ParamRejection(ParamErrorCode.VALUE_OUT_OF_RANGE, f"{value:g} is no whole number")
+        return ParamRejection(ParamErrorCode.VALUE_OUT_OF_RANGE, f"{value:g} is not a whole number")
     return None

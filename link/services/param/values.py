@@ -1,4 +1,4 @@
-"""What a PARAM_VALUE carries: numbers of several types inside one float, and how a float32 is best written down."""
+"""Values of PARAM_VALUE: several types inside one float, and the shortest decimal form of a float32."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _FORMATS: dict[int, tuple[str, int, int]] = {
     5: ("<I", 0, 0xFFFF_FFFF),
     6: ("<i", -0x8000_0000, 0x7FFF_FFFF),
 }
-"""MAV_PARAM_TYPE of a whole number -> its four bytes, smallest, largest."""
+"""MAV_PARAM_TYPE of an integer -> its four bytes, smallest, largest."""
 _FLOAT = struct.Struct("<f")
 
 
 def from_wire(value: float, kind: int, *, bytewise: bool) -> float:
-    """The number that `param_value` means. `bytewise`: whole numbers lie in the float's bytes (PX4), not in its value.
+    """Return the number in `param_value`. `bytewise`: integers are stored in the float's bytes (PX4).
 
-    Types that do not fit into four bytes (UINT64, INT64, REAL64) come as their value.
+    Types that do not fit into four bytes (UINT64, INT64, REAL64) are sent as their value.
     """
     if not bytewise or kind not in _FORMATS:
         return shortest_float32(value)
@@ -33,7 +33,7 @@ def from_wire(value: float, kind: int, *, bytewise: bool) -> float:
 
 
 def to_wire(value: float, kind: int, *, bytewise: bool) -> float:
-    """What `param_value` must be for `value`; whole numbers are rounded and kept inside their type."""
+    """Return `param_value` for `value`; integers are rounded and clamped to their type."""
     if kind not in _FORMATS:
         return value
     form, low, high = _FORMATS[kind]
@@ -44,10 +44,10 @@ def to_wire(value: float, kind: int, *, bytewise: bool) -> float:
 
 
 def shortest_float32(value: float) -> float:
-    """The number with the fewest digits that is the same float32: 0.45 and not 0.44999998807907104."""
+    """Return the number with the fewest digits that is the same float32: 0.45, not 0.44999998807907104."""
     try:
         packed = _FLOAT.pack(value)
-    except OverflowError:  # no float32 comes near
+    except OverflowError:  # beyond every float32
         return value
     for digits in range(6, 9):
         short = float(f"{value:.{digits}g}")
@@ -57,7 +57,7 @@ def shortest_float32(value: float) -> float:
 
 
 def is_float32(value: float) -> bool:
-    """Is there a finite float32 near it?"""
+    """Return whether a finite float32 is near `value`."""
     try:
         return math.isfinite(_FLOAT.unpack(_FLOAT.pack(value))[0])
     except OverflowError:
@@ -65,5 +65,5 @@ def is_float32(value: float) -> bool:
 
 
 def same_float32(one: float, other: float) -> bool:
-    """Are both the same float32?"""
+    """Return whether both are the same float32."""
     return shortest_float32(one) == shortest_float32(other)

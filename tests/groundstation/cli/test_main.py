@@ -1,4 +1,4 @@
-"""The command line: what is told before the screen opens. Exit code 2, one line, no traceback."""
+"""The command line: errors before the screen opens are one line with exit code 2, without a traceback."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from groundstation.cli.main import main
 ROOT = Path(__file__).resolve().parents[3]
 
 
-def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """Run in this process; the line on stderr."""
+def error_line(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """Run in this process; return the line on stderr."""
     assert main(arguments) == 2
     captured = capsys.readouterr()
     assert captured.out == ""
@@ -33,7 +33,7 @@ def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 def in_terminal(
     arguments: Sequence[str], *, columns: int = 80, rows: int = 24, timeout: float = 60.0
 ) -> tuple[int, str]:
-    """Run in a terminal of this size; exit code and everything that was shown."""
+    """Run in a terminal of this size; return the exit code and everything shown."""
     ours, theirs = pty.openpty()
     ioctl(theirs, TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
     environment = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "LINES")}
@@ -54,16 +54,22 @@ def in_terminal(
         (["--keys", "emacs"], "unknown key map 'emacs': choose standard, teleop"),
         (["--keys", "/nowhere/keys.toml"], "No such file"),
         (["udpin:127.0.0.1:14999"], "is not a terminal"),
+        (["drive"], "'drive' is not an endpoint such as udpin:127.0.0.1:14550 (groundstation --help lists them)"),
+        (["help"], "groundstation --help"),
     ],
 )
 def test_mistakes_are_one_line(capsys: pytest.CaptureFixture[str], arguments: list[str], words: str) -> None:
-    assert words in told(capsys, *arguments)
+    assert words in error_line(capsys, *arguments)
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (["--fly"], "unrecognized arguments: --fly"),
+        (["--stil"], "unrecognized arguments: --stil: did you mean --sitl?"),
+        (["--master", "udp:127.0.0.1:14550"], "--master: write the endpoint without an option, e.g. udpin:"),
+        (["--master=udp:127.0.0.1:14550"], "write the endpoint without an option, e.g. udpin:"),
+        (["--baud", "57600"], "write serial:PATH:BAUD"),
         (["--style", "wild"], "invalid choice: 'wild'"),
         (["--speed", "2"], "'2' is not a number from 0.1 to 1.0"),
         (["--speed", "nan"], "'nan' is not a number from 0.1 to 1.0"),
@@ -111,7 +117,7 @@ def test_a_terminal_that_is_far_too_small() -> None:
 
 
 @pytest.mark.e2e
-def test_a_port_in_use_is_told_before_the_screen_opens() -> None:
+def test_a_port_in_use_is_reported_before_the_screen_opens() -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
         code, shown = in_terminal([f"udpin:127.0.0.1:{taken.getsockname()[1]}"])

@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.input.keymap import ACTIONS, CONFIRM_KEY, KEYMAPS, KeyEvent, Keymap
+from groundstation.input.keymap import CONFIRM_KEY, KEYMAPS, KeyEvent, Keymap
 from groundstation.intents import (
+    ACTIONS,
     AnyIntent,
     Disarm,
     DriveKeyDown,
@@ -35,7 +36,7 @@ def directions(*keys: str, keymap: Keymap = STANDARD) -> list[tuple[int, int]]:
 
 
 @pytest.mark.parametrize("keymap", [STANDARD, TELEOP], ids=lambda keymap: keymap.name)
-def test_the_articles_keys(keymap: Keymap) -> None:
+def test_the_keys_of_teleop_twist_keyboard(keymap: Keymap) -> None:
     assert directions("u", "i", "o", keymap=keymap) == [(1, -1), (1, 0), (1, 1)]
     assert directions("j", "l", keymap=keymap) == [(0, -1), (0, 1)]
     assert directions("m", "comma", "full_stop", keymap=keymap) == [(-1, 1), (-1, 0), (-1, -1)]
@@ -112,7 +113,7 @@ def test_a_held_r_does_not_disarm_again_and_again() -> None:
     assert STANDARD.build_intents([KeyEvent("r", repeat=True)], armed=True, driving=False) == []
 
 
-def test_orders() -> None:
+def test_vehicle_commands() -> None:
     assert read("1", "2", "g", "tab") == [SetMode("MANUAL"), SetMode("HOLD"), RequestControl(), SetStyle("next")]
 
 

@@ -1,4 +1,4 @@
-"""Key maps of a user: what is taken, and what is told in one line."""
+"""Key map files: what is accepted, and errors of one line."""
 
 from __future__ import annotations
 
@@ -57,16 +57,16 @@ def test_every_punctuation_name_is_textuals() -> None:
         ('[keys]\n"drive.forward" = ["e"]\n"drive.left" = ["e"]', ["'e' is bound to drive.forward and to drive.left"]),
         ('[keys]\n"drive.stop" = []', ["drive.stop needs a key other than escape"]),
         ('[keys]\n"stop.emergency" = ["escape"]', ["stop.emergency needs a key other than escape"]),
-        ('[keys]\n"app.help" = ["y"]', ["'y' confirms and cannot be bound"]),
+        ('[keys]\n"app.help" = ["y"]', ["'y' confirms actions and cannot be bound"]),
         ('base = "emacs"', ["unknown base 'emacs'", "standard, teleop"]),
         ("speed = 1", ["unknown entry 'speed'", "base, keys"]),
         ("keys = 1", ["'keys' must be a table"]),
         ("[keys", ["mine.toml"]),
-        (f"base = {'9' * 5000}", ["mine.toml", "a number of thousands of digits"]),
-        (f"base = {'[' * 3000}{']' * 3000}", ["mine.toml", "too deep to be meant"]),
+        (f"base = {'9' * 5000}", ["mine.toml", "a number with thousands of digits"]),
+        (f"base = {'[' * 3000}{']' * 3000}", ["mine.toml", "nested too deep"]),
     ],
 )
-def test_mistakes_are_told_in_one_line_with_the_choices(tmp_path: Path, text: str, words: list[str]) -> None:
+def test_mistakes_are_reported_in_one_line_with_the_choices(tmp_path: Path, text: str, words: list[str]) -> None:
     with pytest.raises(KeymapError) as caught:
         load_keymap(write(tmp_path, text))
     line = str(caught.value)

@@ -284,7 +284,7 @@ def test_changing_the_style_stops() -> None:
     assert sticks.axes(1.0) == NEUTRAL
 
 
-def test_next_goes_round_and_an_unknown_style_only_stops() -> None:
+def test_next_style_wraps_and_an_unknown_style_only_stops() -> None:
     sticks = Sticks()
     seen = []
     for _ in range(3):

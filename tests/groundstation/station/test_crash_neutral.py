@@ -16,7 +16,7 @@ from groundstation.processes import start_module
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.core import Peer, Received
-from tests.groundstation.broken_helm import ORDER
+from tests.groundstation.crashing_station import ORDER
 from tests.groundstation.screen import Screen, running, until
 from tests.groundstation.udp_vehicle import UdpVehicle
 
@@ -62,14 +62,14 @@ def test_neutral_five_times_in_the_vehicles_own_axes(autopilot: int, axis: str, 
     assert farewell.finished
 
 
-def test_every_vehicle_that_may_still_hold_a_demand_is_told() -> None:
+def test_every_vehicle_that_may_still_hold_a_demand_gets_neutral() -> None:
     farewell = driven(systems=(1, 2))
     farewell.handle_sent(m.ManualControl(2, 0, 0, 600, 0, 0), 6, 102.0)
     farewell.activate(103.5)
     assert {message.target for _, message in said(farewell, 103.5)} == {2}, "1 got its last one 3.5 s ago"
 
 
-def test_the_station_is_not_asked_any_more() -> None:
+def test_the_station_is_not_called_any_more() -> None:
     farewell = driven()
     farewell.activate(100.1)
     said(farewell, 100.1)
@@ -78,7 +78,7 @@ def test_the_station_is_not_asked_any_more() -> None:
     assert said(farewell, 101.5) == []
 
 
-def test_who_was_not_driven_hears_nothing() -> None:
+def test_a_vehicle_that_was_not_driven_gets_nothing() -> None:
     farewell = CrashNeutral(Station(["memory"]))
     farewell.receive(beat(Autopilot.ARDUPILOT), 100.0)
     farewell.activate(100.1)
@@ -92,7 +92,7 @@ def test_who_was_not_driven_hears_nothing() -> None:
 @pytest.fixture
 def _a_bug_in_the_station(monkeypatch: pytest.MonkeyPatch) -> None:
     def start(module: str, *arguments: Any, **options: Any) -> Any:
-        return start_module("tests.groundstation.broken_helm", *arguments, **options)
+        return start_module("tests.groundstation.crashing_station", *arguments, **options)
 
     monkeypatch.setattr(client, "start_module", start)
 
@@ -109,16 +109,16 @@ def test_an_exception_anywhere_ends_with_neutral(place: str, tmp_path: Path) -> 
         broke = time.monotonic()
         screen.insist(
             lambda: screen.client.send(SetStyle(style=ORDER + place)),
-            lambda snapshot: bool(snapshot.texts) and "the station broke" in snapshot.texts[-1].text,
+            lambda snapshot: bool(snapshot.texts) and "station crashed" in snapshot.texts[-1].text,
         )
         until(lambda: not running(screen.client.pid))
         seen = screen.snapshot
-        assert seen.texts[-1].text.startswith("the station broke (ZeroDivisionError: a bug")
+        assert seen.texts[-1].text.startswith("station crashed (ZeroDivisionError: a bug")
         assert "\n" not in seen.texts[-1].text
         assert (seen.operator.throttle, seen.operator.gate_open, seen.operator.gate_reason) == (
             0.0,
             False,
-            "the station broke",
+            "station crashed",
         )
         assert screen.client.close() == 1
         until(lambda: sum(not x for _, x in vehicle.demands(broke)) >= 5)
@@ -126,8 +126,8 @@ def test_an_exception_anywhere_ends_with_neutral(place: str, tmp_path: Path) -> 
         neutral = [at for at, x in vehicle.demands(broke) if not x]
         assert not moving or max(moving) < neutral[-5]
         (line,) = [line for line in log_file.read_text().splitlines() if "CRITICAL" in line]
-        assert "the station broke (ZeroDivisionError: a bug" in line
-        assert "neutral, and the end" in line
+        assert "station crashed (ZeroDivisionError: a bug" in line
+        assert "sending neutral, then exiting" in line
 
 
 @pytest.mark.e2e

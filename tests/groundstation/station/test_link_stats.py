@@ -16,10 +16,10 @@ def report(received: int, lost: int = 0, **changes: Any) -> LinkReport:
 
 
 def test_loss_and_rates_over_the_window_of_one_vehicle() -> None:
-    book = LinkStats()
+    stats = LinkStats()
     for second in range(20):
-        book.update([report(30 * second, 10 * second)], 1, float(second))
-    (view,) = book.build_views(0.02)
+        stats.update([report(30 * second, 10 * second)], 1, float(second))
+    (view,) = stats.build_views(0.02)
     assert view.loss == pytest.approx(0.25)
     assert view.rate == pytest.approx(30.0)
     assert view.bytes_per_second == pytest.approx(600.0)
@@ -27,39 +27,39 @@ def test_loss_and_rates_over_the_window_of_one_vehicle() -> None:
 
 
 def test_old_loss_is_forgotten() -> None:
-    book = LinkStats()
+    stats = LinkStats()
     for second in range(20):
-        book.update([report(30 * second, min(10 * second, 50))], 1, float(second))
-    assert book.build_views(None)[0].loss == 0.0
+        stats.update([report(30 * second, min(10 * second, 50))], 1, float(second))
+    assert stats.build_views(None)[0].loss == 0.0
 
 
 def test_frames_of_unknown_ids_are_not_lost() -> None:
-    book = LinkStats()
+    stats = LinkStats()
     for second in range(20):
-        book.update([report(30 * second, 10 * second, unknown=9 * second)], 1, float(second))
-    assert book.build_views(None)[0].loss == pytest.approx(1 / 31)
+        stats.update([report(30 * second, 10 * second, unknown=9 * second)], 1, float(second))
+    assert stats.build_views(None)[0].loss == pytest.approx(1 / 31)
 
 
 def test_noise_that_looks_like_unknown_frames_makes_no_negative_loss() -> None:
-    book = LinkStats()
+    stats = LinkStats()
     for second in range(20):
-        book.update([report(30 * second, second, unknown=9 * second)], 1, float(second))
-    assert book.build_views(None)[0].loss == 0.0
+        stats.update([report(30 * second, second, unknown=9 * second)], 1, float(second))
+    assert stats.build_views(None)[0].loss == 0.0
 
 
 def test_nothing_is_known_of_a_silent_link() -> None:
-    book = LinkStats()
-    book.update([report(0)], None, 0.0)
-    (view,) = book.build_views(0.5)
+    stats = LinkStats()
+    stats.update([report(0)], None, 0.0)
+    (view,) = stats.build_views(0.5)
     assert (view.loss, view.round_trip, view.rate) == (None, None, 0.0)
-    assert not book.has_traffic
+    assert not stats.has_traffic
 
 
 def test_counters_that_start_again_make_no_nonsense() -> None:
-    book = LinkStats()
-    book.update([report(1000, 500)], 1, 0.0)
-    book.update([report(10, 0)], 1, 1.0)
-    (view,) = book.build_views(None)
+    stats = LinkStats()
+    stats.update([report(1000, 500)], 1, 0.0)
+    stats.update([report(10, 0)], 1, 1.0)
+    (view,) = stats.build_views(None)
     assert view.loss is None
     assert view.rate == 0.0
 
@@ -75,9 +75,15 @@ def test_counters_that_start_again_make_no_nonsense() -> None:
         ),
     ],
 )
-def test_problems_in_words(changes: dict[str, Any], words: str) -> None:
-    book = LinkStats()
-    book.update([report(1, **changes)], 1, 0.0)
-    problem = book.build_views(None)[0].problem
+def test_problems_are_described(changes: dict[str, Any], words: str) -> None:
+    stats = LinkStats()
+    stats.update([report(1, **changes)], 1, 0.0)
+    problem = stats.build_views(None)[0].problem
     assert problem is not None
     assert words in problem
+
+
+def test_a_radio_that_is_full_makes_less_of_the_capacity() -> None:
+    stats = LinkStats()
+    stats.update([LinkReport("serial:/dev/ttyUSB0:57600", 0, capacity=5760.0, headroom=0.5)], None, 100.0)
+    assert (stats.capacity(0), stats.capacity(1)) == (2880.0, None)

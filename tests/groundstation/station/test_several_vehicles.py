@@ -26,7 +26,7 @@ from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
 from link.protocol.channel import Channel
-from tests.groundstation.fake_vehicle import QUESTIONS, FakeVehicle
+from tests.groundstation.fake_vehicle import QUERIES, FakeVehicle
 from tests.world import Host
 
 FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
@@ -68,12 +68,12 @@ class Convoy:
             for data, address, sequence in self._near.channel.send(outgoing):
                 self.station.handle_sent(outgoing.message, sequence, self.now)
                 for host in self._far[str(address)]:
-                    host.hear(data, "station", self.now)
+                    host.receive(data, "station", self.now)
         for address, hosts in self._far.items():
             for host in hosts:
                 host.advance(self.now)
-                for data in host.speak(self.now):
-                    self._near.hear(data, address, self.now)
+                for data in host.pop_frames(self.now):
+                    self._near.receive(data, address, self.now)
 
     @property
     def snapshot(self) -> Snapshot:
@@ -86,8 +86,8 @@ class Convoy:
         return view
 
     def orders(self, system: int) -> int:
-        """Commands that the vehicle heard and that are no questions."""
-        return sum(each.command not in QUESTIONS for _, each in self.vehicles[system].all(m.CommandLong))
+        """Return the number of received commands that are no queries."""
+        return sum(each.command not in QUERIES for _, each in self.vehicles[system].all(m.CommandLong))
 
     def demands(self, system: int, since: float) -> list[tuple[float, int]]:
         return [(at, each.x) for at, each in self.vehicles[system].all(m.ManualControl) if at >= since]
@@ -95,10 +95,10 @@ class Convoy:
 
 @pytest.fixture(params=[False, True], ids=["two addresses", "one radio"])
 def convoy(request: pytest.FixtureRequest) -> Convoy:
-    """Both heard, the first one armed and driven."""
+    """Both found, the first one armed and driven."""
     convoy = Convoy(radio=request.param)
     convoy.run(2.0)
-    assert convoy.snapshot.vehicles == (1, 2)
+    assert convoy.station.fleet.system_ids == (1, 2)
     assert convoy.view.system == 1
     convoy.do(Arm())
     convoy.run(1.5)
@@ -110,7 +110,7 @@ def convoy(request: pytest.FixtureRequest) -> Convoy:
 
 
 @pytest.mark.parametrize("select", [SelectVehicle(system=2), SelectNextVehicle()])
-def test_the_one_that_is_left_gets_neutral_at_once_and_then_nothing(convoy: Convoy, select: AnyIntent) -> None:
+def test_the_deselected_vehicle_gets_neutral_at_once_and_then_nothing(convoy: Convoy, select: AnyIntent) -> None:
     left = convoy.now
     convoy.do(select)
     convoy.run(3.0)
@@ -123,7 +123,7 @@ def test_the_one_that_is_left_gets_neutral_at_once_and_then_nothing(convoy: Conv
     assert "Rover 2 selected" in [line.text for line in convoy.snapshot.texts]
 
 
-def test_orders_and_demands_go_to_the_selected_one_only(convoy: Convoy) -> None:
+def test_commands_and_demands_go_to_the_selected_vehicle_only(convoy: Convoy) -> None:
     convoy.do(DriveKeyUp(key="i"), SelectVehicle(system=2))
     convoy.run(1.0)
     before = convoy.orders(1)
@@ -158,7 +158,7 @@ def test_the_first_one_stops_although_the_second_is_driven_meanwhile(convoy: Con
     assert convoy.snapshot.operator.throttle == pytest.approx(0.6), "neutral for one is not what the other gets"
 
 
-def test_next_goes_round_and_back_to_the_first(convoy: Convoy) -> None:
+def test_next_vehicle_wraps_to_the_first(convoy: Convoy) -> None:
     seen = []
     for _ in range(4):
         convoy.do(SelectNextVehicle())
@@ -176,17 +176,17 @@ def test_the_first_one_can_be_driven_again_with_a_new_press(convoy: Convoy) -> N
     assert convoy.demands(1, back)[-1][1] == 600
 
 
-def test_a_vehicle_that_is_silent_does_not_take_the_selection_along(convoy: Convoy) -> None:
+def test_selecting_an_unknown_vehicle_keeps_the_selection(convoy: Convoy) -> None:
     convoy.do(SelectVehicle(system=9))
     convoy.run(0.1)
     assert convoy.view.system == 1
-    assert "there is no vehicle 9" in [line.text for line in convoy.snapshot.texts]
+    assert "no vehicle with system id 9" in [line.text for line in convoy.snapshot.texts]
 
 
 def test_alone_there_is_no_next_one() -> None:
     station = Station(["memory"])
     station.handle_intent(SelectNextVehicle(), 1.0)
-    assert [line.text for line in station.snapshot(1.0, 1.0).texts] == ["there is no other vehicle"]
+    assert [line.text for line in station.snapshot(1.0, 1.0).texts] == ["no other vehicle"]
 
 
 def test_answers_of_one_vehicle_are_not_those_of_the_other(convoy: Convoy) -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
+
+from tests.groundstation.ui.programs import Program
 
 
 @pytest.fixture(autouse=True)
@@ -16,3 +19,10 @@ def _utc(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         time.tzset()
         yield
     time.tzset()
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Iterator[Program]:
+    """The screen as a process of its own."""
+    with Program.running(tmp_path / "report") as made:
+        yield made

@@ -91,8 +91,8 @@ def vehicle(**changes: Any) -> VehicleView:
 def helm(**changes: Any) -> OperatorView:
     """A driver who holds `o`."""
     view = OperatorView(
-        style="hold", reports_releases=True, stop_bound=0.0, held=("o",), throttle=0.6, steering=0.25, throttle_limit=0.6,
-        steering_limit=0.6, gate_open=True, sending=True, rate=20.0,
+        style="hold", reports_releases=True, stop_bound=0.0, held=("o",), throttle=0.6, steering=0.25,
+        throttle_limit=0.6, steering_limit=0.6, gate_open=True, sending=True, rate=20.0,
     )  # fmt: skip
     return msgspec.structs.replace(view, **changes)
 
@@ -117,7 +117,7 @@ RATES: Sequence[tuple[str, float, int, bool]] = (
 def snapshot(**changes: Any) -> Snapshot:
     """All of it."""
     picture = Snapshot(
-        number=1, uptime=60.0, endpoints=("udpin:127.0.0.1:14550",), vehicle=vehicle(), vehicles=(1,), operator=helm(),
+        number=1, uptime=60.0, endpoints=("udpin:127.0.0.1:14550",), vehicle=vehicle(), operator=helm(),
         links=(LinkView(name="udpin:127.0.0.1:14550", loss=0.003, round_trip=0.012, rate=55.0),), texts=TEXTS,
         messages=tuple(MessageRate(name=name, rate=rate, count=count, sent=sent) for name, rate, count, sent in RATES),
     )  # fmt: skip
@@ -127,6 +127,4 @@ def snapshot(**changes: Any) -> Snapshot:
 def waiting(**changes: Any) -> Snapshot:
     """No vehicle yet."""
     text = "waiting for a vehicle on udpin:127.0.0.1:14550"
-    return snapshot(
-        vehicle=None, vehicles=(), operator=OperatorView(gate_reason="no vehicle"), texts=(), waiting=text, **changes
-    )
+    return snapshot(vehicle=None, operator=OperatorView(gate_reason="no vehicle"), texts=(), waiting=text, **changes)

@@ -10,6 +10,7 @@ from rich.segment import Segment
 from rich.style import Style
 from textual._compositor import LayoutUpdate
 from textual.app import App
+from textual.strip import Strip
 
 WIDTH, HEIGHT, BASELINE = 10, 20, 15
 """Pixels of a cell, and of the baseline of its letters."""
@@ -45,6 +46,11 @@ def text(app: App[Any]) -> str:
     """One line a row, without the spaces at its end."""
     rows = ["".join(character for character, _ in row).rstrip() for row in cells(app)]
     return "\n".join(rows) + "\n"
+
+
+def texts(strips: Iterable[Strip]) -> list[str]:
+    """Return the text of each line that an instrument draws."""
+    return [strip.text for strip in strips]
 
 
 def svg(app: App[Any]) -> str:

@@ -5,14 +5,18 @@ from __future__ import annotations
 import contextlib
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
+from typing import Any
 
 import msgspec
+import pytest
 from textual.pilot import Pilot
 
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import Snapshot
 from groundstation.ui.app import ConsoleApp
 from groundstation.ui.key_gate import STARTING
+from groundstation.ui.key_parser import KeyEventParser
+from groundstation.ui.screens.help import HelpScreen
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
 from tests.groundstation.ui.ptys import until
@@ -60,3 +64,28 @@ async def console(
             yield made
     finally:
         station.close()
+
+
+def type_in(screen: Console, data: str) -> None:
+    """One read of the terminal: its keys are with the station when this returns, and the loop has had no turn yet."""
+    for event in KeyEventParser(screen.app.gate).feed(data):
+        event.set_sender(screen.app)
+        screen.app.post_message(event)
+
+
+def helps(screen: Console) -> int:
+    return sum(isinstance(each, HelpScreen) for each in screen.app.screen_stack)
+
+
+def helps_pushed(screen: Console, monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Grows with each screen that is opened from now on: how many help screens there are then."""
+    depths: list[int] = []
+    push = screen.app.push_screen
+
+    def noted(*arguments: Any, **options: Any) -> Any:
+        pushed = push(*arguments, **options)
+        depths.append(helps(screen))
+        return pushed
+
+    monkeypatch.setattr(screen.app, "push_screen", noted)
+    return depths

@@ -20,6 +20,9 @@ from groundstation.ui.tty_output import TerminalFile
 from tests.groundstation.ui.examples import Recorder
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])
+PRESS_W, REPEAT_W, RELEASE_W = "\x1b[119;1:1;119u", "\x1b[119;1:2;119u", "\x1b[119;1:3u"
+"""The key W as a terminal with the kitty keyboard protocol sends it."""
+
 PATIENCE = 60.0
 """s that a test waits for what must come; it comes in milliseconds."""
 

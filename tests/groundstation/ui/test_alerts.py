@@ -7,9 +7,10 @@ from typing import Any
 
 import pytest
 
-from groundstation.input.keymap import ACTIONS
+from groundstation.intents import ACTIONS
 from groundstation.snapshot import LinkView, Snapshot
-from groundstation.ui.alerts import LIMITS, AlertContext, AlertLevel, active_alerts
+from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts
+from groundstation.ui.display_state import DisplayState
 from groundstation.ui.key_gate import GateClosure
 from tests.groundstation.ui.examples import helm, snapshot, vehicle, waiting
 from tests.groundstation.ui.ptys import STANDARD
@@ -21,8 +22,8 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     (snapshot(), {}, AlertLevel.HINT, "hold i to drive · SPACE stops, ! cuts the motors"),
     (snapshot(vehicle=vehicle(armed=False)), {}, AlertLevel.HINT, "disarmed: r, then y, arms Rover 1"),
     (snapshot(vehicle=vehicle(mode="HOLD")), {}, AlertLevel.HINT, "HOLD: 1 changes to MANUAL"),
-    (snapshot(vehicle=vehicle(limits=("slew", "neutral first"))), {}, AlertLevel.WARNING, "neutral first: let go"),
-    (snapshot(vehicle=vehicle(limits=("stale",))), {}, AlertLevel.WARNING, "stale: the vehicle has no fresh command"),
+    (snapshot(vehicle=vehicle(limits=("slew", "neutral first"))), {}, AlertLevel.WARNING, "neutral first: release"),
+    (snapshot(vehicle=vehicle(limits=("stale",))), {}, AlertLevel.WARNING, "stale: the vehicle has no recent command"),
     (
         snapshot(vehicle=vehicle(refusal="arm denied: PreArm: battery low")),
         {},
@@ -31,8 +32,25 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     ),
     (snapshot(vehicle=vehicle(failsafes=("gcs loss",))), {}, AlertLevel.DANGER, "failsafe: gcs loss"),
     (snapshot(vehicle=vehicle(failsafes=("a",), failsafe_in=3.4)), {}, AlertLevel.DANGER, "next step in 3 s"),
-    (snapshot(vehicle=vehicle(alive=False, silence=4.0)), {}, AlertLevel.DANGER, "no word from Rover 1 for 4 s"),
-    (snapshot(vehicle=vehicle(alive=False, silence=math.inf)), {}, AlertLevel.DANGER, "for minutes"),
+    (
+        snapshot(vehicle=vehicle(alive=False, silence=4.0)),
+        {},
+        AlertLevel.DANGER,
+        "no heartbeat from Rover 1 for 4 s: it stops by itself",
+    ),
+    (
+        snapshot(vehicle=vehicle(alive=False, silence=math.inf)),
+        {},
+        AlertLevel.DANGER,
+        "for minutes: it stops by itself",
+    ),
+    (
+        snapshot(vehicle=vehicle(autopilot=3, name="ArduPilot rover 1", alive=False, silence=4.0)),
+        {},
+        AlertLevel.DANGER,
+        "no heartbeat from ArduPilot rover 1 for 4 s: not known whether it stops",
+    ),
+    (snapshot(vehicle=vehicle(driver=None, alive=False)), {}, AlertLevel.DANGER, "s: not known whether it stops"),
     (snapshot(vehicle=vehicle(emergency_stop=True)), {}, AlertLevel.DANGER, "EMERGENCY STOP: the motors are off"),
     (
         snapshot(vehicle=vehicle(in_control=False, driver=254)),
@@ -48,9 +66,9 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     ),
     (snapshot(vehicle=vehicle(warnings=("FS_GCS_ENABLE is 0",))), {}, AlertLevel.WARNING, "FS_GCS_ENABLE is 0"),
     (snapshot(links=(PROBLEM,)), {}, AlertLevel.WARNING, "udp: messages arrive with another"),
-    (snapshot(operator=helm(style="latch")), {}, AlertLevel.WARNING, "drives on by itself: k or SPACE stops"),
+    (snapshot(operator=helm(style="latch")), {}, AlertLevel.WARNING, "the vehicle keeps driving: k or SPACE stops"),
     (
-        snapshot(operator=helm(gate_open=False, gate_reason="the screen was frozen")),
+        snapshot(operator=helm(gate_open=False, gate_reason="screen was frozen")),
         {},
         AlertLevel.WARNING,
         "was frozen",
@@ -68,14 +86,14 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
 
 @pytest.mark.parametrize(("picture", "more", "level", "words"), CASES, ids=[case[3] for case in CASES])
 def test_what_is_said(picture: Snapshot, more: dict[str, Any], level: AlertLevel, words: str) -> None:
-    first = active_alerts(AlertContext(picture, STANDARD, **more))[0]
+    first = active_alerts(DisplayState(picture, STANDARD, **more))[0]
     assert words in first.text
     assert first.level is level
 
 
 def test_what_needs_a_hand_comes_before_what_is_in_the_way() -> None:
     picture = snapshot(vehicle=vehicle(failsafes=("gcs loss",), refusal="mode denied", limits=tuple(LIMITS)))
-    found = active_alerts(AlertContext(picture, STANDARD, GateClosure("no focus")))
+    found = active_alerts(DisplayState(picture, STANDARD, GateClosure("no focus")))
     assert [alert.level for alert in found] == sorted((alert.level for alert in found), key=_urgency)
 
 

@@ -20,8 +20,8 @@ STANDING = snapshot(
         armed=False, driver=0, in_control=False, speed=0.0, demand=(0.0, 0.0), outputs=(0.0, 0.0), limits=("disarmed",)
     ),
     operator=helm(
-        held=(), throttle=0.0, steering=0.0, gate_open=False, gate_reason="disarmed", reports_releases=False, stop_bound=0.75,
-        sending=False, rate=0.0,
+        held=(), throttle=0.0, steering=0.0, gate_open=False, gate_reason="disarmed", reports_releases=False,
+        stop_bound=0.75, sending=False, rate=0.0,
     ),
 )  # fmt: skip
 STOPPED = snapshot(vehicle=vehicle(emergency_stop=True, armed=False, failsafes=("estop",), outputs=(0.0, 0.0)))

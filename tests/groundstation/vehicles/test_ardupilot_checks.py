@@ -8,10 +8,16 @@ import pytest
 
 from dialects.messages import ParamRequestRead, ParamValue
 from groundstation.vehicles.ardupilot_checks import PARAM_CHECKS, ArduPilotChecks
+from link.core import Peer, Received
 
 
-def value(name: str, number: float) -> ParamValue:
-    return ParamValue(name.encode(), number, 9, 1, 65535)
+def new_check() -> ArduPilotChecks:
+    return ArduPilotChecks(255, 190, target=(1, 1))
+
+
+def value(name: str, number: float, system: int = 1) -> Received:
+    message = ParamValue(name.encode(), number, 9, 1, 65535)
+    return Received(message, system, 1, 0, Peer(0, "vehicle"), introduced=True)
 
 
 @pytest.mark.parametrize(
@@ -26,31 +32,40 @@ def value(name: str, number: float) -> ParamValue:
     ],
 )
 def test_each_setting(name: str, good: float, bad: float, words: str) -> None:
-    check = ArduPilotChecks(255, (1, 1))
-    assert check.handle_param(value(name, good)) is None
+    check = new_check()
+    assert check.receive(value(name, good), 0.0) == []
     assert not check.warnings
-    warning = check.handle_param(value(name, bad))
-    assert warning is not None
+    (warning,) = check.receive(value(name, bad), 0.0)
     assert words in warning
     assert check.warnings == (warning,)
-    assert check.handle_param(value(name, bad)) is None, "said once"
-    check.handle_param(value(name, good))
+    assert check.receive(value(name, bad), 0.0) == [], "reported once"
+    check.receive(value(name, good), 0.0)
     assert not check.warnings
 
 
 @pytest.mark.parametrize("number", [math.nan, math.inf])
 def test_no_number_is_no_setting(number: float) -> None:
-    check = ArduPilotChecks(255, (1, 1))
-    assert check.handle_param(value("MAV_GCS_SYSID", number)) is None
+    check = new_check()
+    assert check.receive(value("MAV_GCS_SYSID", number), 0.0) == []
+    assert check.warnings == ()
 
 
-def test_silence_is_asked_again_three_times_and_then_left_alone() -> None:
-    check = ArduPilotChecks(255, (1, 1))
+def test_an_unanswered_read_is_repeated_three_times() -> None:
+    check = new_check()
     asked: list[bytes] = []
-    check.handle_param(value("FS_GCS_ENABLE", 1.0))
+    check.receive(value("FS_GCS_ENABLE", 1.0), 0.0)
     for second in range(20):
-        for message in check.tick(second * 0.5):
-            assert isinstance(message, ParamRequestRead)
-            asked.append(message._param_id_raw)
+        for outgoing in check.tick(second * 0.5):
+            assert isinstance(outgoing.message, ParamRequestRead)
+            asked.append(outgoing.message._param_id_raw)
     assert len(asked) == 3 * (len(PARAM_CHECKS) - 1)
     assert "FS_GCS_ENABLE" not in [name.decode() for name in asked]
+
+
+def test_only_the_checked_parameters_of_this_vehicle_count() -> None:
+    check = new_check()
+    assert check.receive(value("FS_GCS_ENABLE", 0.0, system=2), 0.0) == []
+    for number in range(1000):
+        assert check.receive(value(f"OTHER_{number}", 0.0), 0.0) == []
+    assert check.warnings == ()
+    assert check._params.params == {}, "a flood of names must not grow a table"

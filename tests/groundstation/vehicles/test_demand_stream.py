@@ -17,7 +17,7 @@ def play(stream: DemandStream, demand: Axes, streaming: bool, start: float, seco
     return [(now, sent) for now in steps if (sent := stream.next_due(demand, streaming, now)) is not None]
 
 
-def test_silent_until_it_may_stream() -> None:
+def test_nothing_is_sent_until_streaming() -> None:
     stream = DemandStream()
     assert play(stream, AHEAD, False, 0.0, 2.0) == []
     assert stream.finished
@@ -64,7 +64,7 @@ def test_a_pause_is_not_made_up_for() -> None:
     assert len(play(stream, AHEAD, True, 5.0, 0.1)) <= 3
 
 
-def test_farewell_is_five_neutrals_then_silence() -> None:
+def test_five_neutrals_at_the_end_then_nothing() -> None:
     stream = DemandStream()
     play(stream, AHEAD, True, 0.0, 1.0)
     goodbye = play(stream, AHEAD, False, 1.0, 3.0)

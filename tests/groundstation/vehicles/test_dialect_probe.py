@@ -1,4 +1,4 @@
-"""The station asks whether a vehicle is one of ours, until it knows."""
+"""The station requests ROVER_DRIVE_INFO until it knows whether the vehicle speaks our dialect."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ STATUS = m.RoverDriveStatus(1, 0, 0, 0, [0, 0, 0, 0], 0, 0, 0)
 
 
 class Kin(FakeVehicle):
-    """Tells ROVER_DRIVE_STATUS from the first question on, as our rover does."""
+    """Sends ROVER_DRIVE_STATUS from the first request on, as our rover does."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -25,12 +25,12 @@ class Kin(FakeVehicle):
         super()._obey(message, source)
         if message.command == REQUEST and message.param1 == m.RoverDriveInfo.id:
             self.telling = True
-            self.say(m.RoverDriveInfo(2.0, 4.0, 0.4, 0.3, 450, 1, 0, 3, 0, 2))
+            self.send(m.RoverDriveInfo(2.0, 4.0, 0.4, 0.3, 450, 1, 0, 3, 0, 2))
 
     def tick(self, now: float) -> None:
         super().tick(now)
         if self.telling:
-            self.say(STATUS)
+            self.send(STATUS)
 
 
 def asked(vehicle: FakeVehicle) -> list[float]:
@@ -38,7 +38,7 @@ def asked(vehicle: FakeVehicle) -> list[float]:
     return [at for at, command in vehicle.all(m.CommandLong) if command.command == REQUEST]
 
 
-def test_it_is_asked_at_first_contact_and_once() -> None:
+def test_requested_once_at_first_contact() -> None:
     vehicle = Kin()
     cockpit = Cockpit(vehicle)
     cockpit.run(0.1)
@@ -50,7 +50,7 @@ def test_it_is_asked_at_first_contact_and_once() -> None:
     assert not any("46004" in text or "accepted" in text for text in cockpit.texts), "nobody needs to read of it"
 
 
-def test_one_that_does_not_know_it_is_not_asked_again() -> None:
+def test_not_requested_again_after_a_refusal() -> None:
     vehicle = FakeVehicle(driver=None)
     vehicle.answers[REQUEST] = Result.UNSUPPORTED
     cockpit = Cockpit(vehicle)
@@ -58,7 +58,7 @@ def test_one_that_does_not_know_it_is_not_asked_again() -> None:
     assert len(asked(vehicle)) == 1
 
 
-def test_one_that_has_not_heard_our_heartbeat_is_asked_again_soon() -> None:
+def test_requested_again_soon_if_our_heartbeat_was_not_received() -> None:
     vehicle = Kin()
     vehicle.answers[REQUEST] = Result.TEMPORARILY_REJECTED
     cockpit = Cockpit(vehicle)
@@ -69,7 +69,7 @@ def test_one_that_has_not_heard_our_heartbeat_is_asked_again_soon() -> None:
     assert vehicle.telling
 
 
-def test_a_mute_one_is_asked_ever_more_seldom() -> None:
+def test_requested_ever_less_often_without_an_answer() -> None:
     vehicle = FakeVehicle(driver=None)
     vehicle.silent_on.add(REQUEST)
     cockpit = Cockpit(vehicle)
@@ -79,7 +79,7 @@ def test_a_mute_one_is_asked_ever_more_seldom() -> None:
     assert max(later - at for at, later in itertools.pairwise(times)) >= LONGEST_RETRY
 
 
-def test_one_that_begins_anew_is_asked_again() -> None:
+def test_requested_again_after_a_restart() -> None:
     vehicle = Kin()
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
@@ -89,7 +89,7 @@ def test_one_that_begins_anew_is_asked_again() -> None:
     assert len(asked(vehicle)) == 2
 
 
-def test_one_that_refused_is_asked_again_when_it_was_lost_and_is_back() -> None:
+def test_requested_again_after_a_refusal_when_lost_and_back() -> None:
     vehicle = Kin()
     vehicle.answers[REQUEST] = Result.DENIED
     cockpit = Cockpit(vehicle)
@@ -102,7 +102,7 @@ def test_one_that_refused_is_asked_again_when_it_was_lost_and_is_back() -> None:
     assert vehicle.telling
 
 
-def test_ardupilot_and_px4_are_not_asked() -> None:
+def test_not_requested_from_ardupilot_and_px4() -> None:
     for autopilot in (Autopilot.ARDUPILOT, Autopilot.PX4):
         vehicle = FakeArduPilot(autopilot=autopilot)
         Cockpit(vehicle).run(10.0)

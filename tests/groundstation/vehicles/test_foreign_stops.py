@@ -139,7 +139,7 @@ def test_neutral_flows_while_it_stands_armed() -> None:
     assert not vehicle.moves
 
 
-def test_arming_waits_for_neutral_and_says_why_it_was_refused() -> None:
+def test_arming_waits_for_neutral_and_shows_why_it_was_refused() -> None:
     vehicle = FakeArduPilot()
     vehicle._station = 254  # another ground station holds its throttle; ours is not heard
     cockpit = Cockpit(vehicle)
@@ -157,12 +157,12 @@ def test_arming_waits_for_neutral_and_says_why_it_was_refused() -> None:
     assert any(at < first_arm for at, _ in vehicle.all(m.ManualControl)), "neutral went before"
 
 
-def test_a_vehicle_of_another_station_does_not_move_and_we_say_whose_it_is() -> None:
+def test_a_vehicle_of_another_station_does_not_move_and_a_warning_names_that_station() -> None:
     vehicle = FakeArduPilot(station=252)
     vehicle.parameters["MAV_GCS_SYSID"] = 252.0
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
-    assert "it obeys ground station 252 only and we are 255: use --system" in cockpit.view.warnings
+    assert "obeys ground station 252 only and we are 255: use --system 252" in cockpit.view.warnings
     cockpit.do(Arm())
     cockpit.run(1.0)
     cockpit.do(ReportKeyReleases(), FORWARD)
@@ -170,7 +170,7 @@ def test_a_vehicle_of_another_station_does_not_move_and_we_say_whose_it_is() -> 
     assert not vehicle.moves
 
 
-def test_parameters_that_it_does_not_have_are_answered_by_silence_and_asked_for_three_times() -> None:
+def test_parameters_that_the_vehicle_does_not_have_are_requested_three_times() -> None:
     vehicle = FakeArduPilot()
     cockpit = Cockpit(vehicle)
     cockpit.run(10.0)

@@ -1,6 +1,6 @@
-"""A real ArduRover 4.7, as recorded, through channel and station in virtual time; bare pymavlink says what is in it.
+"""A real ArduRover 4.7, as recorded, through channel and station in virtual time; plain pymavlink gives the reference.
 
-Not ours: unknown ids, another ground station at work, every stream there is, parameters, files, texts.
+It contains unknown ids, another active ground station, every stream, parameters, files and texts.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ LARGEST = 60_000
 
 
 class Moment(NamedTuple):
-    """What the station shows, and the newest recorded message of each kind by then."""
+    """A snapshot, and the newest recorded message of each kind by then."""
 
     at: float
     snapshot: Snapshot
@@ -47,6 +47,8 @@ class Replay(NamedTuple):
     sizes: list[int]
     report: LinkReport
     recorded: dict[str, list[Any]]
+    systems: tuple[int, ...]
+    """System ids of the vehicles found."""
 
 
 def seconds(records: list[Record]) -> Iterator[tuple[float, bytes]]:
@@ -86,14 +88,14 @@ def replay() -> Replay:
         if message.get_srcSystem() == 1:
             newest[message.get_type()] = message
             everything.setdefault(message.get_type(), []).append(message)
-    return Replay(moments, sizes, channel.report(), everything)
+    return Replay(moments, sizes, channel.report(), everything, station.fleet.system_ids)
 
 
 def test_it_is_known_for_what_it_is() -> None:
     last = replay().moments[-1].snapshot
     assert last.vehicle is not None
     assert last.vehicle.name == "ArduPilot rover 1"
-    assert last.vehicles == (1,), "the other ground station is no vehicle"
+    assert replay().systems == (1,), "the other ground station is no vehicle"
     assert not last.vehicle.in_control
     assert last.operator.gate_reason == "not in control"
     assert len(replay().moments) == 1300
@@ -170,7 +172,7 @@ def test_its_dangerous_settings_are_warned_of() -> None:
     vehicle = replay().moments[-1].snapshot.vehicle
     assert vehicle is not None
     assert set(vehicle.warnings) >= {
-        "RC_OVERRIDE_TIME 3: it drives on for 3 s when the link is cut",
+        "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost",
         "FS_GCS_ENABLE 0: no failsafe when the ground station is lost",
     }
 

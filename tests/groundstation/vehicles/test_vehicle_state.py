@@ -1,4 +1,4 @@
-"""What each message does to the picture, and that no message can break it."""
+"""How each message changes the state; no message can raise."""
 
 from __future__ import annotations
 
@@ -59,14 +59,14 @@ def test_names(kind: int, autopilot: int, name: str) -> None:
     assert view(m.Heartbeat(kind, autopilot, 1, 0, 3, 3)).name == name
 
 
-def test_silence_and_life() -> None:
+def test_alive_until_no_message_arrives() -> None:
     vehicle = state(heartbeat())
     assert vehicle.build_view(12.4).alive
     assert vehicle.build_view(12.4).silence == pytest.approx(2.4)
     assert not vehicle.build_view(12.6).alive
 
 
-def test_any_component_is_life_but_only_the_autopilots_word_counts() -> None:
+def test_any_component_keeps_the_link_alive_but_only_the_autopilot_sets_the_state() -> None:
     vehicle = state(heartbeat(mode=4))
     vehicle.receive(received(m.Heartbeat(30, 8, 0, 0, 3, 3), component=154), 20.0)
     assert vehicle.build_view(20.0).alive
@@ -147,7 +147,7 @@ def test_ardupilots_servos_are_its_outputs() -> None:
     assert view(heartbeat(), servos).outputs == ()
 
 
-def test_a_servo_output_that_is_not_used_moves_nothing() -> None:
+def test_an_unused_servo_output_is_zero() -> None:
     servos = m.ServoOutputRaw(0, 0, 0, 0, 65535, 0, 0, 0, 0, 0)
     assert view(heartbeat(autopilot=Autopilot.ARDUPILOT), servos).outputs == (0.0, 0.0)
 

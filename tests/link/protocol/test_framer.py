@@ -205,3 +205,52 @@ def test_an_unknown_frame_that_does_not_end_where_another_begins_is_none() -> No
     assert sequences(framer, unknown(1) + b"rest") == []
     assert sequences(framer, unknown(1)[:-1]) == []
     assert framer.counts.unknown == 0
+
+
+# ---- frames of ids that the dialect lacks ----
+
+
+def foreign(sequence: int, payload: bytes, *, old: bool = False) -> bytes:
+    """A sound frame of an unknown id, MAVLink 2, or `old`: MAVLink 1."""
+    if old:
+        return bytes([0xFE, len(payload), sequence, 1, 1, 213]) + payload + b"\x12\x34"
+    return bytes([0xFD, len(payload), 0, 0, sequence, 1, 1, 0xAF, 0xB3, 0]) + payload + b"\x12\x34"
+
+
+INSIDE = (
+    b"",
+    bytes([0xFD, 3, 0, 0, 1, 1, 1, 0, 0, 0, 9, 9, 9, 1, 2]),  # HEARTBEAT of a wrong checksum
+    bytes([0xFE, 9, 1, 1, 1, 0, *range(9), 1, 2]),  # the same in MAVLink 1
+    bytes([0xFE, 3, 1, 1, 1, 0, 1, 2, 3, 4, 5]),  # a MAVLink 1 HEARTBEAT of a wrong length
+    bytes([0xFD, 3, 0x80, 0, 1, 1, 1, 0, 0, 0, 9, 9, 9, 1, 2]),  # flags that nobody knows
+    bytes([0xFE, 2, 1, 1, 1, 213, 7, 7, 7, 7]),  # one unknown frame inside another
+)
+
+
+@pytest.mark.parametrize("old", [False, True])
+@pytest.mark.parametrize("piece", [1, 7, 1000])
+def test_a_sound_frame_of_an_unknown_id_is_no_damage(old: bool, piece: int) -> None:
+    """Whatever its payload looks like: "bad" frames on a clean TCP link were bytes of other dialects' messages."""
+    framer = Framer(stream=True)
+    train = b"".join(foreign(number, inside + b"xx", old=old) + demand(number) for number, inside in enumerate(INSIDE))
+    found = [each for start in range(0, len(train), piece) for each in framer.feed(train[start : start + piece], 0.0)]
+    assert len(found) == len(INSIDE)
+    counts = framer.counts
+    assert (counts.unknown, counts.crc_errors, counts.refused, counts.resync_bytes) == (len(INSIDE), 0, 0, 0)
+
+
+def test_damage_inside_what_was_no_frame_still_counts() -> None:
+    framer = Framer(stream=True)
+    stray = foreign(1, INSIDE[1] + INSIDE[3] + b"xx")[:-1]  # a byte is lost: it does not end where the next one begins
+    assert sequences(framer, stray + demand(2) + demand(3)) == [2, 3]
+    assert (framer.counts.unknown, framer.counts.crc_errors, framer.counts.refused) == (0, 1, 1)
+    assert framer.counts.resync_bytes == len(stray)
+
+
+@given(st.lists(st.tuples(st.binary(max_size=60), st.booleans()), max_size=12), st.integers(1, 200))
+def test_any_unknown_frames_between_sound_ones(train: list[tuple[bytes, bool]], piece: int) -> None:
+    framer = Framer(stream=True)
+    data = b"".join(foreign(n, payload, old=old) + demand(n) for n, (payload, old) in enumerate(train))
+    found = [each for start in range(0, len(data), piece) for each in framer.feed(data[start : start + piece], 0.0)]
+    found += framer.expire(1.0)
+    assert len(found) == len(train)

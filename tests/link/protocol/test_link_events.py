@@ -69,4 +69,4 @@ def test_a_wrong_baud_rate_is_told_once_however_much_noise_there_is() -> None:
     for second in range(5):
         channel.receive(bytes(2000), "port", float(second))
         told.append(troubles.update(channel.report(now=float(second))))
-    assert [each.text for each in told if each] == ["bytes and no MAVLink frame among them; wrong baud rate?"]
+    assert [each.text for each in told if each] == ["bytes arrive, but no MAVLink frame; wrong baud rate?"]

@@ -6,16 +6,9 @@ import errno
 import os
 import threading
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from dialects import codec
-from dialects import messages as m
-from dialects.messages import MESSAGES
-from link.protocol.frame import Frame
-from link.protocol.log_tap import SETUP_SIGNING, LogTap
-from link.runtime.worker import Worker
 from link.tlog.recorder import MAX_BATCH, PENDING, PERIOD, SLOW, RawFile, Recorder
 from link.tlog.tlog import Record, read_records
 from tests.link.frames import demand, heartbeat
@@ -198,81 +191,3 @@ def test_a_file_that_somebody_removed_says_so(tmp_path: Path) -> None:
     path.unlink()
     assert file.is_removed()
     file.close()
-
-
-# ---- the thread ----
-
-
-def test_a_job_that_fails_is_told_and_the_next_is_done(caplog: pytest.LogCaptureFixture) -> None:
-    worker, done = Worker("test", 3), threading.Event()
-    worker.submit(lambda: print(1 / 0))
-    worker.submit(done.set)
-    worker.close(PATIENCE)
-    assert done.is_set()
-    assert "'test' failed" in caplog.text
-
-
-def test_the_end_does_not_wait_for_a_disk_that_hangs() -> None:
-    worker, awake, slept = Worker("test", 1), threading.Event(), threading.Event()
-
-    def sleeping() -> None:
-        awake.wait(PATIENCE)
-        slept.set()
-
-    assert worker.submit(sleeping)
-    while worker.submit(lambda: None):  # until it is full
-        pass
-    worker.close(0.01)
-    assert not slept.is_set()
-    awake.set()
-    worker.close(PATIENCE)
-    assert slept.is_set()
-
-
-def test_a_worker_that_never_worked_ends_at_once() -> None:
-    Worker("idle", 1).close(PATIENCE)
-
-
-# ---- what is recorded ----
-
-
-class Taped:
-    """A tape and what it hands on."""
-
-    def __init__(self) -> None:
-        self.frames: list[bytes] = []
-        self.tape = LogTap(lambda now, frames: self.frames.extend(frames), system=1, component=1)
-
-    def say(self, message: m.Message) -> None:
-        self.tape.record_sent(type(message).id, codec.encode_payload(message), 1.0)
-
-
-def framed(raw: bytes) -> Frame:
-    return int.from_bytes(raw[7:10], "little"), raw[5], raw[6], raw[4], raw
-
-
-def test_keys_are_never_recorded() -> None:
-    taped = Taped()
-    kind: Any = MESSAGES[SETUP_SIGNING]
-    setup = kind(1, 1, b"k" * 32, 1)
-    key = codec.frame(SETUP_SIGNING, codec.encode_payload(setup), 7, 255, 190)
-    taped.tape.record_received([framed(demand(1)), framed(key), framed(demand(2))], 1.0)
-    taped.say(setup)
-    assert taped.frames == [demand(1), demand(2)]
-
-
-@pytest.mark.parametrize(
-    "bulk", [m.FileTransferProtocol(0, 255, 190, bytes(251)), m.LogData(0, 0, 90, bytes(90)), m.LogEntry(0, 1, 0, 0, 9)]
-)
-def test_a_log_does_not_grow_by_being_read(bulk: m.Message) -> None:
-    taped = Taped()
-    taped.say(bulk)
-    assert not taped.frames
-
-
-def test_our_own_are_numbered_without_a_gap() -> None:
-    taped = Taped()
-    for number in range(300):
-        taped.say(m.Attitude(number, 0, 0, 0, 0, 0, 0))
-    assert [raw[4] for raw in taped.frames] == [number % 256 for number in range(300)]
-    assert {(raw[5], raw[6]) for raw in taped.frames} == {(1, 1)}

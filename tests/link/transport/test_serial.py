@@ -12,10 +12,8 @@ from typing import Any
 
 import pytest
 
-from dialects.messages import Attitude, CommandLong, ManualControl, RadioStatus
-from link.core import LinkReport
+from dialects.messages import Attitude, CommandLong, ManualControl
 from link.endpoint import parse_endpoint
-from link.protocol.channel import Channel
 from link.protocol.framer import Framer
 from link.transport.serial import SerialTransport, open_serial
 from link.transport.transport import LinkError
@@ -57,23 +55,23 @@ def attitude(number: int) -> bytes:
 
 
 async def test_bytes_go_both_ways(cable: Cable) -> None:
-    wire = opened(cable.endpoint)
-    heard = Heard(wire)
+    transport = opened(cable.endpoint)
+    heard = Heard(transport)
     cable.write(heartbeat(0))
     await until(lambda: heard.bytes == heartbeat(0))
     assert heard.data[0][1] == cable.endpoint
-    wire.send(demand(1), cable.endpoint)
+    transport.send(demand(1), cable.endpoint)
     await comes(cable, demand(1))
-    wire.close()
-    assert wire.capacity == 5760.0
+    transport.close()
+    assert transport.capacity == 5760.0
 
 
 @pytest.mark.parametrize(
     ("path", "told"),
     [
-        ("/tmp", "no serial port but a file or folder"),
-        ("/etc/hostname", "no serial port but a file or folder"),
-        ("/dev/null", "/dev/null is no serial port"),
+        ("/tmp", "not a serial port but a file or directory"),
+        ("/etc/hostname", "not a serial port but a file or directory"),
+        ("/dev/null", "/dev/null is not a serial port"),
     ],
 )
 def test_what_can_never_be_a_port_is_refused_in_one_line(path: str, told: str) -> None:
@@ -94,57 +92,57 @@ def test_a_second_program_on_the_port_is_refused(cable: Cable) -> None:
 
 async def test_a_missing_port_is_waited_for(tmp_path: Path) -> None:
     path = tmp_path / "ttyUSB7"
-    wire = opened(f"serial:{path}:57600")
-    assert "waiting for" in (wire.problem or "")
-    heard = Heard(wire)
-    wire.send(demand(1), "anywhere")  # into nothing: it would be old by the time the port is there
+    transport = opened(f"serial:{path}:57600")
+    assert "waiting for" in (transport.problem or "")
+    heard = Heard(transport)
+    transport.send(demand(1), "anywhere")  # into nothing: it would be old by the time the port is there
     cable = Cable(path)
-    await until(lambda: wire.problem is None)
+    await until(lambda: transport.problem is None)
     cable.write(heartbeat(3))
     await until(lambda: heard.bytes == heartbeat(3))
     assert cable.read() == b""
-    wire.close()
+    transport.close()
     cable.unplug()
 
 
 async def test_unplugged_and_plugged_in_again(cable: Cable) -> None:
-    wire = opened(cable.endpoint)
-    heard = Heard(wire)
+    transport = opened(cable.endpoint)
+    heard = Heard(transport)
     cable.write(heartbeat(0))
     await until(lambda: heard.bytes == heartbeat(0))
     cable.unplug()
-    await until(lambda: wire.problem is not None)
-    assert "lost the port" in (wire.problem or "")
+    await until(lambda: transport.problem is not None)
+    assert "lost the port" in (transport.problem or "")
     assert heard.gone == [cable.endpoint]
-    wire.send(demand(1), cable.endpoint)
+    transport.send(demand(1), cable.endpoint)
     cable.plug()
-    await until(lambda: wire.problem is None)
+    await until(lambda: transport.problem is None)
     cable.write(heartbeat(1))
     await until(lambda: heard.bytes.endswith(heartbeat(1)))
-    wire.send(demand(2), cable.endpoint)
+    transport.send(demand(2), cable.endpoint)
     await comes(cable, demand(2))
-    wire.close()
+    transport.close()
 
 
 async def test_taken_by_another_while_it_was_away(cable: Cable) -> None:
-    wire = opened(cable.endpoint)
-    Heard(wire)
+    transport = opened(cable.endpoint)
+    Heard(transport)
     cable.unplug()
-    await until(lambda: wire.problem is not None)
+    await until(lambda: transport.problem is not None)
     cable.plug()
     thief = opened(cable.endpoint)
-    await until(lambda: "another program" in (wire.problem or ""))
+    await until(lambda: "another program" in (transport.problem or ""))
     thief.close()
-    await until(lambda: wire.problem is None)
-    wire.close()
+    await until(lambda: transport.problem is None)
+    transport.close()
 
 
 @pytest.mark.parametrize("step", ["tcsetattr", "tcflush"])
 async def test_gone_again_while_it_is_set_up(cable: Cable, monkeypatch: pytest.MonkeyPatch, step: str) -> None:
-    wire = opened(cable.endpoint)
-    Heard(wire)
+    transport = opened(cable.endpoint)
+    Heard(transport)
     cable.unplug()
-    await until(lambda: wire.problem is not None)
+    await until(lambda: transport.problem is not None)
     real, failures = getattr(termios, step), [5, 5]
 
     def flapping(*words: Any) -> None:  # a loose plug: no pty goes away between two calls of the same function
@@ -154,9 +152,9 @@ async def test_gone_again_while_it_is_set_up(cable: Cable, monkeypatch: pytest.M
 
     monkeypatch.setattr(termios, step, flapping)
     cable.plug()
-    await until(lambda: wire.problem is None)
+    await until(lambda: transport.problem is None)
     assert not failures
-    wire.close()
+    transport.close()
 
 
 def test_a_port_that_cannot_be_set_up_is_refused_in_one_line(cable: Cable, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -173,12 +171,12 @@ def test_a_port_that_cannot_be_set_up_is_refused_in_one_line(cable: Cable, monke
 
 async def test_nobody_reads_telemetry_is_dropped_and_the_stop_arrives(cable: Cable) -> None:
     # Enough to fill the pty and the queue many times over; a blocking writer would hang here for ever.
-    wire = opened(cable.endpoint.replace("57600", "12000000"))
-    Heard(wire)
+    transport = opened(cable.endpoint.replace("57600", "12000000"))
+    Heard(transport)
     for number in range(20_000):
-        wire.send(attitude(number), cable.endpoint)
-    await until(lambda: wire.dropped > 1000)
-    wire.send(DISARM, cable.endpoint)
+        transport.send(attitude(number), cable.endpoint)
+    await until(lambda: transport.dropped > 1000)
+    transport.send(DISARM, cable.endpoint)
     framer = Framer(stream=True)
     found: list[int] = []
 
@@ -188,79 +186,35 @@ async def test_nobody_reads_telemetry_is_dropped_and_the_stop_arrives(cable: Cab
 
     await until(stop_arrives)
     assert framer.counts.crc_errors == framer.counts.resync_bytes == 0  # and no frame was cut in half
-    wire.close()
+    transport.close()
 
 
 async def test_a_demand_overtakes_bulk_and_finds_less_than_30_ms_of_bytes_before_it(tmp_path: Path) -> None:
     cable = BaudCable(tmp_path / "ttyUSB0", 57600)
-    wire = opened(cable.endpoint)
-    Heard(wire)
+    transport = opened(cable.endpoint)
+    Heard(transport)
     loop = asyncio.get_running_loop()
     begun, ahead = loop.time(), list[int]()
 
-    def bulk(number: int) -> None:  # twice what the wire can take
-        wire.send(attitude(number), cable.endpoint)
-        wire.send(attitude(number + 1), cable.endpoint)
+    def bulk(number: int) -> None:  # twice what the transport can take
+        transport.send(attitude(number), cable.endpoint)
+        transport.send(attitude(number + 1), cable.endpoint)
         if number % 50 == 0:
             cable.pass_on()  # what a loop that was held up has not passed yet
             before = len(cable.received) + cable.waiting
-            wire.send(demand(number % 256), cable.endpoint)
+            transport.send(demand(number % 256), cable.endpoint)
             ahead.append(before - len(cable.received))
         loop.call_at(begun + 0.003 * (number + 2), bulk, number + 2)  # however late this one is
 
     bulk(0)
     await until(lambda: len(ahead) >= 12)
     await until(lambda: _demands(cable.received) >= 11)
-    assert wire.dropped > 100
+    assert transport.dropped > 100
     assert max(ahead[1:]) <= 0.030 * 5760
     assert _demands(cable.received) >= 11
-    wire.close()
+    transport.close()
     cable.unplug()
 
 
 def _demands(data: bytes) -> int:
     return sum(message_id == ManualControl.id for message_id, *_ in Framer(stream=True).feed(data, 0.0))
-
-
-# ---- noise ----
-
-
-def told(*pieces: bytes) -> LinkReport:
-    channel = Channel("serial:/dev/ttyX:57600", 0, system=1, component=1, stream=True, target="x", capacity=5760.0)
-    for number, data in enumerate(pieces):
-        channel.receive(data, "x", number * 0.05)
-    return channel.report()
-
-
-def test_modem_manager_is_only_noise() -> None:
-    report = told(b"AT\r", b"AT\r", b"AT+GCAP\r", heartbeat(0))
-    assert (report.frames, report.resync_bytes, report.down) == (1, 14, None)
-
-
-def test_noise_and_nothing_else_is_called_a_wrong_baud_rate() -> None:
-    assert told(b"\x80\xf8" * 100).down is None
-    assert "wrong baud rate?" in (told(*[b"\x80\xf8" * 100] * 3).down or "")
-    assert told(*[b"\x80\xf8" * 100] * 3, heartbeat(0)).down is None
-
-
-def test_a_radio_that_is_full_asks_for_less() -> None:
-    channel = Channel("serial:/dev/ttyX:57600", 0, system=1, component=1, stream=True, target="x", capacity=5760.0)
-    assert (channel.report().capacity, channel.report().headroom) == (5760.0, 1.0)
-    for number in range(10):
-        channel.receive(_radio_status(number, txbuf=10), "x", float(number))
-    low = channel.report(now=10.0).headroom
-    assert low == pytest.approx(0.25)
-    for number in range(10, 40):
-        channel.receive(_radio_status(number, txbuf=99), "x", float(number))
-    assert channel.report(now=40.0).headroom == 1.0
-
-
-def test_a_radio_that_fell_silent_limits_nothing() -> None:
-    channel = Channel("serial:/dev/ttyX:57600", 0, system=1, component=1, stream=True, target="x", capacity=5760.0)
-    channel.receive(_radio_status(0, txbuf=1), "x", 0.0)
-    assert channel.report(now=1.0).headroom < 1.0
-    assert channel.report(now=9.0).headroom == 1.0
-
-
-def _radio_status(number: int, txbuf: int) -> bytes:
-    return frame(RadioStatus(200, 200, txbuf, 30, 30, 0, 0), number, 51, 68)

@@ -14,6 +14,7 @@ from link.core import Outgoing
 from link.endpoint import parse_endpoint
 from link.protocol.channel import Channel
 from link.protocol.framer import Framer
+from link.transport import tcp
 from link.transport.tcp import MAX_CONNECTIONS, TcpClientTransport, TcpServerTransport, open_tcpin, open_tcpout
 from link.transport.transport import LinkError
 from tests.link.frames import demand, frame, heartbeat
@@ -113,37 +114,68 @@ async def test_the_crowd_is_closed_at_once(server: TcpServerTransport, port: int
     server.close()
 
 
+async def test_silent_connections_make_room_the_most_silent_first(
+    server: TcpServerTransport, port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Sixteen laptops that left the WLAN without a word must not close the port for everybody."""
+    heard = Heard(server)
+    crowd = [connected(port) for _ in range(MAX_CONNECTIONS)]
+    await until(lambda: len(heard.data) == MAX_CONNECTIONS)
+    for sock in crowd[1:]:
+        sock.sendall(heartbeat(0))
+    await until(lambda: len(said(heard)) == MAX_CONNECTIONS - 1)
+    refused = connected(port)
+    await until(lambda: is_closed(refused))  # all were heard a moment ago
+    monkeypatch.setattr(tcp, "EVICT_AFTER", 0.0)
+    newcomer = connected(port)
+    newcomer.sendall(heartbeat(7))
+    await until(lambda: (heartbeat(7), newcomer.getsockname()) in heard.data)
+    await until(lambda: is_closed(crowd[0]))
+    assert not any(is_closed(sock) for sock in crowd[1:])
+    assert heard.gone == [crowd[0].getsockname()]
+    for sock in (*crowd, refused, newcomer):
+        sock.close()
+    server.close()
+
+
+def is_closed(sock: socket.socket) -> bool:
+    try:
+        return sock.recv(1) == b""
+    except BlockingIOError:
+        return False
+
+
 async def test_it_connects_when_somebody_listens_and_again_when_he_returns(port: int) -> None:
-    wire = client(port)
-    heard = Heard(wire)
-    await until(lambda: "not connected" in (wire.problem or ""))
+    transport = client(port)
+    heard = Heard(transport)
+    await until(lambda: "not connected" in (transport.problem or ""))
     for number in range(2):
         with socket.create_server(("127.0.0.1", port)) as listener:
             listener.setblocking(False)
-            await until(lambda: wire.problem is None)
+            await until(lambda: transport.problem is None)
             sock, _ = listener.accept()
             sock.sendall(heartbeat(number))
             await until(lambda: len(heard.data) == len(heard.gone) + 1)
             assert heard.bytes.endswith(heartbeat(number))
-            wire.send(demand(number), "whoever")
+            transport.send(demand(number), "whoever")
             sock.settimeout(60)
             assert sock.recv(100) == demand(number)
             sock.close()
-        await until(lambda: wire.problem is not None)
+        await until(lambda: transport.problem is not None)
         assert len(heard.gone) == number + 1
-    wire.close()
+    transport.close()
 
 
 async def test_nobody_reads_telemetry_is_dropped_and_the_stop_arrives(listener: socket.socket, port: int) -> None:
-    wire = client(port)
-    Heard(wire)
-    await until(lambda: wire.problem is None)
+    transport = client(port)
+    Heard(transport)
+    await until(lambda: transport.problem is None)
     sock, _ = listener.accept()
     sock.setblocking(False)
     bulk = frame(Attitude(1, 0.5, 0, 0, 0, 0, 1), 1, 1, 1)
-    while wire.dropped < 1000:
-        wire.send(bulk, "whoever")
-    wire.send(DISARM, "whoever")
+    while transport.dropped < 1000:
+        transport.send(bulk, "whoever")
+    transport.send(DISARM, "whoever")
     framer = Framer(stream=True)
     found: list[int] = []
 
@@ -154,7 +186,7 @@ async def test_nobody_reads_telemetry_is_dropped_and_the_stop_arrives(listener: 
     await until(stop_arrives)
     assert framer.counts.resync_bytes == 0
     sock.close()
-    wire.close()
+    transport.close()
 
 
 async def test_no_nagle(server: TcpServerTransport, port: int) -> None:
@@ -201,25 +233,28 @@ async def test_it_does_not_talk_to_itself() -> None:
     own = socket.socket()
     own.bind(("127.0.0.1", port))
     own.connect(("127.0.0.1", port))  # the case, made on purpose
-    wire = client(port)
-    wire._refused = lambda loop, why: refused.append(why)  # type: ignore[method-assign]
+    transport = client(port)
+    transport._refused = lambda loop, why: refused.append(why)  # type: ignore[method-assign]
     refused: list[str] = []
-    wire._connected(asyncio.get_running_loop(), own)
-    assert refused == ["nobody listens"]
+    transport._connected(asyncio.get_running_loop(), own)
+    assert refused == ["no listener"]
     own.close()
 
 
 class Names:
     """A name server: what it says can change, and it can be slow or away."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, port: int) -> None:
         self.address: str | None = "127.0.0.1"
+        self.port = port
         self.asked = 0
         self.answers = threading.Event()
         self.answers.set()
         monkeypatch.setattr(socket, "getaddrinfo", self._answer)
 
     def _answer(self, host: str, port: int, *_: object, **__: object) -> list[tuple[object, ...]]:
+        if port != self.port:  # a thread of an earlier test's transport
+            raise socket.gaierror(socket.EAI_AGAIN, "Temporary failure in name resolution")
         assert host == "rover.example"
         self.asked += 1
         assert self.answers.wait(60)
@@ -228,40 +263,40 @@ class Names:
         return [(socket.AF_INET, socket.SOCK_STREAM, 6, "", (self.address, port))]
 
 
-async def taken(address: str, port: int, wire: TcpClientTransport) -> None:
+async def taken(address: str, port: int, transport: TcpClientTransport) -> None:
     """A connection that comes to an address, and ends."""
     with socket.create_server((address, port)):
-        await until(lambda: wire.problem is None)
-    await until(lambda: wire.problem is not None)
+        await until(lambda: transport.problem is None)
+    await until(lambda: transport.problem is not None)
 
 
 async def test_a_name_that_moves_is_followed(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = Names(monkeypatch)
-    wire = open_tcpout(parse_endpoint(f"tcpout:rover.example:{port}"))
-    Heard(wire)
-    await taken("127.0.0.1", port, wire)
+    names = Names(monkeypatch, port)
+    transport = open_tcpout(parse_endpoint(f"tcpout:rover.example:{port}"))
+    Heard(transport)
+    await taken("127.0.0.1", port, transport)
     names.address = "127.0.0.2"
-    await taken("127.0.0.2", port, wire)
+    await taken("127.0.0.2", port, transport)
     names.address = None  # where the name is not known any more, the last address counts
-    await taken("127.0.0.2", port, wire)
-    wire.close()
+    await taken("127.0.0.2", port, transport)
+    transport.close()
 
 
 async def test_a_name_server_that_hangs_delays_no_connection(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = Names(monkeypatch)
-    wire = open_tcpout(parse_endpoint(f"tcpout:rover.example:{port}"))
+    names = Names(monkeypatch, port)
+    transport = open_tcpout(parse_endpoint(f"tcpout:rover.example:{port}"))
     names.answers.clear()
-    Heard(wire)
+    Heard(transport)
     await until(lambda: names.asked == 2)  # the first was at the start
-    await taken("127.0.0.1", port, wire)
-    wire.close()
+    await taken("127.0.0.1", port, transport)
+    transport.close()
     names.answers.set()
 
 
 async def test_a_number_is_not_looked_up(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    wire = client(port)
-    names = Names(monkeypatch)
-    Heard(wire)
-    await taken("127.0.0.1", port, wire)
-    wire.close()
+    transport = client(port)
+    names = Names(monkeypatch, port)
+    Heard(transport)
+    await taken("127.0.0.1", port, transport)
+    transport.close()
     assert names.asked == 0

@@ -7,9 +7,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command, Failsafe, FenceItem, MissionResult, MissionType
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import Item, do, finish, start, upload, way
 from tests.vehicle.bench import Equipped, said
 from tests.vehicle.field import Field
+from tests.vehicle.missions import Item, do, finish, start, upload, way
 from vehicle.navigation.geo import Point
 
 RELAY, SERVO = Command.DO_SET_RELAY, Command.DO_SET_SERVO
@@ -50,7 +50,7 @@ def test_each_acts_when_its_turn_comes_and_not_before() -> None:
     field.until(Point(10, 0), 40.0, 1.0)
     assert (field.relays[0], field.servo) == (0, 1200)
     finish(field, 40.0)
-    assert not said(field, "passed over")
+    assert not said(field, "skipped")
     assert not said(field, "no accessory")
 
 
@@ -84,7 +84,7 @@ def test_what_stands_before_a_place_that_is_refused_does_not_act() -> None:
     field.until(Point(2, 0), 30.0, 1.0)
     finish(field, 30.0)
     field.wait(0.5)
-    assert said(field, "AUTO: item 2: it lies beyond the fence: HOLD")
+    assert said(field, "AUTO: item 2: outside the fence: HOLD")
     assert field.relays[0] == 0
 
 
@@ -92,7 +92,7 @@ def test_jumps_in_a_circle_wear_no_relay_out() -> None:
     field = ready(do(Command.DO_REPEAT_RELAY, 0, 1, 1), do(Command.DO_JUMP, 0, -1))
     start(field)
     field.wait(0.5)
-    assert said(field, "jumps go in a circle")
+    assert said(field, "endless loop of DO_JUMP")
     assert field.relays[0] == 0
     assert not field.all(m.MissionItemReached)
 
@@ -121,11 +121,11 @@ def test_a_repeat_goes_on_while_the_rover_drives_on() -> None:
 def test_what_this_vehicle_has_not_is_told_at_the_upload_and_passed_over(item: Item, why: str) -> None:
     field = ready(way(2, 0), item, do(RELAY, 0, 1), way(4, 0))
     field.wait(0.2)
-    assert said(field, f"Mission: no accessory for items 1, they will be passed over: {why}")
+    assert said(field, f"Mission: no accessory for items 1, will be skipped: {why}")
     start(field)
     finish(field, 40.0)
     field.wait(0.5)
-    assert said(field, f"Mission: passed over {Command(item[0]).name} {item[2][0]:g}: {why}")
+    assert said(field, f"Mission: skipped {Command(item[0]).name} {item[2][0]:g}: {why}")
     assert field.relays == {0: 1, 1: 0, 2: 0}
     assert field.truth.distance(Point(4, 0)) < 0.7
 
@@ -138,7 +138,7 @@ def test_what_may_not_act_now_is_passed_over_in_words() -> None:
     finish(field, 40.0)
     field.wait(0.5)
     assert field.relays[2] == 0
-    assert said(field, "Mission: passed over DO_SET_RELAY 2: failsafe")
+    assert said(field, "Mission: skipped DO_SET_RELAY 2: failsafe")
 
 
 def test_a_stop_leaves_what_it_has_and_goes_on_with_nothing() -> None:

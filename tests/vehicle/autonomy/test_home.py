@@ -1,4 +1,4 @@
-"""DO_SET_HOME: where, how high, and what is left out."""
+"""DO_SET_HOME: position, altitude, and values that are left out."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def placed() -> Bench:
 
 
 def home(bench: Bench) -> tuple[int, int, int]:
-    """Degrees x 1e7 and mm, as it is told at once."""
+    """Return the reported home: degrees x 1e7 and mm."""
     bench.wait(0.1)
     told = bench.newest(m.HomePosition)
     return told.latitude, told.longitude, told.altitude
@@ -39,9 +39,7 @@ def set_home(bench: Bench, frame: int, altitude: float) -> int:
     ("frame", "altitude", "expected"),
     [(0, 520, 520_000), (5, 520, 520_000), (3, 20, 520_000), (6, -20, 480_000), (0, math.nan, 500_000)],
 )
-def test_a_place_its_height_in_its_frame_and_a_height_that_is_left_out(
-    frame: int, altitude: float, expected: int
-) -> None:
+def test_home_has_a_position_and_an_altitude_in_its_frame(frame: int, altitude: float, expected: int) -> None:
     bench = placed()
     assert home(bench) == HERE
     assert set_home(bench, frame, altitude) == Result.ACCEPTED
@@ -49,13 +47,13 @@ def test_a_place_its_height_in_its_frame_and_a_height_that_is_left_out(
 
 
 @pytest.mark.parametrize("altitude", [math.inf, -math.inf, 1e6])
-def test_a_height_that_is_none(altitude: float) -> None:
+def test_an_invalid_altitude_is_denied(altitude: float) -> None:
     bench = placed()
     assert set_home(bench, 0, altitude) == Result.DENIED
     assert home(bench) == HERE
 
 
-def test_here_again() -> None:
+def test_home_can_be_set_to_the_present_position() -> None:
     bench = placed()
     set_home(bench, 0, 520)
     assert bench.command(Command.DO_SET_HOME, 1) is Result.ACCEPTED
@@ -63,7 +61,7 @@ def test_here_again() -> None:
 
 
 @pytest.mark.parametrize("altitude", [None, math.nan])
-def test_here_without_a_height_is_as_high_as_before(altitude: float | None) -> None:
+def test_home_at_the_present_position_keeps_the_altitude_if_unknown(altitude: float | None) -> None:
     bench = placed()
     set_home(bench, 0, 520)
     bench.readings = replace(EVERYTHING, altitude=altitude)

@@ -20,7 +20,7 @@ from vehicle.storage.param_file import encode
 FREE = 'endpoints = ["udpout:127.0.0.1:9"]\n'
 QUIET = "[sensors]\ncomputer = false\n"
 KEEPS = ("ok    parameters: ", "ok    state: ", "ok    log.tlog: ")
-USUAL = ("kept in FOLDER", "FOLDER can be written", "FOLDER/logs can be made")
+USUAL = ("saved in FOLDER", "FOLDER is writable", "FOLDER/logs can be created")
 
 
 def checked(folder: Path, text: str) -> tuple[int, list[str]]:
@@ -76,7 +76,7 @@ def test_a_controller_answers_and_no_wheel_turns(line: OnPty, tmp_path: Path) ->
     code, lines = checked(tmp_path, text)
     assert code == 0
     assert lines[-1] == (
-        "ok    motors: roboclaw with 2 motors, neutral and without power, it calls itself USB Roboclaw 2x7a v4.2.8"
+        "ok    motors: roboclaw with 2 motors, neutral and without power; version USB Roboclaw 2x7a v4.2.8"
     )
     assert line.controller.outputs == [0.0, 0.0]
 
@@ -123,8 +123,8 @@ def test_a_log_that_cannot_be_written_is_found_before_the_vehicle_starts(tmp_pat
     text = f'{log}file = "{tmp_path}/none/log"\nmotors = "{tmp_path}/motors"\n'
     code, lines = checked(tmp_path, text)
     assert (code, lines[-2:]) == (1, [
-        "FAIL  log.file: there is no folder FOLDER/none; make it",
-        "ok    log.motors: FOLDER/motors can be written",
+        "FAIL  log.file: no folder FOLDER/none; create it",
+        "ok    log.motors: FOLDER/motors is writable",
     ])  # fmt: skip
     assert not (tmp_path / "motors").exists()
     code, lines = checked(tmp_path, f'{log}file = "{tmp_path}"\n')
@@ -135,7 +135,7 @@ def test_folders_that_cannot_be_written_are_found_before_the_vehicle_starts(tmp_
     (tmp_path / "taken").touch()
     text = f'{FREE}{QUIET}[motors]\ndriver = "simulated"\n'
     code, lines = all_checked(tmp_path, text, "--state", str(tmp_path / "taken"))
-    told = "FOLDER/taken is no folder; remove it, or name another folder as"
+    told = "FOLDER/taken is not a folder; remove it, or set another folder with"
     assert code == 1
     assert lines[2:4] == [f"FAIL  state: {told} state or --state", f"FAIL  log.tlog: {told} log.tlog"]
     code, lines = checked(tmp_path, f'{text}[log]\ntlog = "{tmp_path}/taken/logs"\n')
@@ -205,14 +205,14 @@ def test_it_reckons_with_the_parameters_that_the_vehicle_keeps(tmp_path: Path) -
     text = f'{FREE}[motors]\ndriver = "simulated"\n{QUIET}[params]\nMOT2_REVERSED = 1\nMOT1_MAX = 50\n'
     code, lines = all_checked(tmp_path, text)
     assert code == 0
-    assert lines[1] == "ok    parameters: 2 from the file, 0 kept in FOLDER"
+    assert lines[1] == "ok    parameters: 2 from the file, 0 saved in FOLDER"
     assert lines[-1] == "ok    motors: simulated with 2 motors, neutral and without power; reversed: right"
     (tmp_path / "parameters").write_bytes(encode({"MOT1_REVERSED": 1.0, "MOT2_REVERSED": 0.0, "MOT1_MIN": 60.0}))
     code, lines = all_checked(tmp_path, text)
     assert code == 1
     assert lines[1] == (
-        "FAIL  parameters: 2 from the file, 1 kept in FOLDER: "
-        "a kept one is not used: MOT1_MIN 60 must be smaller than MOT1_MAX 50"
+        "FAIL  parameters: 2 from the file, 1 saved in FOLDER: "
+        "a saved one is not used: MOT1_MIN 60 must be smaller than MOT1_MAX 50"
     )
     assert lines[-1].endswith("; reversed: left, right")
 
@@ -222,15 +222,6 @@ def test_kept_parameters_that_are_damaged_are_a_fault(tmp_path: Path) -> None:
     text = f'{FREE}state = "{tmp_path}"\n[motors]\ndriver = "simulated"\n{QUIET}'
     code, lines = all_checked(tmp_path, text)
     assert code == 1
-    damaged = "parameter file damaged; start the vehicle and set one from a ground station, which ends this"
-    assert lines[1] == f"FAIL  parameters: 0 from the file, 0 kept in FOLDER: {damaged}"
-    assert all_checked(tmp_path, text, "--state", "/nowhere")[1][1].endswith("0 kept in /nowhere")
-
-
-def test_an_older_file_learns_where_its_settings_went(tmp_path: Path) -> None:
-    code, lines = checked(tmp_path, '[motors]\ndriver = "simulated"\nshape = [{reversed = true}, {}]\n')
-    assert code == 2
-    assert lines == [
-        "FAIL  settings: FILE: motors.shape: is parameters now; in [params], for each motor: MOT1_REVERSED = 1, "
-        "MOT1_MIN and MOT1_MAX in %"
-    ]
+    damaged = "parameter file damaged; start the vehicle and set a parameter from a ground station to repair it"
+    assert lines[1] == f"FAIL  parameters: 0 from the file, 0 saved in FOLDER: {damaged}"
+    assert all_checked(tmp_path, text, "--state", "/nowhere")[1][1].endswith("0 saved in /nowhere")

@@ -6,14 +6,15 @@ from pathlib import Path
 
 from dialects import messages as m
 from dialects.definition import private_enums, private_messages
-from dialects.enums import Command
+from dialects.enums import command_name
 from tests.vehicle.words import said_by
-from vehicle.cli.dialect_doc import COMMANDS, answered_commands, build_document
-from vehicle.commands.inbound import INBOUND_MESSAGES as HEARD
+from vehicle.cli.dialect_doc import build_document
 from vehicle.modes import MODES
-from vehicle.params import PARAMETERS
+from vehicle.params import PARAMETERS, Params
+from vehicle.rover import Rover
 from vehicle.telemetry.streams import STREAMS
 
+ROVER = Rover(Params(), now=0.0)
 FILE = Path(__file__).parents[3] / "docs" / "dialect.md"
 
 
@@ -23,14 +24,15 @@ def test_the_file_is_what_the_tables_say() -> None:
     assert FILE.read_text() == out, "a table has changed: vehicle dialect > docs/dialect.md"
 
 
-def test_every_command_has_its_words() -> None:
-    assert {Command(each).name for each in answered_commands()} == {each.name for each in COMMANDS}
+def test_every_command_and_message_is_described() -> None:
+    assert [row.command for row in ROVER.commands if not row.help] == []
+    assert [row.message for row in ROVER.messages if not row.description] == []
 
 
 def test_nothing_is_left_out() -> None:
     text = build_document()
-    names = [stream.message.msgname for stream in STREAMS] + [heard.message.msgname for heard in HEARD]
-    names += [*PARAMETERS, *(mode.name for mode in MODES), *(each.name for each in COMMANDS)]
+    names = [stream.message.msgname for stream in STREAMS] + [row.message.msgname for row in ROVER.messages]
+    names += [*PARAMETERS, *(mode.name for mode in MODES), *(command_name(row.command) for row in ROVER.commands)]
     assert [name for name in names if f"| {name} |" not in text] == []
     assert [each.name for each in private_messages() if f"### {each.name} (" not in text] == []
 

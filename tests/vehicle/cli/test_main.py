@@ -117,16 +117,16 @@ def test_a_mistake_in_the_file_is_one_line_and_code_2(capsys: pytest.CaptureFixt
         main(["--config", str(file)])
     assert ended.value.code == 2
     assert capsys.readouterr().err == (
-        f"vehicle: {file}: motors.prot: unknown key; did you mean port? (and 1 more, see `vehicle check`)\n"
+        f"vehicle: {file}: motors.prot: unknown key; did you mean port? (and 1 more; see `vehicle check`)\n"
     )
 
 
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        ("udpout:127.0.0.1:14550", "no motors: --config FILE or --motors NAME for real ones, or --sim"),
+        ("udpout:127.0.0.1:14550", "no motors: use --config FILE or --motors NAME for real ones, or --sim"),
         ("--motors simulated", "no endpoint"),
-        ("--sim --motors simulated", "--sim brings its own motors"),
+        ("--sim --motors simulated", "--sim has its own motors"),
         ("--motors simulated udpout:127.0.0.1:1 --home 1,2", "--home is for --sim only"),
         ("--motors simulated udpout:127.0.0.1:1 --sim-battery 0.5", "--sim-battery is for --sim only"),
         ("--sim udpot:127.0.0.1:14550", "did you mean udpout:?"),
@@ -135,7 +135,7 @@ def test_a_mistake_in_the_file_is_one_line_and_code_2(capsys: pytest.CaptureFixt
         ("--sim --system 0", "'0' is not a number from 1 to 255"),
         ("--sim --system x", "'x' is not a number from 1 to 255"),
         ("--sim --param MAN_TIMOUT=1", "unknown parameter 'MAN_TIMOUT'; did you mean MAN_TIMEOUT"),
-        ("--sim --param zebra=1", "there are MAV_SYSID, "),
+        ("--sim --param zebra=1", "known: MAV_SYSID, "),
         ("--sim --param MAN_TIMEOUT=99", "MAN_TIMEOUT must be 0.2 to 2, not 99"),
         ("--sim --param MAN_TIMEOUT=nan", "MAN_TIMEOUT must be"),
         ("--sim --param MAN_TIMEOUT=soon", "MAN_TIMEOUT: 'soon' is not a number; write MAN_TIMEOUT=VALUE"),

@@ -83,17 +83,17 @@ def test_the_motor_gets_what_it_gets_when_driving() -> None:
 @pytest.mark.parametrize(
     ("motor", "throttle", "seconds", "says"),
     [
-        ("middle", 0.1, 1.0, "no motor 'middle'; there are left, right, 1, 2"),
+        ("middle", 0.1, 1.0, "no motor 'middle'; known: left, right, 1, 2"),
         ("0", 0.1, 1.0, "no motor '0'"),
         ("3", 0.1, 1.0, "no motor '3'"),
         ("left", 0.31, 1.0, "throttle 0.31 is not in -0.3 to 0.3"),
         ("left", -1.0, 1.0, "throttle -1 is not"),
         ("left", float("nan"), 1.0, "throttle nan is not"),
-        ("left", 0.1, 3.1, "time 3.1 s is not more than 0 and at most 3"),
-        ("left", 0.1, 0.0, "time 0 s is not"),
-        ("left", 0.1, -100.0, "time -100 s is not"),
-        ("left", 0.1, 1e9, "time 1e+09 s is not"),
-        ("left", 0.1, float("nan"), "time nan s is not"),
+        ("left", 0.1, 3.1, "time 3.1 s must be more than 0 and at most 3"),
+        ("left", 0.1, 0.0, "time 0 s must be"),
+        ("left", 0.1, -100.0, "time -100 s must be"),
+        ("left", 0.1, 1e9, "time 1e+09 s must be"),
+        ("left", 0.1, float("nan"), "time nan s must be"),
     ],
 )
 def test_56_what_is_too_much_is_refused(motor: str, throttle: float, seconds: float, says: str) -> None:
@@ -165,7 +165,7 @@ def test_without_a_yes_nothing_turns(line: OnPty, tmp_path: Path) -> None:
         command(line, tmp_path, "left"), stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
     )
     assert ended.returncode == 2
-    assert ended.stderr == "vehicle motor-test: a wheel is going to turn; with the wheels in the air say --yes\n"
+    assert ended.stderr == "vehicle motor-test: a wheel will turn; lift the wheels off the ground and add --yes\n"
     assert line.controller.outputs == [0.0, 0.0]
     assert line.tail == b""
 
@@ -226,7 +226,7 @@ def test_without_knowing_what_is_kept_nothing_turns(line: OnPty, tmp_path: Path)
     (tmp_path / "parameters").write_bytes(b"MOT2_REVERSED 1.0\n")
     words = ["--config", str(file_for(line, tmp_path)), "right", "--yes"]
     code, _, error = said_by("motor-test", *words)
-    damaged = "parameter file damaged; start the vehicle and set one from a ground station, which ends this"
+    damaged = "parameter file damaged; start the vehicle and set a parameter from a ground station to repair it"
     assert (code, error) == (2, f"vehicle motor-test: {tmp_path}: {damaged}\n")
     code, _, _ = said_by("motor-test", *words, "--time", "0.1", "--state", str(tmp_path / "elsewhere"))
     assert code == 0
@@ -251,7 +251,7 @@ def test_while_a_vehicle_runs_it_is_refused(line: OnPty, tmp_path: Path) -> None
     [
         ("middle --yes", "no motor 'middle'"),
         ("left --throttle 0.5 --yes", "throttle 0.5 is not"),
-        ("left --time 60 --yes", "time 60 s is not"),
+        ("left --time 60 --yes", "time 60 s must be"),
         ("left --throttle fast", "invalid float value: 'fast'"),
         ("", "the following arguments are required: MOTOR"),
     ],

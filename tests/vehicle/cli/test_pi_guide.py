@@ -13,11 +13,11 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from vehicle import accessories
+from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
 from vehicle.accessories.settings import Accessories, build_specs
 from vehicle.config.config import Config, parse_config
 from vehicle.config.template import build_template
-from vehicle.motors import DRIVERS
+from vehicle.motors.drivers import DRIVERS
 from vehicle.params import Params
 
 GUIDE = (Path(__file__).parents[3] / "docs" / "pi.md").read_text()
@@ -38,7 +38,7 @@ def test_a_table_of_parameters_is_right() -> None:
 
 
 def test_every_driver_has_its_wiring() -> None:
-    names = {*DRIVERS, *(name for drivers in accessories.DRIVERS.values() for name in drivers)}
+    names = {*DRIVERS, *(name for drivers in ACCESSORY_DRIVERS.values() for name in drivers)}
     missing = [name for name in names if name != "simulated" and f"(`{name}`)" not in GUIDE]
     assert missing == []
 

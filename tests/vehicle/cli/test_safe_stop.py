@@ -151,7 +151,7 @@ def test_after_a_kill_in_a_motor_test_safe_stop_ends_it(tmp_path: Path) -> None:
     ("now", "says"),
     [
         ("[motors\n", "rover.toml: Expected ']'"),
-        (None, "rover.toml: No such file or directory; so only what the vehicle drove is stopped"),
+        (None, "rover.toml: No such file or directory; stopping only the motors that the vehicle used"),
         ('[motors]\ndriver = "simulated"\n', "vehicle safe-stop: simulated: motors neutral and without power"),
     ],
     ids=["broken", "gone", "other motors"],
@@ -245,12 +245,12 @@ def test_a_file_without_motors_is_a_mistake(tmp_path: Path, text: str) -> None:
     code, out, error = said_by("safe-stop", "--config", str(file))
     assert (code, out, error.count("\n")) == (2, "", 1)
     assert str(file) in error
-    assert error.endswith("; nothing is stopped: cut the power of motors that turn, and mend it\n")
+    assert error.endswith("; nothing is stopped: cut the power of motors that turn, and fix the file\n")
 
 
 def test_no_file_is_a_mistake(tmp_path: Path) -> None:
     code, _, error = said_by("safe-stop", "--config", str(tmp_path / "none"))
-    what_to_do = "nothing is stopped: cut the power of motors that turn, and mend it"
+    what_to_do = "nothing is stopped: cut the power of motors that turn, and fix the file"
     assert code == 2
     assert error == f"vehicle safe-stop: {tmp_path / 'none'}: No such file or directory; {what_to_do}\n"
 

@@ -326,7 +326,7 @@ class TestRepeats:
         assert bench.command(*motor(seconds=0.4)) is Result.ACCEPTED
         bench.wait(0.3)
         assert bench.rover.outputs == ZERO
-        assert said(bench, "Motor test: asked a moment ago, wait 3 s")
+        assert said(bench, "Motor test: repeated too soon, wait 3 s")
         bench.wait(3.0)
         assert bench.command(*motor(seconds=0.4)) is Result.ACCEPTED
         bench.wait(0.3)

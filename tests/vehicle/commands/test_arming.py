@@ -68,7 +68,7 @@ class TestArming:
         bench.readings = Readings()
         bench.wait(5.5)
         assert bench.arm() is Result.FAILED
-        assert said(bench, "PreArm: battery sensor is silent")
+        assert said(bench, "PreArm: no data from the battery sensor")
 
     def test_a_stick_that_is_held_blocks(self) -> None:
         bench = Bench()
@@ -95,7 +95,7 @@ class TestArming:
         bench = Bench()
         assert bench.command(ARM, 1, introduced=False) is Result.FAILED
         assert not bench.armed
-        assert said(bench, "arming refused: no HEARTBEAT heard")
+        assert said(bench, "COMPONENT_ARM_DISARM refused: no HEARTBEAT received")
 
     def test_51_broadcast_arming_is_ignored_and_disarming_obeyed(self) -> None:
         bench = Bench()
@@ -181,7 +181,7 @@ class TestModes:
         bench.drive()
         bench.set_mode(Mode.HOLD)
         assert bench.set_mode(Mode.MANUAL, system=OTHER) is Result.FAILED
-        assert said(bench, f"Mode MANUAL refused: GCS {DRIVER} is in control")
+        assert said(bench, f"DO_SET_MODE refused: GCS {DRIVER} is in control")
 
     def test_a_mode_for_all_vehicles_is_only_hold(self) -> None:
         bench = Bench()

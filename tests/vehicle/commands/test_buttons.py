@@ -168,7 +168,7 @@ def test_of_very_many_stations_only_so_many_are_remembered() -> None:
     bench = fitted()
     for system in range(1, 200):
         hold(bench, system=system, wait=0)
-    assert len(bench.rover._buttons._held) == STATIONS_MAX
+    assert len(bench.rover._dispatcher.demands.buttons._held) == STATIONS_MAX
 
 
 def test_every_function_is_in_the_range_of_its_parameter() -> None:

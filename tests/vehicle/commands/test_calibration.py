@@ -50,13 +50,13 @@ def test_the_bias_is_gone_and_the_way_there_is_told() -> None:
     assert verdict.result == Result.ACCEPTED
     assert turn_rate(bench) == pytest.approx(0.0, abs=1e-6)
     assert said(bench, "Gyro calibration: 3 s without moving")
-    assert said(bench, "Gyro calibrated: it is off by 1.72 deg/s")
+    assert said(bench, "Gyro calibrated: bias 1.72 deg/s")
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"yaw_rate": 0.4}, "it moves"),
+        ({"yaw_rate": 0.4}, "the rover moves"),
         ({"yaw_rate": None}, "there is no gyro"),
         ({"yaw_rate": math.nan}, "there is no gyro"),
         ({"yaw_rate": math.inf}, "there is no gyro"),

@@ -115,7 +115,7 @@ def test_a_file_that_is_no_plan_is_refused_in_words_and_one_that_has_no_place_at
     bench.say(FtpPacket(500, FtpOpcode.WRITE, 0, b"no plan").message(1, 1))
     assert ask(bench, FtpOpcode.TERMINATE).op == FtpOpcode.NAK
     bench.wait(0.1)
-    assert said(bench, "File of the fence not taken: line 1 is not 'QGC WPL 110'")
+    assert said(bench, "Fence file rejected: line 1 is not 'QGC WPL 110'")
     answer = ask(bench, FtpOpcode.CREATE, b"/missions/other.txt")
     assert (answer.op, answer.data[0]) == (FtpOpcode.NAK, FtpError.PROTECTED)
 

@@ -1,6 +1,6 @@
-"""What the vehicle answers to whom in which state: every command that it knows, one line for each case that differs.
+"""What the vehicle answers to whom in which state: one row for each case of each command.
 
-A command that is added without a line here fails the last test.
+The access and broadcast rules are tested for every row of the command table; a command without a row here fails a test.
 """
 
 from __future__ import annotations
@@ -13,10 +13,12 @@ import pytest
 
 from dialects import codec
 from dialects import messages as m
-from dialects.enums import Command, MissionType, Result
+from dialects.enums import Command, MissionType, Result, command_name
 from dialects.modes import Mode
 from link.core import LinkReport
-from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench, Equipped
+from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, OTHER, Bench, Equipped, said
+from vehicle.commands.access import Access
+from vehicle.commands.command_table import CommandSpec
 
 C, R = Command, Result
 NAN, INF = math.nan, math.inf
@@ -360,9 +362,61 @@ def test_the_answer(row: Row) -> None:
                for each in found)  # fmt: skip
 
 
+COMMANDS = Bench().rover.commands
+
+
 def test_every_command_that_is_answered_has_a_line() -> None:
-    known = Bench().rover.commands
-    assert {C(command).name for command in known} == {C(row.command).name for row in ROWS if row.command in known}
+    known = {row.command for row in COMMANDS}
+    assert {command_name(each) for each in known} == {command_name(row.command) for row in ROWS if row.command in known}
+
+
+def test_every_command_has_one_row_in_the_table() -> None:
+    assert len({row.command for row in COMMANDS}) == len(COMMANDS)
+
+
+def named(row: CommandSpec) -> str:
+    return command_name(row.command)
+
+
+UNCLEAR = (NAN,) * 7
+"""Parameters that stop nothing."""
+
+
+@pytest.mark.parametrize("row", [each for each in COMMANDS if each.access is Access.DRIVER_OR_UNCLAIMED], ids=named)
+@pytest.mark.parametrize("state", [owned, armed, stopped], ids=lambda each: str(each.__name__))
+def test_a_command_of_the_driver_is_denied_to_others_and_to_senders_without_heartbeat(
+    row: CommandSpec, state: Callable[[], Bench]
+) -> None:
+    bench = state()
+    assert bench.command(row.command, *UNCLEAR, system=OTHER) is R.FAILED
+    assert bench.command(row.command, *UNCLEAR, introduced=False) is R.FAILED
+    bench.wait(1.0)  # texts wait for their turn
+    assert said(bench, f"GCS {OTHER}: {command_name(row.command)} refused: GCS {DRIVER} is in control")
+    assert said(bench, f"{command_name(row.command)} refused: no HEARTBEAT received")
+
+
+@pytest.mark.parametrize("row", [each for each in COMMANDS if each.access is Access.INTRODUCED], ids=named)
+def test_a_command_that_needs_a_heartbeat_is_denied_without_one(row: CommandSpec) -> None:
+    bench = free()
+    assert bench.command(row.command, *UNCLEAR, introduced=False) is R.FAILED
+    assert said(bench, f"{command_name(row.command)} refused: no HEARTBEAT received")
+
+
+@pytest.mark.parametrize("row", [each for each in COMMANDS if each.access is Access.CONNECTED], ids=named)
+def test_a_request_without_heartbeat_is_rejected_for_now(row: CommandSpec) -> None:
+    assert free().command(row.command, introduced=False) is R.TEMPORARILY_REJECTED
+
+
+@pytest.mark.parametrize("row", COMMANDS, ids=named)
+def test_a_broadcast_is_answered_only_where_the_row_accepts_it(row: CommandSpec) -> None:
+    answered = owned().command(row.command, *UNCLEAR, target=0) is not None
+    assert answered == (row.broadcast and row.stops is None)
+
+
+def test_only_these_commands_are_accepted_as_broadcast() -> None:
+    accepted = {row.command for row in COMMANDS if row.broadcast}
+    assert accepted == {ARM, MODE, SWITCH, C.DO_FLIGHTTERMINATION, C.REQUEST_MESSAGE}
+    assert {row.command for row in COMMANDS if row.broadcast and row.stops} == {ARM, MODE, SWITCH}
 
 
 def test_each_line_says_something_else() -> None:

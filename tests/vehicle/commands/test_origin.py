@@ -10,9 +10,9 @@ from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionType, Result
 from dialects.modes import Mode
 from link.core import Peer
-from tests.vehicle.autonomy.mission.test_mission import finish, start, upload, way
 from tests.vehicle.bench import DRIVER, OTHER, Bench, said
 from tests.vehicle.field import GROUND, Field
+from tests.vehicle.missions import finish, start, upload, way
 from tests.vehicle.navigation.test_fence import square
 from vehicle.navigation.geo import Point
 
@@ -156,7 +156,7 @@ def test_far_away_is_refused_and_nothing_changes() -> None:
     field = away()
     before = field.estimate.origin
     assert move(field, Point(20e3, 0)) is Result.FAILED
-    assert said(field, "it is 20 km away, 10 at most")
+    assert said(field, "20 km away, limit is 10 km")
     assert field.estimate.origin == before
 
 
@@ -188,7 +188,7 @@ class TestTheOlderMessage:
         before = field.estimate.origin
         assert self.say(field, x, y) == 1  # where it is, all the same
         assert field.estimate.origin == before
-        assert said(field, "SET_GPS_GLOBAL_ORIGIN refused: it is no place")
+        assert said(field, "SET_GPS_GLOBAL_ORIGIN refused: invalid position")
 
     def test_of_others_while_armed_and_for_others_it_moves_nothing(self) -> None:
         field = away()

@@ -13,19 +13,23 @@ from link.core import LinkReport, Peer
 from tests.vehicle.bench import CYCLE, DRIVER, OTHER, Bench, said
 from vehicle.params import TABLE, Params
 from vehicle.rover import Rover
+from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.param_store import ParamStore
 
 NAMES = [parameter.name for parameter in TABLE]
 REAL32 = 9
 
 
-class Memory:
-    """A keeper in memory."""
+class Memory(ParamStore):
+    """A store in memory."""
+
+    is_volatile = False
+    problem: str | None = None
+    idle = True
 
     def __init__(self) -> None:
+        super().__init__()
         self.kept: dict[str, float] = {}
-        self.problem: str | None = None
-        self.idle = True
         self.saves = 0
 
     def set(self, name: str, value: float) -> None:
@@ -38,7 +42,7 @@ class Memory:
 
 def bench_with(params: Params) -> tuple[Bench, Memory]:
     bench, memory = Bench(), Memory()
-    bench.rover = Rover(params, now=bench.now, keeper=memory)
+    bench.rover = Rover(params, now=bench.now, param_store=memory)
     bench.wait(CYCLE)
     return bench, memory
 
@@ -221,18 +225,18 @@ def test_no_command_puts_in_force_what_the_file_denies(fence: int) -> None:
     bench, _ = bench_with(params)
     bench.heartbeat()
     assert bench.command(Command.DO_FENCE_ENABLE, 1 - fence) is Result.FAILED
-    assert said(bench, f"DO_FENCE_ENABLE refused: the file of settings has FENCE_ENABLE {fence}")
+    assert said(bench, f"DO_FENCE_ENABLE refused: the configuration file sets FENCE_ENABLE {fence}")
     assert bench.command(Command.DO_FENCE_ENABLE, fence) is Result.ACCEPTED
     assert params["FENCE_ENABLE"] == fence
 
 
 def test_64_after_damage_nobody_arms_until_somebody_sees_to_it() -> None:
     params = Params()
-    params.damage = "parameter file damaged"
+    params.mark_damaged("parameter file damaged")
     bench, memory = bench_with(params)
     assert bench.arm() is Result.FAILED
     bench.wait(0.1)
-    assert said(bench, "PreArm: parameter file damaged, defaults in force; set one to go on")
+    assert said(bench, "PreArm: parameter file damaged, using defaults; set one to continue")
     assert bench.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.FAILED  # not even by force
     set_(bench, "MAN_TIMEOUT", 9.0)
     assert bench.arm() is Result.FAILED
@@ -292,10 +296,10 @@ def test_a_disk_that_still_writes_is_not_asked_to_write_again() -> None:
 @pytest.mark.timeout(60)
 def test_a_value_that_a_full_disk_refused_is_on_the_disk_when_it_has_room(tmp_path: Path) -> None:
     folder = tmp_path / "state"
-    store = ParamStore(folder)
+    store = ParamStore(FileWriter(folder))
     folder.write_text("in the way")  # as little room as a full disk, for root too
     bench = Bench()
-    bench.rover = Rover(Params(), now=bench.now, keeper=store)
+    bench.rover = Rover(Params(), now=bench.now, param_store=store)
     bench.wait(CYCLE)
     set_(bench, "MOT_THR_MAX", 50)
     settled(store)
@@ -307,7 +311,7 @@ def test_a_value_that_a_full_disk_refused_is_on_the_disk_when_it_has_room(tmp_pa
     observed(bench, 1)
     assert said(bench, "Parameters are saved now")
     store.close()
-    assert ParamStore(folder).values == {"MOT_THR_MAX": 50}
+    assert ParamStore(FileWriter(folder)).values == {"MOT_THR_MAX": 50}
 
 
 def settled(store: ParamStore) -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from dialects import messages as m
+from dialects.codec import decode, encode_payload
 from dialects.enums import Command, Result
 from dialects.modes import Mode
 from link.core import LinkReport, Peer
@@ -113,6 +114,17 @@ def interval(bench: Bench, kind: type[m.Message]) -> int:
     answer = bench.newest(m.MessageInterval)
     assert answer.message_id == kind.id
     return int(answer.interval_us)
+
+
+def test_the_longest_interval_can_be_asked_for_and_read_back_as_bytes() -> None:
+    """3e9 us is capped to what MESSAGE_INTERVAL can hold; more was accepted, and never answered."""
+    bench = equipped()
+    assert bench.command(SET, m.Attitude.id, 3e9) is Result.ACCEPTED
+    assert interval(bench, m.Attitude) == 2_147_000_000
+    encoded = encode_payload(bench.newest(m.MessageInterval))
+    decoded = decode(m.MessageInterval.id, encoded)
+    assert isinstance(decoded, m.MessageInterval)
+    assert decoded.interval_us == 2_147_000_000
 
 
 def test_intervals_can_be_read_set_turned_off_and_reset() -> None:

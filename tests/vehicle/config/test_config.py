@@ -71,9 +71,9 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
             "zebra: unknown key; there are endpoints, state, identity, motors, accessories, sensors, params, log",
         ),
         ("a =", "Invalid value (at end of document)"),
-        ("[params]\n\n[params]", "[params] is there already, and again at line 3; put its lines below the first one"),
-        ("[motors.safety]\n[motors.safety]", "[motors.safety] is there already, and again at line 2; put"),
-        ("state = 'a'\nstate = 'b'\n", "a key that is set already, at line 2, column 12; leave one out"),
+        ("[params]\n\n[params]", "[params] exists already, and again at line 3; move its lines below the first one"),
+        ("[motors.safety]\n[motors.safety]", "[motors.safety] exists already, and again at line 2; move"),
+        ("state = 'a'\nstate = 'b'\n", "the key is set already, at line 2, column 12; remove one of them"),
         ('endpoints = "x"', 'endpoints: must be a list in [brackets], not text in "quotes"'),
         ('endpoints = ["udpin:1.2.3.4:5", "udpot:1:2"]', "endpoints[1]: endpoint 'udpot:1:2': did you mean udpout:?"),
         ("state = true", 'state: must be text in "quotes", not true or false'),
@@ -82,7 +82,7 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ("[identity]\nsystem = 0", "identity.system: must be at least 1"),
         ("[identity]\nsystem = 256", "identity.system: must be at most 255"),
         ("[identity]\nsystem = 2.5", "identity.system: must be a whole number, not a number"),
-        ("[identity]\nsystem = 2\n[params]\nMAV_SYSID = 2", "params.MAV_SYSID: identity.system says the same thing"),
+        ("[identity]\nsystem = 2\n[params]\nMAV_SYSID = 2", "params.MAV_SYSID: identity.system sets the same value"),
         ('[motors]\nport = "x"', "motors.driver: missing; add it, one of simulated, gpio, "),
         ("[motors]\ndriver = 3", "motors.driver: missing"),
         ('[motors]\ndriver = "robclaw"', "motors.driver: unknown motor driver 'robclaw'; did you mean 'roboclaw'?"),
@@ -93,10 +93,9 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         (ROBOCLAW + "baud = 3", "motors.baud: must be at least 2400"),
         (ROBOCLAW + 'baud = "fast"', 'motors.baud: must be a whole number, not text in "quotes"'),
         (ROBOCLAW + "safty = {}", "motors.safty: unknown key; did you mean safety?"),
-        (ROBOCLAW + "shape = [{}, {reversed = true}]", "motors.shape: is parameters now; in [params], for each motor: "
-         "MOT1_REVERSED = 1, MOT1_MIN and MOT1_MAX in %"),
+        (ROBOCLAW + "shape = [{}, {reversed = true}]", "motors.shape: unknown key; there are "),
         (ROBOCLAW + "safety = {estop_pin = 40}", "motors.safety.estop_pin: must be at most 27"),
-        (ROBOCLAW + "[motors.limits]\ndriving = 0.6", "motors.limits: is parameters now; in [params]: MOT1_MAX and "),
+        (ROBOCLAW + "[motors.limits]\ndriving = 0.6", "motors.limits: unknown key; there are "),
         (GPIO + 'wiring = "two-input"', "motors.bridges[0].wiring: 'two-input' is not known; did you mean two-inputs?"),
         (GPIO + "forward = 1", "motors.bridges[0].wiring: missing; add it, one of two-inputs, phase-enable"),
         (GPIO + 'wiring = "two-inputs"\nfoward = 1', "motors.bridges[0].foward: unknown key; did you mean forward?"),
@@ -114,13 +113,13 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ("[params]\nMOT1_MIN = 60\nMOT1_MAX = 60", "params: MOT1_MIN 60 must be smaller than MOT1_MAX 60"),
         ("[params]\nMOT2_MAX = 30\nMOT2_MIN = 40", "params: MOT2_MIN 40 must be smaller than MOT2_MAX 30"),
         ('[motors]\ndriver = "article-car"\n[params]\nMOT1_MIN = 70', "params: MOT1_MIN 70 must be smaller than MOT1"),
-        (f"[params]\nMAN_TIMEOUT = {10**400}", "params.MAN_TIMEOUT: a number too large to be meant"),
-        (f"[params]\nMAN_TIMEOUT = {'1' * 5000}", "a number of thousands of digits, which nothing takes"),
-        ("x = " + "[" * 5000 + "]" * 5000, "brackets in brackets, or tables in tables"),
-        ("a" + ".a" * 3000 + " = 1", "brackets in brackets, or tables in tables, too deep to be meant"),
-        ("x = " + "[" * 40 + "]" * 40, "brackets in brackets, or tables in tables, too deep to be meant"),
-        ('[log]\nfile = "a\\u0000b"', "log.file: holds the character NUL; leave it out"),
-        ('endpoints = ["udpin:0.0.0.0:1", "serial:/dev/\\u0000:9600"]', "endpoints[1]: holds the character NUL"),
+        (f"[params]\nMAN_TIMEOUT = {10**400}", "params.MAN_TIMEOUT: the number is too large"),
+        (f"[params]\nMAN_TIMEOUT = {'1' * 5000}", "a number with thousands of digits"),
+        ("x = " + "[" * 5000 + "]" * 5000, "lists or tables are nested too deep"),
+        ("a" + ".a" * 3000 + " = 1", "lists or tables are nested too deep"),
+        ("x = " + "[" * 40 + "]" * 40, "lists or tables are nested too deep"),
+        ('[log]\nfile = "a\\u0000b"', "log.file: contains the character NUL; remove it"),
+        ('endpoints = ["udpin:0.0.0.0:1", "serial:/dev/\\u0000:9600"]', "endpoints[1]: contains the character NUL"),
         ("[sensors.encoders]\nwheels = [{ a = 5, b = 6 }]\ndiameter = inf", "sensors.encoders.diameter: must be at "),
         ('[params]\nMAN_TIMEOUT = "1"', "params.MAN_TIMEOUT: must be a number"),
         ("[params]\nMAN_TIMEOUT = true", "params.MAN_TIMEOUT: must be a number"),
@@ -138,18 +137,18 @@ def test_several_mistakes_are_all_found() -> None:
     assert [each.split(": ")[1] for each in found] == [
         "endpoints[0]", "lgo", "motors.driver", "params.MAN_TIMEOUT", "params.X"
     ]  # fmt: skip
-    assert str(ConfigError(*found)) == f"{found[0]} (and 4 more, see `vehicle check`)"
+    assert str(ConfigError(*found)) == f"{found[0]} (and 4 more; see `vehicle check`)"
 
 
 def test_a_file_that_is_not_there_teaches(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"No such file or directory; `vehicle init .*rover.toml` writes one"):
+    with pytest.raises(ConfigError, match=r"No such file or directory; `vehicle init .*rover.toml` writes a template"):
         load(tmp_path / "rover.toml")
     with pytest.raises(ConfigError, match=r"aaa: File name too long$"):
         load("a" * 300)
-    with pytest.raises(ConfigError, match="is a folder; name a file in it"):
+    with pytest.raises(ConfigError, match="is a directory; name a file in it"):
         load(tmp_path)
     (tmp_path / "noise").write_bytes(b"\xff\xfe")
-    with pytest.raises(ConfigError, match="byte 1 is no text in UTF-8; save the file as UTF-8, or name another one"):
+    with pytest.raises(ConfigError, match="byte 1 is not UTF-8 text; save the file as UTF-8, or name another one"):
         load(tmp_path / "noise")
 
 

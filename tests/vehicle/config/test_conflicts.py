@@ -20,14 +20,17 @@ def wheels(*pins: int) -> str:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        (CAR + "safety = { estop_pin = 7 }", "motors.safety: GPIO 7 is taken by motors already"),
-        (CAR + wheels(23, 10), "sensors.encoders: GPIO 10 is taken by motors already"),
+        (CAR + "safety = { estop_pin = 7 }", "motors.safety: GPIO 7 is already used by motors"),
+        (CAR + wheels(23, 10), "sensors.encoders: GPIO 10 is already used by motors"),
         (
             CAR + "safety = { enable_pin = 22 }\n" + wheels(22, 23),
-            "sensors.encoders: GPIO 22 is taken by motors.safety",
+            "sensors.encoders: GPIO 22 is already used by motors.safety",
         ),
-        (PWM + wheels(5, 6), "sensors.encoders: GPIO 5 is taken by motors already"),
-        (BOARD + '[sensors.battery]\nkind = "ina219"', "sensors.battery: address 0x40 on I2C bus 1 is taken by motors"),
+        (PWM + wheels(5, 6), "sensors.encoders: GPIO 5 is already used by motors"),
+        (
+            BOARD + '[sensors.battery]\nkind = "ina219"',
+            "sensors.battery: address 0x40 on I2C bus 1 is already used by motors",
+        ),
     ],
 )
 def test_what_is_wanted_twice_is_said_before_anything_is_opened(text: str, says: str) -> None:
@@ -44,7 +47,7 @@ def test_one_serial_port_cannot_be_the_link_and_the_motors(driver: str, tmp_path
     file = tmp_path / "rover.toml"
     motors = f'[motors]\ndriver = "{driver}"\nport = "{tmp_path}/serial0"\n'
     file.write_text(f'endpoints = ["udpin:0.0.0.0:14550", "serial:{tmp_path}/ttyAMA0:57600"]\n{motors}')
-    with pytest.raises(ConfigError, match=r"motors: .*/ttyAMA0 is taken by endpoints\[1\] already"):
+    with pytest.raises(ConfigError, match=r"motors: .*/ttyAMA0 is already used by endpoints\[1\]"):
         load(file)
 
 

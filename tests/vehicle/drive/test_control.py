@@ -1,4 +1,4 @@
-"""Whose demand counts: bad inputs 31 to 42 of the design, and the neutral-first interlock."""
+"""Demands that are accepted and ignored: bad inputs 31 to 42, and the neutral-first interlock."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_a_demand_acts_before_the_next_cycle() -> None:
 
 
 @pytest.mark.parametrize("target", [0, 2, 255])
-def test_31_for_another_system_is_ignored(target: int) -> None:
+def test_31_a_demand_for_another_system_is_ignored(target: int) -> None:
     bench = Bench()
     bench.drive()
     bench.wait(1.2)
@@ -37,7 +37,7 @@ def test_31_for_another_system_is_ignored(target: int) -> None:
         assert not bench.turning
 
 
-def test_32_of_another_ground_station_is_ignored_counted_and_said_once() -> None:
+def test_32_demands_from_another_ground_station_are_ignored_counted_and_reported_once() -> None:
     bench = Bench()
     bench.drive()
     bench.texts.clear()
@@ -45,10 +45,10 @@ def test_32_of_another_ground_station_is_ignored_counted_and_said_once() -> None
         bench.wait(0.1, AHEAD)
         bench.stick(Axes(throttle=-1.0), system=OTHER)
     assert bench.throttles == (1.0, 1.0)
-    assert bench.texts == [f"Demand of GCS {OTHER} ignored: GCS {DRIVER} is in control"]
+    assert bench.texts == [f"Demand from GCS {OTHER} ignored: GCS {DRIVER} is in control"]
 
 
-def test_a_peer_that_has_shown_no_heartbeat_is_ignored() -> None:
+def test_a_peer_without_a_heartbeat_is_ignored() -> None:
     bench = Bench()
     bench.arm()
     bench.say(build_manual_control(NEUTRAL, 1), introduced=False)
@@ -57,7 +57,7 @@ def test_a_peer_that_has_shown_no_heartbeat_is_ignored() -> None:
     assert not bench.turning
 
 
-def test_33_an_axis_that_is_off_is_neutral() -> None:
+def test_33_a_disabled_axis_is_neutral() -> None:
     bench = Bench()
     bench.drive()
     for _ in range(20):
@@ -74,19 +74,19 @@ def test_34_an_axis_out_of_range_is_neutral_and_not_clamped(wild: int) -> None:
         bench.say(axes(x=wild, r=0))
         bench.wait(0.04)
     assert not bench.turning
-    assert bench.texts.count(f"GCS {DRIVER}: axes out of -1000..1000 count as neutral") == 1
+    assert bench.texts.count(f"GCS {DRIVER}: axes outside -1000..1000 count as neutral") == 1
 
 
-def test_axes_that_are_right_or_off_need_no_word() -> None:
+def test_valid_and_disabled_axes_are_not_reported() -> None:
     bench = Bench()
     bench.drive()
     for x in (1000, -1000, m.INVALID_AXIS):
         bench.say(axes(x=x, r=m.INVALID_AXIS))
         bench.wait(0.04)
-    assert not said(bench, "axes out of")
+    assert not said(bench, "axes outside")
 
 
-def test_y_moves_a_vehicle_sideways_that_can() -> None:
+def test_y_moves_an_omni_drive_sideways() -> None:
     bench = Bench(DRIVE_TYPE=4)
     bench.drive()
     for _ in range(20):
@@ -96,7 +96,7 @@ def test_y_moves_a_vehicle_sideways_that_can() -> None:
 
 
 @pytest.mark.parametrize("kind", [1, 2])
-def test_y_means_nothing_to_the_others(kind: int) -> None:
+def test_y_is_ignored_by_drives_that_cannot_move_sideways(kind: int) -> None:
     """QGroundControl sends it for every vehicle."""
     bench = Bench(DRIVE_TYPE=kind)
     bench.arm()
@@ -110,7 +110,7 @@ def test_y_means_nothing_to_the_others(kind: int) -> None:
     assert not bench.turning
 
 
-def test_a_stick_held_to_the_side_is_not_neutral() -> None:
+def test_a_stick_held_sideways_is_not_neutral() -> None:
     bench = Bench(DRIVE_TYPE=4)
     bench.arm()
     for side in (1000, 500, 1000):
@@ -142,7 +142,7 @@ def test_a_frame_without_any_valid_axis_is_no_demand() -> None:
     assert said(bench, "manual control lost")
 
 
-def test_an_invalid_axis_is_no_stick_at_rest() -> None:
+def test_an_invalid_axis_proves_no_stick_at_rest() -> None:
     bench = Bench()
     bench.arm()
     bench.say(axes(x=m.INVALID_AXIS, r=0))
@@ -161,7 +161,7 @@ def test_35_full_throttle_from_the_first_frame_waits_for_neutral() -> None:
     assert bench.turning
 
 
-def test_36_a_replayed_frame_does_not_keep_the_rover_going() -> None:
+def test_36_a_replayed_frame_does_not_keep_the_rover_moving() -> None:
     bench = Bench()
     bench.drive()
     bench.say(build_manual_control(AHEAD, 1), sequence=77)
@@ -181,7 +181,7 @@ def test_37_of_two_ground_stations_only_the_owner_drives() -> None:
         assert min(bench.throttles) > 0.5
 
 
-def test_38_one_frame_a_second_never_runs_on() -> None:
+def test_38_one_frame_per_second_never_keeps_the_rover_moving() -> None:
     bench = Bench()
     bench.drive()
     moving = 0
@@ -203,7 +203,7 @@ def test_39_accessory_axes_and_buttons_do_nothing() -> None:
     assert bench.armed
 
 
-def test_40_a_demand_while_disarmed_or_stopped_gives_nothing() -> None:
+def test_40_a_demand_while_disarmed_or_stopped_has_no_effect() -> None:
     bench = Bench()
     bench.heartbeat()
     bench.wait(0.2, NEUTRAL)

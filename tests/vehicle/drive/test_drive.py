@@ -1,4 +1,4 @@
-"""From demand to motors: what the gate must see, and what it says about limits."""
+"""From demand to motor outputs: values that the gate must see, and the limits that are reported."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_nan_becomes_zero_and_not_speed(wrong: Demand, kind: int, largest: float
     assert drive.rejected_cycles == 0
 
 
-def test_a_sideways_demand_that_is_no_number_becomes_zero() -> None:
+def test_a_nan_sideways_demand_becomes_zero() -> None:
     drive = Drive(Params({"DRIVE_TYPE": 4}), 0.0)
     assert any(run(drive, Demand(0.0, 0.0, 0.0, 255, 0, sideways=1.0)).throttles)
     wrong = Demand(0.0, 0.0, 0.0, 255, 0, sideways=math.nan)
@@ -62,7 +62,7 @@ def test_three_cycles_of_nan_are_hold() -> None:
     assert said(bench, "Motor values are not numbers: HOLD")
 
 
-def test_a_limited_throttle_is_told() -> None:
+def test_a_limited_throttle_is_reported() -> None:
     drive = Drive(Params({"MOT_THR_MAX": 70}), 0.0)
     found = []
     for start, throttle, limited in ((0.0, 1.0, False), (2.0, 1.0, True), (4.0, 0.3, True)):
@@ -71,7 +71,7 @@ def test_a_limited_throttle_is_told() -> None:
     assert found == [(0.7, DriveLimit.SPEED), (0.5, DriveLimit.SPEED), (0.28, DriveLimit(0))]
 
 
-def test_expo_is_softer_around_neutral() -> None:
+def test_expo_softens_values_around_neutral() -> None:
     plain, soft = (run(Drive(Params({"MANUAL_EXPO": e}), 0.0), demand(0.3)).throttles[0] for e in (0.0, 0.7))
     assert 0 < soft < plain
 
@@ -84,14 +84,14 @@ def test_a_stop_makes_every_motor_fall_from_the_first_cycle_on() -> None:
     assert all(abs(new) < abs(old) for new, old in zip(after, before, strict=True))
 
 
-def test_time_that_stands_still_changes_nothing() -> None:
+def test_a_cycle_of_zero_length_changes_nothing() -> None:
     drive = Drive(Params(), 0.0)
     before = run(drive, demand(0.5), cycles=5).throttles
     assert drive.update(demand(1.0), CLEARED, limited=False, now=0.1).throttles == before
     assert drive.update(demand(1.0), CLEARED, limited=False, now=0.05).throttles == before
 
 
-def test_a_parameter_that_is_set_while_driving_counts_from_the_next_cycle() -> None:
+def test_a_changed_parameter_takes_effect_in_the_next_cycle() -> None:
     params = Params()
     drive = Drive(params, 0.0)
     assert run(drive, demand(1.0)).throttles == (1.0, 1.0)

@@ -1,4 +1,4 @@
-"""The whole vehicle without its process: rover, machine, motors and simulated body, driven message by message."""
+"""The whole vehicle without its process: rover, control loop, motors and simulated body, driven by messages."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Drive:
         self.run(0.5)
 
     def run(self, seconds: float, demand: Axes | None = None) -> None:
-        """Let the vehicle run its cycles; the driver sends `demand` at 25 Hz."""
+        """Run the control cycles of the vehicle; the operator sends `demand` at 25 Hz."""
         for cycle in range(round(seconds / CYCLE)):
             self.now += CYCLE
             if demand is not None and cycle % 2 == 0:
@@ -60,7 +60,7 @@ class Drive:
             self.said += [outgoing.message for outgoing in self.machine.messages_to_send()]
 
     def say(self, message: Message) -> None:
-        """The driver sends a message."""
+        """Send a message of the operator."""
         self._sequence = (self._sequence + 1) % 256
         self.machine.receive(Received(message, 255, 190, self._sequence, Peer(0, "gcs"), introduced=True), self.now)
 
@@ -72,7 +72,7 @@ class Drive:
 
     @property
     def armed(self) -> bool:
-        """As the vehicle's newest HEARTBEAT says."""
+        """Armed according to the newest HEARTBEAT."""
         return bool(self.newest(Heartbeat).base_mode & ModeFlag.ARMED)
 
     def newest(self, kind: type[Kind]) -> Kind:
@@ -80,7 +80,7 @@ class Drive:
         return [message for message in self.said if isinstance(message, kind)][-1]
 
     def texts(self) -> str:
-        """Everything it said in words."""
+        """Return all STATUSTEXTs."""
         return "\n".join(message.text for message in self.said if isinstance(message, StatusText))
 
 
@@ -92,7 +92,7 @@ def driving(battery: float = 1.0) -> Drive:
     return drive
 
 
-def test_it_drives_north_and_says_so() -> None:
+def test_driving_north_is_reported_in_telemetry() -> None:
     drive = driving()
     drive.run(4.0, AHEAD)
     position = drive.newest(LocalPositionNed)
@@ -101,7 +101,7 @@ def test_it_drives_north_and_says_so() -> None:
     assert position.vx > 1.0
 
 
-def test_it_stops_when_the_driver_is_silent() -> None:
+def test_the_rover_stops_when_the_demands_stop() -> None:
     drive = driving()
     drive.run(1.5)
     assert drive.motors.outputs == (0.0, 0.0)
@@ -116,7 +116,7 @@ def test_steering_right_turns_the_nose_right() -> None:
     assert drive.newest(LocalPositionNed).y > 0.1
 
 
-def test_a_car_steers_too() -> None:
+def test_an_ackermann_drive_steers() -> None:
     drive = Drive(Params({"DRIVE_TYPE": DriveType.ACKERMANN}), chassis=AckermannChassis())
     drive.arm()
     drive.run(2.0, Axes(throttle=0.8, steering=0.5))
@@ -124,7 +124,7 @@ def test_a_car_steers_too() -> None:
     assert drive.newest(LocalPositionNed).y > 0.1
 
 
-def test_motors_that_fail_disarm_and_may_be_armed_again_once_repaired() -> None:
+def test_a_motor_failure_disarms_and_a_repair_allows_arming() -> None:
     drive = driving()
     drive.motors.plugged = False
     drive.run(CYCLE, AHEAD)
@@ -150,7 +150,7 @@ def test_an_empty_battery_ends_the_drive() -> None:
     assert drive.motors.outputs == (0.0, 0.0)
 
 
-def test_after_shutdown_nothing_turns_and_the_last_word_is_poweroff() -> None:
+def test_after_shutdown_nothing_turns_and_the_last_message_is_poweroff() -> None:
     drive = driving()
     drive.machine.shutdown(drive.now)
     assert drive.motors.outputs == (0.0, 0.0)

@@ -1,4 +1,4 @@
-"""The last gate: it is asked to pass everything, and must refuse what is not cleared."""
+"""The last gate: it rejects everything that is not cleared."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def judge(
     return gate.filter(values, values, permit, fall_time, now, trial)
 
 
-def test_all_facts_right_permits_to_drive() -> None:
+def test_all_facts_together_permit_driving() -> None:
     assert CLEARED.permit is Permit.DRIVE
 
 
@@ -41,11 +41,11 @@ def test_all_facts_right_permits_to_drive() -> None:
         ({"timeout": math.nan}, Permit.RAMP_DOWN),
     ],
 )
-def test_each_fact_alone_takes_the_permit_away(change: dict[str, float], permit: Permit) -> None:
+def test_each_fact_alone_revokes_the_permit(change: dict[str, float], permit: Permit) -> None:
     assert CLEARED._replace(**change).permit is permit  # type: ignore[arg-type]
 
 
-def test_a_clearance_that_nobody_filled_in_permits_nothing() -> None:
+def test_a_default_clearance_permits_nothing() -> None:
     assert Clearance().permit is Permit.NONE
 
 
@@ -53,14 +53,14 @@ def test_drive_passes() -> None:
     assert judge(Gate(2), (0.5, -1.0), Permit.DRIVE, FALL_TIME, 0.0) == Outputs((0.5, -1.0), enabled=True)
 
 
-def test_none_is_zero_whatever_comes() -> None:
+def test_permit_none_is_zero_for_any_value() -> None:
     gate = Gate(2)
     judge(gate, (1.0, 1.0), Permit.DRIVE, FALL_TIME, 0.0)
     assert judge(gate, (1.0, 1.0), Permit.NONE, FALL_TIME, 0.02) == ZERO
 
 
 @pytest.mark.parametrize("bad", [(math.nan, 0.0), (0.0, math.inf), (1.0001, 0.0), (-2.0, 0.0), (0.0,), (0.0, 0.0, 0.0)])
-def test_values_that_are_none_are_refused_all_together(bad: tuple[float, ...]) -> None:
+def test_invalid_values_reject_all_outputs(bad: tuple[float, ...]) -> None:
     gate = Gate(2)
     judge(gate, (1.0, 1.0), Permit.DRIVE, FALL_TIME, 0.0)
     assert judge(gate, bad, Permit.DRIVE, FALL_TIME, 0.02) == ZERO
@@ -71,7 +71,7 @@ def test_values_that_are_none_are_refused_all_together(bad: tuple[float, ...]) -
     assert gate.refused == 0
 
 
-def test_fall_lets_values_fall_and_nothing_else() -> None:
+def test_ramp_down_passes_only_falling_values() -> None:
     gate = Gate(2)
     judge(gate, (1.0, -1.0), Permit.DRIVE, FALL_TIME, 0.0)
     assert judge(gate, (0.9, -0.9), Permit.RAMP_DOWN, FALL_TIME, 0.02) == Outputs((0.9, -0.9), enabled=True)
@@ -79,7 +79,7 @@ def test_fall_lets_values_fall_and_nothing_else() -> None:
     assert judge(gate, (0.8, -0.8), Permit.RAMP_DOWN, FALL_TIME, 0.06) == ZERO
 
 
-def test_a_fall_that_does_not_end_is_ended() -> None:
+def test_a_deceleration_that_takes_too_long_is_ended() -> None:
     gate = Gate(2)
     judge(gate, (1.0, 1.0), Permit.DRIVE, FALL_TIME, 0.0)
     assert judge(gate, (1.0, 1.0), Permit.RAMP_DOWN, FALL_TIME, 0.02).enabled
@@ -96,14 +96,14 @@ def test_at_rest_without_permit_the_enable_line_is_off() -> None:
 # ---- what the motors get of it
 
 
-def test_the_motors_get_what_was_made_of_the_wheels() -> None:
+def test_the_gate_passes_the_motor_values_of_the_wheels() -> None:
     gate = Gate(2)
     assert gate.filter((0.5, 0.5), (-0.6, 0.7), Permit.DRIVE, FALL_TIME, 0.0) == Outputs((-0.6, 0.7), enabled=True)
     assert gate.wheels == (0.5, 0.5)
 
 
 @pytest.mark.parametrize("bad", [(math.nan, 0.5), (0.5, -1.01), (math.inf, 0.5), (0.5,), (0.5, 0.5, 0.5)])
-def test_motor_values_that_are_none_are_refused_all_together(bad: tuple[float, ...]) -> None:
+def test_invalid_motor_values_reject_all_outputs(bad: tuple[float, ...]) -> None:
     gate = Gate(2)
     assert gate.filter((0.5, 0.5), (0.5, 0.5), Permit.DRIVE, FALL_TIME, 0.0).enabled
     assert gate.filter((0.5, 0.5), bad, Permit.DRIVE, FALL_TIME, 0.02) == ZERO
@@ -111,26 +111,27 @@ def test_motor_values_that_are_none_are_refused_all_together(bad: tuple[float, .
     assert gate.wheels == (0.0, 0.0)
 
 
-def test_a_wheel_that_is_to_stand_has_a_motor_that_gets_nothing() -> None:
+def test_a_wheel_at_zero_requires_its_motor_at_zero() -> None:
     assert judge(Gate(2), (0.5, 0.0), Permit.DRIVE, FALL_TIME, 0.0).enabled
     assert Gate(2).filter((0.5, 0.0), (0.5, 0.01), Permit.DRIVE, FALL_TIME, 0.0) == ZERO
     centred = Gate(2, driven=1).filter((0.5, 0.0), (0.5, 0.1), Permit.DRIVE, FALL_TIME, 0.0)  # of a steering servo
     assert centred == Outputs((0.5, 0.1), enabled=True)
 
 
-def test_a_servo_off_its_centre_keeps_nothing_enabled() -> None:
+def test_a_servo_off_its_centre_does_not_keep_the_outputs_enabled() -> None:
     gate = Gate(2, driven=1)
     gate.filter((0.5, 0.0), (0.5, 0.1), Permit.DRIVE, FALL_TIME, 0.0)
     assert gate.filter((0.1, 0.0), (0.1, 0.1), Permit.RAMP_DOWN, FALL_TIME, 0.02) == Outputs((0.1, 0.1), enabled=True)
     assert gate.filter((0.0, 0.0), (0.0, 0.1), Permit.RAMP_DOWN, FALL_TIME, 0.04) == ZERO
 
 
-def test_a_smallest_output_is_a_step_at_zero_and_falls_in_time() -> None:
+def test_a_minimum_output_steps_to_zero_in_time() -> None:
     gate = Gate(1)
     for step in range(21):
         wheel = 1.0 - step / 20
-        outputs = gate.filter((wheel,), (0.5 + wheel / 2 if wheel else 0.0,), Permit.RAMP_DOWN if step else Permit.DRIVE,
-                             FALL_TIME, step * 0.02)  # fmt: skip
+        motor = 0.5 + wheel / 2 if wheel else 0.0
+        permit = Permit.RAMP_DOWN if step else Permit.DRIVE
+        outputs = gate.filter((wheel,), (motor,), permit, FALL_TIME, step * 0.02)
         assert outputs.enabled == (step < 20)
     assert gate.refused == 0
 
@@ -158,7 +159,7 @@ def test_a_motor_test_passes_one_motor_for_three_seconds_and_no_longer() -> None
     "wrong",
     [(0.301, 0.0), (-0.301, 0.0), (0.2, 0.2), (0.0, 0.2), (0.2, -1e-9), (math.nan, 0.0), (0.2, math.nan), (0.2,)],
 )
-def test_what_is_no_motor_test_is_refused(wrong: tuple[float, ...]) -> None:
+def test_an_invalid_motor_test_is_rejected(wrong: tuple[float, ...]) -> None:
     gate = Gate(2)
     assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL).enabled
     assert judge(gate, wrong, Permit.TEST, FALL_TIME, 0.02, TRIAL) == ZERO
@@ -179,7 +180,7 @@ def test_an_interrupted_motor_test_is_over_and_a_new_request_has_its_own_time(be
     assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 0.10, MotorTest(2, 0, 0.2)) == ZERO
 
 
-def test_a_renewed_motor_test_goes_on() -> None:
+def test_a_renewed_motor_test_continues() -> None:
     gate = Gate(2)
     for number in range(1, 11):
         for now in (float(number), number + 0.9):
@@ -187,7 +188,7 @@ def test_a_renewed_motor_test_goes_on() -> None:
     assert judge(gate, (0.2, 0.0), Permit.TEST, FALL_TIME, 13.5, MotorTest(10, 0, 0.2)) == ZERO
 
 
-def test_nothing_ramps_down_from_a_motor_test() -> None:
+def test_no_ramp_follows_a_motor_test() -> None:
     gate = Gate(2)
     judge(gate, (0.3, 0.0), Permit.TEST, FALL_TIME, 0.0, TRIAL)
     assert judge(gate, (0.2, 0.0), Permit.RAMP_DOWN, FALL_TIME, 0.02) == ZERO
@@ -235,7 +236,7 @@ def test_no_request_turns_a_motor_for_longer_or_faster_than_it_may(
         )
     )
 )
-def test_whatever_comes_what_leaves_is_sound_and_permitted(
+def test_every_output_is_valid_and_permitted(
     moves: list[tuple[Permit, tuple[float, ...], float]],
 ) -> None:
     gate, now, before, drove = Gate(2), 0.0, (0.0, 0.0), -math.inf

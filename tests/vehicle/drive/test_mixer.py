@@ -1,4 +1,4 @@
-"""Mixers: what each wheel gets."""
+"""Mixers: the value of each wheel."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_skid_adds_and_subtracts(throttle: float, steering: float, left: float, 
     assert not mixed.saturated
 
 
-def test_skid_at_its_limit_cuts_both_alike_by_default() -> None:
+def test_saturated_skid_reduces_both_alike_by_default() -> None:
     mixed = skid(1.0, 1.0, 0.0, FAIR)
     assert mixed.throttles == pytest.approx((1.0, 0.0))
     assert mixed.saturated
@@ -84,7 +84,7 @@ def test_skid_saturates_as_ardurover_does(throttle: float, steering: float, limi
         (1.0, 1.0, (1.0, 1 / 7)),
     ],
 )
-def test_motors_that_push_half_as_much_backwards(
+def test_motors_with_half_the_thrust_backward(
     throttle: float, steering: float, wheels: tuple[float, float]
 ) -> None:  # fmt: skip
     mixed = skid(throttle, steering, 0.0, MixerLimits(asymmetry=2.0))
@@ -97,11 +97,11 @@ def test_motors_that_push_half_as_much_backwards(
     [((1.0, 0.0, 0.0), 1.0), ((0.0, 1.0, 0.0), 0.4), ((0.0, -0.1, 0.0), 0.4), ((0.5, 0.5, 0.0), 0.7),
      ((0.25, 0.5, -0.25), 0.7), ((0.0, 0.0, 1.0), 1.0), ((0.0, 0.0, 0.0), 1.0)],
 )  # fmt: skip
-def test_turning_on_the_spot_gets_its_share(demand: tuple[float, float, float], share: float) -> None:
+def test_pivot_scale_reduces_turns_on_the_spot(demand: tuple[float, float, float], share: float) -> None:
     assert pivot_scale(*demand, 0.4) == pytest.approx(share)
 
 
-def test_ackermann_keeps_them_apart() -> None:
+def test_ackermann_keeps_throttle_and_steering_apart() -> None:
     assert ackermann(0.3, -1.0, 0.0, FAIR).throttles == (0.3, -1.0)
 
 
@@ -121,14 +121,14 @@ def test_four_wheels_go_ahead_turn_and_slide(demand: tuple[float, float, float],
     assert not mixed.saturated
 
 
-def test_four_wheels_at_their_limit_keep_the_direction() -> None:
+def test_saturated_four_wheels_keep_the_direction() -> None:
     mixed = four_wheels(1.0, 0.5, 0.5, FAIR)
     assert mixed.throttles == pytest.approx((1.0, 0.0, 0.5, 0.5))
     assert mixed.saturated
 
 
 @pytest.mark.parametrize("place", [0, 1, 2])
-def test_no_number_is_not_made_one(place: int) -> None:
+def test_nan_stays_nan(place: int) -> None:
     """The gate must see it."""
     demand = [0.5, 0.5, 0.5]
     demand[place] = math.nan
@@ -140,7 +140,7 @@ def test_no_number_is_not_made_one(place: int) -> None:
 
 
 @given(UNIT, UNIT, UNIT, LIMITS, st.sampled_from(sorted(MIXERS)))
-def test_every_mixer_stays_within_full(
+def test_every_mixer_stays_within_full_scale(
     throttle: float, steering: float, sideways: float, limit: MixerLimits, kind: DriveType
 ) -> None:
     mixer = MIXERS[kind]
@@ -150,7 +150,7 @@ def test_every_mixer_stays_within_full(
 
 
 @given(LIMITS)
-def test_nothing_in_is_nothing_out(limit: MixerLimits) -> None:
+def test_a_neutral_demand_gives_zero(limit: MixerLimits) -> None:
     for mixer in MIXERS.values():
         assert not any(mixer.mix(0.0, 0.0, 0.0, limit).throttles)
 

@@ -1,4 +1,4 @@
-"""Direction, smallest and largest output and trim of each motor, through the whole rover in virtual time."""
+"""MOTn_ parameters (direction, minimum, maximum, trim) through the whole rover in virtual time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.vehicle.bench import AHEAD, CYCLE, EVERYTHING, NEUTRAL, Bench, said
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
 from vehicle.drive.gate import Clearance, Outputs
-from vehicle.motors import PROFILE_PARAMS
+from vehicle.motors.drivers import profile_params
 from vehicle.params import ORDERED_PAIRS, PARAMETERS, Params, merge_params
 from vehicle.rover import Rover
 
@@ -30,7 +30,7 @@ def set_(bench: Bench, name: str, value: float) -> float:
     return float(bench.newest(m.ParamValue).param_value)
 
 
-def test_a_reversed_motor_gets_the_other_sign_and_everybody_else_sees_the_wheel() -> None:
+def test_a_reversed_motor_inverts_only_the_motor_output() -> None:
     bench = Bench(MOT1_REVERSED=1)
     bench.drive()
     bench.wait(1.0, AHEAD)
@@ -41,11 +41,11 @@ def test_a_reversed_motor_gets_the_other_sign_and_everybody_else_sees_the_wheel(
     assert bench.newest(m.VfrHud).throttle == 100
 
 
-def test_it_stops_as_any_other() -> None:
+def test_a_reversed_motor_ramps_down_as_any_other() -> None:
     bench = Bench(MOT1_REVERSED=1, MOT1_MIN=40, MOT2_MIN=40, MOT2_TRIM=10)
     bench.drive()
     before = bench.throttles
-    for _ in range(60):  # the driver is silent
+    for _ in range(60):  # no demands
         bench.wait(CYCLE)
         assert all(abs(new) <= abs(old) for new, old in zip(bench.throttles, before, strict=True))
         before = bench.throttles
@@ -54,7 +54,7 @@ def test_it_stops_as_any_other() -> None:
 
 
 @pytest.mark.parametrize("how", ["disarm", "e-stop"])
-def test_disarmed_is_zero_at_once(how: str) -> None:
+def test_disarming_zeroes_the_outputs_at_once(how: str) -> None:
     bench = Bench(DRIVE_TYPE=2, MOT1_TRIM=20, MOT1_MIN=50, MOT2_TRIM=20)
     bench.drive(Axes(throttle=1.0, steering=0.5))
     command = (Command.COMPONENT_ARM_DISARM, 0) if how == "disarm" else (Command.DO_SET_SAFETY_SWITCH_STATE, 0)
@@ -89,7 +89,7 @@ def test_the_reverse_delay_is_for_wheels_and_not_for_a_servo() -> None:
     assert bench.throttles[0] < -0.4
 
 
-def test_a_motor_test_over_the_air_turns_the_wheel_the_way_it_drives() -> None:
+def test_a_motor_test_turns_the_wheel_in_its_driving_direction() -> None:
     bench = Bench(MOT1_REVERSED=1, MOT1_MIN=20, MOT2_MIN=20)
     bench.heartbeat()
     assert bench.command(Command.DO_MOTOR_TEST, 1, 0, 25, 1) is Result.ACCEPTED
@@ -110,8 +110,8 @@ def test_a_reversed_rover_that_pushes_without_moving_is_blocked() -> None:
     assert bench.mode is Mode.HOLD
 
 
-def test_a_smallest_output_is_no_pushing() -> None:
-    """15 % of throttle that a motor's dead zone makes 49 % of: the driver asks for a crawl."""
+def test_a_minimum_output_does_not_count_as_blocked() -> None:
+    """The operator requests a crawl: 15 % of throttle, which the motor's minimum turns into 49 %."""
     bench = Bench(MOT1_MIN=40, MOT2_MIN=40)
     bench.readings = replace(EVERYTHING, wheel_speeds=(0.0, 0.0))
     bench.drive(Axes(throttle=0.15))
@@ -124,14 +124,14 @@ def test_a_smallest_output_is_no_pushing() -> None:
     ("axes", "wheels"),
     [(Axes(throttle=1.0), (0.6, 0.6)), (Axes(steering=1.0), (0.4, -0.4)), (Axes(throttle=1.0, steering=1.0), (0.5, 0))],
 )
-def test_less_for_turning_on_the_spot(axes: Axes, wheels: tuple[float, float]) -> None:
+def test_turning_on_the_spot_is_limited(axes: Axes, wheels: tuple[float, float]) -> None:
     bench = Bench(MOT1_MAX=60, MOT2_MAX=60, MOT_PIVOT_MAX=66.7)
     bench.drive(axes)
     assert bench.throttles == pytest.approx(wheels, abs=1e-3)
 
 
 @pytest.mark.parametrize("name", MOTOR_PARAMS)
-def test_none_of_them_changes_while_armed(name: str) -> None:
+def test_motor_parameters_cannot_be_changed_while_armed(name: str) -> None:
     bench = Bench()
     parameter = PARAMETERS[name]
     other = parameter.high if parameter.default != parameter.high else parameter.low
@@ -142,7 +142,7 @@ def test_none_of_them_changes_while_armed(name: str) -> None:
     assert set_(bench, name, other) == pytest.approx(other)
 
 
-def test_values_that_do_not_fit_each_other_are_refused_over_the_link() -> None:
+def test_contradicting_parameters_are_rejected() -> None:
     bench = Bench(MOT1_MAX=50)
     assert set_(bench, "MOT1_MIN", 60) == 0
     assert bench.newest(m.ParamError).error == ParamErrorCode.VALUE_OUT_OF_RANGE
@@ -152,9 +152,9 @@ def test_values_that_do_not_fit_each_other_are_refused_over_the_link() -> None:
     assert set_(bench, "MOT1_MIN", 60) == 60
 
 
-def test_a_reset_goes_back_to_the_cars_own_and_not_to_full_power() -> None:
+def test_a_parameter_reset_restores_the_profile_of_the_car() -> None:
     bench = Bench()
-    params, _ = merge_params({}, kept={"MOT1_MAX": 100.0, "MOT1_MIN": 70.0}, usual=PROFILE_PARAMS["article-car"])
+    params, _ = merge_params({}, kept={"MOT1_MAX": 100.0, "MOT1_MIN": 70.0}, usual=profile_params("article-car"))
     assert params["MOT1_MAX"] == 100.0
     bench.rover = Rover(params, now=bench.now)
     bench.wait(CYCLE)
@@ -179,7 +179,7 @@ STEPS = st.lists(st.tuples(AXIS, AXIS, AXIS, st.booleans(), st.booleans(), st.fl
 
 
 @given(any_params(), STEPS)
-def test_what_leaves_is_sound_zero_stays_zero_and_disarmed_is_off(
+def test_outputs_are_valid_zero_stays_zero_and_disarmed_is_off(
     params: Params, steps: list[tuple[float | None, float | None, float | None, bool, bool, float]]
 ) -> None:
     drive, now = Drive(params, 0.0), 0.0

@@ -1,4 +1,4 @@
-"""What goes to the motors in a cycle goes there before anything is told of it: words wait, wheels do not."""
+"""A control cycle writes the motors before it builds any message."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Watched(SimulatedMotors):
         super().set(throttles)
 
 
-def test_a_cycle_writes_the_motors_before_it_makes_a_message() -> None:
+def test_a_cycle_writes_the_motors_before_it_builds_a_message() -> None:
     rover = Rover(Params(), now=0.0)
     motors = Watched(rover)
     machine = ControlLoop(rover, motors, NoSensors())

@@ -1,4 +1,4 @@
-"""ROVER_OPERATOR_PRESENCE: is there a person behind the demand, and is it new?"""
+"""ROVER_OPERATOR_PRESENCE: inactive operators and old demands."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def say(bench: Bench, echo: int, age: int = 0, session: int = 1, flags: int = 1)
 
 
 def drive(bench: Bench, seconds: float, axes: Axes, delay: float = 0.1, age: int = 0) -> None:
-    """20 Hz of a driver who has seen the vehicle's words of `delay` s ago."""
+    """Send demands at 20 Hz with an echo of `delay` s ago."""
     for _ in range(round(seconds / 0.05)):
         say(bench, int((bench.now - 100.0 - delay) * 1000), age=age)
         bench.stick(axes)
@@ -30,14 +30,14 @@ def going() -> Bench:
     return bench
 
 
-def test_demands_that_are_old_when_they_arrive_are_refused() -> None:
+def test_demands_that_are_old_on_arrival_are_rejected() -> None:
     bench = going()
     drive(bench, 1.2, AHEAD, delay=0.6)
     assert not bench.turning
-    assert said(bench, "they are old when they arrive")
+    assert said(bench, "older than OPR_ECHO_MAX on arrival")
 
 
-def test_a_stop_is_obeyed_however_old() -> None:
+def test_a_stop_of_any_age_is_obeyed() -> None:
     bench = going()
     drive(bench, 0.1, NEUTRAL, delay=2.0)
     assert bench.throttles[0] < 1.0
@@ -45,7 +45,7 @@ def test_a_stop_is_obeyed_however_old() -> None:
     assert not bench.turning
 
 
-def test_an_old_neutral_is_no_stick_at_rest() -> None:
+def test_an_old_neutral_proves_no_stick_at_rest() -> None:
     bench = Bench()
     bench.wait(2.0)
     bench.arm()
@@ -54,7 +54,7 @@ def test_an_old_neutral_is_no_stick_at_rest() -> None:
     assert not bench.turning
 
 
-def test_an_echo_of_a_former_boot_is_refused() -> None:
+def test_an_echo_of_an_earlier_boot_is_rejected() -> None:
     bench = going()
     for _ in range(30):
         say(bench, 0x7FFFFFFF)
@@ -63,7 +63,7 @@ def test_an_echo_of_a_former_boot_is_refused() -> None:
     assert not bench.turning
 
 
-def test_no_echo_yet_is_no_reason() -> None:
+def test_a_missing_echo_does_not_reject_demands() -> None:
     bench = going()
     for _ in range(20):
         say(bench, 0)
@@ -72,18 +72,18 @@ def test_no_echo_yet_is_no_reason() -> None:
     assert bench.turning
 
 
-def test_a_key_that_nobody_touches_stops_after_the_timeout() -> None:
+def test_a_key_without_input_stops_after_the_timeout() -> None:
     bench = going()
     drive(bench, 0.5, AHEAD, age=9_000)
     assert bench.turning
     drive(bench, 0.5, AHEAD, age=10_200)
     assert not bench.turning
-    assert said(bench, "no sign of the operator: stopping")
+    assert said(bench, "no operator input: stopping")
     drive(bench, 2.0, AHEAD, age=12_000)
     assert bench.mode is Mode.HOLD
 
 
-def test_a_new_key_press_is_the_operator_again_and_neutral_comes_first() -> None:
+def test_after_a_new_key_press_neutral_comes_first() -> None:
     bench = going()
     drive(bench, 0.5, AHEAD, age=10_200)
     assert not bench.turning
@@ -103,7 +103,7 @@ def test_a_lost_input_device_stops_at_once() -> None:
     assert not bench.turning
 
 
-def test_a_new_session_begins_with_neutral() -> None:
+def test_a_new_session_requires_neutral_first() -> None:
     bench = going()
     for _ in range(10):
         say(bench, 0, session=2)
@@ -112,7 +112,7 @@ def test_a_new_session_begins_with_neutral() -> None:
     assert not bench.turning
 
 
-def test_of_others_it_says_nothing() -> None:
+def test_presence_messages_of_others_are_ignored() -> None:
     bench = going()
     bench.say(m.RoverOperatorPresence(1, 1, 0, 1, 9, 1, 65535, 4), OTHER)
     drive(bench, 0.2, AHEAD)

@@ -1,4 +1,4 @@
-"""What a motor gets of what its wheel is to do."""
+"""Output scaling: the motor value for a wheel value."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def fits(draw: st.DrawFn) -> OutputScaling:
         (OutputScaling(curve=1.0, smallest=0.2, reversed=True), 0.25, -0.6),
     ],
 )
-def test_a_motor_that_drives(fit: OutputScaling, throttle: float, output: float) -> None:
+def test_a_driven_motor(fit: OutputScaling, throttle: float, output: float) -> None:
     assert fit.scale_throttle(throttle) == pytest.approx(output)
 
 
@@ -83,7 +83,7 @@ def test_a_steering_servo(fit: OutputScaling, steering: float, output: float) ->
 
 
 @given(fits(), UNIT)
-def test_no_fit_turns_a_motor_on_or_round_or_leaves_its_range(fit: OutputScaling, throttle: float) -> None:
+def test_no_scaling_starts_or_reverses_a_motor_or_leaves_its_range(fit: OutputScaling, throttle: float) -> None:
     output = fit.scale_throttle(throttle)
     assert abs(output) <= fit.largest
     assert throttle or output == 0.0
@@ -91,7 +91,7 @@ def test_no_fit_turns_a_motor_on_or_round_or_leaves_its_range(fit: OutputScaling
 
 
 @given(fits(), st.tuples(UNIT, UNIT).map(sorted))
-def test_more_throttle_is_never_less_output(fit: OutputScaling, throttles: list[float]) -> None:
+def test_output_rises_monotonically_with_throttle(fit: OutputScaling, throttles: list[float]) -> None:
     """So that a wheel that falls has a motor that falls."""
     less, more = ((-1 if fit.reversed else 1) * fit.scale_throttle(throttle) for throttle in throttles)
     assert less <= more + 1e-9
@@ -100,20 +100,20 @@ def test_more_throttle_is_never_less_output(fit: OutputScaling, throttles: list[
 
 
 @given(fits(), UNIT)
-def test_a_servo_stays_within_its_ends(fit: OutputScaling, steering: float) -> None:
+def test_a_servo_stays_within_its_limits(fit: OutputScaling, steering: float) -> None:
     assert abs(fit.scale_steering(steering)) <= fit.largest
     assert fit.scale_steering(1.0) == pytest.approx(fit.largest * (-1 if fit.reversed else 1))
 
 
 @given(st.floats(0.01, 1.0), st.floats(-1.0, 1.0).filter(lambda curve: abs(curve) > 1e-3))
-def test_the_curve_is_ardurovers(throttle: float, curve: float) -> None:
+def test_the_thrust_curve_matches_ardurover(throttle: float, curve: float) -> None:
     theirs = (curve - 1 + math.sqrt(max(0, (1 - curve) ** 2 + 4 * curve * throttle))) / (2 * curve)
     assert linearize_thrust(throttle, curve) == pytest.approx(theirs, abs=1e-6)
     assert linearize_thrust(1.0, curve) == pytest.approx(1.0)
     assert linearize_thrust(0.0, curve) == 0.0
 
 
-def test_each_motor_has_its_own() -> None:
+def test_each_motor_has_its_own_scaling() -> None:
     params = Params({"MOT1_REVERSED": 1, "MOT2_MIN": 20, "MOT3_MAX": 50, "MOT4_TRIM": -10})
     assert scale_outputs((0.5,) * 4, 4, build_output_scaling(params)) == pytest.approx((-0.5, 0.6, 0.25, 0.4))
     params = Params({"MOT1_TRIM": 10, "MOT2_TRIM": 10, "MOT2_MIN": 50})
@@ -125,5 +125,5 @@ def test_there_are_parameters_for_every_motor() -> None:
 
 
 @pytest.mark.parametrize("curve", [-1.0, -0.5, 0.0, 0.5, 1.0])
-def test_what_is_no_number_stays_none(curve: float) -> None:
+def test_linearize_thrust_keeps_nan(curve: float) -> None:
     assert math.isnan(linearize_thrust(math.nan, curve))

@@ -1,4 +1,4 @@
-"""Ramps of one motor."""
+"""Slew rate of one motor."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def steps(slew: Slew, target: float, count: int, limits: SlewLimits = LIMITS, dt
     return [slew.step(target, dt, limits) for _ in range(count)]
 
 
-def test_up_with_accel_and_down_with_decel() -> None:
+def test_the_ramp_uses_accel_and_decel() -> None:
     slew = Slew()
     assert steps(slew, 1.0, 2) == pytest.approx([0.05, 0.1])
     assert slew.limited
@@ -25,7 +25,7 @@ def test_up_with_accel_and_down_with_decel() -> None:
     assert steps(slew, 0.0, 2) == pytest.approx([0.9, 0.8])
 
 
-def test_it_ends_exactly_at_the_target() -> None:
+def test_the_ramp_ends_exactly_at_the_target() -> None:
     slew = Slew()
     steps(slew, 0.33, 50)
     assert slew.value == 0.33
@@ -33,7 +33,7 @@ def test_it_ends_exactly_at_the_target() -> None:
     assert slew.value == 0.0
 
 
-def test_reversing_brakes_first() -> None:
+def test_reversing_decelerates_first() -> None:
     slew = Slew()
     steps(slew, 1.0, 30)
     down = steps(slew, -1.0, 10)
@@ -53,7 +53,7 @@ def test_reverse_delay_waits_at_zero() -> None:
     assert not slew.waiting
 
 
-def test_reverse_delay_does_not_hold_up_the_same_direction() -> None:
+def test_reverse_delay_does_not_delay_the_same_direction() -> None:
     limits = SlewLimits(accel=2.5, decel=100.0, reverse_delay=1.0)
     slew = Slew()
     steps(slew, 0.5, 20, limits)
@@ -61,7 +61,7 @@ def test_reverse_delay_does_not_hold_up_the_same_direction() -> None:
     assert steps(slew, 0.5, 1, limits)[0] > 0.0
 
 
-def test_reset_is_at_once() -> None:
+def test_reset_zeroes_the_ramp_at_once() -> None:
     slew = Slew()
     steps(slew, 1.0, 30)
     slew.reset()
@@ -69,7 +69,7 @@ def test_reset_is_at_once() -> None:
 
 
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(0, 0.1)), max_size=50), st.floats(0, 0.3))
-def test_it_never_moves_faster_than_its_limits_nor_beyond_full(moves: list[tuple[float, float]], delay: float) -> None:
+def test_the_ramp_respects_its_limits_and_full_scale(moves: list[tuple[float, float]], delay: float) -> None:
     slew = Slew()
     limits = SlewLimits(accel=2.5, decel=5.0, reverse_delay=delay)
     for target, dt in moves:

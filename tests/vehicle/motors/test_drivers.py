@@ -7,24 +7,14 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from vehicle.motors import (
-    DRIVERS,
-    PROFILES,
-    MotorError,
-    Motors,
-    MotorSettingsError,
-    UnknownDriverError,
-    check_throttles,
-    open_motors,
-    safe_stop,
-    settings_type,
-)
+from vehicle.motors import MotorError, Motors, MotorSettingsError, UnknownDriverError, check_throttles
+from vehicle.motors.drivers import DRIVERS, open_motors, safe_stop, settings_type
 from vehicle.motors.simulated import SimulatedMotors
 
 
 @pytest.mark.parametrize("name", DRIVERS)
 def test_every_line_of_the_table_leads_to_a_driver(name: str) -> None:
-    module, _, class_name = DRIVERS[name].partition(":")
+    module, _, class_name = DRIVERS[name].path.partition(":")
     driver = getattr(import_module(module), class_name)
     for verb in ("enable", "disable", "set", "close"):
         assert callable(getattr(driver, verb))
@@ -32,11 +22,6 @@ def test_every_line_of_the_table_leads_to_a_driver(name: str) -> None:
         assert issubclass(driver.Settings, msgspec.Struct)
         assert driver.Settings.__struct_config__.forbid_unknown_fields
         assert msgspec.json.schema(driver.Settings)
-
-
-@pytest.mark.parametrize("name", PROFILES)
-def test_every_profile_is_a_driver_of_the_table(name: str) -> None:
-    assert name in DRIVERS
 
 
 def test_the_simulated_motors_open_without_settings() -> None:
@@ -103,7 +88,7 @@ def test_a_driver_of_your_own_is_named_by_module_and_class() -> None:
         ("simulatd", "did you mean 'simulated'"),
         ("", "known: simulated"),
         ("zebra", "or your own as module:Class"),
-        ("no_such_module:Car", "No module named 'no_such_module'; install it beside vehicle, or name its folder in "),
+        ("no_such_module:Car", "No module named 'no_such_module'; install it beside vehicle, or add its folder to "),
         ("..up:Car", "cannot be loaded: TypeError: the 'package' argument is required"),
         ("vehicle.motors.simulated:Car", "module vehicle.motors.simulated has no 'Car'"),
         ("vehicle.motors.simulated:", "unknown motor driver"),

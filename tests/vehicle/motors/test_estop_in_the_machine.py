@@ -14,7 +14,8 @@ from link.core import Received
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, OTHER, Bench, said
 from vehicle.control_loop import MOTOR_RETRY_TIME, ControlLoop
 from vehicle.drive.gate import Outputs
-from vehicle.motors import MotorError, estop_reader, open_motors
+from vehicle.motors import MotorError, estop_reader
+from vehicle.motors.drivers import open_motors
 from vehicle.motors.safety_pins import PRESSED, GuardedMotors, SafetyPins
 from vehicle.motors.settings import SafetyPinSettings
 from vehicle.motors.simulated import SimulatedMotors
@@ -186,7 +187,7 @@ def test_a_contact_that_cannot_be_read_is_open(monkeypatch: pytest.MonkeyPatch) 
     def broken() -> bool:
         raise MotorError("emergency stop: Input/output error")
 
-    monkeypatch.setattr(car.pins, "_open", broken)
+    monkeypatch.setattr(car.pins, "_is_open", broken)
     car.cycle()
     assert not car.rolling
     assert state(car) is states.SafetyState.ESTOP

@@ -7,20 +7,14 @@ import pytest
 from gpiozero import Device
 from gpiozero.exc import PinUnknownPi
 from gpiozero.pins.mock import MockFactory, MockPWMPin
+from msgspec.structs import astuple
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
 from vehicle.drive.gate import Clearance
-from vehicle.motors import (
-    DRIVERS,
-    PROFILE_PARAMS,
-    MotorError,
-    Motors,
-    MotorSettingsError,
-    open_motors,
-    safe_stop,
-)
+from vehicle.motors import MotorError, Motors, MotorSettingsError
+from vehicle.motors.drivers import DRIVERS, open_motors, profile_params, safe_stop
 from vehicle.motors.gpio import GpioMotors, GpioSettings, PhaseEnable, TwoInputs
 from vehicle.motors.pins import translated
 from vehicle.params import merge_params
@@ -40,7 +34,7 @@ def factory() -> Iterator[MockFactory]:
 
 def output(factory: MockFactory, bridge: TwoInputs | PhaseEnable) -> float:
     """What a motor at this bridge gets."""
-    first, second = (float(factory.pin(pin).state) for pin in bridge.pins)
+    first, second = (float(factory.pin(pin).state) for pin in astuple(bridge))
     if isinstance(bridge, TwoInputs):
         assert first == 0.0 or second == 0.0, "both inputs of a bridge are high"
         return first - second
@@ -113,7 +107,7 @@ def article_car() -> Motors:
 
 def driven(sticks: tuple[float, float], driver: str, kept: dict[str, float] | None = None) -> tuple[float, ...]:
     """What the vehicle's motors get once throttle and steering were held for a while."""
-    params, _ = merge_params({"MAN_DEADBAND": 0}, kept=kept or {}, usual=PROFILE_PARAMS[driver])
+    params, _ = merge_params({"MAN_DEADBAND": 0}, kept=kept or {}, usual=profile_params(driver))
     drive = Drive(params, 0.0)
     clearance = Clearance(armed=True, held=False, neutral_seen=True, demand_age=0.0, timeout=1.0)
     return drive.update(Demand(*sticks, 0.0, 255, 0), clearance, limited=False, now=10.0).throttles
@@ -145,7 +139,7 @@ class TestArticleCar:
         assert [factory.pin(pin).frequency for pin in pins] == [2000.0] * 4
 
     def test_is_in_the_table(self) -> None:
-        assert DRIVERS["article-car"] == DRIVERS["gpio"]
+        assert DRIVERS["article-car"].path == DRIVERS["gpio"].path
 
     def test_the_full_power_of_its_motors_is_a_matter_of_parameters(self, factory: MockFactory) -> None:
         motors = article_car()

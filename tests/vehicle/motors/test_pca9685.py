@@ -6,7 +6,8 @@ import pytest
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
 from tests.vehicle.motors.fake_pca9685 import ADDRESS, FakePca9685
-from vehicle.motors import MotorError, MotorSettingsError, open_motors, safe_stop
+from vehicle.motors import MotorError, MotorSettingsError
+from vehicle.motors.drivers import open_motors, safe_stop
 from vehicle.motors.pca9685 import Pca9685Channel, Pca9685Motors, Pca9685Settings
 from vehicle.motors.pulses import Pulse
 
@@ -208,7 +209,7 @@ def test_something_else_at_the_address_is_refused() -> None:
 def test_no_board_is_said_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("vehicle.motors.pca9685_board.open_bus", lambda number: FakePca9685())
     with pytest.raises(
-        MotorError, match=r"PCA9685 at 0x41 on I2C bus 1: Remote I/O error: nothing .* `i2cdetect -y 1`"
+        MotorError, match=r"PCA9685 at 0x41 on I2C bus 1: Remote I/O error: no response; .* `i2cdetect -y 1`"
     ):
         open_motors("pca9685", {"channels": [{"channel": 0}], "address": ADDRESS + 1})
 

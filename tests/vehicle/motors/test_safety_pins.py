@@ -8,7 +8,8 @@ from gpiozero import Device
 from gpiozero.pins.mock import MockFactory
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
-from vehicle.motors import MotorError, open_motors, safe_stop
+from vehicle.motors import MotorError
+from vehicle.motors.drivers import open_motors, safe_stop
 from vehicle.motors.safety_pins import GuardedMotors, SafetyPins
 from vehicle.motors.settings import SafetyPinSettings
 from vehicle.motors.simulated import SimulatedMotors

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from vehicle.motors import DRIVERS, PROFILE_PARAMS, MotorSettingsError, open_motors, safe_stop
-from vehicle.motors.simulated import SimulatedMotors
+from vehicle.motors import MotorSettingsError
+from vehicle.motors.drivers import DRIVERS, open_motors, profile_params
 from vehicle.params import Params
 
 
@@ -26,14 +26,7 @@ def test_what_goes_around_a_driver_is_read_strictly(settings: dict[str, Any], sa
     assert "\n" not in str(caught.value)
 
 
-def test_a_file_of_before_stops_the_motors() -> None:
-    """The daemon refuses such a file; safe-stop must not."""
-    old = {"shape": [{"reversed": True}, {}], "limits": {"driving": 0.6}}
-    assert safe_stop("simulated", old) == []
-    assert isinstance(open_motors("simulated", old), SimulatedMotors)
-
-
-@pytest.mark.parametrize("name", PROFILE_PARAMS)
-def test_a_known_car_has_parameters_that_there_are(name: str) -> None:
-    assert name in DRIVERS
-    assert Params(PROFILE_PARAMS[name])
+@pytest.mark.parametrize("name", [name for name, entry in DRIVERS.items() if entry.profile])
+def test_a_known_car_has_parameters_that_exist(name: str) -> None:
+    assert DRIVERS[name].params
+    assert Params(profile_params(name))

@@ -9,7 +9,8 @@ from gpiozero.pins.mock import MockFactory
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
 from tests.vehicle.motors.fake_sysfs import FakeSysfs
-from vehicle.motors import MotorError, MotorSettingsError, open_motors, safe_stop
+from vehicle.motors import MotorError, MotorSettingsError
+from vehicle.motors.drivers import open_motors, safe_stop
 from vehicle.motors.pulses import Pulse
 from vehicle.motors.pwm_channel import export_channel
 from vehicle.motors.sysfs_pwm import BridgePwm, ServoPwm, SysfsPwmMotors, SysfsPwmSettings

@@ -1,4 +1,4 @@
-"""The estimate against the plant's truth, with noisy sensors, without some of them, and with impossible ones."""
+"""The estimate compared with the truth of the simulator: noisy, missing and impossible sensors."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def test_the_bias_of_the_gyro_is_learned() -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_wheels_that_are_not_what_the_settings_say_are_learned(seed: int) -> None:
+def test_the_scale_of_the_wheels_is_learned(seed: int) -> None:
     ride = Ride(seed, SensorNoise(wheel_scale=0.08))
     ride.throttles = (0.6, 0.6)
     ride.run(90.0)
@@ -99,7 +99,7 @@ def test_wheels_that_are_not_what_the_settings_say_are_learned(seed: int) -> Non
     assert max(ride.errors) < 1.5  # wheels that are 8 % off make 6 m of 80
 
 
-def test_wheels_that_slip_on_the_spot_teach_nothing() -> None:
+def test_slipping_wheels_do_not_change_the_scale() -> None:
     slipping, steady = Estimator(), Estimator()
     for cycle in range(3000):
         for estimator, speed in ((slipping, 1.0), (steady, 0.0)):
@@ -114,14 +114,14 @@ def test_wheels_that_slip_on_the_spot_teach_nothing() -> None:
 @pytest.mark.parametrize(
     "missing", [{"yaw": None}, {"yaw_rate": None}, {"speed": None}, {"yaw": None, "speed": None}], ids=str
 )
-def test_it_lives_without_some_of_its_sensors(missing: dict[str, None]) -> None:
+def test_the_estimate_works_without_some_sensors(missing: dict[str, None]) -> None:
     ride = Ride(2, **missing)
     ride.squares(4)
     assert ride.estimate.good
     assert sorted(ride.errors)[len(ride.errors) // 2] < 2.0
 
 
-def test_without_gps_it_counts_from_where_it_started_and_knows_no_place_on_the_globe() -> None:
+def test_without_gps_the_position_is_relative_to_the_start() -> None:
     ride = Ride(None, gps_fix=None)
     ride.throttles = (0.6, 0.6)
     ride.run(5.0)
@@ -130,7 +130,7 @@ def test_without_gps_it_counts_from_where_it_started_and_knows_no_place_on_the_g
     assert (ride.estimate.lat_lon, ride.estimate.good) == (None, False)
 
 
-def test_a_first_fix_on_the_way_does_not_move_what_was_driven() -> None:
+def test_a_first_fix_after_driving_keeps_the_driven_distance() -> None:
     ride = Ride(None, gps_fix=None)
     ride.throttles = (0.6, 0.6)
     ride.run(5.0)
@@ -141,7 +141,7 @@ def test_a_first_fix_on_the_way_does_not_move_what_was_driven() -> None:
     assert ride.believed.distance(ride.truth) < 0.05
 
 
-def test_a_lost_gps_is_seen_and_one_that_comes_back_is_believed() -> None:
+def test_a_lost_gps_is_detected_and_recovers() -> None:
     ride = Ride(3)
     ride.squares(1)
     assert ride.estimate.good
@@ -153,7 +153,7 @@ def test_a_lost_gps_is_seen_and_one_that_comes_back_is_believed() -> None:
     assert ride.estimate.good
 
 
-def test_one_wild_fix_is_left_out_and_many_are_believed() -> None:
+def test_one_outlier_is_ignored_and_many_move_the_position() -> None:
     estimator = Estimator()
     for cycle in range(500):
         estimator.update(Readings(yaw=0.0, speed=0.0, latitude=50.0, longitude=8.0, gps_fix=3), cycle / 50)
@@ -172,7 +172,7 @@ BAD = st.sampled_from([math.nan, math.inf, -math.inf, 1e308, -1e308, 0.0, 1.0, -
 
 @settings(max_examples=200)
 @given(st.lists(st.tuples(BAD, BAD, BAD, BAD, BAD, BAD, BAD), max_size=20), st.floats(0.0, 10.0))
-def test_no_reading_makes_it_something_that_is_no_number(rows: list[tuple[float | None, ...]], dt: float) -> None:
+def test_no_reading_makes_the_estimate_nan(rows: list[tuple[float | None, ...]], dt: float) -> None:
     estimator = Estimator()
     names = ("yaw", "yaw_rate", "speed", "latitude", "longitude", "velocity_north", "velocity_east")
     for number, row in enumerate(rows):
@@ -182,7 +182,7 @@ def test_no_reading_makes_it_something_that_is_no_number(rows: list[tuple[float 
         assert all(value is None or math.isfinite(value) for value in numbers)
 
 
-def test_the_estimate_is_told_with_its_health() -> None:
+def test_the_estimate_is_reported_with_its_health() -> None:
     bench = Bench()
     bench.wait(1.5)
     assert bench.newest(m.EstimatorStatus).flags == 0

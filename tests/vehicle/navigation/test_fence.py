@@ -1,4 +1,4 @@
-"""The fence in a simulated field with noisy sensors: areas, circles, what is refused beyond them, and the way back."""
+"""The fence in a simulated field with noisy sensors: areas, breaches, rejected targets, return point."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result, Sensor
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import Item, finish, upload
 from tests.vehicle.bench import AHEAD, NEUTRAL, said
 from tests.vehicle.field import GROUND, Field
+from tests.vehicle.missions import Item, finish, upload
 from vehicle.navigation.geo import Point
 
 NAN = math.nan
@@ -38,7 +38,7 @@ class TestFence:
             [(FenceItem.CIRCLE_EXCLUSION, Point(8, 0), (3,))],
         ],
     )
-    def test_beyond_it_holds_once_and_the_driver_may_drive_back(self, items: list[Item]) -> None:
+    def test_a_breach_holds_once_and_manual_allows_driving_back(self, items: list[Item]) -> None:
         field = self.fenced(items)
         field.wait(0.2, NEUTRAL)
         while field.truth.north < 4.0:
@@ -47,14 +47,14 @@ class TestFence:
         field.wait(3.0, AHEAD)
         assert field.mode is Mode.HOLD
         assert 4.4 < field.truth.north < 7.5
-        assert said(field, "beyond the fence: HOLD")
+        assert said(field, "outside the fence: HOLD")
         assert field.set_mode(Mode.LOITER) is Result.FAILED
         assert field.set_mode(Mode.MANUAL) is Result.ACCEPTED
         field.wait(0.2, NEUTRAL)
         field.wait(0.5, AHEAD)
         assert field.turning
 
-    def test_the_way_home_where_it_is_set(self) -> None:
+    def test_a_breach_starts_rtl_if_selected(self) -> None:
         field = self.fenced([], FENCE_TYPE=2, FENCE_RADIUS=6, FENCE_ACTION=1)
         field.wait(0.2, NEUTRAL)
         field.wait(7.0, AHEAD)
@@ -62,16 +62,16 @@ class TestFence:
         finish(field, 60.0)
         assert field.truth.distance(Point(0, 0)) < 0.8
 
-    def test_nothing_beyond_it_is_driven_to(self) -> None:
+    def test_targets_outside_the_fence_are_rejected(self) -> None:
         field = self.fenced([], FENCE_TYPE=2, FENCE_RADIUS=6)
         assert field.reposition(Point(10, 0)) is Result.FAILED
         field.set_mode(Mode.GUIDED)
         field.goto(10.0, 0.0)
         field.wait(0.5)
-        assert said(field, "beyond the fence")
+        assert said(field, "outside the fence")
         assert field.stands_for(1.0)
 
-    def test_it_stays_on_and_as_it_is_while_armed(self) -> None:
+    def test_the_fence_cannot_be_changed_or_disabled_while_armed(self) -> None:
         field = self.fenced([])
         assert field.command(Command.DO_FENCE_ENABLE, 0) is Result.FAILED
         assert field.command(Command.DO_FENCE_ENABLE, 2) is Result.UNSUPPORTED
@@ -81,8 +81,8 @@ class TestFence:
         assert field.command(Command.DO_FENCE_ENABLE, 0) is Result.ACCEPTED
         assert upload(field, kind=MissionType.FENCE) == MissionResult.ACCEPTED
 
-    def test_areas_that_do_not_count_yet_are_there_for_ground_stations(self) -> None:
-        """MAVProxy says "fence removed" where that changes."""
+    def test_areas_of_a_disabled_fence_are_reported_as_present(self) -> None:
+        """MAVProxy reports "fence removed" if that changes."""
 
         def told(field: Field) -> tuple[bool, bool, bool]:
             field.beat(1.2)
@@ -102,7 +102,7 @@ class TestFence:
         upload(field, kind=MissionType.FENCE)
         assert told(field) == (False, False, True)
 
-    def test_half_a_polygon_is_refused(self) -> None:
+    def test_an_incomplete_polygon_is_rejected(self) -> None:
         field = Field()
         half = square(FenceItem.POLYGON_INCLUSION, 0, 0, 5)[:3]
         assert upload(field, *half, kind=MissionType.FENCE) == MissionResult.INVALID_PARAM1
@@ -110,9 +110,9 @@ class TestFence:
 
 class TestReturnPoint:
     POINT: Item = (FenceItem.RETURN_POINT, Point(1.0, 1.0), ())
-    WORDS = "return point kept but not driven to"
+    WORDS = "return point stored but not used"
 
-    def test_it_is_kept_given_back_and_told_of_and_a_breach_holds_all_the_same(self) -> None:
+    def test_a_return_point_is_stored_and_reported_and_a_breach_still_holds(self) -> None:
         field = Field(FENCE_ENABLE=1, FENCE_TYPE=4)
         plan = [self.POINT, *square(FenceItem.POLYGON_INCLUSION, -5, -5, 10)]
         assert upload(field, *plan, kind=MissionType.FENCE) == MissionResult.ACCEPTED
@@ -131,13 +131,13 @@ class TestReturnPoint:
         assert field.mode is Mode.HOLD
         assert 4.4 < field.truth.north < 7.5
 
-    def test_a_fence_without_one_says_nothing_of_it(self) -> None:
+    def test_a_fence_without_a_return_point_sends_no_notice(self) -> None:
         field = Field()
         upload(field, *square(FenceItem.POLYGON_INCLUSION, -5, -5, 10), kind=MissionType.FENCE)
         field.wait(0.1)
         assert not said(field, self.WORDS)
 
-    def test_alone_it_is_no_fence(self) -> None:
+    def test_a_return_point_alone_is_not_a_fence(self) -> None:
         field = Field()
         assert upload(field, self.POINT, kind=MissionType.FENCE) == MissionResult.ACCEPTED
         field.beat(1.2)
@@ -151,5 +151,5 @@ class TestReturnPoint:
             ([*square(FenceItem.POLYGON_INCLUSION, 0, 0, 5)[:2], POINT], MissionResult.INVALID_PARAM1),
         ],
     )
-    def test_two_one_nowhere_and_one_within_a_polygon_are_refused(self, plan: list[Item], verdict: int) -> None:
+    def test_invalid_return_points_are_rejected(self, plan: list[Item], verdict: int) -> None:
         assert upload(Field(), *plan, kind=MissionType.FENCE) == verdict

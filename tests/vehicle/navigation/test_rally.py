@@ -6,9 +6,9 @@ import pytest
 
 from dialects.enums import Command, FenceItem, MissionResult, MissionType, Result
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import Item, do, finish, start, upload, way
 from tests.vehicle.bench import AHEAD, NEUTRAL, said
 from tests.vehicle.field import Field
+from tests.vehicle.missions import Item, do, finish, start, upload, way
 from vehicle.navigation.geo import Point
 
 HOME = Point(0, 0)
@@ -35,7 +35,7 @@ def returned(field: Field) -> Point:
     return field.truth
 
 
-def test_the_way_back_is_to_the_nearest_rally_point() -> None:
+def test_rtl_drives_to_the_nearest_rally_point() -> None:
     field = away(FAR, NEAR)
     assert returned(field).distance(NEAR) < 0.7
     assert said(field, "RTL: rally point 1 is reached: HOLD")
@@ -54,7 +54,9 @@ def test_the_way_back_is_to_the_nearest_rally_point() -> None:
         ([NEAR], {"FENCE_ENABLE": 0, "FENCE_TYPE": 2, "FENCE_RADIUS": 10}, NEAR),
     ],
 )
-def test_where_it_goes(points: list[Point], params: dict[str, float], goal: Point) -> None:
+def test_the_return_point_follows_the_rally_parameters(
+    points: list[Point], params: dict[str, float], goal: Point
+) -> None:
     field = away(*points, **params)
     field.set_mode(Mode.RTL)
     field.wait(0.1)
@@ -63,7 +65,7 @@ def test_where_it_goes(points: list[Point], params: dict[str, float], goal: Poin
     assert going.distance(goal) < 1.0
 
 
-def test_a_rally_point_in_a_forbidden_area_is_none() -> None:
+def test_a_rally_point_outside_the_fence_is_ignored() -> None:
     field = Field(FENCE_ENABLE=1, FENCE_TYPE=4)
     circle = (FenceItem.CIRCLE_EXCLUSION, NEAR, (2,))
     assert upload(field, circle, kind=MissionType.FENCE) == MissionResult.ACCEPTED
@@ -74,7 +76,7 @@ def test_a_rally_point_in_a_forbidden_area_is_none() -> None:
     assert returned(field).distance(Point(14, 0)) < 0.7
 
 
-def test_a_mission_returns_to_a_rally_point_too() -> None:
+def test_return_to_launch_in_a_mission_uses_rally_points() -> None:
     field = Field()
     upload(field, *rally(NEAR), kind=MissionType.RALLY)
     upload(field, way(8, 0), do(Command.NAV_RETURN_TO_LAUNCH), way(50, 50))
@@ -85,7 +87,7 @@ def test_a_mission_returns_to_a_rally_point_too() -> None:
     assert said(field, "AUTO: rally point 0 is reached: HOLD")
 
 
-def test_beyond_the_fence_the_way_back_is_to_a_rally_point_within() -> None:
+def test_outside_the_fence_rtl_uses_a_rally_point_inside() -> None:
     field = Field(FENCE_ENABLE=1, FENCE_TYPE=2, FENCE_RADIUS=6, FENCE_ACTION=1)
     upload(field, *rally(Point(4, 1), Point(9, 0)), kind=MissionType.RALLY)
     field.arm()
@@ -96,7 +98,7 @@ def test_beyond_the_fence_the_way_back_is_to_a_rally_point_within() -> None:
     assert field.truth.distance(Point(4, 1)) < 0.8
 
 
-def test_rally_points_that_were_cleared_are_gone() -> None:
+def test_cleared_rally_points_are_not_used() -> None:
     field = away(NEAR)
     assert upload(field, kind=MissionType.RALLY) == MissionResult.ACCEPTED
     assert returned(field).distance(HOME) < 0.8

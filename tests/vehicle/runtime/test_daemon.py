@@ -83,7 +83,7 @@ def test_a_log_file_that_cannot_be_had_keeps_nobody_from_driving(tmp_path: Path)
     config.write_text(text)
     with running(tmp_path, "--config", str(config)) as vehicle:
         told = vehicle.ready()
-        assert told == f"vehicle: log.file {tmp_path}/none/log: No such file or directory; going on without it"
+        assert told == f"vehicle: log.file {tmp_path}/none/log: No such file or directory; continuing without it"
         assert vehicle.ready() == f"vehicle: ready, system 1, {endpoint}"
         vehicle.process.send_signal(signal.SIGTERM)
         assert vehicle.ended() == (0, ["vehicle: stopped by SIGTERM, motors neutral"])

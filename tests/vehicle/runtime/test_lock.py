@@ -64,7 +64,7 @@ def test_a_killed_process_holds_nothing() -> None:
 
 def test_the_second_vehicle_of_a_folder_is_refused_until_the_first_lets_go(tmp_path: Path) -> None:
     folder = tmp_path / "new" / "state"
-    words = f"state folder {folder} is in use by another vehicle; end that, or name another folder with --state"
+    words = f"state folder {folder} is in use by another vehicle; stop it, or set another folder with --state"
     with lock_state_folder(folder), pytest.raises(SettingsError, match=words), lock_state_folder(folder):
         pass
     with lock_state_folder(folder), lock_state_folder(tmp_path):

@@ -1,317 +1,286 @@
-"""Failsafes: each first shows the wheels turning, then that and when they stop, and what it takes to go on."""
+"""Failsafe conditions and rules: each test first shows the wheels turning, then that and when they stop."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from dialects import messages as m
-from dialects.enums import Command, DriveLimit, Failsafe, Result, SystemState
+from dialects.enums import Command, Failsafe, Result, SystemState
 from dialects.modes import Mode
-from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, Bench, said
-from vehicle.drive.gate import Outputs
-from vehicle.params import Params
-from vehicle.readings import ComputerReadings, Readings
-from vehicle.safety import states
-from vehicle.safety.failsafe import RULES, FailsafeAction, Failsafes
-
-ZERO = Outputs((0.0, 0.0), enabled=False)
+from tests.vehicle.bench import AHEAD, CYCLE, EVERYTHING, NEUTRAL, OTHER, Bench, said
+from vehicle.safety.failsafe import RULES, FailsafeAction
 
 
-class TestBattery:
-    def drained(self, bench: Bench, voltage: float) -> None:
-        bench.readings = replace(bench.readings, battery_voltage=voltage)
+def beats(bench: Bench, seconds: float) -> None:
+    """Send heartbeats of the ground station in control, but no demand."""
+    for _ in range(round(seconds)):
+        bench.heartbeat()
+        bench.wait(1.0)
 
-    def test_low_holds_and_then_allows_half_speed(self) -> None:
-        bench = Bench()
-        self.drained(bench, 12.0)
-        bench.drive()
-        self.drained(bench, 10.4)
-        bench.wait(9.0, AHEAD)
-        assert bench.throttles == (1.0, 1.0)
-        bench.wait(1.5, AHEAD)
-        assert not bench.turning
-        assert bench.mode is Mode.HOLD
-        assert said(bench, "battery low: HOLD")
-        bench.set_mode(Mode.MANUAL)
-        bench.wait(0.1, NEUTRAL)
-        bench.wait(1.0, AHEAD)
-        assert bench.throttles == (0.5, 0.5)
-        assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.BATTERY
 
-    def test_low_can_be_set_to_slow_down_only(self) -> None:
-        bench = Bench(FS_LOW_ACT=0)
-        bench.drive()
-        self.drained(bench, 10.4)
-        bench.wait(11.0, AHEAD)
-        assert bench.throttles == (0.5, 0.5)
-
-    def test_a_sag_of_a_moment_is_nothing(self) -> None:
+class TestManualLoss:
+    def test_outputs_begin_to_fall_within_half_a_second_and_end_within_one(self) -> None:
         bench = Bench()
         bench.drive()
-        for _ in range(5):
-            self.drained(bench, 9.0)
-            bench.wait(2.5, AHEAD)
-            self.drained(bench, 11.0)
-            bench.wait(0.5, AHEAD)
-        assert bench.throttles == (1.0, 1.0)
-
-    def test_critical_holds_blocks_modes_and_disarms(self) -> None:
-        bench = Bench()
-        bench.drive()
-        self.drained(bench, 9.5)
-        bench.wait(3.5, AHEAD)
-        assert not bench.turning
-        assert bench.mode is Mode.HOLD
-        assert bench.set_mode(Mode.MANUAL) is Result.FAILED
-        assert bench.set_mode(Mode.HOLD) is Result.ACCEPTED
-        bench.wait(9.8, NEUTRAL)
-        assert not bench.armed
-
-    def test_who_arms_by_force_gets_the_whole_countdown(self) -> None:
-        bench = Bench()
-        self.drained(bench, 9.0)
-        bench.wait(60.0)
-        assert bench.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.ACCEPTED
-        bench.wait(0.5, NEUTRAL)
-        assert bench.mode is Mode.HOLD
-        bench.wait(9.0, NEUTRAL)
-        assert bench.armed
-        bench.wait(1.0, NEUTRAL)
-        assert not bench.armed
-
-    def test_without_a_sensor_there_is_no_failsafe(self) -> None:
-        bench = Bench()
-        bench.readings = Readings(battery_voltage=math.nan)
-        bench.drive()
-        bench.wait(15.0, AHEAD)
-        assert bench.throttles == (1.0, 1.0)
-
-
-class TestComputer:
-    def pi(self, bench: Bench, temperature: float = 50.0, *, weak: bool | None = False) -> None:
-        bench.readings = Readings(computer=ComputerReadings(temperature=temperature, under_voltage=weak))
-        bench.wait(0.04, AHEAD if bench.turning else None)
-
-    @pytest.mark.parametrize(("temperature", "weak"), [(86.0, False), (50.0, True)])
-    def test_half_speed_and_then_hold_and_then_half_speed_by_choice(self, temperature: float, weak: bool) -> None:
-        bench = Bench()
-        bench.drive()
-        self.pi(bench, temperature, weak=weak)
-        bench.wait(1.0, AHEAD)
-        assert bench.throttles == (0.5, 0.5)
-        assert said(bench, "Failsafe: Pi too hot or its supply too weak: half speed")
-        assert bench.newest(m.RoverFailsafeStatus).active == Failsafe.OVERHEAT
-        assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.SPEED
-        assert not bench.newest(m.RoverDriveStatus).limits & DriveLimit.BATTERY
-        bench.wait(8.5, AHEAD)
-        assert bench.turning
-        bench.wait(1.0, AHEAD)
-        assert not bench.turning
-        assert bench.mode is Mode.HOLD
-        assert bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL
-        bench.set_mode(Mode.MANUAL)
-        bench.wait(0.1, NEUTRAL)
-        bench.wait(1.0, AHEAD)
-        assert bench.throttles == (0.5, 0.5)
-        self.pi(bench)
-        bench.wait(6.0, AHEAD)
-        assert bench.throttles == (1.0, 1.0)
-        assert said(bench, "Failsafe over: Pi too hot")
-
-    def test_a_supply_that_comes_and_goes_is_one_trouble_and_ends_in_hold(self) -> None:
-        bench = Bench()
-        bench.drive()
-        for cycle in range(12):
-            self.pi(bench, weak=cycle % 2 == 0)
-            bench.wait(1.0, AHEAD)
-        assert bench.mode is Mode.HOLD
-        assert sum("half speed" in text for text in bench.texts) <= 1
-
-    def test_a_dip_of_a_moment_slows_down_for_a_moment(self) -> None:
-        bench = Bench()
-        bench.drive()
-        self.pi(bench, weak=True)
-        self.pi(bench)
-        bench.wait(4.5, AHEAD)
-        assert bench.throttles == (0.5, 0.5)
-        bench.wait(1.5, AHEAD)
-        assert bench.throttles == (1.0, 1.0)
-        bench.wait(20.0, AHEAD)
-        assert bench.mode is Mode.MANUAL
-
-    def test_what_nobody_knows_any_more_is_not_over(self) -> None:
-        bench = Bench()
-        bench.drive()
-        self.pi(bench, weak=True)
-        bench.readings = Readings()
-        bench.wait(12.0, AHEAD)
-        assert bench.mode is Mode.HOLD
-
-    @pytest.mark.parametrize(("act", "throttle", "mode"), [(0, 1.0, Mode.MANUAL), (1, 0.5, Mode.MANUAL)])
-    def test_what_follows_is_a_parameter(self, act: float, throttle: float, mode: Mode) -> None:
-        bench = Bench(FS_PI_ACT=act)
-        bench.drive()
-        self.pi(bench, 100.0, weak=True)
-        bench.wait(30.0, AHEAD)
-        assert bench.throttles == (throttle, throttle)
-        assert bench.mode is mode
-        assert said(bench, "Pi under-voltage")
-        assert (bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL) == bool(act)
-
-    @pytest.mark.parametrize(("limit", "throttle"), [(0, 1.0), (95, 1.0), (85, 0.5)])
-    def test_so_is_the_temperature(self, limit: float, throttle: float) -> None:
-        bench = Bench(FS_PI_TEMP=limit)
-        bench.drive()
-        self.pi(bench, 90.0)
-        bench.wait(2.0, AHEAD)
-        assert bench.throttles == (throttle, throttle)
-
-    def test_nobody_arms_meanwhile_but_by_force_and_then_gets_the_whole_time(self) -> None:
-        bench = Bench()
-        self.pi(bench, 91.0, weak=True)
-        bench.wait(60.0)
-        assert bench.arm() is Result.FAILED
-        bench.wait(0.1)
-        assert said(bench, "PreArm: Pi under-voltage and Pi at 91 C")
-        assert bench.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.ACCEPTED
-        bench.wait(0.1, NEUTRAL)
-        bench.wait(9.0, AHEAD)
-        assert bench.throttles == (0.5, 0.5)
-        bench.wait(1.5, AHEAD)
-        assert bench.mode is Mode.HOLD
-
-    def test_a_supply_that_is_well_again_allows_arming_at_once(self) -> None:
-        bench = Bench(FS_PI_ACT=2)
-        self.pi(bench, weak=True)
-        assert bench.arm() is Result.FAILED
-        self.pi(bench)
-        assert bench.arm() is Result.ACCEPTED
-
-    def test_who_does_not_want_it_arms(self) -> None:
-        bench = Bench(FS_PI_ACT=0)
-        self.pi(bench, weak=True)
-        assert bench.arm() is Result.ACCEPTED
-
-
-class TestLoop:
-    def test_a_late_cycle_is_a_cycle_of_zero(self) -> None:
-        bench = Bench()
-        bench.drive()
-        bench.freeze(0.15)
         bench.stick(AHEAD)
-        assert bench.rover.outputs == ZERO
-        bench.cycle()
-        assert bench.rover.outputs == ZERO
+        last, began, ended = bench.now, math.inf, math.inf
+        while bench.now < last + 2.0:
+            bench.wait(CYCLE)
+            if min(bench.throttles) < 1.0:
+                began = min(began, bench.now - last)
+            if not bench.turning:
+                ended = min(ended, bench.now - last)
+        assert 0.44 < began <= 0.5
+        assert ended <= 0.9
+        assert said(bench, "manual control lost: stopping")
+
+    def test_a_demand_just_after_the_timeout_is_stale_before_the_next_cycle_runs(self) -> None:
+        bench = Bench()
+        bench.drive()
+        bench.stick(AHEAD)
+        bench.wait(0.45)
+        bench.now += 0.005
+        bench.stick(AHEAD)
+        bench.wait(0.6, AHEAD)
+        assert not bench.turning
+
+    def test_the_outputs_fall_without_rising_again(self) -> None:
+        bench = Bench()
+        bench.drive()
+        bench.wait(0.44)
+        seen = [bench.throttles[0]]
+        while bench.turning:
+            bench.wait(CYCLE)
+            seen.append(bench.throttles[0])
+        assert seen == sorted(seen, reverse=True)
+        assert not bench.rover.outputs.enabled
+
+    def test_after_the_link_returns_neutral_comes_first(self) -> None:
+        bench = Bench()
+        bench.drive()
+        bench.wait(1.0)
+        assert not bench.turning
+        bench.wait(0.5, AHEAD)
+        assert not bench.turning
+        bench.wait(0.1, NEUTRAL)
+        bench.wait(0.1, AHEAD)
+        assert bench.turning  # HOLD was not due yet
+
+    def test_hold_then_disarm(self) -> None:
+        bench = Bench()
+        bench.drive()
+        lost = bench.now + 0.45
+        bench.wait(1.8)
+        assert bench.newest(m.Heartbeat).custom_mode == Mode.MANUAL
+        assert bench.newest(m.RoverFailsafeStatus).active == Failsafe.MANUAL_LOSS
+        bench.wait(0.3)
+        assert bench.newest(m.Heartbeat).custom_mode == Mode.HOLD
+        assert bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL
+        beats(bench, 27)
         assert bench.armed
+        bench.wait(lost + 30.1 - bench.now)
+        assert not bench.armed
+        assert said(bench, "Disarmed: manual control lost")
+
+    def test_hold_from_another_station_does_not_end_the_countdown(self) -> None:
+        bench = Bench(FS_DISARM_T=10)
+        bench.drive()
+        bench.wait(3.0)
+        assert bench.command(Command.DO_SET_MODE, 1, Mode.HOLD, system=OTHER) is Result.ACCEPTED
+        beats(bench, 8)
+        assert not bench.armed
+
+    def test_after_hold_the_operator_has_to_choose_a_mode(self) -> None:
+        bench = Bench()
+        bench.drive()
+        bench.wait(2.2)
+        bench.wait(0.2, NEUTRAL)
+        bench.wait(0.5, AHEAD)
+        assert not bench.turning
+        assert bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL  # latched
+        assert bench.set_mode(Mode.MANUAL) is Result.ACCEPTED
+        bench.wait(0.5, AHEAD)
+        assert not bench.turning
+        bench.wait(0.1, NEUTRAL)
         bench.wait(0.1, AHEAD)
         assert bench.turning
+        assert bench.newest(m.Heartbeat).system_status == SystemState.ACTIVE
 
-    @pytest.mark.parametrize("first", ["tick", "demand"])
-    def test_a_loop_that_stood_still_disarms(self, first: str) -> None:
-        """Also when a demand that waited in the socket comes before the first cycle."""
+    def test_the_countdown_is_reported(self) -> None:
         bench = Bench()
         bench.drive()
-        bench.freeze(0.25)
-        bench.cycle() if first == "tick" else bench.stick(AHEAD)
-        assert bench.rover.outputs == ZERO
-        assert not bench.armed
-        bench.wait(0.1)
-        assert said(bench, "Disarmed: control loop was 0.25 s late")
+        bench.wait(0.5)
+        told = bench.newest(m.RoverFailsafeStatus)
+        assert told.active == Failsafe.MANUAL_LOSS
+        assert 1200 <= told.action_in_ms <= 1500
+        assert told.custom_mode_after == Mode.HOLD
+        assert not told.will_disarm
+        bench.wait(3.0)
+        told = bench.newest(m.RoverFailsafeStatus)
+        assert told.latched == Failsafe.MANUAL_LOSS
+        assert told.will_disarm
 
-    def test_the_limit_is_a_parameter(self) -> None:
-        bench = Bench(FS_LOOP_TIMEOUT=1.0)
+    def test_an_idle_operator_may_lose_two_frames(self) -> None:
+        bench = Bench()
         bench.drive()
-        bench.freeze(0.9)
-        bench.cycle()
+        bench.wait(1.0, NEUTRAL)
+        bench.texts.clear()
+        bench.wait(1.0)  # 5 Hz, and two lost in a row
+        bench.wait(0.1, AHEAD)
+        assert bench.turning
+        assert bench.texts == []
+
+    def test_an_idle_operator_who_disappears_causes_hold(self) -> None:
+        bench = Bench()
+        bench.drive()
+        bench.wait(1.0, NEUTRAL)
+        bench.wait(2.2)
+        assert bench.mode is Mode.HOLD
+
+    def test_armed_without_any_demand_does_not_trigger_manual_loss(self) -> None:
+        bench = Bench()
+        bench.arm()
+        beats(bench, 20)
         assert bench.armed
+        assert bench.mode is Mode.MANUAL
+
+    def test_20_hz_with_eight_lost_frames_keeps_driving(self) -> None:
+        bench = Bench()
+        bench.drive()
+        bench.stick(AHEAD)
+        bench.wait(0.44)
+        bench.stick(AHEAD)
+        bench.wait(0.2, AHEAD)
+        assert bench.throttles == (1.0, 1.0)
+
+    def test_dead_man_time_is_a_parameter(self) -> None:
+        bench = Bench(MAN_TIMEOUT=1.0)
+        bench.drive()
+        bench.wait(0.9)
+        assert bench.throttles == (1.0, 1.0)
+        bench.wait(0.7)
         assert not bench.turning
 
 
-class TestMotorDriver:
-    def test_zero_disarmed_and_no_arming_until_it_works_again(self) -> None:
-        bench = Bench()
+class TestGroundStationLoss:
+    def test_gcs_loss_holds_then_disarms_and_releases_control(self) -> None:
+        bench = Bench(FS_DISARM_T=300)
         bench.drive()
-        bench.rover.motor_failed("no answer on /dev/ttyAMA0", bench.now)
-        assert bench.rover.outputs == ZERO
-        assert bench.rover.state is states.SafetyState.FAULT
-        bench.wait(1.2)
-        assert bench.newest(m.RoverFailsafeStatus).active == Failsafe.MOTOR_DRIVER
-        assert said(bench, "Motor driver failed: no answer on")
-        assert bench.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.FAILED
-        bench.rover.motor_repaired(bench.now)
-        assert bench.arm() is Result.ACCEPTED
-
-    def test_an_emergency_stop_does_not_wash_it_away(self) -> None:
-        bench = Bench()
-        bench.rover.motor_failed("broken", bench.now)
-        bench.command(Command.DO_SET_SAFETY_SWITCH_STATE, 0)
-        assert bench.command(Command.DO_SET_SAFETY_SWITCH_STATE, 1) is Result.ACCEPTED
-        assert bench.rover.state is states.SafetyState.FAULT
-        assert bench.arm() is Result.FAILED
-
-
-class TestIdle:
-    def test_nobody_drives_for_long_and_the_rover_disarms(self) -> None:
-        bench = Bench(DISARM_DELAY=20)
-        bench.drive()
-        bench.wait(15.0, NEUTRAL, period=0.2)
+        silent = bench.now
+        bench.wait(4.5)
+        assert not said(bench, "ground station lost")
+        bench.wait(1.0)
+        assert said(bench, "ground station lost: HOLD")
+        assert bench.mode is Mode.HOLD
+        bench.wait(silent + 64.5 - bench.now)
         assert bench.armed
-        bench.wait(6.0, NEUTRAL, period=0.2)
+        bench.wait(1.0)
         assert not bench.armed
-        assert said(bench, "Disarmed: no demand for 20 s")
+        assert bench.newest(m.ControlStatus).gcs_main == 0
 
-
-class TestShutdown:
-    def test_neutral_first_and_one_last_word(self) -> None:
+    def test_any_message_of_the_owner_prevents_the_gcs_failsafe(self) -> None:
         bench = Bench()
+        bench.arm()
+        for _ in range(4):
+            bench.wait(4.0)
+            bench.say(m.Timesync(tc1=0, ts1=1))
+        assert not said(bench, "ground station lost")
+
+    def test_messages_of_others_do_not_prevent_the_gcs_failsafe(self) -> None:
+        bench = Bench()
+        bench.arm()
+        for _ in range(6):
+            bench.wait(1.0)
+            bench.heartbeat(system=9)
+            bench.heartbeat(introduced=False)
+        assert said(bench, "ground station lost: HOLD")
+
+    def test_the_gcs_failsafe_can_be_disabled(self) -> None:
+        bench = Bench(FS_GCS_ENABLE=0)
+        bench.arm()
+        bench.wait(10.0)
+        assert bench.mode is Mode.MANUAL
+
+    def test_a_returning_heartbeat_clears_the_failsafe_and_the_mode_stays(self) -> None:
+        bench = Bench()
+        bench.arm()
+        bench.wait(6.0)
+        assert bench.mode is Mode.HOLD
+        bench.heartbeat()
+        bench.wait(1.2)
+        assert bench.newest(m.RoverFailsafeStatus).active == 0
+        assert bench.mode is Mode.HOLD
+        assert said(bench, "Failsafe cleared: ground station lost")
+
+
+SAFETY = Path(__file__).parents[3] / "docs" / "safety.md"
+
+
+class TestSensors:
+    def test_tilted_disarms(self) -> None:
+        bench = Bench()
+        bench.readings = EVERYTHING
         bench.drive()
-        bench.rover.shutdown(bench.now)
-        assert bench.rover.outputs == ZERO
-        last = bench.rover.messages_to_send()
-        assert [each.message.system_status for each in last] == [SystemState.POWEROFF]  # type: ignore[attr-defined]
-        bench.wait(1.0, AHEAD)
-        bench.rover.shutdown(bench.now)
-        assert bench.rover.messages_to_send() == []
-        assert bench.rover.outputs == ZERO
+        bench.readings = replace(EVERYTHING, roll=-0.9)
+        bench.wait(0.4, AHEAD)
+        assert bench.turning
+        bench.wait(0.2, AHEAD)
+        assert not bench.armed
+        assert said(bench, "Disarmed: tilted")
+
+    @pytest.mark.parametrize(("check", "armed"), [(1, True), (2, False)])
+    def test_blocked_holds(self, check: int, armed: bool) -> None:
+        bench = Bench(FS_CRASH_CHECK=check)
+        bench.readings = EVERYTHING
+        bench.drive()
+        bench.readings = replace(EVERYTHING, wheel_speeds=(0.01, 0.0))
+        bench.wait(1.9, AHEAD)
+        assert bench.turning
+        bench.wait(0.8, AHEAD)
+        assert not bench.turning
+        assert bench.armed is armed
+        assert not armed or bench.mode is Mode.HOLD
+        assert bench.newest(m.RoverFailsafeStatus).latched & Failsafe.BLOCKED
+
+    @pytest.mark.parametrize("change", [{"wheel_speeds": (0.0, 0.0)}, {"roll": -0.9}])
+    def test_a_short_tilt_or_standstill_is_not_reported(self, change: dict[str, Any]) -> None:
+        """Each start and each change of direction includes a short standstill, and a stone tilts the rover."""
+        bench = Bench()
+        bench.readings = EVERYTHING
+        bench.drive()
+        bench.texts.clear()
+        for _ in range(3):
+            bench.readings = replace(EVERYTHING, **change)
+            bench.wait(0.4, AHEAD)
+            status = bench.newest(m.RoverFailsafeStatus)
+            assert (status.active, status.action_in_ms) == (0, 65535)
+            bench.readings = EVERYTHING
+            bench.wait(1.2, AHEAD)
+        assert bench.turning
+        assert not said(bench, "Failsafe")
+        assert {beat.system_status for beat in bench.all(m.Heartbeat)[-4:]} == {SystemState.ACTIVE}
+
+    def test_tilt_and_blocked_can_be_disabled(self) -> None:
+        bench = Bench(FS_CRASH_CHECK=0, CRASH_ANGLE=0)
+        bench.readings = replace(EVERYTHING, roll=2.0, wheel_speeds=(0.0, 0.0))
+        bench.drive()
+        bench.wait(5.0, AHEAD)
+        assert bench.turning
 
 
-class TestTable:
-    """RULES and Failsafes without a rover."""
+class TestRules:
+    def test_the_table_of_the_documentation_has_every_rule(self) -> None:
+        documented = SAFETY.read_text(encoding="utf-8")
+        for rule in RULES.values():
+            assert f"| {rule.label} | {rule.help} |" in documented
 
-    def test_worst_wins(self) -> None:
-        failsafes = Failsafes(Params())
-        failsafes.update({Failsafe.BATTERY_LOW: 0.0}, 0.0)
-        assert failsafes.lasting_action(0.0) is FailsafeAction.LIMIT
-        failsafes.update({Failsafe.BATTERY_LOW: 0.0, Failsafe.MANUAL_LOSS: 0.0}, 0.0)
-        assert failsafes.lasting_action(0.0) is FailsafeAction.NEUTRAL
-
-    def test_each_step_is_taken_once(self) -> None:
-        failsafes = Failsafes(Params())
-        taken = [
-            step.action
-            for cycle in range(2000)
-            for step in failsafes.update({Failsafe.MANUAL_LOSS: 0.0}, cycle * CYCLE)
-        ]
-        assert taken == [FailsafeAction.NEUTRAL, FailsafeAction.HOLD, FailsafeAction.DISARM]
-
-    def test_a_condition_that_returns_begins_anew(self) -> None:
-        failsafes = Failsafes(Params())
-        failsafes.update({Failsafe.GCS_LOSS: 0.0}, 0.0)
-        failsafes.update({}, 1.0)
-        assert failsafes.active == 0
-        assert failsafes.latched == Failsafe.GCS_LOSS
-        assert [step.action for step in failsafes.update({Failsafe.GCS_LOSS: 2.0}, 2.0)] == [FailsafeAction.HOLD]
-
-    def test_no_rule_starts_a_motion_and_every_rule_has_words(self) -> None:
+    def test_every_rule_has_a_label_and_steps(self) -> None:
         for rule in RULES.values():
             assert rule.label
             assert rule.steps
             assert all(step.action in FailsafeAction for step in rule.steps)
-
-    def test_the_driver_in_control_is_not_named_in_vain(self) -> None:
-        bench = Bench()
-        bench.drive()
-        assert said(bench, f"Armed by GCS {DRIVER}, mode MANUAL")

@@ -1,4 +1,4 @@
-"""What sensors and the Pi complain of reaches the driver once as it begins, and once as it ends."""
+"""Notices about sensors and the Pi: one when a problem begins, one when it ends."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ def pi(temperature: float | None = None, under_voltage: bool | None = None) -> R
     return replace(EVERYTHING, computer=ComputerReadings(temperature=temperature, under_voltage=under_voltage))
 
 
-def test_a_sensors_fault_is_told_once_and_so_is_its_end() -> None:
+def test_the_start_and_the_end_of_a_sensor_fault_are_reported_once() -> None:
     bench = Bench()
     assert after(bench, EVERYTHING, 10.0) == []
     assert after(bench, NO_CHIP, 60.0) == ["battery sensor: no chip at 0x40"]
     assert bench.newest(m.StatusText).severity == Severity.WARNING
     assert after(bench, EVERYTHING, 4.9) == []
-    assert after(bench, EVERYTHING, 60.0) == ["battery sensor is well again"]
+    assert after(bench, EVERYTHING, 60.0) == ["battery sensor OK again"]
     assert bench.newest(m.StatusText).severity == Severity.INFO
     assert after(bench, NO_CHIP, 1.0) == ["battery sensor: no chip at 0x40"]
 
 
-def test_a_fault_that_comes_and_goes_is_one() -> None:
+def test_an_intermittent_fault_is_reported_once() -> None:
     bench = Bench()
     texts = []
     for number in range(20):
@@ -46,34 +46,34 @@ def test_a_fault_that_comes_and_goes_is_one() -> None:
     assert texts == ["battery sensor: no chip at 0x40"]
 
 
-def test_a_fault_in_other_words_is_the_same() -> None:
+def test_a_fault_with_another_text_is_the_same_problem() -> None:
     bench = Bench()
     after(bench, NO_CHIP, 10.0)
     assert after(bench, replace(NO_CHIP, faults=(SensorFault("battery", "no reply"),)), 10.0) == []
 
 
-def test_each_sensor_has_its_own() -> None:
+def test_each_sensor_has_its_own_notice() -> None:
     bench = Bench()
     both = (SensorFault("battery", "no chip"), SensorFault("gps", "no gpsd"))
     assert after(bench, replace(EVERYTHING, faults=both), 10.0) == ["battery sensor: no chip", "gps sensor: no gpsd"]
-    assert after(bench, replace(EVERYTHING, faults=both[:1]), 10.0) == ["gps sensor is well again"]
+    assert after(bench, replace(EVERYTHING, faults=both[:1]), 10.0) == ["gps sensor OK again"]
 
 
-def test_under_voltage() -> None:
+def test_under_voltage_is_reported() -> None:
     bench = Bench()
     assert after(bench, pi(under_voltage=False), 10.0) == []
     assert after(bench, pi(under_voltage=True), 10.0) == ["Pi under-voltage"]
     unwatched = replace(EVERYTHING, computer=None)
-    assert after(bench, unwatched, 10.0) + after(bench, pi(), 10.0) == []  # nobody knows: not over
-    assert after(bench, pi(under_voltage=False), 10.0) == ["Pi supply is well again"]
+    assert after(bench, unwatched, 10.0) + after(bench, pi(), 10.0) == []  # unknown: not over
+    assert after(bench, pi(under_voltage=False), 10.0) == ["Pi supply OK again"]
 
 
-def test_heat_ends_below_where_it_begins() -> None:
+def test_overheating_ends_with_hysteresis() -> None:
     bench = Bench()
     assert after(bench, pi(85.0), 10.0) == []
     assert after(bench, pi(86.0), 10.0) == ["Pi at 86 C"]
     assert after(bench, pi(82.0), 10.0) == []
-    assert after(bench, pi(79.0), 10.0) == ["Pi temperature is well again"]
+    assert after(bench, pi(79.0), 10.0) == ["Pi temperature OK again"]
     assert after(bench, pi(82.0), 10.0) == []
 
 

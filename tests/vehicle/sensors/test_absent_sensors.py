@@ -30,7 +30,7 @@ def test_a_battery_sensor_that_never_answered_forbids_to_arm(readings: Readings)
     bench = bench_with(readings)
     assert bench.arm() is Result.FAILED
     bench.wait(0.1)
-    assert said(bench, "PreArm: battery sensor is silent")
+    assert said(bench, "PreArm: no data from the battery sensor")
     health = bench.newest(m.SysStatus)
     assert health.onboard_control_sensors_present & Sensor.BATTERY
     assert not health.onboard_control_sensors_health & Sensor.BATTERY
@@ -86,8 +86,8 @@ def test_without_its_gps_a_rover_drives_and_only_modes_that_need_a_place_are_ref
 
 
 def test_without_its_encoders_a_rover_drives() -> None:
-    bench = bench_with(Readings(configured=("encoders",), faults=(SensorFault("encoders", "silent for 5 s"),)))
-    assert said(bench, "encoders sensor: silent for 5 s")
+    bench = bench_with(Readings(configured=("encoders",), faults=(SensorFault("encoders", "no data for 5 s"),)))
+    assert said(bench, "encoders sensor: no data for 5 s")
     bench.drive()
     bench.wait(5.0, AHEAD)
     assert bench.turning, "a speed that nobody measures is no blocked rover"

@@ -94,7 +94,7 @@ def test_a_chip_that_fails_is_set_up_again() -> None:
     assert monitor.sample() == PowerReading(12.0, 0.1)
     chip.failing = True
     for _ in range(2):
-        with pytest.raises(OSError, match="ina260 at 0x40 on I2C bus 1: Remote I/O error: nothing answers there"):
+        with pytest.raises(OSError, match="ina260 at 0x40 on I2C bus 1: Remote I/O error: no response; check wiring"):
             monitor.sample()
     chip.failing = False
     chip.registers[0] = 0x6127

@@ -79,12 +79,12 @@ def test_a_sensor_that_says_nothing_at_all_is_a_fault_after_a_while() -> None:
     gps = Given[GpsReading](None)
     suite = SensorSuite(SensorSources(gps=gps))
     assert suite.read(100.0).faults == suite.read(105.0).faults == ()
-    assert suite.read(105.1).faults == (SensorFault("gps", "silent for 5 s"),)
+    assert suite.read(105.1).faults == (SensorFault("gps", "no data for 5 s"),)
     gps.value = GpsReading(GpsFix(1), GpsSky())
     assert suite.read(106.0).faults == ()
     gps.value = None
     assert suite.read(111.0).faults == ()
-    assert suite.read(111.1).faults == (SensorFault("gps", "silent for 5 s"),)
+    assert suite.read(111.1).faults == (SensorFault("gps", "no data for 5 s"),)
 
 
 async def test_sensors_that_are_not_there_do_not_keep_the_rover_from_starting() -> None:

@@ -44,14 +44,14 @@ def test_a_folder_that_is_well_and_one_that_can_be_made(tmp_path: Path) -> None:
 
 def test_a_file_in_its_place_or_on_the_way(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    told = f"{tmp_path}/file is no folder; remove it, or name another folder as state"
+    told = f"{tmp_path}/file is not a folder; remove it, or set another folder with state"
     assert write_problem(tmp_path / "file", "state") == told
     assert write_problem(tmp_path / "file" / "logs", "state") == told
 
 
 def test_a_link_to_nowhere_is_no_folder(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    assert "link is no folder" in (write_problem(tmp_path / "link", "state") or "")
+    assert "link is not a folder" in (write_problem(tmp_path / "link", "state") or "")
 
 
 @pytest.mark.parametrize("below", ["", "logs/deep"])
@@ -60,8 +60,8 @@ def test_a_folder_of_another_user(open_folder: Path, below: str) -> None:
     with somebody_else():
         told = write_problem(open_folder / below, "log.tlog")
     assert told is not None
-    assert told.startswith(f"{open_folder} may not be written by ")
-    assert told.endswith("or name another folder as log.tlog")
+    assert told.startswith(f"{open_folder} is not writable by ")
+    assert told.endswith("or set another folder with log.tlog")
     if os.geteuid() == 0:
         assert ", it belongs to root; run this as root" in told
     else:
@@ -87,7 +87,7 @@ def test_a_link_into_what_a_service_keeps_for_itself(open_folder: Path) -> None:
         told = write_problem(open_folder / "mavhelm", "state")
     os.chmod(open_folder / "private", 0o755)
     assert told is not None
-    assert "nor looked at; run this with sudo" in told
+    assert "cannot be examined; run this with sudo" in told
 
 
 def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
@@ -97,7 +97,7 @@ def test_a_disk_that_takes_no_more(tmp_path: Path) -> None:
         told = write_problem(tmp_path, "state")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert told == f"{tmp_path} is full; make room, or name another folder as state"
+    assert told == f"{tmp_path} is full; free some space, or set another folder with state"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -105,4 +105,4 @@ def test_a_file_system_that_takes_no_files() -> None:
     told = write_problem(Path("/proc"), "state")
     assert told is not None
     assert told.startswith("/proc ")
-    assert "or name another folder as state" in told
+    assert "or set another folder with state" in told

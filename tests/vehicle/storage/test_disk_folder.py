@@ -17,7 +17,7 @@ from link.services.ftp.server import FtpServer
 from link.services.pacing import BulkPacer
 from tests.link.services_world import from_gcs, messages
 from vehicle.storage import disk_folder
-from vehicle.storage.disk_folder import MAX_ASKED, MAX_ENTRIES, MAX_SIZE, PIECE, DiskFolder
+from vehicle.storage.disk_folder import MAX_ENTRIES, MAX_PENDING, MAX_SIZE, PIECE, DiskFolder
 
 T = TypeVar("T")
 DATA = os.urandom(3 * PIECE + 77)
@@ -179,7 +179,7 @@ def test_a_disk_that_sleeps_is_asked_only_so_often(folder: DiskFolder) -> None:
     for number in range(200):
         with pytest.raises(NotReadyError):
             folder.open(f"{number}.tlog", {})
-    assert len(folder._asked) == MAX_ASKED
+    assert len(folder._pending) == MAX_PENDING
     awake.set()
     assert soon(folder.entries)
 
@@ -193,7 +193,7 @@ def test_an_answer_that_nobody_fetched_is_not_the_answer_to_a_later_question(
     folder._worker.submit(done.set)
     assert done.wait(PATIENCE)
     (tmp_path / "logs/3.tlog").touch()
-    monkeypatch.setattr(disk_folder, "FRESH", 0.0)
+    monkeypatch.setattr(disk_folder, "RESULT_TIMEOUT", 0.0)
     with pytest.raises(NotReadyError):
         folder.entries()
     monkeypatch.undo()
@@ -255,13 +255,13 @@ def test_a_file_that_goes_while_it_is_fetched_is_a_failure_and_not_silence(
     assert vehicle.ask(FtpOpcode.OPEN, b"/logs/1.tlog").op == FtpOpcode.ACK
     (tmp_path / "logs/1.tlog").unlink()
     answer = vehicle.ask(op, offset=0, size=239)
-    assert (answer.op, answer.data, answer.asked) == (FtpOpcode.NAK, bytes([FtpError.FAIL]), op)
+    assert (answer.op, answer.data, answer.req_opcode) == (FtpOpcode.NAK, bytes([FtpError.FAIL]), op)
     assert vehicle.server.tick(2.0) == []
 
 
 def test_a_checksum_of_a_file_that_is_cut_meanwhile_is_a_failure(folder: DiskFolder, tmp_path: Path) -> None:
-    def cut(name: str, offset: int, size: int, take: Callable[[bytes], None]) -> bool:
-        take(b"")
+    def cut(name: str, offset: int, size: int, receive: Callable[[bytes], None]) -> bool:
+        receive(b"")
         return True
 
     folder.fetch = cut  # type: ignore[method-assign]

@@ -77,5 +77,5 @@ def test_a_copy_that_cannot_be_written_is_a_warning(
     state.parent.write_text("a file where a folder should be")
     with caplog.at_level(logging.WARNING), settings_copy(TABLE, tmp_path / "rover.toml"):
         [record] = caplog.records
-    assert "safe-stop will have to go by" in record.getMessage()
+    assert "safe-stop can use" in record.getMessage()
     assert "Not a directory" in record.getMessage()

@@ -17,15 +17,16 @@ from dialects.enums import Command, FenceItem, MissionResult, MissionType, Resul
 from dialects.modes import Mode
 from link.core import Peer, Received
 from link.services.mission.client import MissionClient, MissionOutcome
-from link.services.mission.commit import NullPlanWrite, PendingPlanWrite
 from link.services.mission.items import Items, MissionItem
 from link.services.mission.plans import plan_id
 from tests.link.mission_vehicle import plain
-from tests.vehicle.autonomy.mission.test_mission import Item, do, send, upload, way
 from tests.vehicle.bench import said
 from tests.vehicle.field import Field
 from tests.vehicle.ground import Ground, running
+from tests.vehicle.missions import Item, do, send, upload, way
+from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.plan_store import PlanStore
+from vehicle.storage.store import PendingWrite
 
 FORCE = 21196
 MISSION, FENCE, RALLY = MissionType.MISSION, MissionType.FENCE, MissionType.RALLY
@@ -46,62 +47,56 @@ PLANS: dict[MissionType, Items] = {
 
 
 def kept(folder: Path, plans: dict[MissionType, Items]) -> PlanStore:
-    store = PlanStore(folder)
+    store = PlanStore(FileWriter(folder))
     for kind, items in plans.items():
         store.save(kind, items)
     store.close()
     return store
 
 
-class Memory:
-    """A keeper in memory."""
+class MemoryStore(PlanStore):
+    """A store in memory."""
+
+    is_volatile = False
+    problem: str | None = None
+    idle = True
 
     def __init__(self, plans: dict[MissionType, Items] | None = None, **damage: str) -> None:
+        super().__init__()
         self.plans = plans or {}
         self.damage = {MissionType[kind.upper()]: why for kind, why in damage.items()}
-        self.problem: str | None = None
-        self.idle = True
 
-    def save(self, kind: MissionType, items: Items) -> PendingPlanWrite:
+    def save(self, kind: MissionType, items: Items) -> PendingWrite:
         self.plans[kind] = items
-        return NullPlanWrite()
+        return PendingWrite(done=True)
 
 
-class Wish:
-    """A plan on its way to a slow disk."""
-
-    def __init__(self, kind: MissionType, items: Items) -> None:
-        self.kind, self.items = kind, items
-        self.done = False
-        self.problem: str | None = None
-
-
-class SlowDisk(Memory):
+class SlowDisk(MemoryStore):
     """Writes when it is told to."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.wishes: list[Wish] = []
+        self.requests: list[tuple[MissionType, Items, PendingWrite]] = []
 
-    def save(self, kind: MissionType, items: Items) -> PendingPlanWrite:
+    def save(self, kind: MissionType, items: Items) -> PendingWrite:
         self.idle = False
-        self.wishes.append(Wish(kind, items))
-        return self.wishes[-1]
+        self.requests.append((kind, items, PendingWrite()))
+        return self.requests[-1][2]
 
     def end(self, problem: str | None = None) -> None:
         """All that waits is there now, or the last of it is not."""
-        for wish in self.wishes:
-            wish.done, wish.problem = True, problem
+        for kind, items, request in self.requests:
+            request.done, request.problem = True, problem
             if problem is None:
-                self.plans[wish.kind] = wish.items
-        self.wishes, self.idle, self.problem = [], True, problem
+                self.plans[kind] = items
+        self.requests, self.idle, self.problem = [], True, problem
 
 
-def field_with(keeper: Memory, **params: float) -> Field:
-    class Keeping(Field):
-        plans = keeper
+def field_with(store: MemoryStore, **params: float) -> Field:
+    class StoringField(Field):
+        plans = store
 
-    return Keeping(**params)  # type: ignore[arg-type]
+    return StoringField(**params)  # type: ignore[arg-type]
 
 
 def field_that_kept(item: Item, disk: SlowDisk) -> tuple[Field, MissionItem]:
@@ -118,20 +113,20 @@ def field_that_kept(item: Item, disk: SlowDisk) -> tuple[Field, MissionItem]:
 
 
 def test_a_first_start_has_nothing_and_no_damage(tmp_path: Path) -> None:
-    store = PlanStore(tmp_path / "not" / "there")
+    store = PlanStore(FileWriter(tmp_path / "not" / "there"))
     assert (store.plans, store.damage, store.problem) == ({MISSION: (), FENCE: (), RALLY: ()}, {}, None)
     store.close()
 
 
 def test_plans_survive_a_restart_to_the_last_digit(tmp_path: Path) -> None:
     kept(tmp_path, PLANS)
-    store = PlanStore(tmp_path)
+    store = PlanStore(FileWriter(tmp_path))
     assert {kind: plain(items) for kind, items in store.plans.items()} == {
         kind: plain(items) for kind, items in PLANS.items()
     }
     assert store.damage == {}
     kept(tmp_path, {MISSION: ()})
-    assert PlanStore(tmp_path).plans[MISSION] == ()
+    assert PlanStore(FileWriter(tmp_path)).plans[MISSION] == ()
     assert sorted(os.listdir(tmp_path)) == ["fence.waypoints", "mission.waypoints", "rally.waypoints"]
 
 
@@ -148,18 +143,18 @@ def test_a_damaged_plan_is_kept_aside_and_stays_damage_until_a_good_one(tmp_path
     file = tmp_path / "mission.waypoints"
     file.write_bytes(harm(file.read_bytes()))
     for _ in range(2):  # a restart does not make it good
-        store = PlanStore(tmp_path)
+        store = PlanStore(FileWriter(tmp_path))
         assert store.damage == {MISSION: "saved mission damaged"}
         assert MISSION not in store.plans
         assert len(store.plans[FENCE]) == 1
         assert (tmp_path / "mission.waypoints.damaged").exists()
     kept(tmp_path, {MISSION: ()})
-    assert PlanStore(tmp_path).damage == {}
+    assert PlanStore(FileWriter(tmp_path)).damage == {}
 
 
 def test_a_plan_that_cannot_be_read_is_damage_too(tmp_path: Path) -> None:
     (tmp_path / "fence.waypoints").mkdir()
-    assert PlanStore(tmp_path).damage == {FENCE: "saved fence cannot be read, Is a directory"}
+    assert PlanStore(FileWriter(tmp_path)).damage == {FENCE: "saved fence cannot be read, Is a directory"}
 
 
 def test_a_full_disk_is_a_problem_and_the_old_plan_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -171,14 +166,14 @@ def test_a_full_disk_is_a_problem_and_the_old_plan_stays(tmp_path: Path, monkeyp
     with monkeypatch.context() as patched:
         patched.setattr(os, "fsync", full)
         assert kept(tmp_path, {MISSION: ()}).problem == "No space left on device"
-    assert len(PlanStore(tmp_path).plans[MISSION]) == 2
+    assert len(PlanStore(FileWriter(tmp_path)).plans[MISSION]) == 2
 
 
 # ---- the vehicle ----
 
 
 def test_kept_plans_are_in_force_with_their_ids() -> None:
-    bench = field_with(Memory(PLANS))
+    bench = field_with(MemoryStore(PLANS))
     bench.wait(1.1)
     told = bench.newest(m.MissionCurrent)
     ids = tuple(plan_id(items) for items in PLANS.values())
@@ -190,7 +185,7 @@ def test_kept_plans_are_in_force_with_their_ids() -> None:
 
 
 def test_what_is_uploaded_cleared_or_written_as_a_file_is_kept() -> None:
-    memory = Memory()
+    memory = MemoryStore()
     field = field_with(memory)
     upload(field, way(5, 0))
     assert [each.command for each in memory.plans[MISSION]] == [Command.NAV_WAYPOINT]
@@ -219,7 +214,7 @@ def test_a_disk_that_refuses_leaves_the_old_plan_in_force_and_on_the_disk() -> N
     field.wait(0.1)
     assert field.newest(m.MissionAck).type == MissionResult.ERROR
     assert said(field, "Mission not changed, it could not be saved: No space left on device")
-    assert [wish.items for wish in disk.wishes] == [(first,)]  # written back, in case
+    assert [items for _, items, _ in disk.requests] == [(first,)]  # written back, in case
     field.say(m.MissionRequestInt(1, 1, 0, 0))
     assert field.newest(m.MissionItemInt).x == first.x
 
@@ -245,12 +240,12 @@ def test_a_failed_upload_does_not_make_a_damaged_fence_a_good_one() -> None:
     send(field, kind=FENCE)
     disk.end("No space left on device")
     field.wait(0.1)
-    assert disk.wishes == []
+    assert disk.requests == []
     assert field.arm() is Result.FAILED
 
 
 def test_plans_that_cannot_be_kept_are_told() -> None:
-    memory = Memory()
+    memory = MemoryStore()
     memory.problem = "No space left on device"
     bench = field_with(memory)
     bench.wait(1.0)
@@ -258,7 +253,7 @@ def test_plans_that_cannot_be_kept_are_told() -> None:
 
 
 def test_a_damaged_mission_forbids_auto_and_nothing_else() -> None:
-    field = field_with(Memory(mission="saved mission damaged"))
+    field = field_with(MemoryStore(mission="saved mission damaged"))
     assert said(field, "Saved mission damaged: upload it again")
     assert field.arm() is Result.ACCEPTED
     assert field.set_mode(Mode.AUTO) is Result.FAILED
@@ -270,7 +265,7 @@ def test_a_damaged_mission_forbids_auto_and_nothing_else() -> None:
 
 
 def test_it_is_said_again_while_disarmed() -> None:
-    bench = field_with(Memory(rally="saved rally damaged"))
+    bench = field_with(MemoryStore(rally="saved rally damaged"))
 
     def told() -> int:
         return sum("Saved rally damaged" in text for text in bench.texts)
@@ -283,7 +278,7 @@ def test_it_is_said_again_while_disarmed() -> None:
 
 
 def test_a_damaged_fence_that_counts_forbids_to_arm_also_by_force() -> None:
-    field = field_with(Memory(fence="saved fence damaged"), FENCE_ENABLE=1)
+    field = field_with(MemoryStore(fence="saved fence damaged"), FENCE_ENABLE=1)
     assert field.arm() is Result.FAILED
     assert said(field, "PreArm: saved fence damaged, upload it again or set FENCE_ENABLE 0")
     assert field.command(Command.COMPONENT_ARM_DISARM, 1, FORCE) is Result.FAILED
@@ -292,7 +287,7 @@ def test_a_damaged_fence_that_counts_forbids_to_arm_also_by_force() -> None:
 
 
 def test_a_damaged_fence_that_does_not_count_can_only_not_be_turned_on() -> None:
-    field = field_with(Memory(fence="saved fence damaged"))
+    field = field_with(MemoryStore(fence="saved fence damaged"))
     assert field.arm() is Result.ACCEPTED
     assert field.command(Command.DO_FENCE_ENABLE, 1) is Result.FAILED
     assert said(field, "DO_FENCE_ENABLE refused: saved fence damaged")
@@ -305,8 +300,8 @@ def test_a_damaged_fence_that_does_not_count_can_only_not_be_turned_on() -> None
 
 
 def test_a_plan_of_another_version_is_damage() -> None:
-    field = field_with(Memory({MISSION: (item(command=Command.NAV_RETURN_TO_LAUNCH), item(command=22))}))
-    assert said(field, "Saved mission is not one for this version")
+    field = field_with(MemoryStore({MISSION: (item(command=Command.NAV_RETURN_TO_LAUNCH), item(command=22))}))
+    assert said(field, "Saved mission does not fit this version")
     assert field.newest(m.MissionCurrent).mission_id == 0
     assert field.set_mode(Mode.AUTO) is Result.FAILED
 

@@ -8,10 +8,15 @@ import pytest
 
 from dialects import codec
 from dialects import messages as m
-from dialects.enums import Command, Result
+from dialects.enums import Command, DriveType, Result
 from link.core import LinkReport, Peer
 from link.services.pacing import DEFAULT_RATE
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, Bench
+from vehicle.autonomy.navigator import Navigator
+from vehicle.drive.control import Control
+from vehicle.params import Params
+from vehicle.safety.state_machine import Safety
+from vehicle.statustext import StatusTextQueue
 from vehicle.telemetry.bandwidth import Bandwidth
 from vehicle.telemetry.streams import STREAMS
 
@@ -116,13 +121,22 @@ def test_commands_are_answered_whatever_telemetry_takes() -> None:
     assert bench.command(Command.REQUEST_MESSAGE, m.Attitude.id, system=DRIVER) is Result.ACCEPTED
 
 
+def build_safety() -> Safety:
+    """Of a vehicle that has booted and is disarmed."""
+    params, texts = Params(), StatusTextQueue()
+    control = Control(params, texts, system=1, boot=0.0)
+    safety = Safety(params, control, texts, 0.0, Navigator(params, DriveType.SKID))
+    safety.boot_done()
+    return safety
+
+
 class Wire:
     """A slow link on which bulk is sent as fast as it may, in virtual time."""
 
     def __init__(self) -> None:
-        self.armed = False
         self.now = 0.0
-        self.bandwidth = Bandwidth(lambda: self.armed)
+        self._safety = build_safety()
+        self.bandwidth = Bandwidth(self._safety)
         self.bandwidth.update([report(SIK)])
 
     def bulk(self, seconds: float, size: int = 263) -> float:
@@ -135,6 +149,9 @@ class Wire:
             if cycle % 50 == 0:
                 self.bandwidth.update([report(SIK)])
         return sent / seconds / SIK
+
+    def arm(self) -> None:
+        assert self._safety.arm(DRIVER, self.now) == []
 
     @property
     def telemetry(self) -> float:
@@ -157,7 +174,7 @@ def test_bulk_gains_nothing_before_telemetry_has_given_it_up() -> None:
 def test_arming_takes_it_back_in_the_same_cycle_and_telemetry_follows() -> None:
     wire = Wire()
     wire.bulk(5.0)
-    wire.armed = True
+    wire.arm()
     assert wire.bulk(0.9) <= 0.35
     wire.bulk(1.0)
     assert wire.telemetry == pytest.approx(0.6)

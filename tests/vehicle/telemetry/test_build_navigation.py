@@ -9,9 +9,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import FenceItem, MissionType, Result
 from dialects.modes import Mode
-from tests.vehicle.autonomy.mission.test_mission import ready, start, upload, way
 from tests.vehicle.bench import AHEAD, NEUTRAL
 from tests.vehicle.field import ONLY_PLACE, Field
+from tests.vehicle.missions import ready, start, upload, way
 from vehicle.navigation.geo import Point
 
 

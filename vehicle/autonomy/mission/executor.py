@@ -1,22 +1,23 @@
-"""AUTO: runs a mission item by item. Uploading it is link/services/mission/server.py's work.
+"""AUTO: runs a mission item by item.
 
-As in ArduPilot, NAV items come one after another, and the DO and CONDITION items between two of them run while the
-rover drives to the second: a condition holds up the DO items behind it, and what is left over when the second is
-reached is left out. Behind the last NAV item they run when it is done, up to a condition that does not hold yet.
-CONDITION_YAW is the exception: turning on the spot takes the whole rover, so it is a NAV item here.
+As in ArduPilot, NAV items run one after another. The DO and CONDITION items between two NAV items run while the rover
+drives to the second one: a condition delays the DO items behind it, and items that are left when the second one is
+reached are skipped. Items behind the last NAV item run when it is done, up to a condition that does not hold yet.
+CONDITION_YAW is the exception: turning on the spot occupies the whole rover, so that it runs as a NAV item here.
+link/services/mission/server.py handles the upload. Protocol: https://mavlink.io/en/services/mission.html
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import IntEnum
 
 from dialects.enums import Command
 from link.services.mission.items import Items, MissionItem
 from vehicle.autonomy.mission.nav_items import ConditionYaw, NavDelay, NavLoiterTurns, NavTask, NavWaypoint
-from vehicle.autonomy.mission.rules import ACCESSORY_COMMANDS
-from vehicle.autonomy.modes.homing import ModeFinished
+from vehicle.autonomy.mission.rules import DoItem
+from vehicle.autonomy.mode import ModeFinished
 from vehicle.navigation.estimate import Estimate
 from vehicle.navigation.geo import Point
 from vehicle.navigation.guidance import STOP_RADIUS, Leg, PathFollower
@@ -25,13 +26,12 @@ from vehicle.navigation.speed_control import DesiredMotion
 from vehicle.params import Params
 
 ITEM_SEARCH_MAX = 100
-"""Items looked through for the next NAV item; more is a circle of jumps."""
+"""Items searched for the next NAV item; more are an endless loop of DO_JUMP."""
 CONDITION_COMMANDS = (Command.CONDITION_DELAY, Command.CONDITION_DISTANCE)
-DO_COMMANDS = (Command.DO_CHANGE_SPEED, Command.DO_SET_REVERSE, Command.DO_FENCE_ENABLE, *ACCESSORY_COMMANDS)
 
 
 class MissionState(IntEnum):
-    """MISSION_STATE of MISSION_CURRENT, as far as the mission itself knows it."""
+    """MISSION_STATE of MISSION_CURRENT, as far as it follows from the mission."""
 
     NONE = 1
     NOT_STARTED = 2
@@ -40,32 +40,31 @@ class MissionState(IntEnum):
 
 
 class MissionExecutor:
-    """The mission in force, and how far it is."""
+    """The mission in use, and its progress."""
 
     def __init__(
         self,
         params: Params,
         guide: PathFollower,
-        haven: Callable[[Estimate], ReturnPoint | None],
-        effect: Callable[[MissionItem], None],
-        barred: Callable[[Point], str | None] = lambda place: None,
+        find_return_point: Callable[[Estimate], ReturnPoint | None],
+        rejection: Callable[[Point], str | None] = lambda place: None,
     ) -> None:
-        """`haven` is where to return to from there; `effect` does what a DO item says; `barred` is why a place may not
-        be driven to, or None."""
+        """Create an executor without a mission.
+
+        `find_return_point` returns the nearest return point, and `rejection` why a place may not be driven to, or None.
+        """
         self.items: Items = ()
         self.current = 0
-        """Index of the item under way, or of the one to begin with."""
+        """Index of the item in progress, or of the first one to run."""
         self.state = MissionState.NONE
-        self.reached_items: list[int] = []
-        """Items reached and not told yet."""
-        self.pending_accessory_items: list[MissionItem] = []
-        """Items whose turn came, and that nobody has done yet: Plans hands them on."""
+        self._reached_items: list[int] = []
+        """Items reached and not yet taken by `pop_reached_items`."""
+        self._do_items: Mapping[int, DoItem] = {}
         self._params = params
         self._guide = guide
-        self._return_point = haven
-        self._effect = effect
-        self._rejection = barred
-        self._refused: str | None = None
+        self._find_return_point = find_return_point
+        self._rejection = rejection
+        self._rejection_reason: str | None = None
         self._task: NavTask | None = None
         self._waiting: list[tuple[int, MissionItem]] = []
         self._held_since: float | None = None
@@ -75,21 +74,30 @@ class MissionExecutor:
 
     @property
     def goal(self) -> Point | None:
-        """Where it goes now."""
+        """The place that the current item drives to."""
         return self._task.goal if self._task else None
 
     @property
     def missing_reason(self) -> str:
-        """Why there is none."""
+        """Why there is no mission."""
         return self._damage or "there is no mission"
 
+    def set_do_items(self, do_items: Mapping[int, DoItem]) -> None:
+        """Set what runs the DO items, by MAV_CMD."""
+        self._do_items = do_items
+
+    def pop_reached_items(self) -> list[int]:
+        """Return the items reached since the last call."""
+        reached, self._reached_items = self._reached_items, []
+        return reached
+
     def load(self, items: Items, damage: str | None = None) -> None:
-        """Another mission, from its first item. `damage`: why the kept one is lost."""
+        """Use another mission from its first item. `damage`: why the stored mission is lost."""
         self.items, self._damage = items, damage
         self.set_current(0)
 
     def set_current(self, index: int, *, anew: bool = True) -> None:
-        """Begin or go on with this item; `anew` forgets how often it has jumped."""
+        """Continue with this item; `anew` resets the counters of DO_JUMP."""
         self.current = index
         self.state = MissionState.NOT_STARTED if self.items else MissionState.NONE
         self._task = self._ending = None
@@ -98,23 +106,23 @@ class MissionExecutor:
             self._jumped.clear()
 
     def unready(self, estimate: Estimate) -> str | None:
-        """Why it cannot begin."""
+        """Return why AUTO cannot begin, or None."""
         return None if self.items else self.missing_reason
 
     def begin(self, estimate: Estimate, now: float) -> None:
-        """Chosen: go on with the item that was under way, on a new line from here. A complete one begins anew."""
+        """Continue with the current item on a new line from here; a completed mission begins anew."""
         if self.state is MissionState.COMPLETE:
             self.set_current(0)
         self._task = None
 
     def step(self, estimate: Estimate, speed: float, now: float) -> DesiredMotion | ModeFinished:
-        """The task under way, or the next one."""
+        """Return the motion of the current item, or of the next one if it is done."""
         start = estimate.place
         for _ in range(ITEM_SEARCH_MAX):
             if self._task is None:
-                self._next(self.current, estimate, start)
+                self._begin_next(self.current, estimate, start)
             if self._task is None:
-                if self._refused is None and self._ending is None:  # the items are done, so what waits has all the time
+                if self._rejection_reason is None and self._ending is None:  # no NAV item left
                     self._run_waiting(estimate, now)
                 return self._end()
             motion = self._task.step(self._guide, estimate, speed, now)
@@ -125,21 +133,21 @@ class MissionExecutor:
         return self._end()
 
     def _finish(self, estimate: Estimate) -> Point:
-        """The task is done; where the next leg begins."""
-        self.reached_items.append(self.current)
+        """Finish the current task; return where the next leg begins."""
+        self._reached_items.append(self.current)
         task, self._task = self._task, None
         self.current += 1
         return task.leg.end if isinstance(task, NavWaypoint) else estimate.place
 
     def _end(self) -> ModeFinished:
-        if self._refused is not None:  # it is not over: somebody may change the fence or choose another item
-            why, self._refused = self._refused, None
-            return ModeFinished(why)
+        if self._rejection_reason is not None:  # not complete: the fence or the current item may be changed
+            reason, self._rejection_reason = self._rejection_reason, None
+            return ModeFinished(reason)
         self.state, self.current = MissionState.COMPLETE, 0
         return ModeFinished(self._ending or "mission complete")
 
-    def _next(self, index: int, estimate: Estimate, start: Point) -> None:
-        """The next NAV item from `index` on; the DO items before it run beside it."""
+    def _begin_next(self, index: int, estimate: Estimate, start: Point) -> None:
+        """Begin the next NAV item from `index` on; the DO items before it run beside it."""
         self._waiting, self._held_since = [], None
         for _ in range(ITEM_SEARCH_MAX):
             if not index < len(self.items) or self._ending:
@@ -147,7 +155,7 @@ class MissionExecutor:
             item = self.items[index]
             if item.command == Command.DO_JUMP:
                 index = self._jump(index, item, count=True)
-            elif item.command in CONDITION_COMMANDS or item.command in DO_COMMANDS:
+            elif item.command in CONDITION_COMMANDS or item.command in self._do_items:
                 self._waiting.append((index, item))
                 index += 1
             else:
@@ -155,19 +163,19 @@ class MissionExecutor:
                 self._guide.reset()
                 self._begin_task(item, index, estimate, start)
                 return
-        self._ending = "its jumps go in a circle"
+        self._ending = "endless loop of DO_JUMP"
 
     def _begin_task(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> None:
         task = self._build_task(item, index, estimate, start)
-        why = None if task.goal is None or self._ending else self._rejection(task.goal)
-        if why is None:
+        reason = None if task.goal is None or self._ending else self._rejection(task.goal)
+        if reason is None:
             self._task = task
         else:
-            self._refused = f"item {index}: {why}"
+            self._rejection_reason = f"item {index}: {reason}"
 
     def _jump(self, index: int, item: MissionItem, *, count: bool) -> int:
-        done, often = self._jumped.get(index, 0), item.params[1]
-        if 0 <= often <= done:
+        done, repeats = self._jumped.get(index, 0), item.params[1]
+        if 0 <= repeats <= done:
             return index + 1
         if count:
             self._jumped[index] = done + 1
@@ -185,9 +193,9 @@ class MissionExecutor:
                 radius = _number(item.params[2]) or self._params["LOIT_RADIUS"]
                 return NavLoiterTurns(self._place(item, estimate), radius, first)
             case Command.NAV_RETURN_TO_LAUNCH:
-                haven = self._return_point(estimate) or ReturnPoint(start, "the end")
-                self._ending = f"{haven.name} is reached"
-                return NavWaypoint(Leg(start, haven.point), STOP_RADIUS)
+                target = self._find_return_point(estimate) or ReturnPoint(start, "the end")
+                self._ending = f"{target.name} is reached"
+                return NavWaypoint(Leg(start, target.point), STOP_RADIUS)
         return self._leg(item, index, estimate, start)
 
     def _leg(self, item: MissionItem, index: int, estimate: Estimate, start: Point) -> NavTask:
@@ -198,7 +206,7 @@ class MissionExecutor:
         return NavWaypoint(leg, radius, end_speed, stay)
 
     def _corner(self, leg: Leg, index: int, estimate: Estimate) -> float:
-        """How fast the end of a leg may be passed."""
+        """Return the m/s at which the end of a leg may be passed."""
         onward = self._following_nav_item(index + 1)
         if onward is None or onward.command != Command.NAV_WAYPOINT:
             return 0.0
@@ -206,14 +214,14 @@ class MissionExecutor:
         return self._guide.corner_speed(math.remainder(turn, math.tau), self._params["WP_SPEED"])
 
     def _following_nav_item(self, index: int) -> MissionItem | None:
-        """The NAV item that will follow."""
+        """Return the NAV item that follows, or None."""
         for _ in range(ITEM_SEARCH_MAX):
             if index >= len(self.items):
                 return None
             item = self.items[index]
             if item.command == Command.DO_JUMP:
                 index = self._jump(index, item, count=False)
-            elif item.command in CONDITION_COMMANDS or item.command in DO_COMMANDS:
+            elif item.command in CONDITION_COMMANDS or item.command in self._do_items:
                 index += 1
             else:
                 return item
@@ -225,16 +233,16 @@ class MissionExecutor:
         return estimate.origin.to_local(item.latitude, item.longitude)
 
     def _run_waiting(self, estimate: Estimate, now: float) -> None:
-        """DO items up to the next condition that does not hold. Each counts as reached, as in ArduPilot: by the last
-        one of a mission MAVSDK knows that it is finished."""
+        """Run the DO items up to the next condition that does not hold.
+
+        Each counts as reached, as in ArduPilot: MAVSDK takes the last item of a mission as its end.
+        """
         while self._waiting and self._may_run(self._waiting[0][1], estimate, now):
             number, item = self._waiting.pop(0)
-            self.reached_items.append(number)
+            self._reached_items.append(number)
             self._held_since = None
-            if item.command in ACCESSORY_COMMANDS:
-                self.pending_accessory_items.append(item)
-            elif item.command in DO_COMMANDS:
-                self._effect(item)
+            if item.command in self._do_items:
+                self._do_items[item.command].run(item, now)
 
     def _may_run(self, item: MissionItem, estimate: Estimate, now: float) -> bool:
         if item.command == Command.CONDITION_DELAY:
@@ -246,5 +254,5 @@ class MissionExecutor:
 
 
 def _number(value: float) -> float:
-    """NaN in a mission is "as you like"."""
+    """Return 0 for NaN, which means the default in a mission."""
     return 0.0 if math.isnan(value) else value

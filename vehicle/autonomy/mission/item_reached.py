@@ -1,6 +1,7 @@
-"""MISSION_ITEM_REACHED: said when an item is done, and a few times more.
+"""Sends MISSION_ITEM_REACHED when an item is done, and repeats it a few times.
 
-Nobody answers it, and MAVSDK knows only by it that a mission is finished: lost once, a script would wait for ever.
+The message is not acknowledged, and MAVSDK detects the end of a mission only by it: if it were lost, a script would
+wait forever.
 """
 
 from __future__ import annotations
@@ -11,11 +12,11 @@ from dialects import messages as m
 from link.core import Outgoing
 
 SEND_COUNT, SEND_PERIOD = 4, 0.5
-"""How often it is said, and s between."""
+"""Number of transmissions, and s between them."""
 
 
 class ItemReachedSender:
-    """The newest item that was done; older ones are not said again."""
+    """Repeats the message of the newest item; older ones are not repeated."""
 
     def __init__(self) -> None:
         self._index = 0
@@ -23,15 +24,15 @@ class ItemReachedSender:
         self._due = 0.0
 
     def tick(self, done: Sequence[int], now: float) -> list[Outgoing]:
-        """What to say: each of `done`, the items done since the last call, and the newest again where it is time."""
-        said = [Outgoing(m.MissionItemReached(index)) for index in done]
+        """Return the messages due: one for each item of `done`, reached since the last call, and repetitions."""
+        messages = [Outgoing(m.MissionItemReached(index)) for index in done]
         if done:
             self._index, self._left, self._due = done[-1], SEND_COUNT - 1, now + SEND_PERIOD
         elif self._left and now >= self._due:
-            said.append(Outgoing(m.MissionItemReached(self._index)))
+            messages.append(Outgoing(m.MissionItemReached(self._index)))
             self._left, self._due = self._left - 1, now + SEND_PERIOD
-        return said
+        return messages
 
     def reset(self) -> None:
-        """Another mission, or another item of it: what was done before is of no interest."""
+        """Stop repeating: another mission or another item was chosen."""
         self._left = 0

@@ -1,4 +1,4 @@
-"""What a mission's NAV items do, one small task each; which one comes next is executor.py's."""
+"""The NAV items of a mission, one task each; vehicle/autonomy/mission/executor.py runs them in order."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from vehicle.navigation.speed_control import STATIONARY, DesiredMotion
 
 
 class NavTask(Protocol):
-    """One item under way."""
+    """A NAV item in progress."""
 
     @property
     def goal(self) -> Point | None:
-        """Where it ends."""
+        """The place where the item ends, or None."""
 
     def step(self, guide: PathFollower, estimate: Estimate, speed: float, now: float) -> DesiredMotion | None:
-        """What it wants now; None when it is done."""
+        """Return the motion of this cycle; None when the item is done."""
 
 
 @dataclass(slots=True)
 class NavWaypoint:
-    """Along a leg, and stay at its end for a while."""
+    """NAV_WAYPOINT and NAV_LOITER_TIME: follow a leg, and stay at its end for `stay` s."""
 
     leg: Leg
     radius: float
@@ -35,11 +35,11 @@ class NavWaypoint:
 
     @property
     def goal(self) -> Point | None:
-        """Its end."""
+        """The end of the leg."""
         return self.leg.end
 
     def step(self, guide: PathFollower, estimate: Estimate, speed: float, now: float) -> DesiredMotion | None:
-        """Drive, then stand."""
+        """Follow the leg, then stand until the time is over."""
         if self._there is None and has_arrived(self.leg, estimate.place, self.radius):
             self._there = now
         if self._there is None:
@@ -49,7 +49,7 @@ class NavWaypoint:
 
 @dataclass(slots=True)
 class NavLoiterTurns:
-    """Around a point so many times; clockwise with a positive radius. First out to the circle."""
+    """NAV_LOITER_TURNS: circle a point `turns` times; clockwise with a positive radius."""
 
     centre: Point
     radius: float
@@ -59,11 +59,11 @@ class NavLoiterTurns:
 
     @property
     def goal(self) -> Point | None:
-        """Its middle."""
+        """The centre of the circle."""
         return self.centre
 
     def step(self, guide: PathFollower, estimate: Estimate, speed: float, now: float) -> DesiredMotion | None:
-        """Around; the angle counts once it is near the circle."""
+        """Drive out to the circle and follow it; only the angle near the circle counts."""
         bearing = self.centre.bearing(estimate.place)
         if abs(self.centre.distance(estimate.place) - abs(self.radius)) < max(0.5, abs(self.radius) / 2):
             if self._bearing is not None:
@@ -76,26 +76,26 @@ class NavLoiterTurns:
 
 @dataclass(slots=True)
 class NavDelay:
-    """Stand for a while."""
+    """NAV_DELAY: stand for `seconds`."""
 
     seconds: float
     goal: Point | None = None
     _began: float | None = None
 
     def step(self, guide: PathFollower, estimate: Estimate, speed: float, now: float) -> DesiredMotion | None:
-        """Nothing."""
+        """Stand until the time is over."""
         self._began = now if self._began is None else self._began
         return STATIONARY if now - self._began < self.seconds else None
 
 
 @dataclass(slots=True)
 class ConditionYaw:
-    """Turn on the spot to a heading."""
+    """CONDITION_YAW: turn on the spot to a heading, rad."""
 
     heading: float
     goal: Point | None = None
 
     def step(self, guide: PathFollower, estimate: Estimate, speed: float, now: float) -> DesiredMotion | None:
-        """Turn."""
+        """Turn; done within PIVOT_TOLERANCE, and at once if the wheels cannot pivot."""
         motion = guide.pivot(self.heading, estimate)
         return None if motion == STATIONARY else motion

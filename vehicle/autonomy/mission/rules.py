@@ -1,33 +1,37 @@
-"""Which items the three plans of this vehicle may hold. What a mission does is executor.py's, a fence vehicle/navigation/fence.py's.
+"""The items that the mission, fence and rally plans of this vehicle may hold.
 
-To offer another mission command, add a line here and its task or effect there. Plans move servos and relays, which
-vehicle/commands/accessories.py does; one that this vehicle has not is told at the upload, and passed over when its turn
-comes. Motors are nobody's servos: a plan that moves one is refused.
+To add a mission item that drives (NAV_, CONDITION_), add a row to MISSION_RULES and its task to executor.py. A DO_ item
+has its row beside its MAV_CMD handler in vehicle/commands (`DoItem`), because its command runs the same code.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
 
 from dialects.enums import Command, FenceItem, MissionResult, MissionType
-from link.services.mission.items import ItemRule, Items, PlanRules, PositionRule
-from vehicle.accessories import LARGEST_RELAY, LARGEST_SERVO, PERIOD_MAX, TIMES_MAX
+from link.services.mission.items import ItemRule, Items, MissionItem, PlanRules, PositionRule
 from vehicle.navigation.fence import POLYGONS
 
 DAY = 86400.0
 TURNS_MAX = 1000.0
-SPEED_LOW, SPEED_HIGH = -2.0, 100.0
-"""m/s; -1 and -2 are "no change" and "the usual one"."""
-RELAY_COMMANDS = (Command.DO_SET_RELAY, Command.DO_REPEAT_RELAY)
-SERVO_COMMANDS = (Command.DO_SET_SERVO, Command.DO_REPEAT_SERVO)
-ACCESSORY_COMMANDS = (*SERVO_COMMANDS, *RELAY_COMMANDS)
-_SERVOS, _RELAYS = (1.0, LARGEST_SERVO), (0.0, LARGEST_RELAY)
-_PULSES = (500.0, 2500.0)
-"""us; what any servo takes. What this one takes is its own matter."""
-_TIMES, _PERIOD = (1.0, TIMES_MAX), (0.0, PERIOD_MAX)
 CORNERS_MIN = 3
 RADIUS_MAX = 1e5
+
+
+@dataclass(frozen=True, slots=True)
+class DoItem:
+    """A MAV_CMD as a DO item of a mission. It runs beside the drive to the next NAV item."""
+
+    rule: ItemRule
+    run: Callable[[MissionItem, float], None]
+    """Called when the mission reaches the item; the item has passed `rule` and `accepts`."""
+    accepts: Callable[[MissionItem], bool] = lambda item: True
+    """False rejects an upload with INVALID_PARAM1."""
+    unsupported_reason: Callable[[MissionItem], str | None] = lambda item: None
+    """Return why this vehicle will skip the item, or None. The driver reads it at the upload."""
+
 
 _GO = ItemRule(PositionRule.NEEDED, {1: (0.0, DAY)})
 _HERE = ItemRule(PositionRule.OPTIONAL)
@@ -43,13 +47,6 @@ MISSION_RULES: dict[int, ItemRule] = {
     Command.CONDITION_DISTANCE: ItemRule(ranges={1: (0.0, RADIUS_MAX)}),
     Command.CONDITION_YAW: ItemRule(ranges={1: (-360.0, 360.0), 4: (0.0, 1.0)}),
     Command.DO_JUMP: ItemRule(ranges={1: (0.0, 65535.0), 2: (-1.0, 65535.0)}),
-    Command.DO_CHANGE_SPEED: ItemRule(ranges={1: (0.0, 1.0), 2: (SPEED_LOW, SPEED_HIGH)}),
-    Command.DO_SET_REVERSE: ItemRule(ranges={1: (0.0, 1.0)}),
-    Command.DO_FENCE_ENABLE: ItemRule(ranges={1: (0.0, 1.0)}),
-    Command.DO_SET_SERVO: ItemRule(ranges={1: _SERVOS, 2: _PULSES}),
-    Command.DO_REPEAT_SERVO: ItemRule(ranges={1: _SERVOS, 2: _PULSES, 3: _TIMES, 4: _PERIOD}),
-    Command.DO_SET_RELAY: ItemRule(ranges={1: _RELAYS, 2: (0.0, 1.0)}),
-    Command.DO_REPEAT_RELAY: ItemRule(ranges={1: _RELAYS, 2: _TIMES, 3: _PERIOD}),
 }
 
 FENCE_RULES: dict[int, ItemRule] = {
@@ -63,20 +60,16 @@ FENCE_RULES: dict[int, ItemRule] = {
 RALLY_RULES: dict[int, ItemRule] = {FenceItem.RALLY_POINT: ItemRule(PositionRule.NEEDED)}
 
 
-def _mission_is_sane(items: Items, motors: Collection[int]) -> MissionResult:
-    """Jumps lead somewhere, numbers are whole, and no servo is a motor."""
-
-    def numbers(*commands: Command) -> list[float]:
-        return [item.params[0] for item in items if item.command in commands]
-
-    sane = all(target == int(target) and target < len(items) for target in numbers(Command.DO_JUMP))
-    sane &= all(servo == int(servo) and servo not in motors for servo in numbers(*SERVO_COMMANDS))
-    sane &= all(relay == int(relay) for relay in numbers(*RELAY_COMMANDS))
+def _check_mission(items: Items, do_items: Mapping[int, DoItem]) -> MissionResult:
+    """Check that every jump has a target and that every DO item accepts its parameters."""
+    jumps = (item.params[0] for item in items if item.command == Command.DO_JUMP)
+    sane = all(target == int(target) and target < len(items) for target in jumps)
+    sane &= all(do_items[item.command].accepts(item) for item in items if item.command in do_items)
     return MissionResult.ACCEPTED if sane else MissionResult.INVALID_PARAM1
 
 
-def _fence_is_sane(items: Items) -> MissionResult:
-    """The corners of one polygon stand together, and each says how many there are. One return point at most."""
+def _check_fence(items: Items) -> MissionResult:
+    """Check that the corners of each polygon are complete, and that there is at most one return point."""
     if sum(item.command == FenceItem.RETURN_POINT for item in items) > 1:
         return MissionResult.INVALID
     index = 0
@@ -91,10 +84,11 @@ def _fence_is_sane(items: Items) -> MissionResult:
     return MissionResult.ACCEPTED
 
 
-def plan_rules(motors: Collection[int]) -> dict[MissionType, PlanRules]:
-    """The rules of each plan; `motors` are the servo outputs that motors are at."""
+def plan_rules(do_items: Mapping[int, DoItem]) -> dict[MissionType, PlanRules]:
+    """Return the rules of each plan; `do_items` are the DO_ commands that a mission may hold."""
+    commands = {**MISSION_RULES, **{command: item.rule for command, item in do_items.items()}}
     return {
-        MissionType.MISSION: PlanRules(MISSION_RULES, check=partial(_mission_is_sane, motors=motors)),
-        MissionType.FENCE: PlanRules(FENCE_RULES, capacity=200, check=_fence_is_sane),
+        MissionType.MISSION: PlanRules(commands, check=partial(_check_mission, do_items=do_items)),
+        MissionType.FENCE: PlanRules(FENCE_RULES, capacity=200, check=_check_fence),
         MissionType.RALLY: PlanRules(RALLY_RULES, capacity=20),
     }

@@ -1,1 +1,1 @@
-"""One module for each autonomous mode except AUTO, which is `vehicle.autonomy.mission`."""
+"""One module for each autonomous mode except AUTO, which is vehicle/autonomy/mission."""

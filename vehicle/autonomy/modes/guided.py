@@ -1,4 +1,7 @@
-"""GUIDED: drives for the newest setpoint. A velocity counts for GUIDED_TIMEOUT, a place until another one comes."""
+"""GUIDED: follows the newest setpoint.
+
+A velocity is valid for GUIDED_TIMEOUT, a position until the next setpoint.
+"""
 
 from __future__ import annotations
 
@@ -14,23 +17,23 @@ from vehicle.params import Params
 
 
 class GuidedMode:
-    """The setpoint in force and what it makes of an estimate."""
+    """The setpoint in use, and the motion that follows from it."""
 
     def __init__(self, params: Params, guide: PathFollower) -> None:
         self.target: Target | None = None
         self._params = params
         self._guide = guide
-        self._at = -math.inf
+        self._set_at = -math.inf
         self._leg: Leg | None = None
 
     @property
     def goal(self) -> Point | None:
-        """Where it goes, if it goes to a place."""
+        """The place of a position setpoint."""
         return self.target.point if isinstance(self.target, PositionTarget) else None
 
     def set_target(self, target: Target, estimate: Estimate, now: float) -> None:
-        """A new setpoint. The same place again goes on as it is."""
-        self._at = now
+        """Use a new setpoint. A repeated position setpoint changes nothing."""
+        self._set_at = now
         if target == self.target:
             return
         self.target = target
@@ -38,36 +41,36 @@ class GuidedMode:
         self._guide.reset()
 
     def unready(self, estimate: Estimate) -> str | None:
-        """Velocities need no sensor at all; a place is refused when it comes."""
+        """Return None: velocities need no sensor, and a position setpoint is checked on arrival."""
         return None
 
     def begin(self, estimate: Estimate, now: float) -> None:
-        """Chosen anew, armed or stopped: what was asked before is past."""
+        """Forget the setpoint: it was requested before the mode began."""
         self.target = self._leg = None
 
     def expires_at(self) -> float | None:
-        """When a velocity began to be too old, or will. None where nothing can get old."""
-        return self._at + self._params["GUIDED_TIMEOUT"] if isinstance(self.target, VelocityTarget) else None
+        """Return when the velocity setpoint expired or will expire; None without one."""
+        return self._set_at + self._params["GUIDED_TIMEOUT"] if isinstance(self.target, VelocityTarget) else None
 
     def step(self, estimate: Estimate, speed: float, now: float) -> DesiredMotion | None:
-        """None without a setpoint that counts."""
+        """Return the motion toward the setpoint; None without a valid one."""
         target = self.target
         if isinstance(target, PositionTarget):
-            return self._go(target, estimate, speed)
+            return self._drive_to(target, estimate, speed)
         lost = self.expires_at()
         if target is None or lost is None or now > lost:
             return None
         largest = self._params["SPEED_MAX"]
-        return self._hold(target, clamp(target.speed, largest), estimate)
+        return self._follow(target, clamp(target.speed, largest), estimate)
 
-    def _hold(self, course: VelocityTarget, speed: float, estimate: Estimate) -> DesiredMotion:
-        if course.heading is not None:
-            return self._guide.steer_heading(course.heading, estimate, speed)
-        return DesiredMotion(speed, self._guide.limit_turn_rate(course.turn_rate or 0.0, speed, estimate))
+    def _follow(self, velocity: VelocityTarget, speed: float, estimate: Estimate) -> DesiredMotion:
+        if velocity.heading is not None:
+            return self._guide.steer_heading(velocity.heading, estimate, speed)
+        return DesiredMotion(speed, self._guide.limit_turn_rate(velocity.turn_rate or 0.0, speed, estimate))
 
-    def _go(self, place: PositionTarget, estimate: Estimate, speed: float) -> DesiredMotion:
+    def _drive_to(self, position: PositionTarget, estimate: Estimate, speed: float) -> DesiredMotion:
         if self._leg is None or has_arrived(self._leg, estimate.place, STOP_RADIUS):
             self._leg = None
             return STATIONARY
-        wanted = speed if place.speed is None else min(place.speed, self._params["SPEED_MAX"])
+        wanted = speed if position.speed is None else min(position.speed, self._params["SPEED_MAX"])
         return self._guide.follow_leg(self._leg, estimate, wanted, 0.0)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dialects.enums import Result
 from dialects.messages import CommandAck, CommandCancel, CommandInt, CommandLong, Message
 from link.core import Outgoing, Peer, Received
+from link.services.command.client import CommandClient
 from link.services.command.jobs import PROGRESS_PERIOD, REPEAT_WINDOW, CommandJob
-from link.services.command.server import CommandClient, CommandHandler, CommandRequest, CommandServer
+from link.services.command.server import CommandHandler, CommandRequest, CommandServer
 
 HERE, THERE = Peer(0, "here"), Peer(0, "there")
 TEST, OTHER = 209, 310

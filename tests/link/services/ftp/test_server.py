@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from link.services.ftp.protocol import MAX_OFFSET, FtpError, FtpOpcode, FtpPacket, crc32
+from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, crc32
 from link.services.ftp.server import BURST_LENGTH
-from tests.link.ftp_vehicle import GENERAL, LOG, Vehicle, as_entries, error
+from tests.link.ftp_vehicle import GENERAL, LOG, MAX_OFFSET, Vehicle, as_entries, error
 
 # ---- reading ----
 

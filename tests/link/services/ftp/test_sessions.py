@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from link.services.ftp.files import FileTree, MemoryFolder, NotReadyError
-from link.services.ftp.protocol import MAX_OFFSET, FtpError, FtpOpcode, FtpPacket
+from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket
 from link.services.ftp.server import FtpServer
 from link.services.ftp.sessions import EXPIRY, IDLE_AFTER, MAX_FILE, MAX_SESSIONS, MAX_SESSIONS_PER_CLIENT
 from link.services.pacing import BulkPacer
-from tests.link.ftp_vehicle import GENERAL, LOG, Vehicle, as_entries, error, only_plans
+from tests.link.ftp_vehicle import GENERAL, LOG, MAX_OFFSET, Vehicle, as_entries, error, only_plans
 from tests.link.services_world import OTHER_PEER
 
 # ---- repeats ----

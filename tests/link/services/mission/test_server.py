@@ -2,34 +2,21 @@
 
 from __future__ import annotations
 
-import math
-import struct
-from typing import Any
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.core import Peer
-from link.services.mission.download import MAX_CLIENTS
-from link.services.mission.files import decode_plan, encode_plan
 from link.services.mission.items import UNSET_COORDINATE
-from link.services.mission.plans import plan_id
-from link.services.pacing import BulkPacer
 from tests.link.mission_vehicle import (
     DO_JUMP,
     FENCE_CIRCLE,
-    NAV_LOITER_TIME,
     Vehicle,
     plain,
     waypoint,
 )
 from tests.link.services_world import from_gcs
-
-PINNED = 1059710445
-"""plan_id of one plain waypoint."""
 
 # ---- a part ----
 
@@ -62,132 +49,7 @@ def test_a_part_that_breaks_the_rules_leaves_the_plan() -> None:
     assert vehicle.plan[2].params[0] == 1.0
 
 
-@pytest.mark.parametrize(
-    ("first", "last", "told"), [(1, 2, [1, 2]), (2, 2, [2]), (0, 3, [0, 1, 2, 3]), (0, -1, [0, 1, 2, 3]), (3, -1, [3])]
-)
-def test_a_part_of_a_plan_is_told_without_more_questions(first: int, last: int, told: list[int]) -> None:
-    vehicle = Vehicle()
-    vehicle.upload([waypoint(number) for number in range(4)])
-    assert vehicle.ask(m.MissionRequestPartialList(1, 1, first, last)) == []
-    items = vehicle.tick(1.0)
-    assert [item.seq for item in items] == told
-    assert [item.x for item in items] == [waypoint(number).x for number in told]
-    assert vehicle.tick(2.0) == []
-
-
-def test_a_large_part_goes_no_faster_than_the_line() -> None:
-    vehicle = Vehicle(pacer=BulkPacer(lambda peer: 1000.0))
-    vehicle.upload([waypoint(number) for number in range(100)])
-    vehicle.ask(m.MissionRequestPartialList(1, 1, 0, -1))
-    told = [item.seq for cycle in range(100) for item in vehicle.tick(cycle * 0.02)]
-    assert 30 < len(told) < 60  # 2 s of 1000 bytes/s, 50 bytes an item
-    assert told == sorted(told)
-    told += [item.seq for cycle in range(100, 400) for item in vehicle.tick(cycle * 0.02)]
-    assert told == list(range(100))
-
-
-@pytest.mark.parametrize(
-    ("first", "last", "kind", "verdict"),
-    [
-        (-1, 0, 0, MissionResult.INVALID_SEQUENCE),
-        (0, 2, 0, MissionResult.INVALID_SEQUENCE),
-        (1, 0, 0, MissionResult.INVALID_SEQUENCE),
-        (0, -2, 0, MissionResult.INVALID_SEQUENCE),
-        (0, -1, 1, MissionResult.INVALID_SEQUENCE),
-        (0, 0, 9, MissionResult.UNSUPPORTED),
-    ],
-)
-def test_no_part_of_what_is_not_there(first: int, last: int, kind: int, verdict: MissionResult) -> None:
-    vehicle = Vehicle()
-    vehicle.upload([waypoint(0), waypoint(1)])
-    [ack] = vehicle.ask(m.MissionRequestPartialList(1, 1, first, last, kind))
-    assert ack.type == verdict
-    assert vehicle.tick(1.0) == []
-
-
-def test_a_newer_question_replaces_the_one_before_and_there_are_not_too_many() -> None:
-    vehicle = Vehicle()
-    vehicle.upload([waypoint(0), waypoint(1), waypoint(2)])
-    vehicle.ask(m.MissionRequestPartialList(1, 1, 0, 1))
-    vehicle.ask(m.MissionRequestPartialList(1, 1, 2, 2))
-    assert [item.seq for item in vehicle.tick(1.0)] == [2]
-    asked = [
-        vehicle.ask(m.MissionRequestPartialList(1, 1, 0, 0), peer=Peer(0, number)) for number in range(MAX_CLIENTS + 1)
-    ]
-    assert [len(each) for each in asked] == [0] * MAX_CLIENTS + [1]
-    assert asked[-1][0].type == MissionResult.DENIED
-
-
-# ---- ids ----
-
-
-def test_the_id_is_told_at_the_end_of_an_upload_and_on_download() -> None:
-    vehicle = Vehicle()
-    vehicle.ask(m.MissionCount(1, 1, 1, opaque_id=77))
-    [ack] = vehicle.give(waypoint(0), 0)
-    [count] = vehicle.ask(m.MissionRequestList(1, 1, 0))
-    assert ack.opaque_id == count.opaque_id == vehicle.server.plan_id(MissionType.MISSION) not in (0, 77)
-
-
-def test_the_id_changes_with_the_plan_and_only_with_it() -> None:
-    vehicle, seen = Vehicle(), []
-    for items in ([waypoint(0)], [waypoint(1)], [waypoint(0), waypoint(1)], [waypoint(1), waypoint(0)], [waypoint(0)]):
-        vehicle.upload(items)
-        seen.append(vehicle.server.plan_id(MissionType.MISSION))
-    assert seen[0] == seen[4]
-    assert len(set(seen)) == 4
-    vehicle.ask(m.MissionWritePartialList(1, 1, 0, 0))
-    [ack] = vehicle.give(waypoint(0, z=9.0), 0)
-    assert ack.opaque_id not in (0, *seen)
-    assert vehicle.server.plan_id(MissionType.FENCE) == 0
-    [cleared] = vehicle.ask(m.MissionClearAll(1, 1, 0))
-    [count] = vehicle.ask(m.MissionRequestList(1, 1, 0))
-    assert (cleared.opaque_id, count.opaque_id, vehicle.server.plan_id(MissionType.MISSION)) == (0, 0, 0)
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        *({"command": NAV_LOITER_TIME}, {"frame": 6}, {"params": (1.0, 1.0, 0.0, math.nan)}, {"x": 1}, {"y": 1}),
-        *({"z": 0.6}, {"autocontinue": False}),
-    ],
-)
-def test_every_field_counts_for_the_id(changes: dict[str, Any]) -> None:
-    assert plan_id([waypoint(0)]) != plan_id([waypoint(0, **changes)])
-
-
-def test_the_id_never_changes_from_release_to_release() -> None:
-    # A ground station may know a plan by it for years.
-    assert (plan_id([]), plan_id([waypoint(0)])) == (0, PINNED)
-    other_nan = struct.unpack("<f", b"\x01\x00\xc0\xff")[0]
-    assert plan_id([waypoint(0, params=(0.0, 1.0, 0.0, other_nan))]) == PINNED
-
-
-def test_a_plan_has_the_same_id_after_the_way_through_a_file() -> None:
-    items = [waypoint(0, z=0.1), waypoint(1, params=(0.3, math.nan, -1e-9, 5.0))]
-    vehicle = Vehicle()
-    vehicle.upload(items)
-    assert plan_id(decode_plan(encode_plan(vehicle.plan))) == vehicle.server.plan_id(MissionType.MISSION)
-
-
 # ---- downloading, clearing, choosing ----
-
-
-def test_a_plan_is_read_item_by_item_in_either_words() -> None:
-    vehicle = Vehicle()
-    vehicle.upload([waypoint(0), waypoint(1)])
-    vehicle.at = 1
-    [count] = vehicle.ask(m.MissionRequestList(1, 1, 0))
-    assert (count.count, count.mission_type, count.target_system) == (2, 0, 255)
-    for question in (m.MissionRequestInt(1, 1, 1, 0), m.MissionRequest(1, 1, 1, 0)):
-        [item] = vehicle.ask(question)
-        assert (type(item), item.seq, item.x, item.current) == (m.MissionItemInt, 1, waypoint(1).x, 1)
-    assert vehicle.ask(m.MissionRequestInt(1, 1, 0, 0))[0].current == 0
-
-
-@pytest.mark.parametrize("kind", [0, 1, 2])
-def test_no_plan_is_a_count_of_zero(kind: int) -> None:
-    assert [count.count for count in Vehicle().ask(m.MissionRequestList(1, 1, kind))] == [0]
 
 
 @pytest.mark.parametrize("kind", [3, 200, 255])
@@ -198,10 +60,6 @@ def test_unknown_kinds_are_unsupported(kind: int) -> None:
         m.MissionRequestInt(1, 1, 0, kind),
     ):
         assert [ack.type for ack in Vehicle().ask(message)] == [MissionResult.UNSUPPORTED]
-
-
-def test_an_item_beyond_the_end_is_an_invalid_sequence() -> None:
-    assert [ack.type for ack in Vehicle().ask(m.MissionRequestInt(1, 1, 0, 0))] == [MissionResult.INVALID_SEQUENCE]
 
 
 def test_clearing_one_kind_and_all_of_them() -> None:

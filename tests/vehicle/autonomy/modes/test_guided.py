@@ -1,4 +1,4 @@
-"""GUIDED: what its setpoints do, what is refused, and how it ends. Sensors are noisy; the truth is the plant's."""
+"""GUIDED: setpoints, timeouts and stops, with noisy sensors in a simulated field."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class TestVelocity:
         assert wrap_angle(field.yaw - before) == pytest.approx(1.0, abs=0.2)
 
     @pytest.mark.parametrize("frame", [1, 8])
-    def test_a_velocity_alone_with_every_other_bit_set_drives(self, frame: int) -> None:
+    def test_a_velocity_with_all_other_fields_ignored_drives(self, frame: int) -> None:
         """MAVProxy's `velocity` and the usual scripts for drones send 0xFC7, with the bit of the force in it."""
         field = Field()
         field.begin(Mode.GUIDED)
@@ -48,7 +48,7 @@ class TestVelocity:
         field.stream(3.0, -0.5)
         assert field.speed == pytest.approx(-0.5, abs=0.1)
 
-    def test_it_stops_a_second_after_the_last_one_and_holds_after_five(self) -> None:
+    def test_setpoint_loss_stops_after_one_second_and_holds_after_five(self) -> None:
         field = going()
         field.twist(0.8)
         field.wait(0.95)
@@ -65,7 +65,7 @@ class TestVelocity:
         field.stream(1.0, 0.8)
         assert not field.turning
 
-    def test_a_new_one_in_time_goes_on(self) -> None:
+    def test_a_new_setpoint_in_time_continues(self) -> None:
         field = going()
         field.wait(2.0)
         assert not field.turning
@@ -93,7 +93,7 @@ class TestVelocity:
         assert 0.3 < field.yaw < 1.2
 
     @pytest.mark.parametrize("mask", [128 | 32, 128 | 64 | 32])
-    def test_thrust_in_the_bodys_frame_counts_where_it_is_meant(self, mask: int) -> None:
+    def test_thrust_body_is_used_if_selected(self, mask: int) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
         for _ in range(50):
@@ -101,12 +101,12 @@ class TestVelocity:
             field.wait(0.06)
         assert field.speed == pytest.approx(0.4, abs=0.06)
 
-    def test_thrust_in_the_bodys_frame_that_is_no_number_is_refused(self) -> None:
+    def test_a_nan_in_thrust_body_is_rejected(self) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
         field.say(m.SetAttitudeTarget(0, 1, 1, 128 | 32, [1, 0, 0, 0], 0, 0, 0.0, 0.5, [math.nan, 0, 0]))
         field.wait(0.5)
-        assert said(field, "a value is no number")
+        assert said(field, "a value is not a number")
         assert not field.turning
 
     @pytest.mark.parametrize("length", [1.0, 0.9, 1.1, 3.0])
@@ -119,16 +119,16 @@ class TestVelocity:
             field.wait(0.06)
         assert wrap_angle(field.yaw - math.pi / 2) == pytest.approx(0.0, abs=0.1)
 
-    def test_a_quaternion_of_zeros_is_none(self) -> None:
+    def test_a_zero_quaternion_is_rejected(self) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
         for _ in range(10):
             field.say(m.SetAttitudeTarget(0, 1, 1, 1 | 2 | 4, [0, 0, 0, 0], 0, 0, 0, 0.5))
             field.wait(0.06)
         assert not field.turning
-        assert said(field, "its quaternion is none")
+        assert said(field, "invalid quaternion")
 
-    def test_44_more_than_the_rover_can_is_cut(self) -> None:
+    def test_44_a_speed_above_the_maximum_is_limited(self) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
         field.stream(2.0, 1e30)
@@ -146,7 +146,7 @@ class TestVelocity:
             bench.wait(0.05)
         assert bench.throttles == pytest.approx((0.5, 0.5))
 
-    def test_47_an_overtaken_one_is_left_out(self) -> None:
+    def test_47_an_overtaken_setpoint_is_ignored(self) -> None:
         field = going()
         field.twist(0.8, boot_ms=5000)
         field.twist(0.0, boot_ms=4990)
@@ -160,7 +160,7 @@ class TestVelocity:
 
 class TestPlace:
     @pytest.mark.parametrize("kind", [1, 2, 3, 4])
-    def test_it_goes_there_and_stands(self, kind: int) -> None:
+    def test_the_rover_drives_to_a_position_and_stops(self, kind: int) -> None:
         field = Field(DRIVE_TYPE=kind)
         field.begin(Mode.GUIDED)
         field.goto(8.0, 5.0)
@@ -171,7 +171,7 @@ class TestPlace:
         field.beat(10.0)
         assert field.mode is Mode.GUIDED  # a place does not get old
 
-    def test_offsets_count_from_here_and_the_body_frame_from_the_nose(self) -> None:
+    def test_offset_frames_are_relative_to_the_rover_and_its_heading(self) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
         field.goto(0.0, 4.0, frame=7)
@@ -180,7 +180,7 @@ class TestPlace:
         field.goto(3.0, 0.0, frame=9)  # the nose is to the east now
         field.until(Point(0.0, 7.0), 30.0)
 
-    def test_reposition_changes_the_mode_where_it_is_asked_to(self) -> None:
+    def test_reposition_changes_the_mode_if_its_flag_is_set(self) -> None:
         field = Field()
         field.arm()
         assert field.reposition(Point(5.0, 0.0), flags=0) is Result.DENIED
@@ -190,7 +190,7 @@ class TestPlace:
         target = field.newest(m.PositionTargetGlobalInt)
         assert GROUND.to_local(target.lat_int / 1e7, target.lon_int / 1e7).distance(Point(5.0, 0.0)) < 0.05
 
-    def test_a_speed_for_the_way(self) -> None:
+    def test_reposition_can_set_the_speed(self) -> None:
         field = Field()
         field.arm()
         assert field.reposition(Point(20.0, 0.0), speed=0.4) is Result.ACCEPTED
@@ -209,7 +209,7 @@ class TestPlace:
         field.until(Point(-5.0, 0.0), 30.0)
         assert abs(wrap_angle(field.yaw)) < 0.3
 
-    def test_position_lost_holds(self) -> None:
+    def test_a_lost_position_holds(self) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
         field.goto(50.0, 0.0)
@@ -229,7 +229,7 @@ class TestPlace:
 
 
 class TestStops:
-    def test_the_drivers_stick_moves_nothing_in_guided_and_his_hold_stops(self) -> None:
+    def test_manual_control_moves_nothing_in_guided_and_hold_stops(self) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
         field.wait(1.0, NEUTRAL)
@@ -241,7 +241,7 @@ class TestStops:
         field.wait(0.5)
         assert not field.turning
 
-    def test_pause_is_for_everybody_and_continue_for_the_driver(self) -> None:
+    def test_any_station_may_pause_and_only_the_owner_may_continue(self) -> None:
         field = Field()
         field.begin(Mode.GUIDED)
         field.goto(50.0, 0.0)
@@ -255,7 +255,7 @@ class TestStops:
         field.beat(1.0)
         assert field.turning
 
-    def test_a_late_cycle_is_zero_at_once(self) -> None:
+    def test_a_late_cycle_zeroes_the_outputs_at_once(self) -> None:
         field = going()
         field.freeze(0.15)
         field.cycle()
@@ -263,7 +263,7 @@ class TestStops:
         field.stream(0.5, 0.8)
         assert field.turning
 
-    def test_a_process_that_stands_for_long_drives_no_old_setpoint(self) -> None:
+    def test_a_process_stopped_for_long_ignores_the_old_setpoint(self) -> None:
         field = going()
         field.freeze(2.0)
         field.cycle()

@@ -1,0 +1,115 @@
+"""Message traits: how each message is queued, limited, forwarded and logged.
+
+A message that is not in TRAITS is plain state, as telemetry is. To give a message another treatment, add or change its
+row; the transmit queue, the channel, the router and the recorders all read the sets that are built from this table.
+"""
+
+from __future__ import annotations
+
+from enum import Flag, auto
+
+from dialects import messages as m
+from dialects import rover
+
+
+class Trait(Flag):
+    """One property of a message. Each message has exactly one of STATE and ACKED."""
+
+    STATE = auto()
+    """Only the newest counts: one that a newer one has overtaken is dropped."""
+    ACKED = auto()
+    """Repeated until acknowledged, or sent once: never dropped for being late."""
+    URGENT = auto()
+    """Overtakes all other messages that wait to be sent. Urgent state waits only once: the newest replaces it."""
+    DEMAND = auto()
+    """A manual demand: has the rate limit of demands."""
+    COMMAND = auto()
+    """A command: has the rate limit of commands, which a stop passes."""
+    LOCAL = auto()
+    """Concerns one link only and is never forwarded."""
+    UNLOGGED = auto()
+    """Our own are left out of telemetry logs: a log that is read while it is written would grow by what is read."""
+    SECRET = auto()
+    """Holds a key: left out of every log, whoever sent it."""
+
+
+_STATE, _ACKED, _URGENT, _DEMAND, _COMMAND = Trait.STATE, Trait.ACKED, Trait.URGENT, Trait.DEMAND, Trait.COMMAND
+_LOCAL, _UNLOGGED, _SECRET = Trait.LOCAL, Trait.UNLOGGED, Trait.SECRET
+
+TRAITS: dict[type[m.Message], Trait] = {
+    # Demands and what keeps them valid
+    m.ManualControl: _STATE | _URGENT | _DEMAND,
+    m.RcChannelsOverride: _STATE | _URGENT | _DEMAND,
+    m.RoverOperatorPresence: _STATE | _URGENT | _DEMAND,
+    m.SetPositionTargetLocalNed: _STATE | _URGENT,
+    m.SetPositionTargetGlobalInt: _STATE | _URGENT,
+    m.SetAttitudeTarget: _STATE | _URGENT,
+    m.Heartbeat: _STATE | _URGENT,
+    # Commands
+    m.CommandLong: _ACKED | _URGENT | _COMMAND,
+    m.CommandInt: _ACKED | _URGENT | _COMMAND,
+    m.SetMode: _ACKED | _URGENT | _COMMAND,
+    m.CommandAck: _ACKED | _URGENT,
+    m.CommandCancel: _ACKED,
+    # Sent once, or answered
+    m.StatusText: _ACKED,
+    m.Timesync: _ACKED,
+    m.Ping: _ACKED,
+    m.MissionItemReached: _ACKED,
+    m.ComponentMetadata: _ACKED,
+    # Parameters
+    m.ParamRequestList: _ACKED,
+    m.ParamRequestRead: _ACKED,
+    m.ParamSet: _ACKED,
+    m.ParamValue: _ACKED,
+    m.ParamError: _ACKED,
+    # Missions
+    m.MissionRequestList: _ACKED,
+    m.MissionRequestPartialList: _ACKED,
+    m.MissionWritePartialList: _ACKED,
+    m.MissionCount: _ACKED,
+    m.MissionRequest: _ACKED,
+    m.MissionRequestInt: _ACKED,
+    m.MissionItem: _ACKED,
+    m.MissionItemInt: _ACKED,
+    m.MissionAck: _ACKED,
+    m.MissionClearAll: _ACKED,
+    m.MissionSetCurrent: _ACKED,
+    # Files and logs
+    m.FileTransferProtocol: _ACKED | _UNLOGGED,
+    m.LogEntry: _ACKED | _UNLOGGED,
+    m.LogData: _ACKED | _UNLOGGED,
+    m.LogRequestList: _ACKED,
+    m.LogRequestData: _ACKED,
+    m.LogErase: _ACKED,
+    m.LogRequestEnd: _ACKED,
+    # Of one link
+    m.RadioStatus: _STATE | _LOCAL,
+    m.SetupSigning: _STATE | _LOCAL | _UNLOGGED | _SECRET,
+}
+"""Message -> its traits. A message that is not listed has STATE."""
+
+
+def ids_with(traits: Trait) -> frozenset[int]:
+    """Return the ids of the listed messages that have all of `traits`."""
+    return frozenset(message.id for message, each in TRAITS.items() if traits in each)
+
+
+ACKED = ids_with(Trait.ACKED)
+URGENT = ids_with(Trait.URGENT)
+NEWEST_ONLY = ids_with(Trait.STATE | Trait.URGENT)
+DEMANDS = ids_with(Trait.DEMAND)
+COMMANDS = ids_with(Trait.COMMAND)
+LOCAL = ids_with(Trait.LOCAL)
+UNLOGGED = ids_with(Trait.UNLOGGED)
+SECRET = ids_with(Trait.SECRET)
+
+
+def is_stop(message: m.Message) -> bool:
+    """Return whether this is a command that only stops: disarm, safety switch to SAFE, flight termination."""
+    if not isinstance(message, m.CommandLong | m.CommandInt):
+        return False
+    if message.command == rover.MAV_CMD_DO_FLIGHTTERMINATION:
+        return bool(message.param1 > 0.5)
+    stops = (rover.MAV_CMD_COMPONENT_ARM_DISARM, rover.MAV_CMD_DO_SET_SAFETY_SWITCH_STATE)
+    return message.command in stops and bool(message.param1 == 0)

@@ -1,0 +1,34 @@
+"""SCREENS: every screen of the ground station, its keys and its class. A new screen is its module and one row here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class ScreenRow:
+    """One screen. It has the action `app.<id>` in ACTIONS, so that a key map file can bind other keys to it."""
+
+    id: str
+    title: str
+    """One or two words for the footer and the palette."""
+    help: str
+    keys: tuple[str, ...]
+    """Default keys that open it, in every key map."""
+    target: str
+    """"module:Class" of a ConsoleScreen. Loaded when first opened: the program starts sooner, and this table stays free
+    of Textual."""
+
+    @property
+    def action(self) -> str:
+        """Id of the action that opens it."""
+        return f"app.{self.id}"
+
+
+SCREENS: tuple[ScreenRow, ...] = (
+    ScreenRow("drive", "Drive", "Drive screen, the only one where keys drive", ("f1",),
+              "groundstation.ui.screens.drive:DriveScreen"),
+    ScreenRow("help", "Help", "Keys and what they do", ("question_mark",),
+              "groundstation.ui.screens.help:HelpScreen"),
+)  # fmt: skip
+"""In the order of the help screen. The first one is at the bottom of the screen stack: Escape leads back to it."""

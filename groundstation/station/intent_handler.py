@@ -1,0 +1,144 @@
+"""Carries out the operator's intents: one table row for each kind of intent.
+
+A new intent is a class in groundstation/intents.py and a row here: in VEHICLE_COMMANDS if it is a command to the
+selected vehicle, else in HANDLERS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from dialects.enums import Command, Severity
+from dialects.modes import Mode
+from groundstation import intents as i
+from groundstation.station.commander import Commander
+from groundstation.station.driving import DrivingController
+from groundstation.station.operator import OperatorSession
+from groundstation.vehicles.fleet import Fleet
+from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.vehicle_state import VehicleState
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleCommand:
+    """How an intent becomes a command to the selected vehicle."""
+
+    send: Callable[[Commander, VehicleState, Any, float], None]
+    """Called with the commander, the vehicle, the intent and the time."""
+    neutral: bool = True
+    """Go neutral first; keys that are held must be pressed again."""
+
+
+class IntentHandler:
+    """Applies intents to the operator's session, the selection and the selected vehicle."""
+
+    def __init__(
+        self, operator: OperatorSession, fleet: Fleet, commander: Commander, driving: DrivingController, log: MessageLog
+    ) -> None:
+        self._operator = operator
+        self._fleet = fleet
+        self._commander = commander
+        self._driving = driving
+        self._log = log
+
+    def handle(self, intent: i.AnyIntent, now: float) -> None:
+        """Carry out an intent; its messages are ready to be sent when this returns."""
+        if intent.is_input:
+            self._operator.record_input(now)
+        self._driving.update_permission(now)
+        command = VEHICLE_COMMANDS.get(type(intent))
+        handler = HANDLERS.get(type(intent))
+        if command is not None:
+            self._send_command(command, intent, now)
+        elif handler is not None:
+            handler(self, intent, now)
+        self._driving.update(now)
+
+    def _send_command(self, command: VehicleCommand, intent: i.AnyIntent, now: float) -> None:
+        selected = self._fleet.selected
+        if selected is None:
+            self._log.add(now, "station", "no vehicle yet", Severity.WARNING)
+            return
+        if command.neutral:
+            self._operator.sticks.block(now)
+        command.send(self._commander, selected.state, intent, now)
+
+    def _press(self, intent: i.DriveKeyDown, now: float) -> None:
+        self._operator.press(intent, now)
+
+    def _release(self, intent: i.DriveKeyUp, now: float) -> None:
+        self._operator.sticks.release(intent.key)
+
+    def _stop(self, intent: i.Stop, now: float) -> None:
+        self._operator.sticks.stop()
+        selected = self._fleet.selected
+        if intent.reason == i.STOP_KEY and selected is not None and selected.state.drives_itself:
+            self._commander.set_mode(selected.state, Mode.HOLD.name, now)  # neutral sticks do not stop a mission
+
+    def _scale_limits(self, intent: i.ScaleLimits, now: float) -> None:
+        self._operator.sticks.scale_limits(intent)
+
+    def _set_style(self, intent: i.SetStyle, now: float) -> None:
+        if self._operator.sticks.set_style(intent.style):
+            self._log.add(now, "station", f"drive style {self._operator.sticks.style}", Severity.NOTICE)
+
+    def _set_reports_releases(self, intent: i.ReportKeyReleases, now: float) -> None:
+        self._operator.sticks.set_reports_releases()
+
+    def _set_gate(self, intent: i.SetKeyGate, now: float) -> None:
+        self._operator.set_gate(intent, now)
+
+    def _renew_lease(self, intent: i.RenewLease, now: float) -> None:
+        self._operator.renew_lease(now)
+
+    def _select(self, intent: i.SelectVehicle, now: float) -> None:
+        self._operator.reset_demand(now)
+        self._fleet.select(intent.system, now)
+
+    def _select_next(self, intent: i.SelectNextVehicle, now: float) -> None:
+        self._operator.reset_demand(now)
+        self._fleet.select_next(now)
+
+    def _quit(self, intent: i.Quit, now: float) -> None:
+        self._operator.sticks.block(now)
+        self._driving.end()
+
+
+def _set_mode(commander: Commander, vehicle: VehicleState, intent: i.SetMode, now: float) -> None:
+    commander.set_mode(vehicle, intent.mode, now)
+
+
+def _request_control(commander: Commander, vehicle: VehicleState, intent: i.RequestControl, now: float) -> None:
+    """Request control, and let the vehicle grant later requests of other ground stations without asking us."""
+    commander.send(vehicle, "request control", Command.REQUEST_OPERATOR_CONTROL, 1, 1, now=now)
+
+
+VEHICLE_COMMANDS: dict[type[i.Intent], VehicleCommand] = {
+    i.Arm: VehicleCommand(lambda commander, vehicle, _, now: commander.arm(vehicle, now)),
+    i.Disarm: VehicleCommand(lambda commander, vehicle, _, now: commander.disarm(vehicle, now)),
+    i.EmergencyStop: VehicleCommand(lambda commander, vehicle, _, now: commander.emergency_stop(vehicle, now)),
+    i.ClearEmergencyStop: VehicleCommand(
+        lambda commander, vehicle, _, now: commander.clear_emergency_stop(vehicle, now)
+    ),
+    i.SetMode: VehicleCommand(_set_mode, neutral=False),
+    i.RequestControl: VehicleCommand(_request_control, neutral=False),
+}
+"""Intent -> command to the selected vehicle. Neutral comes first where the command stops the vehicle, and before
+arming, which must not start with a key held."""
+
+HANDLERS: dict[type[i.Intent], Callable[[IntentHandler, Any, float], None]] = {
+    i.DriveKeyDown: IntentHandler._press,
+    i.DriveKeyUp: IntentHandler._release,
+    i.Stop: IntentHandler._stop,
+    i.ScaleLimits: IntentHandler._scale_limits,
+    i.SetStyle: IntentHandler._set_style,
+    i.ReportKeyReleases: IntentHandler._set_reports_releases,
+    i.SetKeyGate: IntentHandler._set_gate,
+    i.RenewLease: IntentHandler._renew_lease,
+    i.SelectVehicle: IntentHandler._select,
+    i.SelectNextVehicle: IntentHandler._select_next,
+    i.Quit: IntentHandler._quit,
+}
+"""Intent -> method, for all that are not commands to a vehicle. StartSimulator is handled in station_process.py."""

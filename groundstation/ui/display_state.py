@@ -1,0 +1,33 @@
+"""What a screen draws: the newest snapshot, and what the UI itself knows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from groundstation.input.keymap import Keymap
+from groundstation.intents import OperatorAction
+from groundstation.snapshot import Snapshot
+from groundstation.ui.key_gate import GateClosure
+from groundstation.ui.keynames import format_key, main_key
+
+
+@dataclass(frozen=True, slots=True)
+class DisplayState:
+    """Input of the alert rules, of every instrument and of every screen."""
+
+    snapshot: Snapshot
+    keymap: Keymap
+    closure: GateClosure | None = None
+    """Why keys do not drive now, as far as the UI knows; None when they do."""
+    question: OperatorAction | None = None
+    """The action that waits for its second key."""
+    station_alive: bool = True
+    pressed: frozenset[str] = frozenset()
+    """Keys that the UI saw go down, sooner than a snapshot can report them."""
+    terminal_round_trip: float | None = None
+    """Seconds from a ping of the terminal to its answer."""
+
+    def key(self, action: str) -> str:
+        """Return the main key of an action as it is printed, "?" where it has none."""
+        key = main_key(self.keymap, action)
+        return "?" if key is None else format_key(key)

@@ -1,0 +1,70 @@
+"""The table of message traits: complete, without contradiction, and what the sets that are built from it hold."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from dialects import messages as m
+from dialects import traits
+from dialects.messages import CommandInt, CommandLong, Message
+from dialects.traits import TRAITS, Trait, ids_with, is_stop
+
+NAMED = sorted(
+    (each for each in vars(m).values() if isinstance(each, type) and issubclass(each, Message) and each is not Message),
+    key=lambda each: each.id,
+)
+"""Every message that dialects/messages.py names."""
+SETS = ("ACKED", "URGENT", "NEWEST_ONLY", "DEMANDS", "COMMANDS", "LOCAL", "UNLOGGED", "SECRET")
+
+
+def test_every_row_is_a_message_of_the_dialect_that_has_a_name_of_ours() -> None:
+    assert set(TRAITS) <= set(NAMED)
+    assert len({message.id for message in TRAITS}) == len(TRAITS)
+
+
+@pytest.mark.parametrize("message", NAMED, ids=lambda message: message.msgname)
+def test_each_message_is_state_or_acknowledged_and_not_both(message: type[Message]) -> None:
+    each = TRAITS.get(message, Trait.STATE)
+    assert (Trait.STATE in each) != (Trait.ACKED in each)
+
+
+@pytest.mark.parametrize("message", TRAITS, ids=lambda message: message.msgname)
+def test_traits_do_not_contradict_each_other(message: type[Message]) -> None:
+    each = TRAITS[message]
+    assert not (Trait.DEMAND in each and Trait.COMMAND in each)
+    if Trait.DEMAND in each:  # an old demand is a wrong one
+        assert Trait.STATE | Trait.URGENT in each
+    if Trait.COMMAND in each:
+        assert Trait.ACKED | Trait.URGENT in each
+    if Trait.SECRET in each:
+        assert Trait.LOCAL | Trait.UNLOGGED in each
+
+
+def test_a_message_without_a_row_is_state() -> None:
+    assert m.Attitude not in TRAITS
+    assert not any(m.Attitude.id in getattr(traits, name) for name in SETS)
+
+
+def test_the_sets_hold_what_the_table_says() -> None:
+    for name in ("ACKED", "URGENT", "LOCAL", "UNLOGGED", "SECRET"):
+        assert getattr(traits, name) == ids_with(Trait[name]) != frozenset()
+    assert {m.ManualControl.id, m.RcChannelsOverride.id, m.RoverOperatorPresence.id} == traits.DEMANDS
+    assert {m.CommandLong.id, m.CommandInt.id, m.SetMode.id} == traits.COMMANDS
+    assert traits.NEWEST_ONLY == traits.URGENT - traits.ACKED
+    assert {m.SetupSigning.id} == traits.SECRET
+    assert {m.SetupSigning.id, m.RadioStatus.id} == traits.LOCAL
+    assert {m.SetupSigning.id, m.FileTransferProtocol.id, m.LogData.id, m.LogEntry.id} == traits.UNLOGGED
+
+
+@pytest.mark.parametrize(
+    ("command", "param1", "stops"),
+    [
+        *((400, 0.0, True), (400, 1.0, False), (5300, 0.0, True), (5300, 1.0, False), (176, 0.0, False)),
+        *((185, 1.0, True), (185, 0.0, False), (185, math.nan, False)),
+    ],
+)
+def test_what_counts_as_a_stop(command: int, param1: float, stops: bool) -> None:
+    assert is_stop(CommandLong(1, 1, command, 0, param1, 0, 0, 0, 0, 0, 0)) is stops
+    assert is_stop(CommandInt(1, 1, 0, command, 0, 0, param1, 0, 0, 0, 0, 0, 0)) is stops

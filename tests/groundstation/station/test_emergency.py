@@ -1,0 +1,111 @@
+"""The emergency stop: two commands, repeated until done, and its release."""
+
+from __future__ import annotations
+
+import pytest
+
+from dialects.enums import Command, Result
+from groundstation.intents import (
+    Arm,
+    ClearEmergencyStop,
+    EmergencyStop,
+    ReportKeyReleases,
+)
+from groundstation.station.emergency import FORCE_DISARM
+from tests.groundstation.cockpits import FORWARD, armed_cockpit
+from tests.groundstation.fake_vehicle import FakeVehicle
+
+ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
+
+
+def test_emergency_stop_is_two_commands_and_neutral_at_once() -> None:
+    cockpit = armed_cockpit()
+    cockpit.do(ReportKeyReleases(), FORWARD)
+    cockpit.run(0.5)
+    assert cockpit.demands()[-1][1] == 600
+    at = cockpit.now
+    cockpit.do(EmergencyStop())
+    cockpit.run(0.02)
+    switch, disarm = cockpit.vehicle.commands(SWITCH)[-1], cockpit.vehicle.commands(ARM)[-1]
+    assert switch.param1 == 0
+    assert (disarm.param1, disarm.param2) == (0, FORCE_DISARM)
+    assert cockpit.demands(at + 0.001)[0][1] == 0
+    cockpit.run(1.0)
+    assert cockpit.view.emergency_stop
+    assert cockpit.operator.gate_reason == "emergency stop"
+
+
+def test_emergency_stop_is_repeated_until_the_link_is_back() -> None:
+    cockpit = armed_cockpit()
+    cockpit.world.cut()
+    cockpit.do(EmergencyStop())
+    cockpit.run(20.0)
+    assert cockpit.vehicle.armed
+    cockpit.world.cut(False)
+    back = cockpit.now
+    took = cockpit.world.run_until(lambda: cockpit.vehicle.locked, within=1.0)
+    assert took < 0.6, back
+    cockpit.run(2.0)
+    heard = len(cockpit.vehicle.commands(SWITCH))
+    cockpit.run(5.0)
+    assert len(cockpit.vehicle.commands(SWITCH)) == heard, "acknowledged and true: nothing is left to ask for"
+
+
+def test_emergency_stop_goes_on_while_the_vehicle_refuses_and_stays_armed() -> None:
+    vehicle = FakeVehicle()
+    cockpit = armed_cockpit(vehicle)
+    vehicle.answers = {SWITCH: Result.UNSUPPORTED, ARM: Result.FAILED}
+    cockpit.do(EmergencyStop())
+    cockpit.run(3.0)
+    assert len([command for command in vehicle.commands(ARM) if command.param2 == FORCE_DISARM]) >= 5
+    vehicle.answers = {SWITCH: Result.UNSUPPORTED}
+    cockpit.run(1.0)
+    assert not vehicle.armed
+    assert cockpit.view.emergency_stop, "our lock stays where the vehicle has none"
+
+
+def test_arming_is_refused_here_while_the_emergency_stop_is_on() -> None:
+    cockpit = armed_cockpit()
+    cockpit.do(EmergencyStop())
+    cockpit.run(1.0)
+    before = len(cockpit.vehicle.commands(ARM))
+    cockpit.do(Arm())
+    cockpit.run(1.0)
+    assert len(cockpit.vehicle.commands(ARM)) == before
+    assert cockpit.view.refusal == "arm: emergency stop active, clear it first"
+
+
+@pytest.mark.parametrize("answer", [Result.ACCEPTED, Result.UNSUPPORTED])
+def test_clearing_unlocks_when_the_vehicle_agrees(answer: Result) -> None:
+    cockpit = armed_cockpit()
+    cockpit.vehicle.answers[SWITCH] = answer
+    cockpit.do(EmergencyStop())
+    cockpit.run(2.0)
+    assert cockpit.view.emergency_stop
+    assert not cockpit.view.armed
+    cockpit.do(ClearEmergencyStop())
+    cockpit.run(2.0)
+    assert not cockpit.view.emergency_stop
+    assert not cockpit.view.armed, "clearing must not arm"
+    cockpit.do(Arm())
+    cockpit.run(1.0)
+    assert cockpit.view.armed
+
+
+def test_refused_clearing_keeps_the_lock() -> None:
+    cockpit = armed_cockpit()
+    cockpit.do(EmergencyStop())
+    cockpit.run(1.0)
+    cockpit.vehicle.answers[SWITCH] = Result.FAILED
+    cockpit.do(ClearEmergencyStop())
+    cockpit.run(2.0)
+    assert cockpit.view.emergency_stop
+    assert cockpit.view.refusal == "clear emergency stop failed"
+
+
+def test_clearing_where_no_stop_is_on_sends_nothing() -> None:
+    cockpit = armed_cockpit()
+    cockpit.do(ClearEmergencyStop())
+    cockpit.run(1.0)
+    assert cockpit.vehicle.commands(SWITCH) == []
+    assert cockpit.view.armed

@@ -1,0 +1,36 @@
+"""The station's own HEARTBEAT."""
+
+from __future__ import annotations
+
+from dialects import messages as m
+from dialects.enums import SystemState
+from groundstation.intents import (
+    RenewLease,
+)
+from groundstation.station.station import Station
+from link.core import Peer, Received
+from tests.groundstation.fake_vehicle import Cockpit
+
+
+def test_heartbeats_once_a_second_as_ground_station() -> None:
+    cockpit = Cockpit()
+    cockpit.run(2.0)
+    greeted = cockpit.now
+    cockpit.run(5.0)
+    beats = [each for each in cockpit.vehicle.all(m.Heartbeat) if each[0] > greeted]
+    assert len(beats) == 5
+    beat = beats[0][1]
+    assert (beat.type, beat.autopilot, beat.base_mode, beat.system_status) == (6, 8, 0, SystemState.ACTIVE)
+
+
+def test_a_vehicle_at_a_new_address_gets_a_heartbeat_at_once() -> None:
+    # It obeys only who has shown a heartbeat, and heard none of those that went out before it was there.
+    station = Station(["udpin:127.0.0.1:14550"], now=100.0)
+    station.handle_intent(RenewLease(), 100.0)
+    station.tick(100.0)
+    assert any(isinstance(each.message, m.Heartbeat) for each in station.messages_to_send())
+    for address in ("one port", "another, after a restart"):
+        beat = m.Heartbeat(10, 0, 1, 0, 3, 3)
+        station.receive(Received(beat, 1, 1, 0, Peer(0, address), introduced=True), 100.1)
+        station.tick(100.12)
+        assert any(isinstance(each.message, m.Heartbeat) for each in station.messages_to_send())

@@ -1,0 +1,89 @@
+"""Operator intents and what the station does with each."""
+
+from __future__ import annotations
+
+from dialects import messages as m
+from groundstation.intents import (
+    Arm,
+    DriveKeyDown,
+    Quit,
+    ReportKeyReleases,
+    ScaleLimits,
+    SelectVehicle,
+    SetStyle,
+    Stop,
+)
+from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
+from tests.groundstation.fake_vehicle import Cockpit
+
+
+def test_style_changes_are_logged_and_latch_drives_without_a_held_key() -> None:
+    cockpit = armed_cockpit()
+    cockpit.do(SetStyle(style="next"), FORWARD)
+    cockpit.run(3.0)
+    assert cockpit.operator.style == "latch"
+    assert cockpit.demands()[-1][1] == 600
+    assert "drive style latch" in cockpit.texts
+    cockpit.do(Stop())
+    cockpit.run(0.1)
+    assert cockpit.demands()[-1][1] == 0
+
+
+def test_commands_without_a_vehicle_are_logged() -> None:
+    cockpit = Cockpit()
+    cockpit.world.cut()
+    cockpit.do(Arm())
+    assert "no vehicle yet" in cockpit.texts
+
+
+def test_an_unknown_vehicle_cannot_be_selected() -> None:
+    cockpit = driving_cockpit()
+    cockpit.do(SelectVehicle(system=9))
+    cockpit.run(0.2)
+    assert cockpit.view.system == 1
+    assert cockpit.demands()[-1][1] == 0, "looking for another vehicle lets go of this one"
+
+
+def test_quit_sends_neutral_five_times_and_finishes() -> None:
+    cockpit = driving_cockpit()
+    quitting = cockpit.now
+    assert not cockpit.station.finished
+    cockpit.do(Quit())
+    cockpit.run(0.15)
+    assert not cockpit.station.finished
+    cockpit.run(0.15)
+    assert cockpit.station.finished
+    demands = cockpit.demands(quitting + 0.001)
+    assert {x for _, x, _ in demands} == {0}
+    assert len({at for at, _, _ in demands}) == 5
+    cockpit.run(2.0)
+    assert cockpit.demands(quitting + 0.001) == demands
+    assert not [at for at, _ in cockpit.vehicle.all(m.Heartbeat) if at > quitting + 0.3]
+
+
+def test_quit_without_a_drive_is_finished_at_once() -> None:
+    cockpit = Cockpit()
+    cockpit.run(1.0)
+    cockpit.do(Quit())
+    assert cockpit.station.finished
+
+
+def test_stop_wins_over_a_held_key_until_it_is_pressed_again() -> None:
+    cockpit = driving_cockpit()
+    stopped = cockpit.now
+    cockpit.do(Stop())
+    cockpit.run(0.5)
+    assert all(x == 0 for _, x, _ in cockpit.demands(stopped + 0.001))
+    cockpit.do(DriveKeyDown(key="i", throttle=1, steering=0, repeat=True))  # the key is still down and repeats
+    cockpit.run(0.2)
+    assert cockpit.demands()[-1][1] == 0
+
+
+def test_speed_keys_change_the_demand_but_never_make_one() -> None:
+    cockpit = armed_cockpit()
+    cockpit.do(ScaleLimits(throttle=1.1, steering=1.1))
+    cockpit.run(0.5)
+    assert all(x == 0 for _, x, _ in cockpit.demands())
+    cockpit.do(ReportKeyReleases(), FORWARD)
+    cockpit.run(0.1)
+    assert cockpit.demands()[-1][1] == 660

@@ -1,0 +1,47 @@
+"""Intents and the table of actions: complete, and equal on both sides of the pipe."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from groundstation.intents import ACTIONS, DriveKeyDown, Intent, StartSimulator
+from groundstation.ipc import IntentBatch, decode_from_screen, encode
+from groundstation.station.intent_handler import HANDLERS, VEHICLE_COMMANDS
+
+KINDS = Intent.__subclasses__()
+VALUES = {"key": "i", "throttle": 1, "steering": -1, "open": True, "style": "latch", "mode": "HOLD", "system": 3}
+"""Field -> a value for fields without a default."""
+
+
+def example(kind: type[Intent]) -> Intent:
+    required = [field.name for field in msgspec.structs.fields(kind) if field.required]
+    return kind(**{name: VALUES[name] for name in required})
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_every_intent_travels_through_the_pipe(kind: type[Intent]) -> None:
+    batch = IntentBatch(1.0, (example(kind),))
+    assert decode_from_screen(encode(batch)) == batch
+
+
+def test_every_intent_has_a_handler() -> None:
+    assert {*HANDLERS, *VEHICLE_COMMANDS, StartSimulator} == set(KINDS)
+    assert not set(HANDLERS) & set(VEHICLE_COMMANDS)
+
+
+def test_what_moves_a_vehicle_is_dropped_when_late() -> None:
+    late = {kind.__name__ for kind in KINDS if kind.valid_when_late}
+    assert late == {"Stop", "EmergencyStop", "Disarm", "DriveKeyUp", "SetKeyGate", "ReportKeyReleases", "Quit"}
+
+
+def test_what_the_screen_sends_on_its_own_is_no_input() -> None:
+    own = {kind.__name__ for kind in KINDS if not kind.is_input}
+    assert own == {"RenewLease", "SetKeyGate", "ReportKeyReleases", "Quit"}
+
+
+def test_no_key_has_two_actions_and_drive_keys_differ() -> None:
+    keys = [key for action in ACTIONS.values() for key in action.keys]
+    assert len(keys) == len(set(keys))
+    drives = [action.intent for action in ACTIONS.values() if isinstance(action.intent, DriveKeyDown)]
+    assert len({(drive.throttle, drive.steering) for drive in drives}) == len(drives) == 8

@@ -1,0 +1,101 @@
+"""The Drive screen: its questions, and what it shows."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from groundstation.intents import Arm, ClearEmergencyStop, Disarm, EmergencyStop, SetKeyGate, StartSimulator
+from groundstation.snapshot import LinkView
+from tests.groundstation.ui.examples import snapshot, vehicle, waiting
+from tests.groundstation.ui.pilots import console
+from tests.groundstation.ui.ptys import until
+
+DISARMED = snapshot(vehicle=vehicle(armed=False))
+STOPPED = snapshot(vehicle=vehicle(armed=False, emergency_stop=True))
+
+
+async def test_arming_asks_and_a_second_key_answers() -> None:
+    async with console(picture=DISARMED) as screen:
+        await screen.press("r")
+        assert screen.station.of(Arm) == []
+        await until(lambda: "Arm? y = yes" in screen.text)
+        await screen.press("y")
+        assert screen.station.of(Arm) == [Arm()]
+
+
+@pytest.mark.parametrize("key", ["n", "space", "i", "escape", "r"])
+async def test_any_other_key_is_a_no(key: str) -> None:
+    async with console(picture=DISARMED) as screen:
+        await screen.press("r", key, "y")
+        assert screen.station.of(Arm) == []
+
+
+async def test_disarming_is_one_key_and_no_question() -> None:
+    async with console() as screen:
+        await screen.press("r")
+        assert screen.station.of(Disarm) == [Disarm()]
+        assert screen.app.drive.question is None
+
+
+async def test_the_emergency_stop_is_released_with_two_keys() -> None:
+    async with console(picture=STOPPED) as screen:
+        await screen.press("t", "y")
+        assert screen.station.of(ClearEmergencyStop) == [ClearEmergencyStop()]
+
+
+async def test_without_a_vehicle_enter_starts_the_simulator() -> None:
+    async with console(picture=waiting()) as screen:
+        assert "waiting for a vehicle on udpin:127.0.0.1:14550" in screen.text
+        await screen.press("enter")
+        assert screen.station.of(StartSimulator) == [StartSimulator()]
+        await screen.press("f5")
+        assert len(screen.station.of(StartSimulator)) == 2
+
+
+async def test_with_a_vehicle_enter_starts_nothing() -> None:
+    async with console() as screen:
+        await screen.press("enter")
+        assert not screen.station.of(StartSimulator)
+
+
+async def test_a_small_terminal_says_what_it_needs_and_still_stops() -> None:
+    async with console(size=(70, 20)) as screen:
+        assert "needs 80 x 24" in screen.text
+        assert screen.station.of(SetKeyGate)[-1].open is False
+        await screen.press("space", "exclamation_mark")
+        assert screen.station.of(EmergencyStop)
+
+
+async def test_growing_opens_the_gate() -> None:
+    async with console(size=(70, 20)) as screen:
+        await screen.pilot.resize_terminal(80, 24)
+        await until(lambda: screen.app.gate.closure is None)
+        await screen.show(snapshot())
+        assert "you drive" in screen.text
+
+
+async def test_a_pressed_key_lights_up_before_the_station_knows() -> None:
+    async with console() as screen:
+        caps = screen.app.drive.query_one("#keycaps")
+        dark = caps.render_line(0)
+        for _ in range(20):  # a cap stays lit for 0.15 s: on a loaded machine one press may be over when we look
+            await screen.pilot.press("u")
+            if caps.render_line(0) != dark:
+                break
+        else:
+            pytest.fail("it stayed dark")
+        await until(lambda: caps.render_line(0) == dark)
+
+
+async def test_numbers_that_are_none_do_not_break_the_screen() -> None:
+    nan = math.nan
+    strange = vehicle(
+        position=(nan, math.inf), heading=nan, roll=nan, pitch=math.inf, speed=nan, battery_voltage=nan,
+        battery_remaining=nan, demand=(nan, nan), outputs=(nan, math.inf), command_age=nan, latency=math.inf,
+    )  # fmt: skip
+    for size in ((80, 24), (140, 45)):
+        links = (LinkView(name="x", loss=nan, round_trip=nan),)
+        async with console(size, snapshot(vehicle=strange, links=links)) as screen:
+            assert "ARMED" in screen.text

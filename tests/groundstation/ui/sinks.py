@@ -1,0 +1,36 @@
+"""A sink that keeps what the key parser reports, and a clock that stands still."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from groundstation.input.keymap import KeyEvent
+
+
+class Sink:
+    """Keeps the calls of the parser."""
+
+    def __init__(self) -> None:
+        self.batches: list[list[KeyEvent]] = []
+        self.told: list[str] = []
+
+    def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
+        self.batches.append(list(batch))
+
+    def handle_release_support(self) -> None:
+        self.told.append("exact")
+
+    def close(self, reason: str) -> None:
+        self.told.append(f"shut: {reason}")
+
+    def handle_pong(self) -> None:
+        self.told.append("pong")
+
+
+class Clock:
+    """A clock that is set by hand."""
+
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now

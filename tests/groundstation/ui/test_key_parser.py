@@ -1,0 +1,146 @@
+"""Terminal bytes to batches of keys: fails first when Textual changes its private key classes."""
+
+from __future__ import annotations
+
+import pytest
+from textual import events
+from textual.message import Message
+
+from groundstation.input.keymap import KeyEvent
+from groundstation.ui.key_parser import KeyEventParser, KeyRepeat, KeyUp
+from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W
+from tests.groundstation.ui.sinks import Clock, Sink
+
+
+def feed(*reads: str) -> tuple[Sink, list[Message]]:
+    """Feed reads one by one."""
+    sink = Sink()
+    parser = KeyEventParser(sink)
+    return sink, [event for data in reads for event in parser.feed(data)]
+
+
+@pytest.mark.parametrize(
+    ("data", "keys"),
+    [
+        ("i", [KeyEvent("i")]),
+        ("ik", [KeyEvent("i"), KeyEvent("k")]),
+        (" ", [KeyEvent("space")]),
+        (",", [KeyEvent("comma")]),
+        ("\x1b[A", [KeyEvent("up")]),
+        ("\x1b[20~", [KeyEvent("f9")]),
+        ("\x1b[119;;119u", [KeyEvent("w")]),
+        (PRESS_W, [KeyEvent("w")]),
+        (REPEAT_W, [KeyEvent("w", repeat=True)]),
+        (PRESS_W + RELEASE_W, [KeyEvent("w"), KeyEvent("w", release=True)]),
+        ("\x1b[1;1:3A", [KeyEvent("up", release=True)]),
+        ("\x1b[99;5u", [KeyEvent("ctrl+c")]),
+        ("\x1b[33;2:1;33u", [KeyEvent("exclamation_mark")]),
+        ("\x1b[49:33;2;33u", [KeyEvent("exclamation_mark")]),
+        ("\x1b[200~ik\x1b[201~", [KeyEvent("paste")]),
+        ("\x1b[?2048$p!", [KeyEvent("exclamation_mark")]),
+        ("\x1b[?1;2!", [KeyEvent("exclamation_mark")]),
+        ("\x1b[?2048$ ", [KeyEvent("space")]),
+        ("\x1b[\x11", [KeyEvent("ctrl+q")]),
+        ("\x1b[119;1\x03", [KeyEvent("ctrl+c")]),
+    ],
+    ids=repr,
+)
+def test_one_read_is_one_batch(data: str, keys: list[KeyEvent]) -> None:
+    sink, _ = feed(data)
+    assert sink.batches == [keys]
+
+
+def test_the_release_of_a_key_has_the_name_of_its_press() -> None:
+    """Shift down, W down, Shift up, W up: the last event says "w", the press said "W"."""
+    sink, _ = feed("\x1b[119:87;2:1;87u", "\x1b[57441;1:3u", "\x1b[119;1:3u")
+    assert sink.batches == [[KeyEvent("W")], [KeyEvent("W", release=True)]]
+
+
+def test_a_key_of_a_cyrillic_layout_drives_by_its_place_and_still_types_its_letter() -> None:
+    sink, found = feed("\x1b[1096::105;1:1;1096u", "\x1b[1096::105;1:3u")
+    assert sink.batches == [[KeyEvent("i")], [KeyEvent("i", release=True)]]
+    assert isinstance(found[0], events.Key)
+    assert found[0].character == "ш"
+
+
+def test_a_key_of_a_latin_layout_keeps_its_letter() -> None:
+    """AZERTY: the key in Q's place types an a and means a, for that is printed on it and on the screen."""
+    assert feed("\x1b[97::113;1:1;97u")[0].batches == [[KeyEvent("a")]]
+
+
+def test_modifiers_alone_are_no_keys() -> None:
+    """Shift on the way to "!" must not stop a drive."""
+    sink, _ = feed("\x1b[57441;2:1u", "\x1b[57441;2:2u", "\x1b[57441;1:3u")
+    assert sink.batches == []
+
+
+def test_only_a_subfield_proves_that_releases_come() -> None:
+    """Contour answers "27" and then sends none: believing it would mean a key that is never let go."""
+    assert feed("\x1b[?27u", "i", "\x1b[119;1;119u")[0].told == []
+    assert feed(REPEAT_W)[0].told == ["exact"]
+    assert feed(RELEASE_W)[0].told == ["exact"]
+
+
+@pytest.mark.parametrize("report", ["\x1b[?27u", "\x1b[?0u", "\x1b[0n", "\x1b[3n"])
+def test_reports_are_not_typed(report: str) -> None:
+    sink, found = feed(report, report + "i")
+    assert sink.batches == [[KeyEvent("i")]]
+    assert [event.key for event in found if isinstance(event, events.Key)] == ["i"]
+
+
+def test_a_pong_is_told() -> None:
+    assert feed("\x1b[0n")[0].told == ["pong"]
+
+
+def test_a_sequence_may_come_in_pieces() -> None:
+    assert feed(*PRESS_W)[0].batches == [[KeyEvent("w")]]
+
+
+def test_lost_focus_shuts_in_the_same_read() -> None:
+    sink, found = feed("i\x1b[O")
+    assert sink.told == ["shut: the terminal window has lost the focus"]
+    assert isinstance(found[-1], events.AppBlur)
+
+
+def test_a_paste_is_a_stop_from_its_first_moment_on_and_its_text_is_no_keys() -> None:
+    sink, _ = feed("\x1b[200", "~ryi", "i" * 5000, "\x1b[20", "1~", "k")
+    assert sink.batches == [[KeyEvent("paste")], [KeyEvent("paste")], [KeyEvent("k")]]
+
+
+def test_a_paste_whose_end_never_comes_does_not_keep_the_keys_for_ever() -> None:
+    sink, clock = Sink(), Clock()
+    parser = KeyEventParser(sink, clock=clock)
+    parser.feed("\x1b[200~ryi")
+    clock.now += 1.9
+    parser.tick()
+    parser.feed("!")
+    assert sink.batches == [[KeyEvent("paste")]]
+    clock.now += 1.9
+    parser.tick()
+    assert sink.batches == [[KeyEvent("paste")]]
+    clock.now += 0.2
+    parser.tick()
+    parser.feed("!")
+    assert sink.batches[1:] == [[KeyEvent("paste")], [KeyEvent("exclamation_mark")]]
+
+
+@pytest.mark.parametrize("size", ["99999;80", "24;99999"])
+def test_no_terminal_is_as_large_as_that(size: str) -> None:
+    """Its text would be drawn for minutes, and no key would be looked at."""
+    assert feed(f"\x1b[48;{size};1;1t")[1] == []
+    [event] = feed("\x1b[48;24;80;1;1t")[1]
+    assert isinstance(event, events.Resize)
+
+
+def test_widgets_get_repeats_as_keys_and_releases_apart() -> None:
+    _, found = feed(PRESS_W + REPEAT_W + RELEASE_W)
+    assert [type(event) for event in found] == [events.Key, KeyRepeat, KeyUp]
+    assert KeyRepeat.handler_name == events.Key.handler_name
+
+
+@pytest.mark.parametrize(
+    "noise", ["\x1b[;;;u", "\x1b[1;1:9u", "\x1b[99999999;1:3u", "\x1b[1:::;1:3~", "\x1b[:3u", "\x1b[\x1b["]
+)
+def test_noise_does_not_raise(noise: str) -> None:
+    sink, _ = feed(noise, "i" * 40)  # more than the longest sequence: what was begun is given up
+    assert KeyEvent("i") in sink.batches[-1]

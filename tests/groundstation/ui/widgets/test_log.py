@@ -1,0 +1,19 @@
+"""The log panel."""
+
+from __future__ import annotations
+
+from groundstation.snapshot import LogLine
+from groundstation.ui.widgets.log import LogPanel
+from tests.groundstation.ui.frames import texts
+
+
+def test_control_characters_from_the_wire_do_not_reach_the_terminal() -> None:
+    nasty = LogLine(time=0.0, severity=6, label="vehicle", text="a\x1b[2Jb\x07\n", count=1)
+    assert "\x1b" not in "".join(texts(LogPanel((nasty,)).draw(80, 1)))
+
+
+def test_the_log_shows_the_newest_and_how_often() -> None:
+    lines = tuple(LogLine(time=0.0, severity=6, label="vehicle", text=str(n), count=n) for n in range(10))
+    shown = texts(LogPanel(lines).draw(80, 3))
+    assert [line.split()[2] for line in shown] == ["7", "8", "9"]
+    assert "×9" in shown[-1]

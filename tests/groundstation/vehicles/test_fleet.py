@@ -1,0 +1,74 @@
+"""The vehicles found, the selected one, and their loss and return."""
+
+from __future__ import annotations
+
+from dialects import messages as m
+from dialects.enums import Autopilot
+from groundstation.vehicles.fleet import MAX_VEHICLES, Fleet, is_vehicle
+from groundstation.vehicles.message_log import MessageLog
+from link.core import Peer, Received
+
+
+def beat(system: int, autopilot: int = Autopilot.GENERIC, kind: int = 10) -> Received:
+    message = m.Heartbeat(kind, autopilot, 0, 0, 3, 3)
+    return Received(message, system, 1, 0, Peer(0, "vehicle"), introduced=True)
+
+
+def fleet_of(*systems: int) -> tuple[Fleet, MessageLog]:
+    log = MessageLog()
+    fleet = Fleet(log, 255, 190)
+    for system in systems:
+        assert fleet.get_or_add(beat(system), 1.0) is not None
+    return fleet, log
+
+
+def texts(log: MessageLog) -> list[str]:
+    return [line.text for line in log.build_lines(0.0, 0.0)]
+
+
+def test_the_first_vehicle_is_selected() -> None:
+    fleet, log = fleet_of(7, 3)
+    assert fleet.selected is fleet.get(7)
+    assert fleet.system_ids == (3, 7)
+    assert texts(log) == ["Rover 7 found", "Rover 3 found"]
+
+
+def test_only_a_heartbeat_of_a_vehicle_adds_one() -> None:
+    fleet, _ = fleet_of()
+    assert not is_vehicle(beat(1, autopilot=Autopilot.INVALID).message)
+    for received in (beat(1, autopilot=Autopilot.INVALID), beat(2, kind=6)):
+        assert fleet.get_or_add(received, 1.0) is None
+    assert fleet.system_ids == ()
+
+
+def test_a_flood_of_system_ids_is_bounded() -> None:
+    fleet, _ = fleet_of()
+    for system in range(1, 200):
+        fleet.get_or_add(beat(system), 1.0)
+    assert len(fleet.system_ids) == MAX_VEHICLES
+
+
+def test_loss_and_return_are_logged_once_and_start_the_requests_again() -> None:
+    fleet, log = fleet_of(1)
+    contact = fleet.get(1)
+    assert contact is not None
+    probe = contact.dialect_probe
+    for now in (3.0, 4.0, 5.0):
+        fleet.update(now)
+    assert contact.lost_at == 1.0
+    contact.state.receive(beat(1), 6.0)
+    for now in (6.0, 6.5):
+        fleet.update(now)
+    assert contact.lost_at is None
+    assert contact.dialect_probe is not probe
+    assert texts(log) == ["Rover 1 found", "Rover 1: link lost for 2.5 s", "Rover 1: link back after 5.0 s"]
+
+
+def test_only_ardupilots_settings_are_checked() -> None:
+    fleet, _ = fleet_of(1)
+    checked = fleet.get_or_add(beat(2, autopilot=Autopilot.ARDUPILOT), 1.0)
+    unchecked = fleet.get(1)
+    assert checked is not None
+    assert unchecked is not None
+    assert checked.settings_check is not None
+    assert unchecked.settings_check is None

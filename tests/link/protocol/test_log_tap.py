@@ -1,0 +1,56 @@
+"""What the log tap records, and what it leaves out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from dialects import codec
+from dialects import messages as m
+from dialects.messages import SetupSigning
+from link.protocol.frame import Frame
+from link.protocol.log_tap import LogTap
+from tests.link.frames import demand
+
+
+class Tapped:
+    """A log tap and the frames it passes on."""
+
+    def __init__(self) -> None:
+        self.frames: list[bytes] = []
+        self.log_tap = LogTap(lambda now, frames: self.frames.extend(frames), system=1, component=1)
+
+    def say(self, message: m.Message) -> None:
+        self.log_tap.record_sent(type(message).id, codec.encode_payload(message), 1.0)
+
+
+def framed(raw: bytes) -> Frame:
+    return int.from_bytes(raw[7:10], "little"), raw[5], raw[6], raw[4], raw
+
+
+def test_keys_are_never_recorded() -> None:
+    tapped = Tapped()
+    kind: Any = SetupSigning
+    setup = kind(1, 1, b"k" * 32, 1)
+    key = codec.frame(SetupSigning.id, codec.encode_payload(setup), 7, 255, 190)
+    tapped.log_tap.record_received([framed(demand(1)), framed(key), framed(demand(2))], 1.0)
+    tapped.say(setup)
+    assert tapped.frames == [demand(1), demand(2)]
+
+
+@pytest.mark.parametrize(
+    "bulk", [m.FileTransferProtocol(0, 255, 190, bytes(251)), m.LogData(0, 0, 90, bytes(90)), m.LogEntry(0, 1, 0, 0, 9)]
+)
+def test_a_log_does_not_grow_by_being_read(bulk: m.Message) -> None:
+    tapped = Tapped()
+    tapped.say(bulk)
+    assert not tapped.frames
+
+
+def test_our_own_are_numbered_without_a_gap() -> None:
+    tapped = Tapped()
+    for number in range(300):
+        tapped.say(m.Attitude(number, 0, 0, 0, 0, 0, 0))
+    assert [raw[4] for raw in tapped.frames] == [number % 256 for number in range(300)]
+    assert {(raw[5], raw[6]) for raw in tapped.frames} == {(1, 1)}

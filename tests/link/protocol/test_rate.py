@@ -1,0 +1,23 @@
+"""Token buckets and rate meters, in literal seconds."""
+
+from __future__ import annotations
+
+import pytest
+
+from link.protocol.rate import RateMeter, TokenBucket
+
+
+def test_a_bucket_lets_a_burst_and_then_its_rate_through() -> None:
+    bucket = TokenBucket(rate=10, burst=3)
+    assert [bucket.consume(0.0) for _ in range(5)] == [True, True, True, False, False]
+    assert [bucket.consume(0.1), bucket.consume(0.1)] == [True, False]
+    assert [bucket.consume(100.0) for _ in range(4)] == [True, True, True, False]
+
+
+def test_a_meter_forgets_after_its_window() -> None:
+    meter = RateMeter(window=2.0)
+    for tenth in range(20):
+        meter.add(tenth / 10)
+    assert meter.rate(1.9) == pytest.approx(10)
+    assert meter.rate(2.95) == pytest.approx(5)
+    assert meter.rate(10.0) == 0

@@ -1,0 +1,102 @@
+"""The client half of the command protocol: repeats, and an outcome for every command."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from dialects.enums import Command, Result
+from dialects.messages import CommandAck, CommandLong
+from link.core import Outgoing, Received
+from link.services.command.client import REPEAT_AFTER, TRIES, CommandClient
+from tests.link.command_vehicle import Vehicle, received
+
+
+def sent(client: CommandClient) -> list[CommandLong]:
+    return [each.message for each in client.messages_to_send()]  # type: ignore[misc]
+
+
+def ack(command: int, result: int, target: int = 255) -> Received:
+    return received(CommandAck(command, result, target_system=target, target_component=190), 1, 1)
+
+
+def test_a_command_is_repeated_with_a_rising_confirmation_and_then_given_up() -> None:
+    client, now, confirmations = CommandClient(255, 190), 0.0, []
+    client.send(Command.COMPONENT_ARM_DISARM, 1.0, target_system=1, now=now)
+    while not (outcomes := client.outcomes()):
+        confirmations += [each.confirmation for each in sent(client)]
+        now += 0.05
+        client.tick(now)
+    assert confirmations == list(range(TRIES))
+    assert outcomes[0].result is None
+    assert now == pytest.approx(TRIES * REPEAT_AFTER, abs=0.5)
+
+
+def test_an_answer_ends_the_repeats() -> None:
+    client = CommandClient(255, 190)
+    client.send(Command.COMPONENT_ARM_DISARM, 1.0, target_system=1, now=0.0)
+    assert sent(client)[0].param1 == 1.0
+    client.receive(ack(400, Result.DENIED), 0.1)
+    [outcome] = client.outcomes()
+    assert (outcome.command, outcome.result, outcome.target_system) == (400, Result.DENIED, 1)
+    client.tick(10.0)
+    assert sent(client) == []
+    assert client.outcomes() == []
+
+
+def test_answers_to_others_and_from_others_do_not_count() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 1.0, target_system=1, now=0.0)
+    client.receive(ack(400, Result.ACCEPTED, target=254), 0.1)
+    client.receive(received(CommandAck(400, 0, target_system=255), 2, 1), 0.1)
+    client.receive(ack(176, Result.ACCEPTED), 0.1)
+    assert client.outcomes() == []
+    assert client.is_waiting(400, 1)
+
+
+def test_an_unknown_result_is_a_failure_with_its_number() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 1.0, target_system=1, now=0.0)
+    client.receive(ack(400, 77), 0.1)
+    [outcome] = client.outcomes()
+    assert (outcome.result, outcome.number) == (Result.FAILED, 77)
+
+
+def test_in_progress_is_patience_and_not_the_end() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 1.0, target_system=1, now=0.0)
+    client.receive(ack(400, Result.IN_PROGRESS), 0.1)
+    client.tick(1.0)
+    assert len(sent(client)) == 1
+    client.receive(ack(400, Result.ACCEPTED), 1.1)
+    assert client.outcomes()[0].result is Result.ACCEPTED
+
+
+def test_a_newer_wish_replaces_the_older_of_its_kind() -> None:
+    client = CommandClient(255, 190)
+    client.send(400, 1.0, target_system=1, now=0.0)
+    client.send(400, 0.0, target_system=1, now=0.1)
+    sent(client)
+    client.tick(0.1 + REPEAT_AFTER)
+    assert [each.param1 for each in sent(client)] == [0.0]
+    client.cancel(400)
+    client.tick(10.0)
+    assert sent(client) == []
+
+
+def test_a_lossy_link_still_ends_every_command() -> None:
+    dice, vehicle, client, now = random.Random(3), Vehicle(), CommandClient(255, 190), 0.0
+    ended = []
+    for _ in range(200):
+        client.send(400, 1.0, target_system=1, now=now)
+        while not (outcomes := client.outcomes()):
+            for outgoing in client.messages_to_send():
+                answers: list[Outgoing] = vehicle.server.receive(received(outgoing.message), now)
+                if dice.random() > 0.3 and answers and dice.random() > 0.3:
+                    client.receive(received(answers[0].message, 1, 1), now)
+            now += 0.05
+            client.tick(now)
+        ended += outcomes
+    assert len(ended) == 200
+    assert sum(each.result is Result.ACCEPTED for each in ended) > 190

@@ -1,0 +1,20 @@
+"""UDP sockets as the transport opens them; delivery over them is tested in tests/link/test_runner.py."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+from pathlib import Path
+
+from link.endpoint import parse_endpoint
+from link.transport.udp import RECEIVE_BUFFER, open_udp
+from tests.ports import free_port
+
+
+def test_a_udp_socket_asks_for_a_larger_buffer_than_the_default() -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as usual:
+        default = usual.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+    most = 2 * int(Path("/proc/sys/net/core/rmem_max").read_text())
+    with contextlib.closing(open_udp(parse_endpoint(f"udpin:127.0.0.1:{free_port()}"))) as transport:
+        granted = transport._socket.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF)
+    assert granted == min(2 * RECEIVE_BUFFER, most) >= default

@@ -1,0 +1,54 @@
+"""Recipe: a screen, in two files: its module and its row in SCREENS."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.recipes.tree import Tree
+
+pytestmark = pytest.mark.e2e
+
+TOY = '''"""Toy screen."""
+
+from __future__ import annotations
+
+from textual.app import ComposeResult
+from textual.widgets import Static
+
+from groundstation.ui.screens.screen import ConsoleScreen
+
+
+class ToyScreen(ConsoleScreen):
+    """One line of text."""
+
+    def compose(self) -> ComposeResult:
+        """Lay out the line."""
+        yield Static("nothing but a toy")
+'''
+
+ROW = '    ScreenRow("toy", "Toy", "The toy screen", ("f8",), "groundstation.ui.screens.toy:ToyScreen"),'
+
+OPEN_IT = """
+import asyncio
+from tests.groundstation.ui.pilots import console
+from tests.groundstation.ui.ptys import until
+
+async def main():
+    async with console(size=(140, 45)) as screen:
+        await screen.press("f8")
+        await until(lambda: "nothing but a toy" in screen.text)
+        assert screen.app.gate.closure is not None
+        await screen.press("escape")
+        await until(lambda: "nothing but a toy" not in screen.text)
+        await screen.press("question_mark")
+        await until(lambda: "The toy screen" in screen.text)
+
+asyncio.run(main())
+"""
+
+
+def test_a_screen(tree: Tree) -> None:
+    tree.write("groundstation/ui/screens/toy.py", TOY)
+    tree.insert_after("groundstation/screens.py", '"groundstation.ui.screens.drive:DriveScreen"),', ROW)
+    tree.check_recipe("a screen")
+    tree.run_script(OPEN_IT)

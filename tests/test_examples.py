@@ -1,0 +1,127 @@
+"""The programs of docs/examples, run against the real vehicle over loopback."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.e2e.programs import PATIENCE, Vehicle
+from tests.ports import free_port
+from tests.vehicle.motors.contract import Bench, MotorsContract
+
+EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
+Start = Callable[..., subprocess.Popen[str]]
+
+
+@pytest.fixture
+def start() -> Iterator[Start]:
+    """Start an example with its words; it ends with the test."""
+    with ExitStack() as stack:
+
+        def begin(name: str, *words: str) -> subprocess.Popen[str]:
+            process = subprocess.Popen(
+                [sys.executable, str(EXAMPLES / name), *words],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+            )
+            stack.callback(process.communicate)
+            stack.callback(process.kill)
+            return process
+
+        yield begin
+
+
+@pytest.fixture
+def vehicle(tmp_path: Path) -> Iterator[Callable[..., Vehicle]]:
+    """Start a simulated rover with its endpoint; it ends with the test."""
+    with ExitStack() as stack:
+
+        def begin(*words: str) -> Vehicle:
+            started = Vehicle(tmp_path, *words)
+            stack.callback(started.end)
+            return started
+
+        yield begin
+
+
+@pytest.mark.e2e
+@pytest.mark.slow
+def test_drive_square_reaches_every_corner_and_a_log_of_it_can_be_read(
+    tmp_path: Path, start: Start, vehicle: Callable[..., Vehicle]
+) -> None:
+    port = free_port()
+    vehicle(f"udpout:127.0.0.1:{port}", "--tlog", str(tmp_path / "logs"))
+    driving = start("drive_square.py", f"udpin:127.0.0.1:{port}", "--side", "1.2")
+    told, _ = driving.communicate(timeout=PATIENCE)
+    assert driving.returncode == 0, told
+    assert told.count("corner") == 4
+    [log] = (tmp_path / "logs").glob("*.tlog")
+    counted, _ = start("read_log.py", str(log)).communicate(timeout=PATIENCE)
+    assert "Armed" in counted or "armed" in counted
+    assert "SET_POSITION_TARGET_LOCAL_NED" in counted
+
+
+@pytest.mark.e2e
+def test_bridge_two_links_forwards_what_the_vehicle_sends(start: Start, vehicle: Callable[..., Vehicle]) -> None:
+    near, far = free_port(), free_port()
+    bridge = start("bridge_two_links.py", f"udpin:127.0.0.1:{near}", f"udpout:127.0.0.1:{far}")
+    vehicle(f"udpout:127.0.0.1:{near}")
+    deadline = time.monotonic() + PATIENCE
+    line = ""
+    while " 0 frames/s" in line.partition("|")[0] or not line:
+        assert time.monotonic() < deadline, line
+        assert bridge.stdout is not None
+        assert select.select([bridge.stdout], [], [], PATIENCE)[0]
+        line = bridge.stdout.readline()
+    bridge.send_signal(signal.SIGINT)
+    bridge.communicate(timeout=PATIENCE)
+    assert bridge.returncode == 0
+
+
+class TestMyMotors(MotorsContract):
+    @pytest.fixture
+    def bench(self) -> Bench:
+        motors = _load("my_motors").PrintMotors()
+        return Bench(motors, lambda: motors.throttles if motors.enabled else motors.neutral, lambda: motors.enabled)
+
+
+def test_the_vehicle_takes_my_motors_by_name(tmp_path: Path) -> None:
+    settings = tmp_path / "rover.toml"
+    settings.write_text(f'endpoints = ["udpin:127.0.0.1:{free_port()}"]\n[motors]\ndriver = "my_motors:PrintMotors"\n')
+    checked = subprocess.run(
+        [sys.executable, "-m", "vehicle", "check", str(settings)],
+        env={**os.environ, "PYTHONPATH": str(EXAMPLES)},
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+    assert "my_motors:PrintMotors with 2 motors" in checked.stdout
+
+
+def _load(name: str) -> Any:
+    """Import an example, which is not a module of a package."""
+    spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_example_is_tested() -> None:
+    tested = Path(__file__).read_text()
+    assert all(example.stem in tested for example in EXAMPLES.glob("*.py"))

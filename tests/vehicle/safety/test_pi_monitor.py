@@ -1,0 +1,117 @@
+"""Under-voltage and overheating of the Pi: each test first shows the wheels turning."""
+
+from __future__ import annotations
+
+import pytest
+
+from dialects import messages as m
+from dialects.enums import Command, DriveLimit, Failsafe, Result, SystemState
+from dialects.modes import Mode
+from tests.vehicle.bench import AHEAD, NEUTRAL, Bench, said
+from vehicle.readings import ComputerReadings, Readings
+
+
+class TestComputer:
+    def pi(self, bench: Bench, temperature: float = 50.0, *, weak: bool | None = False) -> None:
+        bench.readings = Readings(computer=ComputerReadings(temperature=temperature, under_voltage=weak))
+        bench.wait(0.04, AHEAD if bench.turning else None)
+
+    @pytest.mark.parametrize(("temperature", "weak"), [(86.0, False), (50.0, True)])
+    def test_half_speed_then_hold_then_half_speed_after_choosing_manual(self, temperature: float, weak: bool) -> None:
+        bench = Bench()
+        bench.drive()
+        self.pi(bench, temperature, weak=weak)
+        bench.wait(1.0, AHEAD)
+        assert bench.throttles == (0.5, 0.5)
+        assert said(bench, "Failsafe: Pi under-voltage or too hot: half speed")
+        assert bench.newest(m.RoverFailsafeStatus).active == Failsafe.OVERHEAT
+        assert bench.newest(m.RoverDriveStatus).limits & DriveLimit.SPEED
+        assert not bench.newest(m.RoverDriveStatus).limits & DriveLimit.BATTERY
+        bench.wait(8.5, AHEAD)
+        assert bench.turning
+        bench.wait(1.0, AHEAD)
+        assert not bench.turning
+        assert bench.mode is Mode.HOLD
+        assert bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL
+        bench.set_mode(Mode.MANUAL)
+        bench.wait(0.1, NEUTRAL)
+        bench.wait(1.0, AHEAD)
+        assert bench.throttles == (0.5, 0.5)
+        self.pi(bench)
+        bench.wait(6.0, AHEAD)
+        assert bench.throttles == (1.0, 1.0)
+        assert said(bench, "Failsafe cleared: Pi under-voltage or too hot")
+
+    def test_an_intermittent_under_voltage_is_one_condition_and_ends_in_hold(self) -> None:
+        bench = Bench()
+        bench.drive()
+        for cycle in range(12):
+            self.pi(bench, weak=cycle % 2 == 0)
+            bench.wait(1.0, AHEAD)
+        assert bench.mode is Mode.HOLD
+        assert sum("half speed" in text for text in bench.texts) <= 1
+
+    def test_a_short_under_voltage_limits_the_speed_briefly(self) -> None:
+        bench = Bench()
+        bench.drive()
+        self.pi(bench, weak=True)
+        self.pi(bench)
+        bench.wait(4.5, AHEAD)
+        assert bench.throttles == (0.5, 0.5)
+        bench.wait(1.5, AHEAD)
+        assert bench.throttles == (1.0, 1.0)
+        bench.wait(20.0, AHEAD)
+        assert bench.mode is Mode.MANUAL
+
+    def test_a_missing_reading_does_not_clear_the_condition(self) -> None:
+        bench = Bench()
+        bench.drive()
+        self.pi(bench, weak=True)
+        bench.readings = Readings()
+        bench.wait(12.0, AHEAD)
+        assert bench.mode is Mode.HOLD
+
+    @pytest.mark.parametrize(("act", "throttle", "mode"), [(0, 1.0, Mode.MANUAL), (1, 0.5, Mode.MANUAL)])
+    def test_the_action_is_a_parameter(self, act: float, throttle: float, mode: Mode) -> None:
+        bench = Bench(FS_PI_ACT=act)
+        bench.drive()
+        self.pi(bench, 100.0, weak=True)
+        bench.wait(30.0, AHEAD)
+        assert bench.throttles == (throttle, throttle)
+        assert bench.mode is mode
+        assert said(bench, "Pi under-voltage")
+        assert (bench.newest(m.Heartbeat).system_status == SystemState.CRITICAL) == bool(act)
+
+    @pytest.mark.parametrize(("limit", "throttle"), [(0, 1.0), (95, 1.0), (85, 0.5)])
+    def test_the_temperature_limit_is_a_parameter(self, limit: float, throttle: float) -> None:
+        bench = Bench(FS_PI_TEMP=limit)
+        bench.drive()
+        self.pi(bench, 90.0)
+        bench.wait(2.0, AHEAD)
+        assert bench.throttles == (throttle, throttle)
+
+    def test_arming_takes_force_meanwhile_and_gets_the_full_delay(self) -> None:
+        bench = Bench()
+        self.pi(bench, 91.0, weak=True)
+        bench.wait(60.0)
+        assert bench.arm() is Result.FAILED
+        bench.wait(0.1)
+        assert said(bench, "PreArm: Pi under-voltage and Pi at 91 C")
+        assert bench.command(Command.COMPONENT_ARM_DISARM, 1, 21196) is Result.ACCEPTED
+        bench.wait(0.1, NEUTRAL)
+        bench.wait(9.0, AHEAD)
+        assert bench.throttles == (0.5, 0.5)
+        bench.wait(1.5, AHEAD)
+        assert bench.mode is Mode.HOLD
+
+    def test_a_recovered_supply_allows_arming_at_once(self) -> None:
+        bench = Bench(FS_PI_ACT=2)
+        self.pi(bench, weak=True)
+        assert bench.arm() is Result.FAILED
+        self.pi(bench)
+        assert bench.arm() is Result.ACCEPTED
+
+    def test_arming_ignores_the_pi_if_the_failsafe_is_disabled(self) -> None:
+        bench = Bench(FS_PI_ACT=0)
+        self.pi(bench, weak=True)
+        assert bench.arm() is Result.ACCEPTED

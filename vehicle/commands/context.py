@@ -1,0 +1,52 @@
+"""What the handlers of messages and commands act on, in two frozen values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from link.services.pacing import BulkPacer
+from vehicle.autonomy.navigator import Navigator
+from vehicle.commands.access import CommandAccess
+from vehicle.drive.control import Control
+from vehicle.drive.mixer import Mixer
+from vehicle.params import Params
+from vehicle.safety.state_machine import Safety
+from vehicle.statustext import StatusTextQueue
+from vehicle.telemetry.link_status import LinkStatusReporter
+from vehicle.telemetry.telemetry import Telemetry
+from vehicle.telemetry.view import TelemetryView
+
+COMPONENT = 1
+"""MAV_COMP_ID_AUTOPILOT1: QGroundControl shows a vehicle only for this component id."""
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """The parts of the vehicle that handlers read and call."""
+
+    params: Params
+    safety: Safety
+    control: Control
+    navigator: Navigator
+    statustext: StatusTextQueue
+    access: CommandAccess
+    mixer: Mixer
+    """Motors and servo outputs of this kind of drive."""
+    pacer: BulkPacer
+    """Limits what parameter lists, plans, files and logs send."""
+
+    @property
+    def ids(self) -> tuple[int, int]:
+        """System id and component id of this vehicle."""
+        return self.control.system, COMPONENT
+
+
+@dataclass(frozen=True, slots=True)
+class Reporting:
+    """What telemetry is built from and where it goes."""
+
+    telemetry: Telemetry
+    links: LinkStatusReporter
+    build_view: Callable[[float], TelemetryView]
+    """Returns the vehicle at a time."""

@@ -1,0 +1,54 @@
+"""DO_FENCE_ENABLE, as a command and as a mission item."""
+
+from __future__ import annotations
+
+from dialects.enums import Command, Result
+from link.services.command.server import CommandRequest
+from link.services.mission.items import ItemRule, MissionItem
+from vehicle.autonomy.mission.rules import DoItem
+from vehicle.commands.access import Access
+from vehicle.commands.command_table import CommandSpec, CommandTable
+from vehicle.commands.context import Context
+
+DISABLE, ENABLE, FLOOR_ONLY = 0, 1, 2
+"""Parameter 1 of DO_FENCE_ENABLE; a rover has no floor."""
+
+
+class FenceCommands:
+    """Enables and disables the fence for the driver."""
+
+    def __init__(self, context: Context) -> None:
+        self._safety = context.safety
+        self._access = context.access
+        self._navigator = context.navigator
+        self._fence = context.navigator.fence_avoidance.fence
+
+    def commands(self) -> CommandTable:
+        """Return the rows of the commands handled here."""
+        return (
+            CommandSpec(Command.DO_FENCE_ENABLE, self._enable, Access.DRIVER_OR_UNCLAIMED,
+                        "1: 1 on, 0 off; not off while armed, and nothing that the configuration file forbids",
+                        item=DoItem(ItemRule(ranges={1: (0.0, 1.0)}), self._run_item)),
+        )  # fmt: skip
+
+    def _enable(self, request: CommandRequest, now: float) -> Result:
+        """Parameter 1: 0 off, 1 on. An armed vehicle keeps its fence."""
+        action = request.params[0]
+        if action == FLOOR_ONLY:
+            return Result.UNSUPPORTED
+        if action not in (DISABLE, ENABLE):
+            return Result.DENIED
+        if action == ENABLE and self._fence.damage:
+            return self._access.reject(request, self._fence.damage, now)
+        if action == DISABLE and self._safety.armed and self._fence.enabled:
+            return self._access.reject(request, "disarm first", now)
+        denial = self._fence.set_enabled(action == ENABLE)
+        return self._access.reject(request, denial, now) if denial else Result.ACCEPTED
+
+    def _run_item(self, item: MissionItem, now: float) -> None:
+        """Enable the fence; the mission ends if that fails. A mission never disables it."""
+        if not item.params[0]:
+            return
+        denial = self._fence.set_enabled(True) or self._fence.unavailable_reason
+        if denial:
+            self._navigator.end_mode(denial)
