@@ -189,14 +189,14 @@ class TestManualControl:
         for _ in range(3):
             assert raw(rig, **axes)
             rig.now += 60.0
-        assert sum("out of -1000..1000" in text for _, text in rig.texts) == 1
-        assert rig.severity("out of -1000..1000") is Severity.WARNING
+        assert sum("outside -1000..1000" in text for _, text in rig.texts) == 1
+        assert rig.severity("outside -1000..1000") is Severity.WARNING
 
     @pytest.mark.parametrize("axes", [{"x": 1000, "r": -1000}, {"x": INVALID_AXIS}, {"r": INVALID_AXIS}])
     def test_an_axis_in_range_or_off_is_not(self, axes: dict[str, int]) -> None:
         rig = driven()
         assert raw(rig, **axes)
-        assert not rig.said("out of")
+        assert not rig.said("outside")
 
     def test_without_an_axis_it_is_no_demand(self) -> None:
         rig = driven()

@@ -8,12 +8,39 @@ from dialects.modes import Mode
 from link.core import Peer, Received
 from tests.vehicle.bench import DRIVER, NEUTRAL
 from vehicle.drive.control import Control
+from vehicle.navigation.estimate import Estimate
 from vehicle.params import Params
+from vehicle.readings import Readings
+from vehicle.safety.failsafe_inputs import MotionInputs
 from vehicle.safety.monitor import SafetyMonitor
 from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
 
 START = 100.0
+
+
+STANDING = MotionInputs(
+    Readings(), Estimate(good=True), (0.0, 0.0), needs_position=False, setpoint_expires=None, outside_fence=False
+)
+MOTIONS = {
+    Failsafe.POSITION: STANDING._replace(estimate=Estimate(), needs_position=True),
+    Failsafe.FENCE: STANDING._replace(outside_fence=True),
+    Failsafe.TILT: STANDING._replace(readings=Readings(roll=1.5)),
+    Failsafe.BLOCKED: STANDING._replace(readings=Readings(wheel_speeds=(0.0, 0.0)), throttles=(1.0, 1.0)),
+}
+"""Condition -> what makes it hold."""
+
+
+class Ready:
+    """A readiness that a test sets."""
+
+    def __init__(self) -> None:
+        self.unready: dict[Mode, str] = {}
+        """Modes that cannot work, and why."""
+        self.fence_unenforceable_reason: str | None = None
+
+    def unready_reason(self, mode: Mode) -> str | None:
+        return self.unready.get(mode)
 
 
 class Rig:
@@ -22,13 +49,11 @@ class Rig:
     def __init__(self, **params: float) -> None:
         self.now = START
         self.texts: list[tuple[Severity, str]] = []
-        self.unready: dict[Mode, str] = {}
-        """Modes that cannot work, and why."""
-        self.unfenced: str | None = None
+        self.ready = Ready()
         self.params = Params(params)
         queue = StatusTextQueue(lambda severity, text: self.texts.append((severity, text)))
         self.control = Control(self.params, queue, system=1, boot=0.0)
-        self.safety = Safety(self.params, self.control, queue, START, self.unready.get, lambda: self.unfenced)
+        self.safety = Safety(self.params, self.control, queue, START, self.ready)
         self.monitor = SafetyMonitor(self.params, self.safety, self.control, queue, START)
         self._sequence = 0
 
@@ -44,11 +69,18 @@ class Rig:
         self.control.update_liveness(received, self.now)
         return self.control.handle_manual_control(received, message, self.now)
 
-    def cycle(self, seconds: float = 0.02, *, refused: int = 0, driving: bool = False,
-              hazards: dict[Failsafe, float] | None = None) -> None:  # fmt: skip
-        """One cycle, `seconds` after the last."""
+    def cycle(
+        self, seconds: float = 0.02, cause: Failsafe | None = None, *, refused: int = 0, driving: bool = False
+    ) -> None:
+        """One cycle, `seconds` after the last, in which `cause` holds."""
         self.now += seconds
-        self.monitor.update(self.now, refused, hazards or {}, driving=driving)
+        self.monitor.update(self.now, refused, STANDING if cause is None else MOTIONS[cause], driving=driving)
+
+    def endure(self, cause: Failsafe) -> None:
+        """`cause` holds for long enough for each of its steps, with a driver who sends a stick at rest."""
+        for _ in range(12):
+            self.stick(NEUTRAL)
+            self.cycle(0.2, cause)
 
     def armed(self, *, neutral: bool = True) -> Rig:
         """Boot, arm, and show a stick at rest."""

@@ -49,7 +49,7 @@ def test_each_fact_alone_forbids_arming_and_the_soft_ones_not_by_force(wrong: di
 
 def test_damaged_settings_forbid_arming_also_by_force() -> None:
     params = Params()
-    params.damage = "checksum wrong"
+    params.mark_damaged("checksum wrong")
     found = find_problems(replace(READY, params=params), force=True)
     assert len(found) == 1
     assert found[0].startswith("checksum wrong")

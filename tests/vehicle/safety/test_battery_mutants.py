@@ -68,6 +68,8 @@ def test_a_sensor_is_silent_after_five_seconds() -> None:
 def test_a_sensor_that_there_should_be_is_silent_from_the_beginning() -> None:
     battery = BatteryMonitor(PARAMS)
     assert (battery.present, battery.is_silent(0.0)) == (False, False)
+    battery.update(None, 0.0)
+    assert (battery.present, battery.is_silent(0.0)) == (False, False)
     battery.update(None, 0.0, expected=True)
     assert (battery.present, battery.is_silent(0.0)) == (True, True)
     battery.update(12.0, 1.0, expected=True)

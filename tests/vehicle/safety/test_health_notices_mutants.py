@@ -51,7 +51,7 @@ def test_a_fence_without_a_position_is_told_where_it_counts(enabled: float) -> N
     field.texts.clear()
     field.blind = {"gps_fix": 0, "latitude": None, "longitude": None}
     field.wait(GPS_LOST + 2.0)
-    assert said(field, "Fence: ") == bool(enabled)
+    assert said(field, "Fence not enforced") == bool(enabled)
 
 
 def test_a_sensors_fault_is_named_by_its_sensor() -> None:

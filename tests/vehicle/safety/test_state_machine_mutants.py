@@ -96,7 +96,7 @@ class TestArming:
         assert rig.safety.mode_generation > generation
         assert not rig.safety.autonomy_confirmed
         assert rig.severity(f"Armed by GCS {DRIVER}, mode MANUAL") is Severity.NOTICE
-        assert not rig.said("Stands until")
+        assert not rig.said("again to start")
 
     def test_the_demand_of_before_does_not_count(self) -> None:
         rig = Rig().armed()
@@ -142,7 +142,7 @@ class TestArming:
 
     def test_what_was_latched_is_over(self) -> None:
         rig = Rig().armed()
-        rig.cycle(hazards={Failsafe.TILT: rig.now - 5.0})
+        rig.endure(Failsafe.TILT)
         assert rig.safety.failsafes.latched == Failsafe.TILT
         rig.safety.arm(DRIVER, rig.now)
         assert not rig.safety.failsafes.latched
@@ -156,7 +156,7 @@ class TestArming:
         assert rig.safety.choose_mode(mode, rig.now) is None
         assert not rig.safety.autonomy_confirmed
         rig.safety.arm(DRIVER, rig.now)
-        assert rig.said("Stands until") is stands
+        assert rig.said("again to start") is stands
         assert not rig.safety.autonomy_confirmed
         assert rig.safety.choose_mode(mode, rig.now) is None
         assert rig.safety.autonomy_confirmed
@@ -177,12 +177,12 @@ class TestProblems:
 
     def test_mode_and_fence(self) -> None:
         rig = self.ready()
-        rig.unready[Mode.MANUAL] = "no gyro"
+        rig.ready.unready[Mode.MANUAL] = "no gyro"
         assert "no gyro" in self.only(rig)
-        rig.unready.clear()
-        rig.unready[Mode.AUTO] = "no mission"
+        rig.ready.unready.clear()
+        rig.ready.unready[Mode.AUTO] = "no mission"
         assert rig.safety.prearm_problems(rig.now) == []
-        rig.unfenced = "no fence"
+        rig.ready.fence_unenforceable_reason = "no fence"
         assert self.only(rig) == "no fence"
 
     def test_battery_low_critical_and_silent(self) -> None:
@@ -342,7 +342,7 @@ class TestMode:
 
     def test_a_mode_that_cannot_work_is_refused(self) -> None:
         rig = Rig().armed()
-        rig.unready[Mode.AUTO] = "no mission"
+        rig.ready.unready[Mode.AUTO] = "no mission"
         assert rig.safety.choose_mode(Mode.AUTO, rig.now) == "no mission"
         assert rig.safety.mode is rig.safety.intended is Mode.MANUAL
 
@@ -356,7 +356,7 @@ class TestMode:
     def test_hold_does_not_acknowledge_a_failsafe_and_the_others_do(self) -> None:
         for mode, latched in ((Mode.HOLD, Failsafe.BLOCKED), (Mode.MANUAL, Failsafe(0)), (Mode.GUIDED, Failsafe(0))):
             rig = Rig().armed()
-            rig.cycle(hazards={Failsafe.BLOCKED: rig.now - 5.0})
+            rig.endure(Failsafe.BLOCKED)
             assert rig.safety.latched == Failsafe.BLOCKED
             assert rig.safety.choose_mode(mode, rig.now) is None
             assert rig.safety.latched == latched
@@ -402,7 +402,7 @@ class TestMotorDriver:
         assert rig.texts == []
         rig.safety.motor_failed("no answer", rig.now)
         rig.safety.motor_repaired(rig.now)
-        assert rig.severity("works again") is Severity.NOTICE
+        assert rig.severity("recovered") is Severity.NOTICE
         assert rig.safety.state is SafetyState.SAFE
         assert rig.safety.motor_fault is None
         assert rig.safety.latched == 0
@@ -424,7 +424,7 @@ def test_an_overrun_of_the_loop_is_told_with_its_length() -> None:
 
 def test_all_that_is_latched_is_told_together() -> None:
     rig = Rig().armed()
-    rig.cycle(hazards={Failsafe.BLOCKED: rig.now - 5.0})
+    rig.endure(Failsafe.BLOCKED)
     rig.safety.handle_loop_overrun(0.3, rig.now)
     assert rig.safety.latched == Failsafe.BLOCKED | Failsafe.LOOP_OVERRUN
     rig.safety.motor_failed("no answer", rig.now)

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from dialects.enums import Failsafe
+from tests.vehicle.safety.rig import MOTIONS, STANDING, START, Rig
 from vehicle.params import Params
-from vehicle.safety.failsafe import RULES, FailsafeAction, FailsafeRule, Failsafes, FailsafeStep
+from vehicle.safety.failsafe import RULES, FailsafeAction, FailsafeStep
+from vehicle.safety.failsafe_inputs import FailsafeInputs, MotionInputs
+from vehicle.safety.failsafe_state import Failsafes
 
 WARN, LIMIT, NEUTRAL, RTL, HOLD, DISARM = FailsafeAction
 PARAMS = Params({"FS_TIMEOUT": 1.5, "FS_DISARM_T": 30.0})
@@ -48,6 +52,7 @@ def test_what_each_condition_comes_to_and_when_by_default(
 ) -> None:
     failsafes, taken = Failsafes(Params()), list[tuple[float, FailsafeAction]]()
     for now in (
+        -0.5,
         0.0,
         0.49,
         0.5,
@@ -90,6 +95,12 @@ def test_what_each_condition_comes_to_and_when_by_default(
 )
 def test_what_is_a_parameter(params: dict[str, float], cause: Failsafe, taken: list[FailsafeAction]) -> None:
     assert actions(Failsafes(Params(params)), {cause: 0.0}, 999.0) == taken
+
+
+def test_two_seconds_blocked_disarm_where_that_is_set() -> None:
+    failsafes = Failsafes(Params({"FS_CRASH_CHECK": 2}))
+    assert actions(failsafes, {Failsafe.BLOCKED: 0.0}, 1.99) == []
+    assert actions(failsafes, {Failsafe.BLOCKED: 0.0}, 2.0) == [HOLD, DISARM]
 
 
 def test_only_a_critical_battery_blocks_modes() -> None:
@@ -181,7 +192,7 @@ def test_the_way_home_is_no_lasting_action(setting: float) -> None:
 
 def test_of_several_steps_of_a_condition_the_worst_lasts_and_hold_is_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
     steps = (FailsafeStep(0, NEUTRAL), FailsafeStep(0, LIMIT), FailsafeStep(1, NEUTRAL), FailsafeStep(5, HOLD))
-    monkeypatch.setitem(RULES, Failsafe.TILT, FailsafeRule("tilted", steps))
+    monkeypatch.setitem(RULES, Failsafe.TILT, replace(RULES[Failsafe.TILT], steps=steps))
     failsafes = Failsafes(PARAMS)
     failsafes.update({Failsafe.TILT: 0.0}, 0.0)
     assert failsafes.lasting_action(0.0) is NEUTRAL
@@ -213,3 +224,61 @@ def test_no_next_step_is_told_of_what_is_turned_off_or_past() -> None:
     assert failsafes.next_step(1.0) is None
     failsafes.update({Failsafe.GCS_LOSS: 0.0}, 60.0)
     assert failsafes.next_step(60.0) is None
+
+
+class TestCheck:
+    """check: the conditions of a moment, with the begins of before."""
+
+    def check(self, rig: Rig, motion: MotionInputs, now: float, *, armed: bool = True) -> list[FailsafeAction]:
+        safety = rig.safety
+        inputs = FailsafeInputs(
+            rig.params, rig.control, safety.battery, safety.computer, motion, manual=True, mission_running=False,
+            latched=Failsafe(0), armed_at=START,
+        )  # fmt: skip
+        return [step.action for step in safety.failsafes.check(inputs, now, armed=armed)]
+
+    def test_a_condition_is_timed_from_the_first_time_it_holds(self) -> None:
+        rig = Rig(FS_GCS_ENABLE=0)
+        tilted = MOTIONS[Failsafe.TILT]
+        assert self.check(rig, tilted, START) == []
+        assert self.check(rig, tilted, START + 0.49) == []
+        assert self.check(rig, tilted, START + 0.5) == [DISARM]
+
+    def test_what_is_over_begins_anew(self) -> None:
+        rig = Rig(FS_GCS_ENABLE=0)
+        tilted = MOTIONS[Failsafe.TILT]
+        assert self.check(rig, tilted, START) == []
+        assert self.check(rig, STANDING, START + 0.4) == []
+        assert self.check(rig, tilted, START + 0.6) == []
+        assert self.check(rig, tilted, START + 1.0) == []
+        assert self.check(rig, tilted, START + 1.1) == [DISARM]
+
+    def test_disarmed_no_step_is_reached_and_nothing_is_active(self) -> None:
+        rig = Rig(FS_GCS_ENABLE=0)
+        assert self.check(rig, MOTIONS[Failsafe.FENCE], START) == [WARN, HOLD]
+        assert rig.safety.failsafes.active == Failsafe.FENCE
+        assert self.check(rig, MOTIONS[Failsafe.FENCE], START + 1.0, armed=False) == []
+        assert not rig.safety.failsafes.active
+
+    @pytest.mark.parametrize("cause", [Failsafe.TILT, Failsafe.BLOCKED, Failsafe.POSITION, Failsafe.FENCE])
+    def test_hazards_are_timed_while_disarmed(self, cause: Failsafe) -> None:
+        rig = Rig(FS_GCS_ENABLE=0)
+        assert self.check(rig, MOTIONS[cause], START, armed=False) == []
+        expected = {
+            Failsafe.TILT: [DISARM],
+            Failsafe.BLOCKED: [HOLD],
+            Failsafe.POSITION: [NEUTRAL, HOLD],
+            Failsafe.FENCE: [WARN, HOLD],
+        }[cause]
+        assert self.check(rig, MOTIONS[cause], START + 2.0) == expected
+
+    def test_the_others_are_not(self) -> None:
+        assert {cause for cause, rule in RULES.items() if rule.timed_while_disarmed} == {
+            Failsafe.TILT, Failsafe.BLOCKED, Failsafe.POSITION, Failsafe.FENCE
+        }  # fmt: skip
+        rig = Rig(FS_GCS_TIMEOUT=5)
+        rig.control.set_owner(255, START)
+        assert self.check(rig, STANDING, START + 5.1, armed=False) == []
+        rig.control.set_owner(255, START + 60.0)
+        assert self.check(rig, STANDING, START + 60.0) == []
+        assert self.check(rig, STANDING, START + 65.1) == [HOLD]
