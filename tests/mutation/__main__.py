@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.mutation.child import OPTIONS, Examples
 from tests.mutation.mutants import Mutant, build_mutants
-from tests.mutation.runner import OPTIONS, Examples, Outcome, Runner
+from tests.mutation.runner import Outcome, Runner
 from tests.mutation.survivors import load_explanations, unexplained_and_stale
 
 MODULES = ("vehicle/drive", "vehicle/safety")

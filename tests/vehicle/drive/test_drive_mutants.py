@@ -167,7 +167,7 @@ def test_a_ramp_that_does_not_fall_is_ended_by_the_gate() -> None:
 
 
 def test_without_a_permit_it_stands_at_once_and_begins_from_zero() -> None:
-    rig = Rig(MOT_SLEWRATE=100)
+    rig = Rig(MOT_SLEWRATE=100, MOT_DECEL=250)
     for _ in range(4):
         rig.update(demand(1.0))
     assert rig.drive.wheels == (0.5, 0.5)

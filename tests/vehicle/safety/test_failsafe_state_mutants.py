@@ -94,7 +94,9 @@ def test_what_each_condition_comes_to_and_when_by_default(
     ],
 )
 def test_what_is_a_parameter(params: dict[str, float], cause: Failsafe, taken: list[FailsafeAction]) -> None:
-    assert actions(Failsafes(Params(params)), {cause: 0.0}, 999.0) == taken
+    failsafes = Failsafes(Params(params))
+    assert actions(failsafes, {cause: 0.0}, -0.5) == []
+    assert actions(failsafes, {cause: 0.0}, 999.0) == taken
 
 
 def test_two_seconds_blocked_disarm_where_that_is_set() -> None:
@@ -243,6 +245,14 @@ class TestCheck:
         assert self.check(rig, tilted, START) == []
         assert self.check(rig, tilted, START + 0.49) == []
         assert self.check(rig, tilted, START + 0.5) == [DISARM]
+
+    def test_the_earliest_begin_counts(self) -> None:
+        rig = Rig(FS_GCS_ENABLE=0)
+        assert self.check(rig, STANDING._replace(setpoint_expires=START - 1.0), START) == [NEUTRAL]
+        assert self.check(rig, STANDING._replace(setpoint_expires=START - 3.5), START + 0.5) == [HOLD]
+        rig = Rig(FS_GCS_ENABLE=0)
+        assert self.check(rig, STANDING._replace(setpoint_expires=START - 3.5), START) == [NEUTRAL]
+        assert self.check(rig, STANDING._replace(setpoint_expires=START - 1.0), START + 0.5) == [HOLD]
 
     def test_what_is_over_begins_anew(self) -> None:
         rig = Rig(FS_GCS_ENABLE=0)
