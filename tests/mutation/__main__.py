@@ -17,21 +17,21 @@ from tests.mutation.runner import Outcome, Runner
 from tests.mutation.survivors import load_explanations, unexplained_and_stale
 
 MODULES = ("vehicle/drive", "vehicle/safety")
-"""What is mutated: everything that decides whether the wheels turn."""
+"""Modules to mutate: those that decide whether the wheels turn."""
 TESTS = (
     "tests/vehicle/drive", "tests/vehicle/safety", "tests/vehicle/commands/test_arming.py",
     "tests/vehicle/commands/test_actuator_test.py", "tests/vehicle/commands/test_buttons.py",
 )  # fmt: skip
-"""What has to notice it."""
+"""Tests to run against the mutants."""
 DESELECTED = ("tests/vehicle/safety/test_estop_button.py",)
-"""In a process of their own, where no mutant is."""
+"""Tests that start the vehicle in a process of its own, which has no mutant."""
 
 LIMIT = 2.0
-"""s of tests to run against a mutant: one that takes longer to notice needs a test of its own."""
+"""s of tests to run against a mutant: behaviour that takes longer to test needs a test of its own."""
 
 
 def main() -> int:
-    """Run; return 1 where survivors and explanations differ."""
+    """Run the program; return 1 if survivors and explanations differ, 2 if the tests fail on unchanged code."""
     args = _parse()
     mutants = [mutant for path in _modules(args.paths) for mutant in build_mutants(path)]
     mutants = [mutant for mutant in mutants if args.only in f"{mutant.function}: {mutant.text}"]
@@ -60,7 +60,7 @@ def _modules(paths: list[str]) -> list[str]:
 
 
 def describe(mutant: Mutant) -> str:
-    """Return a line on `mutant`."""
+    """Return the location and the change of `mutant` in one line."""
     return f"{mutant.path}:{mutant.line}: {mutant.function or 'module'}: {mutant.text}"
 
 
@@ -71,8 +71,9 @@ def _run(mutants: list[Mutant], args: argparse.Namespace) -> int:
         counts[outcome] += 1
         if outcome is not Outcome.KILLED:
             survivors.append(mutant)
-        if args.verbose or outcome is not Outcome.KILLED:
-            print(f"{counts.total()}/{len(mutants)} {outcome.name} {describe(mutant)} {test}", flush=True)
+        if args.verbose or counts.total() % 100 == 0:
+            count = f"{counts.total()}/{len(mutants)}"
+            print(f"{count} {outcome.name} {describe(mutant)} {test}" if args.verbose else count, flush=True)
 
     print(f"{len(mutants)} mutants; first the tests without a change", flush=True)
     runner = Runner(mutants, args.jobs, args.limit, done)

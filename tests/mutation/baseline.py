@@ -1,4 +1,4 @@
-"""The tests without a change: which lines each executes, how long each takes, and whether one fails."""
+"""Baseline run of the tests on unchanged code: executed lines, durations and failures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.mutation.child import fork
 
 @dataclass(frozen=True, slots=True)
 class Baseline:
-    """The tests without a change."""
+    """Results of the tests on unchanged code."""
 
     seconds: dict[str, float]
     """Test -> CPU time."""

@@ -1,4 +1,4 @@
-"""What may stand in place of a syntax node: the kinds of mutants.
+"""Replacements for syntax nodes: the kinds of mutants.
 
 To add a kind, write a function and add a line to CHANGES.
 """
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from enum import Enum, EnumType
 
 IGNORED_ENUMS = ("Severity",)
-"""What a text's severity does is tested where it is shown."""
+"""Enums that are not mutated: the severity of a text is tested with its display."""
 COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
     ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In,
@@ -27,7 +27,7 @@ Namespace = Mapping[str, object]
 
 
 def build_changes(node: ast.AST, field: str, namespace: Namespace) -> Iterator[ast.AST]:
-    """Yield what may stand in place of `node`, which is in `field` of its parent."""
+    """Yield the replacements for `node`, which is in `field` of its parent."""
     if field == "test" and not isinstance(node, ast.UnaryOp | ast.Compare):
         yield ast.UnaryOp(ast.Not(), node)  # type: ignore[arg-type]
     yield from _enum_members(node, namespace)
@@ -103,7 +103,7 @@ def _call(node: ast.Call) -> Iterator[ast.AST]:
 
 
 def _statement(node: ast.Expr | ast.Assign | ast.AugAssign | ast.Delete) -> Iterator[ast.AST]:
-    """Yield nothing in place of a statement with an effect; without a local variable the rest would only crash."""
+    """Yield `pass` for a statement with an effect, but not for a local variable: the function would only crash."""
     if isinstance(node, ast.Expr) and not isinstance(node.value, ast.Call):
         return
     if not isinstance(node, ast.Assign) or isinstance(node.targets[0], ast.Attribute | ast.Subscript):
@@ -122,7 +122,7 @@ CHANGES: dict[tuple[type[ast.AST], ...], Callable[..., Iterator[ast.AST]]] = {
     (ast.Call,): _call,
     (ast.Expr, ast.Assign, ast.AugAssign, ast.Delete): _statement,
 }
-"""Kinds of syntax nodes -> what may stand in their place."""
+"""Kinds of syntax nodes -> their replacements."""
 
 
 def _enum_members(node: ast.AST, namespace: Namespace) -> Iterator[ast.AST]:

@@ -1,4 +1,4 @@
-"""Tests in a forked child: collected ones, or files with everything of the project imported anew."""
+"""Run tests in a forked child: collected tests, or files with the project imported anew."""
 
 from __future__ import annotations
 
@@ -9,27 +9,26 @@ from pathlib import Path
 from typing import NoReturn
 
 import pytest
-from hypothesis import HealthCheck, Phase, settings
 
 TIME_MAX = 30
-"""s of one test, in a mutant that loops or waits for ever; a hundred times of what the slow ones take."""
+"""Time limit of a test in s, for mutants that loop or wait forever."""
 OPTIONS = (
     "-o", "addopts=--import-mode=importlib", "-qq", "-s", "--no-header", "--no-summary", "--timeout=0",
     "-p", "no:cacheprovider", "-p", "no:xdist",
 )  # fmt: skip
 KILLED, SURVIVED, BROKEN = 10, 11, 12
-"""Exit codes. A child that a signal ends has run into the time limit, or the mutant has crashed Python."""
+"""Exit codes. A child that ends by a signal has exceeded the time limit, or the mutant has crashed Python."""
 
 
 class Watch:
-    """A pytest plugin: a time limit for each test, and the end of the process at the first that fails."""
+    """A pytest plugin that limits the time of each test and ends the process at the first failure."""
 
     def __init__(self, folder: Path) -> None:
-        """`folder` gets the name of the test that fails."""
+        """Write the name of the test that fails to a file in `folder`."""
         self._folder = folder
 
     def pytest_runtest_logstart(self) -> None:
-        """Begin the time of a test; SIGALRM ends the process."""
+        """Start the time limit of a test; SIGALRM ends the process."""
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
         signal.alarm(TIME_MAX)
 
@@ -45,10 +44,12 @@ class Watch:
 
 
 class Examples:
-    """A pytest plugin that makes hypothesis draw the same examples each time, and end at the first that fails."""
+    """A pytest plugin that makes hypothesis draw the same examples in each run and not shrink failures."""
 
     def pytest_collection(self) -> None:
-        """Take the place of the profile that tests/conftest.py has loaded."""
+        """Replace the hypothesis profile of tests/conftest.py."""
+        from hypothesis import HealthCheck, Phase, settings  # pytest has to import it first, to rewrite its asserts
+
         settings.register_profile(
             "mutation",
             deadline=None,
@@ -60,7 +61,7 @@ class Examples:
 
 
 def fork(run: Callable[[Path], None], folder: Path) -> int:
-    """Return the id of a child that calls `run`, without output and with `folder` for its files."""
+    """Fork a child that calls `run` without output, with `folder` for its files; return its process id."""
     child = os.fork()
     if child == 0:
         try:
@@ -76,14 +77,14 @@ def fork(run: Callable[[Path], None], folder: Path) -> int:
 
 
 def run_items(items: Sequence[pytest.Item], plugin: object) -> None:
-    """Run tests that are collected."""
+    """Run collected tests."""
     items[0].config.pluginmanager.register(plugin)
     for item, following in zip(items, [*items[1:], None], strict=True):
         item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
 
 
 def run_files(files: Sequence[str], watch: Watch) -> None:
-    """Collect and run files of tests, one after the other. One that cannot be imported has failed."""
+    """Collect and run test files one after the other. A file that cannot be imported counts as a failed test."""
     for file in files:
         code = pytest.main([*OPTIONS, file], plugins=[watch, Examples()])
         if code is pytest.ExitCode.INTERRUPTED:

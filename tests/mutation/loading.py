@@ -1,4 +1,4 @@
-"""Puts a mutant in place of the loaded code: of a function, or of a whole module."""
+"""Replace loaded code by a mutant: one function, or a whole module."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from types import CodeType, FunctionType, ModuleType
 from tests.mutation.mutants import Mutant
 
 FRESH = ("vehicle", "tests.")
-"""Modules that are imported anew with a changed module: all that may import it."""
+"""Prefixes of the modules that are imported anew with a changed module, because they may import it."""
 
 Functions = Mapping[tuple[str, str], list[FunctionType]]
 """File and qualified name -> functions."""
 
 
 def find_functions() -> Functions:
-    """Return all functions that are loaded, wherever they are held: in properties and tables, too."""
+    """Return all loaded functions, including those held by properties and tables."""
     found: defaultdict[tuple[str, str], list[FunctionType]] = defaultdict(list)
     for each in gc.get_objects():
         if isinstance(each, FunctionType):
@@ -47,7 +47,7 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 
 
 def replace_module(mutant: Mutant) -> None:
-    """Make the next import load the changed module, and all others that may import it anew."""
+    """Make the next import load the changed module, and load anew all modules that may import it."""
     for name in [name for name in sys.modules if name.startswith(FRESH) and not name.startswith("tests.mutation")]:
         del sys.modules[name]
     sys.meta_path.insert(0, MutantFinder(mutant))
@@ -62,7 +62,7 @@ class MutantFinder(importlib.abc.MetaPathFinder):
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> importlib.machinery.ModuleSpec | None:
-        """Return how to load the changed module; None for all others."""
+        """Return the spec of the changed module; None for all others."""
         if fullname != self._mutant.module:
             return None
         file = self._mutant.file

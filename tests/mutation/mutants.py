@@ -1,4 +1,4 @@
-"""Mutants of one module: its syntax tree with one spot changed."""
+"""Mutants of a module: each replaces one node of its syntax tree."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from types import CodeType
 from tests.mutation.changes import build_changes
 
 TEXT_MAX = 90
-"""Characters of source that a mutant's text shows of its surroundings, where they are so short."""
+"""Length up to which the text of a mutant shows the expression or statement around the change."""
 NOT_CODE = {"annotation", "returns", "decorator_list", "type_params", "bases"}
 """Fields of syntax nodes that are not mutated."""
 
@@ -30,13 +30,13 @@ class Spot:
 
     @property
     def node(self) -> ast.AST:
-        """What is there."""
+        """Node at this place."""
         value = getattr(self.parents[-1], self.field)
         found: ast.AST = value if self.index is None else value[self.index]
         return found
 
     def put(self, node: ast.AST) -> None:
-        """Replace what is there."""
+        """Replace the node at this place."""
         if self.index is None:
             setattr(self.parents[-1], self.field, node)
         else:
@@ -44,13 +44,13 @@ class Spot:
 
     @property
     def statement(self) -> ast.AST:
-        """The innermost simple statement, or the part of a compound one, that this is in."""
+        """Innermost simple statement, or part of a compound statement, that contains this place."""
         chain = [*self.parents, self.node]
         innermost = max(at for at, node in enumerate(chain) if isinstance(node, ast.stmt | ast.Module))
         return chain[innermost] if not hasattr(chain[innermost], "body") else chain[min(innermost + 1, len(chain) - 1)]
 
     def describe(self, changed: ast.AST) -> str:
-        """Return the source before and after, with as much of the surroundings as is short."""
+        """Return the source before and after the change, with the code around it where that is short."""
         shown = self.node
         for parent in reversed(self.parents):
             if not _is_part_of_line(parent) or len(ast.unparse(parent)) > TEXT_MAX:
@@ -68,18 +68,18 @@ class Spot:
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """One change of one module."""
+    """A module with one node replaced."""
 
     path: str
-    """Of the module, from the root of the repository."""
+    """Path of the module from the root of the repository."""
     text: str
-    """Source before and after; with a number where the same function has the same text more than once."""
+    """Source before and after the change; with a number if the function has the same text more than once."""
     line: int
     lines: range
-    """Of the statement."""
+    """Lines of the statement: the tests that execute one of them run against the mutant."""
     spot: Spot
     changed: ast.AST
-    """What stands at `spot` instead."""
+    """Node that replaces the one at `spot`."""
 
     @property
     def module(self) -> str:
@@ -88,7 +88,7 @@ class Mutant:
 
     @property
     def function(self) -> str:
-        """Qualified name of the outermost function that the change is in; "" at module level."""
+        """Qualified name of the outermost function that contains the change; "" at module level."""
         return self.spot.function
 
     @property

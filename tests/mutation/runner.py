@@ -1,4 +1,4 @@
-"""Runs the tests against each mutant, in a forked child of pytest after its collection."""
+"""Run the tests against each mutant, in a forked child of the pytest process that collected them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tests.mutation.mutants import Mutant, unchanged
 
 
 class Outcome(Enum):
-    """What became of a mutant."""
+    """Result of the tests against a mutant."""
 
     KILLED = 0
     SURVIVED = 1
@@ -31,12 +31,12 @@ class Outcome(Enum):
 
 @dataclass(slots=True)
 class Kills:
-    """Counts which tests and files have killed mutants: a test often kills several mutants of the same function."""
+    """Counts of the mutants that tests and test files killed: one test often kills several mutants of a function."""
 
     counts: Counter[tuple[str, str]] = field(default_factory=Counter)
 
     def add(self, mutant: Mutant, test: str) -> None:
-        """Note that `test` killed `mutant`."""
+        """Count that `test` killed `mutant`."""
         for where in (mutant.path, f"{mutant.path}::{mutant.function}"):
             self.counts[where, test] += 1
             self.counts[where, test.partition("::")[0]] += 1
@@ -47,12 +47,12 @@ class Kills:
 
 
 class Runner:
-    """A pytest plugin that takes the place of pytest's loop over the tests."""
+    """A pytest plugin that replaces the test loop."""
 
     def __init__(
         self, mutants: Sequence[Mutant], jobs: int, limit: float, done: Callable[[Mutant, Outcome, str], None]
     ) -> None:
-        """`limit`: s of tests for each mutant; `done` gets each mutant and the test that killed it."""
+        """Run up to `limit` s of tests against each mutant; `done` is called with its result and the failed test."""
         self.baseline = Baseline({}, {}, [])
         self._mutants = mutants
         self._jobs = jobs
@@ -64,7 +64,7 @@ class Runner:
         self._running: dict[int, tuple[Mutant, Path]] = {}
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
-        """Run the tests without a change, and then against each mutant."""
+        """Run the tests on unchanged code, and then against each mutant."""
         self._items = {item.nodeid: item for item in session.items}
         self._functions = find_functions()
         gc.collect()
@@ -80,7 +80,7 @@ class Runner:
         return True
 
     def _check(self) -> list[str]:
-        """Return the test that fails on a module that is imported anew without a change, where one does."""
+        """Return the test that fails if an unchanged module is imported anew, if any."""
         mutant = unchanged(self._mutants[0].path)
         folder = Path(tempfile.mkdtemp(prefix="mutant-"))
         _, status = os.waitpid(fork(lambda at: self._run(mutant, self._tests(mutant), at), folder), 0)
@@ -112,7 +112,7 @@ class Runner:
         self._done(mutant, Outcome.SURVIVED if test is None else Outcome.KILLED, test or "")
 
     def _tests(self, mutant: Mutant) -> list[str]:
-        """Return the tests, or for a change at module level the files of tests, in the order to run them in."""
+        """Return the tests to run, likely and fast ones first; test files for a change at module level."""
         seconds = self.baseline.seconds
         if mutant.function:
             lines = self.baseline.tests_by_line[mutant.path]

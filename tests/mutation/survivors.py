@@ -1,4 +1,4 @@
-"""Why mutants survive that no test can kill: survivors.toml, and what in it is missing or stale."""
+"""Explanations of equivalent mutants (survivors.toml): load them, and find missing and stale ones."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FILE = Path(__file__).with_name("survivors.toml")
 
 
 class Key(NamedTuple):
-    """Names a mutant in a way that outlives edits of other lines."""
+    """Identity of a mutant that does not change with edits of other lines."""
 
     path: str
     function: str
@@ -29,7 +29,7 @@ def key(mutant: Mutant) -> Key:
 
 
 def load_explanations(file: Path = FILE) -> dict[Key, str]:
-    """Read the file: for each function of each module a table of mutants and the reason why they cannot be seen."""
+    """Read the file: tables of mutants of a function with the reason why no test can kill them."""
     groups = tomllib.loads(file.read_text()).get("survivors", [])
     return {
         Key(group["module"], group["function"], text): group["why"] for group in groups for text in group["mutants"]
@@ -39,7 +39,7 @@ def load_explanations(file: Path = FILE) -> dict[Key, str]:
 def unexplained_and_stale(
     mutants: Sequence[Mutant], survivors: Sequence[Mutant], explanations: Collection[Key]
 ) -> tuple[list[Mutant], list[Key]]:
-    """Return the survivors without an explanation, and the explanations of a module that was run without a survivor."""
+    """Return survivors without an explanation, and explanations in the modules of `mutants` without a survivor."""
     survived = {key(mutant) for mutant in survivors}
     modules = {mutant.path for mutant in mutants}
     unexplained = [mutant for mutant in survivors if key(mutant) not in explanations]

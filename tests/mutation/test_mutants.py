@@ -1,4 +1,4 @@
-"""What mutants a line of source has, and how they are named."""
+"""The mutants of a line of source, their names, and the check of explanations."""
 
 from __future__ import annotations
 
