@@ -6,24 +6,10 @@ import pytest
 
 from dialects.axes import Axes, build_manual_control
 from dialects.enums import Severity
-from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, RcChannelsOverride, RoverOperatorPresence
+from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, RcChannelsOverride
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER
 from tests.vehicle.safety.rig import START, Rig
-
-
-def driven(**params: float) -> Rig:
-    """With DRIVER in control and a stick at rest."""
-    rig = Rig(**params)
-    rig.control.set_owner(DRIVER, START)
-    assert rig.stick(NEUTRAL)
-    return rig
-
-
-def presence(rig: Rig, *, target: int = 1, system: int = DRIVER, introduced: bool = True, session: int = 1,
-             echo: int = 0) -> None:  # fmt: skip
-    message = RoverOperatorPresence(target, 1, 0, echo, session, 1, 0, 1)
-    rig.control.handle_operator_presence(rig.received(message, system, introduced=introduced), message, rig.now)
 
 
 def raw(rig: Rig, **axes: int) -> bool:
@@ -54,7 +40,7 @@ def test_at_the_start_nobody_is_in_control_and_no_neutral_was_seen() -> None:
 
 class TestManualControl:
     def test_it_becomes_the_demand(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         assert rig.stick(Axes(0.5, -0.25))
         demand = rig.control.demand
         assert demand is not None
@@ -62,7 +48,7 @@ class TestManualControl:
 
     @pytest.mark.parametrize("target", [0, 2, 255])
     def test_for_another_vehicle_it_is_not_even_counted(self, target: int) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         message = build_manual_control(AHEAD, target)
         assert not rig.control.handle_manual_control(rig.received(message), message, START)
         assert not rig.control.handle_manual_control(rig.received(message, OTHER), message, START)
@@ -70,7 +56,7 @@ class TestManualControl:
         assert not rig.control.requests_motion()
 
     def test_before_a_heartbeat_it_is_not_even_counted(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         message = build_manual_control(AHEAD, 1)
         for system in (DRIVER, OTHER):
             received = rig.received(message, system, introduced=False)
@@ -81,12 +67,12 @@ class TestManualControl:
         rig = Rig()
         assert not rig.stick(AHEAD)
         assert rig.said("arm to take it")
-        rig = driven()
+        rig = Rig().controlled()
         assert not rig.stick(AHEAD, OTHER)
         assert rig.said(f"GCS {DRIVER} is in control")
 
     def test_a_packet_a_second_time_is_none(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         message = build_manual_control(AHEAD, 1)
         received = rig.received(message)
         assert rig.control.handle_manual_control(received, message, START)
@@ -95,7 +81,7 @@ class TestManualControl:
 
     @pytest.mark.parametrize("axes", [{"x": 1001}, {"x": -1001}, {"r": 1001}, {"r": -1001}])
     def test_an_axis_out_of_range_is_told_once(self, axes: dict[str, int]) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         for _ in range(3):
             assert raw(rig, **axes)
             rig.now += 60.0
@@ -104,12 +90,12 @@ class TestManualControl:
 
     @pytest.mark.parametrize("axes", [{"x": 1000, "r": -1000}, {"x": INVALID_AXIS}, {"r": INVALID_AXIS}])
     def test_an_axis_in_range_or_off_is_not(self, axes: dict[str, int]) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         assert raw(rig, **axes)
         assert not rig.said("outside")
 
     def test_without_an_axis_it_is_no_demand(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         assert raw(rig, x=500)
         before = rig.control.demand
         assert not raw(rig, x=INVALID_AXIS, r=INVALID_AXIS)
@@ -117,7 +103,7 @@ class TestManualControl:
 
     @pytest.mark.parametrize(("kind", "side"), [(1, None), (4, 0.5)])
     def test_sideways_where_the_vehicle_can(self, kind: float, side: float | None) -> None:
-        rig = driven(DRIVE_TYPE=kind)
+        rig = Rig(DRIVE_TYPE=kind).controlled()
         assert raw(rig, y=500)
         assert rig.control.demand is not None
         assert rig.control.demand.sideways == side
@@ -136,7 +122,7 @@ class TestNeutralFirst:
         assert rig.control.neutral_seen
 
     def test_a_reset_forgets_everything(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         assert override(rig, chan3=1700)
         assert rig.control.override.channels
         rig.control.reset()
@@ -148,7 +134,7 @@ class TestNeutralFirst:
     def test_a_stale_demand_for_motion_needs_it_again_and_a_stale_neutral_does_not(
         self, axes: Axes, seen: bool
     ) -> None:
-        rig = driven(MAN_TIMEOUT=0.5)
+        rig = Rig(MAN_TIMEOUT=0.5).controlled()
         rig.stick(axes)
         rig.control.expire_stale_demand(START + 0.5)
         assert rig.control.neutral_seen
@@ -158,7 +144,7 @@ class TestNeutralFirst:
         assert rig.control.neutral_seen is seen
 
     def test_a_demand_after_a_stale_one_needs_it_also_between_two_cycles(self) -> None:
-        rig = driven(MAN_TIMEOUT=0.5)
+        rig = Rig(MAN_TIMEOUT=0.5).controlled()
         rig.stick(AHEAD)
         rig.now += 0.6
         rig.stick(AHEAD)
@@ -168,10 +154,10 @@ class TestNeutralFirst:
 class TestOperator:
     def old(self, rig: Rig, age: float) -> None:
         """The driver has seen nothing newer than of `age` s ago."""
-        presence(rig, echo=round((rig.now - age) * 1000))
+        rig.presence(echo=round((rig.now - age) * 1000))
 
     def test_demands_that_are_old_are_refused_and_that_is_told_once(self) -> None:
-        rig = driven(OPR_ECHO_MAX=0.5)
+        rig = Rig(OPR_ECHO_MAX=0.5).controlled()
         self.old(rig, 0.5)
         assert rig.stick(AHEAD)
         self.old(rig, 0.501)
@@ -184,7 +170,7 @@ class TestOperator:
         assert rig.control.demand_age(START + 60.0) == 60.0
 
     def test_an_old_neutral_is_a_demand_and_no_proof_of_a_stick_at_rest(self) -> None:
-        rig = driven(OPR_ECHO_MAX=0.5)
+        rig = Rig(OPR_ECHO_MAX=0.5).controlled()
         rig.stick(AHEAD)
         rig.control.require_neutral()
         self.old(rig, 1.0)
@@ -196,51 +182,51 @@ class TestOperator:
         assert rig.control.neutral_seen
 
     def test_a_new_session_needs_neutral(self) -> None:
-        rig = driven()
-        presence(rig, session=1)
+        rig = Rig().controlled()
+        rig.presence(session=1)
         assert rig.control.neutral_seen
-        presence(rig, session=1)
+        rig.presence(session=1)
         assert rig.control.neutral_seen
-        presence(rig, session=2)
+        rig.presence(session=2)
         assert not rig.control.neutral_seen
 
     @pytest.mark.parametrize("wrong", [{"target": 2}, {"system": OTHER}, {"introduced": False}])
     def test_of_others_and_for_others_it_is_ignored(self, wrong: dict[str, int]) -> None:
-        rig = driven()
-        presence(rig, **wrong)  # type: ignore[arg-type]
+        rig = Rig().controlled()
+        rig.presence(**wrong)  # type: ignore[arg-type]
         assert not rig.control.presence.known
-        assert rig.texts == driven().texts  # nor is it told
+        assert rig.texts == Rig().controlled().texts  # nor is it told
 
 
 class TestOverride:
     def test_it_becomes_the_demand(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         assert override(rig, chan1=1500, chan3=1900)
         demand = rig.control.demand
         assert demand is not None
         assert (demand.throttle, demand.steering, demand.time, demand.system) == (1.0, 0.0, START, DRIVER)
 
     def test_for_another_vehicle_it_is_none(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         assert not override(rig, target=2, chan3=1900)
         assert not rig.control.requests_motion()
 
     def test_of_other_channels_it_is_none(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         before = rig.control.demand
         assert not override(rig, chan5=1900)
         assert rig.control.demand is before
         assert not rig.said("800..2200")
 
     def test_what_is_no_pulse_is_told_once_and_the_rest_counts(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         assert override(rig, chan3=1900, chan5=700)
         assert override(rig, chan3=1900, chan5=700)
         assert rig.control.requests_motion()
         assert sum("800..2200" in text for _, text in rig.texts) == 1
 
     def test_a_channel_counts_for_as_long_as_a_demand(self) -> None:
-        rig = driven(MAN_TIMEOUT=0.5)
+        rig = Rig(MAN_TIMEOUT=0.5).controlled()
         assert override(rig, chan1=1700, chan3=1900)
         rig.now += 0.5
         assert override(rig, chan1=1700)

@@ -6,29 +6,14 @@ import pytest
 
 from dialects.axes import build_manual_control
 from dialects.enums import Severity
-from dialects.messages import RoverOperatorPresence
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER
 from tests.vehicle.safety.rig import START, Rig
 
 
-def driven(**params: float) -> Rig:
-    """With DRIVER in control and a stick at rest."""
-    rig = Rig(**params)
-    rig.control.set_owner(DRIVER, START)
-    assert rig.stick(NEUTRAL)
-    return rig
-
-
-def presence(rig: Rig, *, target: int = 1, system: int = DRIVER, introduced: bool = True, session: int = 1,
-             echo: int = 0) -> None:  # fmt: skip
-    message = RoverOperatorPresence(target, 1, 0, echo, session, 1, 0, 1)
-    rig.control.handle_operator_presence(rig.received(message, system, introduced=introduced), message, rig.now)
-
-
 class TestOwner:
     def test_a_new_one_begins_anew(self) -> None:
-        rig = driven()
-        presence(rig)
+        rig = Rig().controlled()
+        rig.presence()
         rig.control.takeover_allowed = True
         rig.now += 3.0
         rig.control.set_owner(OTHER, rig.now)
@@ -41,8 +26,8 @@ class TestOwner:
         assert rig.severity(f"GCS {OTHER} is in control") is Severity.NOTICE
 
     def test_the_same_again_keeps_everything(self) -> None:
-        rig = driven()
-        presence(rig)
+        rig = Rig().controlled()
+        rig.presence()
         rig.control.takeover_allowed = True
         texts = len(rig.texts)
         rig.now += 3.0
@@ -54,7 +39,7 @@ class TestOwner:
         assert len(rig.texts) == texts
 
     def test_released_nobody_is(self) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         rig.control.release("gave it up", rig.now)
         assert rig.control.owner == 0
         assert rig.control.demand is None
@@ -63,7 +48,7 @@ class TestOwner:
 
     @pytest.mark.parametrize("change", ["release", "owner"])
     def test_after_a_change_others_are_told_again_that_they_are_ignored(self, change: str) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         assert not rig.stick(AHEAD, OTHER)
         first = sum(f"GCS {OTHER} ignored" in text for _, text in rig.texts)
         assert not rig.stick(AHEAD, OTHER)
@@ -83,7 +68,7 @@ class TestOwner:
         assert str(DRIVER) in (rig.control.denial_reason(OTHER) or "")
 
     def test_who_may_take_over(self) -> None:
-        rig = driven(FS_GCS_TIMEOUT=5)
+        rig = Rig(FS_GCS_TIMEOUT=5).controlled()
         assert rig.control.takeover_denial_reason(OTHER, START + 5.0) is not None
         assert rig.control.takeover_denial_reason(DRIVER, START) is None
         assert rig.control.takeover_denial_reason(OTHER, START + 5.1) is None
@@ -109,7 +94,7 @@ class TestOwner:
         ("system", "introduced", "life"), [(DRIVER, True, True), (OTHER, True, False), (DRIVER, False, False)]
     )
     def test_what_is_a_sign_of_life(self, system: int, introduced: bool, life: bool) -> None:
-        rig = driven()
+        rig = Rig().controlled()
         received = rig.received(build_manual_control(NEUTRAL, 1), system, introduced=introduced)
         rig.control.update_liveness(received, START + 3.0)
         assert rig.control.silence_duration(START + 3.0) == (0.0 if life else 3.0)

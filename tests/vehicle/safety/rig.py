@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dialects.axes import Axes, build_manual_control
 from dialects.enums import Failsafe, Severity
+from dialects.messages import RoverOperatorPresence
 from dialects.modes import Mode
 from link.core import Peer, Received
 from tests.vehicle.bench import DRIVER, NEUTRAL
@@ -68,6 +69,20 @@ class Rig:
         received = self.received(message, system)
         self.control.update_liveness(received, self.now)
         return self.control.handle_manual_control(received, message, self.now)
+
+    def presence(
+        self, *, target: int = 1, system: int = DRIVER, introduced: bool = True, session: int = 1, echo: int = 0
+    ) -> None:
+        """A ROVER_OPERATOR_PRESENCE of a ground station, at once."""
+        message = RoverOperatorPresence(target, 1, 0, echo, session, 1, 0, 1)
+        received = self.received(message, system, introduced=introduced)
+        self.control.handle_operator_presence(received, message, self.now)
+
+    def controlled(self) -> Rig:
+        """DRIVER takes control and shows a stick at rest."""
+        self.control.set_owner(DRIVER, self.now)
+        assert self.stick(NEUTRAL)
+        return self
 
     def cycle(
         self, seconds: float = 0.02, cause: Failsafe | None = None, *, refused: int = 0, driving: bool = False
