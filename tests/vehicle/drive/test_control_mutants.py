@@ -25,7 +25,7 @@ def override(rig: Rig, target: int = 1, **channels: int) -> bool:
     return rig.control.handle_rc_override(rig.received(message), message, rig.now)
 
 
-def test_at_the_start_nobody_is_in_control_and_no_neutral_was_seen() -> None:
+def test_at_the_start_no_station_is_in_control_and_no_neutral_was_seen() -> None:
     control = Rig().control
     assert (control.owner, control.demand, control.not_in_control_count) == (0, None, 0)
     assert not control.takeover_allowed
@@ -63,7 +63,7 @@ class TestManualControl:
             assert not rig.control.handle_manual_control(received, message, START)
         assert rig.control.not_in_control_count == 0
 
-    def test_where_nobody_is_in_control_the_text_says_how_to_get_it(self) -> None:
+    def test_without_a_station_in_control_the_text_says_how_to_take_it(self) -> None:
         rig = Rig()
         assert not rig.stick(AHEAD)
         assert rig.said("arm to take it")
@@ -80,7 +80,7 @@ class TestManualControl:
         assert rig.control.demand_age(START + 1.0) == 1.0
 
     @pytest.mark.parametrize("axes", [{"x": 1001}, {"x": -1001}, {"r": 1001}, {"r": -1001}])
-    def test_an_axis_out_of_range_is_told_once(self, axes: dict[str, int]) -> None:
+    def test_an_axis_out_of_range_is_reported_once(self, axes: dict[str, int]) -> None:
         rig = Rig().controlled()
         for _ in range(3):
             assert raw(rig, **axes)
@@ -156,7 +156,7 @@ class TestOperator:
         """The driver has seen nothing newer than of `age` s ago."""
         rig.presence(echo=round((rig.now - age) * 1000))
 
-    def test_demands_that_are_old_are_refused_and_that_is_told_once(self) -> None:
+    def test_demands_that_are_old_are_refused_and_that_is_reported_once(self) -> None:
         rig = Rig(OPR_ECHO_MAX=0.5).controlled()
         self.old(rig, 0.5)
         assert rig.stick(AHEAD)
@@ -195,7 +195,7 @@ class TestOperator:
         rig = Rig().controlled()
         rig.presence(**wrong)  # type: ignore[arg-type]
         assert not rig.control.presence.known
-        assert rig.texts == Rig().controlled().texts  # nor is it told
+        assert rig.texts == Rig().controlled().texts  # nor is it reported
 
 
 class TestOverride:
@@ -218,7 +218,7 @@ class TestOverride:
         assert rig.control.demand is before
         assert not rig.said("800..2200")
 
-    def test_what_is_no_pulse_is_told_once_and_the_rest_counts(self) -> None:
+    def test_what_is_no_pulse_is_reported_once_and_the_rest_counts(self) -> None:
         rig = Rig().controlled()
         assert override(rig, chan3=1900, chan5=700)
         assert override(rig, chan3=1900, chan5=700)

@@ -11,7 +11,7 @@ from tests.vehicle.safety.rig import START, Rig
 
 
 class TestOwner:
-    def test_a_new_one_begins_anew(self) -> None:
+    def test_a_new_one_starts_again(self) -> None:
         rig = Rig().controlled()
         rig.presence()
         rig.control.takeover_allowed = True
@@ -38,7 +38,7 @@ class TestOwner:
         assert rig.control.neutral_seen
         assert len(rig.texts) == texts
 
-    def test_released_nobody_is(self) -> None:
+    def test_after_its_release_no_station_is_in_control(self) -> None:
         rig = Rig().controlled()
         rig.control.release("gave it up", rig.now)
         assert rig.control.owner == 0
@@ -47,7 +47,7 @@ class TestOwner:
         assert rig.severity(f"GCS {DRIVER} gave it up") is Severity.NOTICE
 
     @pytest.mark.parametrize("change", ["release", "owner"])
-    def test_after_a_change_others_are_told_again_that_they_are_ignored(self, change: str) -> None:
+    def test_after_a_change_others_get_the_text_again_that_they_are_ignored(self, change: str) -> None:
         rig = Rig().controlled()
         assert not rig.stick(AHEAD, OTHER)
         first = sum(f"GCS {OTHER} ignored" in text for _, text in rig.texts)

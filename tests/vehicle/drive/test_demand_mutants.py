@@ -57,7 +57,7 @@ class TestManualControl:
         assert self.parse(y=y, sideways=True) == (None if side is None else Demand(None, None, 1.0, 255, 7, side))
         assert self.parse(y=y) is None
 
-    def test_a_vehicle_cannot_unless_told(self) -> None:
+    def test_sideways_is_off_by_default(self) -> None:
         message = ManualControl(target=1, x=0, y=500, z=0, r=0, buttons=0)
         assert from_manual_control(message, 255, 7, 1.0) == Demand(0.0, 0.0, 1.0, 255, 7)
 
@@ -121,7 +121,7 @@ class TestOverride:
         assert len(override.channels) == 4
         override.update(self.message(chan1=0, chan8=0, chan9=65534, chan18=65534), 3.0)
         assert override.channels == {}
-        override.update(self.message(chan1=0), 4.0)  # which nobody held
+        override.update(self.message(chan1=0), 4.0)  # which was not held
         assert override.channels == {}
 
     def test_a_channel_counts_up_to_its_time(self) -> None:

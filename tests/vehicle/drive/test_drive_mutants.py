@@ -90,7 +90,7 @@ def test_throttle_and_sideways_are_capped_and_steering_is_not(demanded: float) -
     assert rig.drive.limits == DriveLimit(0)
 
 
-def test_limits_are_told_for_the_cycle_in_which_they_hold() -> None:
+def test_limits_are_reported_for_the_cycle_in_which_they_hold() -> None:
     rig = Rig()
     rig.update(demand(1.0, 0.5))
     assert rig.drive.limits == DriveLimit.SATURATED
@@ -98,11 +98,11 @@ def test_limits_are_told_for_the_cycle_in_which_they_hold() -> None:
     assert rig.drive.limits == DriveLimit(0)
     rig = Rig(MOT_REV_DELAY=0.2)
     rig.update(demand(0.5))
-    told = []
+    reported = []
     for _ in range(2):
         rig.update(demand(-0.5))
-        told.append(rig.drive.limits)
-    assert told == [DriveLimit.SLEW, DriveLimit.REVERSE_DELAY]
+        reported.append(rig.drive.limits)
+    assert reported == [DriveLimit.SLEW, DriveLimit.REVERSE_DELAY]
 
 
 def test_limits_add_up() -> None:

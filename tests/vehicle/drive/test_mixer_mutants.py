@@ -1,4 +1,4 @@
-"""Mixers: rounding at full, and what is told as cut."""
+"""Mixers: rounding at full, and what is reported as cut."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def test_limits_cut_alike_and_push_as_much_back_as_ahead_by_default() -> None:
     assert not MixerOutput((0.0,)).saturated
 
 
-def test_a_sum_beyond_full_is_told_as_cut() -> None:
+def test_a_sum_beyond_full_is_reported_as_cut() -> None:
     assert four_wheels(1.0, 0.0, 0.0, MixerLimits()) == MixerOutput((1.0,) * 4, saturated=False)
     assert four_wheels(1.0, 0.25, 0.0, MixerLimits()) == MixerOutput((1.0, 0.6, 1.0, 0.6), saturated=True)
     assert four_wheels(0.25, 0.25, 0.75, MixerLimits()).saturated

@@ -37,7 +37,7 @@ def test_critical_begins_after_three_seconds(voltage: float, critical: bool) -> 
     assert battery.critical_since(103.0) == (103.0 if critical else None)
 
 
-def test_a_good_voltage_begins_the_time_anew() -> None:
+def test_a_good_voltage_restarts_the_time() -> None:
     battery = monitor(9.0, 100.0)
     battery.update(12.0, 109.0)
     battery.update(9.0, 110.0)

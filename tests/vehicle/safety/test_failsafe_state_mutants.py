@@ -130,7 +130,7 @@ def test_the_earliest_begin_of_a_lasting_condition_counts() -> None:
     assert actions(failsafes, {Failsafe.MANUAL_LOSS: 10.0}, 11.5) == [HOLD]
 
 
-def test_a_condition_that_ends_while_another_lasts_begins_anew() -> None:
+def test_a_condition_that_ends_while_another_lasts_starts_again() -> None:
     failsafes = Failsafes(PARAMS)
     both = {Failsafe.MANUAL_LOSS: 0.0, Failsafe.BATTERY_LOW: 0.0}
     assert actions(failsafes, both, 0.0) == [NEUTRAL, LIMIT, HOLD]
@@ -220,7 +220,7 @@ def test_the_next_step_is_the_next_hold_or_disarm() -> None:
     assert (step.delay, step.action) == (10.0, DISARM)
 
 
-def test_no_next_step_is_told_of_what_is_turned_off_or_past() -> None:
+def test_steps_that_are_disabled_or_past_are_not_next() -> None:
     failsafes = Failsafes(Params({"FS_PI_ACT": 1}))
     failsafes.update({Failsafe.OVERHEAT: 0.0}, 1.0)
     assert failsafes.next_step(1.0) is None
@@ -254,7 +254,7 @@ class TestCheck:
         assert self.check(rig, STANDING._replace(setpoint_expires=START - 3.5), START) == [NEUTRAL]
         assert self.check(rig, STANDING._replace(setpoint_expires=START - 1.0), START + 0.5) == [HOLD]
 
-    def test_what_is_over_begins_anew(self) -> None:
+    def test_what_is_over_starts_again(self) -> None:
         rig = Rig(FS_GCS_ENABLE=0)
         tilted = MOTIONS[Failsafe.TILT]
         assert self.check(rig, tilted, START) == []

@@ -15,27 +15,27 @@ from vehicle.statustext import StatusTextQueue
 
 def test_a_notice_lasts_until_it_has_been_gone_for_five_seconds() -> None:
     assert CLEAR_DELAY == 5.0
-    told: list[tuple[Severity, str]] = []
-    notices = HealthNotices(StatusTextQueue(lambda severity, text: told.append((severity, text))))
+    reported: list[tuple[Severity, str]] = []
+    notices = HealthNotices(StatusTextQueue(lambda severity, text: reported.append((severity, text))))
     notices.update({}, 1.0)
-    assert (notices.since, told) == ({}, [])
+    assert (notices.since, reported) == ({}, [])
     notices.update({"GPS": "GPS: no data"}, 2.0)
-    assert told == [(Severity.WARNING, "GPS: no data")]
+    assert reported == [(Severity.WARNING, "GPS: no data")]
     notices.update({"GPS": "GPS: other words"}, 10.0)
     notices.update({}, 14.9)
     assert notices.since == {"GPS": 2.0}
     notices.update({"GPS": "GPS: no data"}, 14.95)
     notices.update({}, 19.9)
     assert notices.since == {"GPS": 2.0}
-    assert len(told) == 1
+    assert len(reported) == 1
     notices.update({}, 19.95)
     assert notices.since == {}
-    assert [severity for severity, _ in told] == [Severity.WARNING, Severity.INFO]
+    assert [severity for severity, _ in reported] == [Severity.WARNING, Severity.INFO]
     notices.update({"GPS": "GPS: no data"}, 30.0)
     assert notices.since == {"GPS": 30.0}
 
 
-def test_the_end_is_told_at_five_seconds_and_not_before() -> None:
+def test_the_end_is_reported_at_five_seconds_and_not_before() -> None:
     notices = HealthNotices(StatusTextQueue())
     notices.update({"GPS": "GPS: no data"}, 10.0)
     notices.update({}, 14.99)
@@ -45,7 +45,7 @@ def test_the_end_is_told_at_five_seconds_and_not_before() -> None:
 
 
 @pytest.mark.parametrize("enabled", [0, 1])
-def test_a_fence_without_a_position_is_told_where_it_counts(enabled: float) -> None:
+def test_a_fence_without_a_position_is_reported_where_it_counts(enabled: float) -> None:
     field = Field(FENCE_ENABLE=enabled, FENCE_TYPE=2)
     field.wait(10.0)
     field.texts.clear()

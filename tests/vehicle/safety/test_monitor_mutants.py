@@ -242,7 +242,7 @@ class TestIdle:
         rig.cycle(5000.0)
         assert rig.safety.armed
 
-    def test_a_demand_for_motion_begins_the_delay_anew_and_a_neutral_one_does_not(self) -> None:
+    def test_a_demand_for_motion_restarts_the_delay_and_a_neutral_one_does_not(self) -> None:
         rig = self.rig(20)
         rig.now += 10.0
         rig.stick(NEUTRAL)
@@ -256,7 +256,7 @@ class TestIdle:
         rig.cycle(0.01)
         assert not rig.safety.armed
 
-    def test_driving_by_itself_begins_it_anew(self) -> None:
+    def test_driving_by_itself_restarts_it(self) -> None:
         rig = self.rig(20)
         rig.cycle(10.0, driving=True)
         rig.cycle(20.0)

@@ -44,7 +44,7 @@ def test_the_limit_is_a_parameter_and_zero_is_off(limit: float, hot: bool) -> No
     assert (pi.problem() is not None) is hot
 
 
-def test_a_weak_supply_and_heat_are_told_together_and_the_first_begin_counts() -> None:
+def test_a_weak_supply_and_heat_are_reported_together_and_the_first_begin_counts() -> None:
     pi = monitor()
     pi.update(at(90.0, weak=False), 1.0)
     pi.update(at(90.0, weak=True), 2.0)
@@ -55,7 +55,7 @@ def test_a_weak_supply_and_heat_are_told_together_and_the_first_begin_counts() -
 
 
 @pytest.mark.parametrize("unknown", [None, at(), at(math.nan), at(math.inf)])
-def test_what_nobody_knows_stays_as_it_was(unknown: ComputerReadings | None) -> None:
+def test_an_unknown_value_stays_as_it_was(unknown: ComputerReadings | None) -> None:
     pi = monitor()
     pi.update(unknown, 0.0)
     assert pi.problem() is None

@@ -30,7 +30,7 @@ class TestStart:
 
 
 class TestArming:
-    def test_who_arms_takes_control_and_the_drive_begins_anew(self) -> None:
+    def test_who_arms_takes_control_and_the_drive_starts_again(self) -> None:
         rig = Rig()
         rig.cycle()
         rig.stick(AHEAD)
@@ -45,7 +45,7 @@ class TestArming:
         assert rig.severity(f"Armed by GCS {DRIVER}, mode MANUAL") is Severity.NOTICE
         assert not rig.said("again to start")
 
-    def test_the_demand_of_before_does_not_count(self) -> None:
+    def test_an_earlier_demand_does_not_count(self) -> None:
         rig = Rig().armed()
         rig.safety.disarm("by GCS", rig.now)
         rig.stick(NEUTRAL)
@@ -76,7 +76,7 @@ class TestArming:
         assert len(rig.safety.arm(OTHER, rig.now)) == 1
         assert not rig.safety.armed
 
-    def test_what_is_wrong_is_told_and_force_skips_the_soft_checks(self) -> None:
+    def test_what_is_wrong_is_reported_and_force_skips_the_soft_checks(self) -> None:
         rig = Rig()
         rig.cycle()
         rig.safety.battery.update(1.0, rig.now)
@@ -146,7 +146,7 @@ class TestProblems:
         low = self.only(rig)
         assert len({critical, silent, low}) == 3
 
-    def test_each_kind_of_emergency_stop_has_its_own_words(self) -> None:
+    def test_each_kind_of_emergency_stop_has_its_own_text(self) -> None:
         stopped, pressed, terminated = self.ready(), self.ready(), self.ready()
         stopped.safety.emergency_stop("GCS 255", stopped.now)
         pressed.safety.update_estop_input("pressed", pressed.now)
@@ -172,7 +172,7 @@ class TestProblems:
 
 
 class TestDisarming:
-    def test_it_is_told_closes_the_interlock_and_ends_what_drives_by_itself(self) -> None:
+    def test_it_is_reported_closes_the_interlock_and_ends_autonomy(self) -> None:
         rig = Rig().armed()
         rig.safety.choose_mode(Mode.GUIDED, rig.now)
         rig.stick(NEUTRAL)
@@ -196,7 +196,7 @@ class TestDisarming:
             rig.safety.disarm("by GCS", rig.now + silence)
             assert rig.control.owner == owner
 
-    def test_the_end_of_a_motor_test_ends_what_was_asked_for_while_disarmed(self) -> None:
+    def test_the_end_of_a_motor_test_ends_what_was_requested_while_disarmed(self) -> None:
         rig = Rig()
         rig.cycle()
         generation = rig.safety.mode_generation

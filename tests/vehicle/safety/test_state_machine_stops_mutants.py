@@ -65,7 +65,7 @@ def test_loop_overrun_is_latched_until_the_next_arming() -> None:
 
 
 class TestEmergencyStop:
-    def test_it_is_told_once_and_closes_everything(self) -> None:
+    def test_it_is_reported_once_and_closes_everything(self) -> None:
         rig = Rig().armed()
         rig.safety.choose_mode(Mode.GUIDED, rig.now)
         rig.safety.emergency_stop("GCS 255", rig.now)
@@ -113,7 +113,7 @@ class TestEmergencyStop:
 
 
 class TestMode:
-    def test_a_choice_is_told_and_forgets_the_demand(self) -> None:
+    def test_a_choice_is_reported_and_forgets_the_demand(self) -> None:
         rig = Rig().armed()
         rig.stick(AHEAD)
         generation = rig.safety.mode_generation
@@ -123,7 +123,7 @@ class TestMode:
         assert rig.control.demand is None
         assert rig.severity("Mode GUIDED") is Severity.INFO
 
-    def test_the_same_again_keeps_the_demand_and_begins_self_driving_anew(self) -> None:
+    def test_the_same_again_keeps_the_demand_and_restarts_self_driving(self) -> None:
         rig = Rig().armed()
         rig.stick(AHEAD)
         generation = rig.safety.mode_generation
@@ -171,7 +171,7 @@ class TestMode:
         rig.safety.confirm_autonomy()
         assert rig.safety.autonomy_confirmed
 
-    def test_the_end_of_self_driving_is_hold_and_told(self) -> None:
+    def test_the_end_of_self_driving_is_hold_and_is_reported(self) -> None:
         rig = Rig().armed()
         rig.safety.choose_mode(Mode.GUIDED, rig.now)
         rig.stick(NEUTRAL)
@@ -186,7 +186,7 @@ class TestMode:
 
 
 class TestMotorDriver:
-    def test_a_failure_is_told_once_with_the_newest_reason_kept(self) -> None:
+    def test_a_failure_is_reported_once_with_the_newest_reason_kept(self) -> None:
         rig = Rig().armed()
         rig.safety.motor_failed("no answer", rig.now)
         rig.safety.motor_failed("wrong answer", rig.now)
@@ -196,7 +196,7 @@ class TestMotorDriver:
         assert not rig.said("wrong answer")
         assert rig.safety.latched == Failsafe.MOTOR_DRIVER
 
-    def test_its_repair_is_told_where_it_had_failed(self) -> None:
+    def test_its_repair_is_reported_where_it_had_failed(self) -> None:
         rig = Rig()
         rig.cycle()
         rig.safety.motor_repaired(rig.now)
@@ -216,14 +216,14 @@ def test_shutdown_is_the_end() -> None:
     assert rig.safety.arm(DRIVER, rig.now, force=True) != []
 
 
-def test_an_overrun_of_the_loop_is_told_with_its_length() -> None:
+def test_an_overrun_of_the_loop_is_reported_with_its_length() -> None:
     rig = Rig().armed()
     rig.safety.handle_loop_overrun(0.256, rig.now)
     assert rig.said("Disarmed: control loop was 0.26 s late")
     assert rig.safety.latched == Failsafe.LOOP_OVERRUN
 
 
-def test_all_that_is_latched_is_told_together() -> None:
+def test_all_that_is_latched_is_reported_together() -> None:
     rig = Rig().armed()
     rig.endure(Failsafe.BLOCKED)
     rig.safety.handle_loop_overrun(0.3, rig.now)
@@ -234,7 +234,7 @@ def test_all_that_is_latched_is_told_together() -> None:
     assert rig.safety.latched == everything
 
 
-def test_nobody_in_control_is_not_freed() -> None:
+def test_without_an_owner_none_is_released() -> None:
     rig = Rig()
     rig.cycle()
     rig.now += 60.0
