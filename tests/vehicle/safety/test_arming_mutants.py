@@ -1,13 +1,82 @@
-"""Parameters that contradict each other forbid arming, by force as well."""
+"""The arming checks, one by one: what each forbids, and whether arming by force skips it."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import pytest
 
 from dialects.enums import Command, Result
 from tests.vehicle.bench import Bench, said
+from vehicle.params import Params
+from vehicle.safety.arming import ArmingFacts, find_problems
+from vehicle.safety.states import SafetyState
 
 FORCE = 21196
+READY = ArmingFacts(Params(), SafetyState.SAFE)
+
+
+def test_nothing_is_wrong_with_a_vehicle_that_is_ready() -> None:
+    assert find_problems(READY) == []
+
+
+@pytest.mark.parametrize(
+    ("wrong", "hard"),
+    [
+        ({"terminated": True}, True),
+        ({"estop_reason": "pressed"}, True),
+        ({"state": SafetyState.ESTOP}, True),
+        ({"fault": "no answer"}, True),
+        ({"state": SafetyState.BOOT}, True),
+        ({"state": SafetyState.OFF}, True),
+        ({"params": Params({"FS_TIMEOUT": 6.0, "FS_DISARM_T": 5.0})}, True),
+        ({"mode": "position is not known"}, True),
+        ({"fence": "there is none"}, True),
+        ({"battery_low": True}, False),
+        ({"battery_critical": True}, False),
+        ({"battery_silent": True}, False),
+        ({"computer": "too hot"}, False),
+        ({"sticks_moving": True}, False),
+    ],
+)
+def test_each_fact_alone_forbids_arming_and_the_soft_ones_not_by_force(wrong: dict[str, object], hard: bool) -> None:
+    facts = replace(READY, **wrong)  # type: ignore[arg-type]
+    found = find_problems(facts)
+    assert len(found) == 1
+    assert all(word in found[0] for word in wrong.values() if isinstance(word, str))
+    assert find_problems(facts, force=True) == (found if hard else [])
+
+
+def test_damaged_settings_forbid_arming_also_by_force() -> None:
+    params = Params()
+    params.mark_damaged("checksum wrong")
+    found = find_problems(replace(READY, params=params), force=True)
+    assert len(found) == 1
+    assert found[0].startswith("checksum wrong")
+
+
+def test_the_pi_is_no_reason_where_its_failsafe_is_off() -> None:
+    facts = replace(READY, params=Params({"FS_PI_ACT": 0}), computer="too hot")
+    assert find_problems(facts) == []
+
+
+def test_the_worst_of_several_is_named() -> None:
+    def only(**wrong: object) -> str:
+        (problem,) = find_problems(replace(READY, **wrong))  # type: ignore[arg-type]
+        return problem
+
+    stopped = {"terminated": True, "estop_reason": "pressed", "state": SafetyState.ESTOP}
+    assert only(**stopped) == only(terminated=True)
+    assert only(estop_reason="pressed", state=SafetyState.ESTOP) == only(estop_reason="pressed")
+    assert only(battery_silent=True, battery_critical=True) == only(battery_silent=True)
+    assert only(battery_critical=True, battery_low=True) == only(battery_critical=True)
+    assert len({only(battery_silent=True), only(battery_critical=True), only(battery_low=True)}) == 3
+
+
+def test_problems_come_in_the_order_of_their_checks() -> None:
+    wrong = replace(READY, terminated=True, fault="no answer", battery_low=True, sticks_moving=True)
+    assert [len(find_problems(wrong)), len(find_problems(wrong, force=True))] == [4, 2]
+    assert find_problems(wrong)[0] == find_problems(replace(READY, terminated=True))[0]
 
 
 @pytest.mark.parametrize(

@@ -1,63 +1,210 @@
-"""Arming, mode changes and the emergency stop: what a second command must not undo."""
+"""Arming, what forbids it, and disarming, without a rover."""
 
 from __future__ import annotations
 
 import pytest
 
-from dialects import messages as m
-from dialects.enums import Command, Failsafe, Result, SystemState
+from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
-from tests.vehicle.bench import CYCLE, NEUTRAL, Bench, said
+from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER
+from tests.vehicle.safety.rig import Rig
+from vehicle.readings import ComputerReadings
 from vehicle.safety.states import SafetyState
 
-SWITCH, TERMINATE = Command.DO_SET_SAFETY_SWITCH_STATE, Command.DO_FLIGHTTERMINATION
-FORCE = 21196
+
+class TestStart:
+    def test_nothing_is_confirmed_latched_or_wrong(self) -> None:
+        safety = Rig().safety
+        assert safety.state is SafetyState.BOOT
+        assert not safety.armed
+        assert not safety.terminated
+        assert not safety.autonomy_confirmed
+        assert safety.mode_generation == 0
+        assert safety.latched == 0
+        assert (safety.estop_reason, safety.motor_fault) == (None, None)
+
+    @pytest.mark.parametrize(("number", "mode"), [(0, Mode.MANUAL), (4, Mode.HOLD)])
+    def test_the_mode_is_a_parameter(self, number: float, mode: Mode) -> None:
+        safety = Rig(INITIAL_MODE=number).safety
+        assert safety.mode is safety.intended is mode
 
 
-@pytest.mark.parametrize("second", ["command", "button"])
-def test_a_second_emergency_stop_does_not_end_a_termination(second: str) -> None:
-    bench = Bench()
-    bench.drive()
-    assert bench.command(TERMINATE, 1) is Result.ACCEPTED
-    if second == "command":
-        assert bench.command(SWITCH, 0) is Result.ACCEPTED
-    else:
-        bench.rover.update_estop_input("pressed", bench.now)
-        bench.wait(CYCLE)
-        bench.rover.update_estop_input(None, bench.now)
-    assert bench.command(SWITCH, 1) is Result.FAILED
-    assert bench.command(Command.COMPONENT_ARM_DISARM, 1, FORCE) is Result.FAILED
-    bench.wait(0.1)
-    assert said(bench, "release refused: terminated, restart the vehicle")
-    assert bench.rover.state is SafetyState.ESTOP
-    assert bench.newest(m.Heartbeat).system_status == SystemState.FLIGHT_TERMINATION
+class TestArming:
+    def test_who_arms_takes_control_and_the_drive_starts_again(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        rig.stick(AHEAD)
+        generation = rig.safety.mode_generation
+        rig.now += 5.0
+        assert rig.safety.arm(DRIVER, rig.now) == []
+        assert rig.control.owner == DRIVER
+        assert rig.control.demand is None
+        assert rig.safety.armed_at == rig.now
+        assert rig.safety.mode_generation > generation
+        assert not rig.safety.autonomy_confirmed
+        assert rig.severity(f"Armed by GCS {DRIVER}, mode MANUAL") is Severity.NOTICE
+        assert not rig.said("again to start")
+
+    def test_an_earlier_demand_does_not_count(self) -> None:
+        rig = Rig().armed()
+        rig.safety.disarm("by GCS", rig.now)
+        rig.stick(NEUTRAL)
+        rig.stick(AHEAD)
+        rig.now += 60.0
+        rig.safety.arm(DRIVER, rig.now)
+        assert rig.control.demand is None
+        assert not rig.control.neutral_seen
+
+    def test_again_by_the_owner_changes_nothing(self) -> None:
+        rig = Rig().armed()
+        before = (rig.safety.mode_generation, rig.safety.armed_at, len(rig.texts))
+        rig.now += 5.0
+        assert rig.safety.arm(DRIVER, rig.now) == []
+        assert (rig.safety.mode_generation, rig.safety.armed_at, len(rig.texts)) == before
+
+    def test_by_another_is_refused_whoever_may_take_over(self) -> None:
+        rig = Rig().armed()
+        rig.control.takeover_allowed = True
+        rig.now += 60.0
+        assert len(rig.safety.arm(OTHER, rig.now, force=True)) == 1
+        assert rig.control.owner == DRIVER
+        assert rig.severity("PreArm: ") is Severity.WARNING
+
+    def test_by_another_while_disarmed_needs_control(self) -> None:
+        rig = Rig().armed()
+        rig.safety.disarm("by GCS", rig.now)
+        assert len(rig.safety.arm(OTHER, rig.now)) == 1
+        assert not rig.safety.armed
+
+    def test_what_is_wrong_is_reported_and_force_skips_the_soft_checks(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        rig.safety.battery.update(1.0, rig.now)
+        rig.now += 4.0
+        (problem,) = rig.safety.arm(DRIVER, rig.now)
+        assert rig.severity(f"PreArm: {problem}") is Severity.WARNING
+        assert not rig.safety.armed
+        assert rig.control.owner == 0
+        assert rig.safety.arm(DRIVER, rig.now, force=True) == []
+
+    def test_what_was_latched_is_over(self) -> None:
+        rig = Rig().armed()
+        rig.endure(Failsafe.TILT)
+        assert rig.safety.failsafes.latched == Failsafe.TILT
+        rig.safety.arm(DRIVER, rig.now)
+        assert not rig.safety.failsafes.latched
+
+    @pytest.mark.parametrize(
+        ("mode", "stands"), [(Mode.AUTO, True), (Mode.RTL, True), (Mode.GUIDED, False), (Mode.HOLD, False)]
+    )
+    def test_in_a_mode_that_drives_by_itself_it_stands_until_it_is_chosen_again(self, mode: Mode, stands: bool) -> None:
+        rig = Rig()
+        rig.cycle()
+        assert rig.safety.choose_mode(mode, rig.now) is None
+        assert not rig.safety.autonomy_confirmed
+        rig.safety.arm(DRIVER, rig.now)
+        assert rig.said("again to start") is stands
+        assert not rig.safety.autonomy_confirmed
+        assert rig.safety.choose_mode(mode, rig.now) is None
+        assert rig.safety.autonomy_confirmed
 
 
-def test_manual_after_a_long_hold_is_not_disarmed_for_the_old_demand() -> None:
-    """Longer in HOLD than FS_DISARM_T, without a demand: the one before HOLD must not count in MANUAL."""
-    bench = Bench()
-    bench.drive()
-    bench.wait(2.0, NEUTRAL)
-    assert bench.set_mode(Mode.HOLD) is Result.ACCEPTED
-    for _ in range(40):
-        bench.heartbeat()
-        bench.wait(1.0)
-    assert bench.armed
-    assert bench.set_mode(Mode.MANUAL) is Result.ACCEPTED
-    bench.wait(1.0)
-    assert bench.armed
-    assert bench.mode is Mode.MANUAL
-    assert not said(bench, "manual control lost")
+class TestProblems:
+    """What prearm_problems finds: each fact by itself."""
+
+    def only(self, rig: Rig) -> str:
+        (problem,) = rig.safety.prearm_problems(rig.now)
+        return problem
+
+    def ready(self, **params: float) -> Rig:
+        rig = Rig(**params)
+        rig.cycle()
+        assert rig.safety.prearm_problems(rig.now) == []
+        return rig
+
+    def test_mode_and_fence(self) -> None:
+        rig = self.ready()
+        rig.ready.unready[Mode.MANUAL] = "no gyro"
+        assert "no gyro" in self.only(rig)
+        rig.ready.unready.clear()
+        rig.ready.unready[Mode.AUTO] = "no mission"
+        assert rig.safety.prearm_problems(rig.now) == []
+        rig.ready.fence_unenforceable_reason = "no fence"
+        assert self.only(rig) == "no fence"
+
+    def test_battery_low_critical_and_silent(self) -> None:
+        rig = self.ready(BATT_LOW_TIMER=10)
+        rig.safety.battery.update(9.0, rig.now)
+        rig.now += 2.9
+        assert rig.safety.prearm_problems(rig.now) == []
+        rig.now += 0.2
+        critical = self.only(rig)
+        rig.now += 2.0
+        silent = self.only(rig)
+        rig.safety.battery.update(10.2, rig.now)
+        rig.now += 5.0
+        low = self.only(rig)
+        assert len({critical, silent, low}) == 3
+
+    def test_each_kind_of_emergency_stop_has_its_own_text(self) -> None:
+        stopped, pressed, terminated = self.ready(), self.ready(), self.ready()
+        stopped.safety.emergency_stop("GCS 255", stopped.now)
+        pressed.safety.update_estop_input("pressed", pressed.now)
+        terminated.safety.emergency_stop("GCS 255", terminated.now, terminate=True)
+        assert self.only(pressed) == "pressed"
+        assert len({self.only(stopped), self.only(pressed), self.only(terminated)}) == 3
+
+    def test_a_stick_that_is_not_at_rest_while_it_is_fresh(self) -> None:
+        rig = self.ready(MAN_TIMEOUT=0.5)
+        rig.control.set_owner(DRIVER, rig.now)
+        rig.stick(NEUTRAL)
+        assert rig.safety.prearm_problems(rig.now) == []
+        rig.stick(AHEAD)
+        assert self.only(rig)
+        assert rig.safety.prearm_problems(rig.now, force=True) == []
+        rig.now += 0.6
+        assert rig.safety.prearm_problems(rig.now) == []
+
+    def test_a_weak_supply(self) -> None:
+        rig = self.ready()
+        rig.safety.computer.update(ComputerReadings(under_voltage=True), rig.now)
+        assert self.only(rig)
 
 
-def test_loop_overrun_is_latched_until_the_next_arming() -> None:
-    bench = Bench()
-    bench.drive()
-    bench.freeze(0.25)
-    bench.cycle()
-    assert not bench.armed
-    bench.wait(1.2)
-    assert bench.newest(m.RoverFailsafeStatus).latched & Failsafe.LOOP_OVERRUN
-    assert bench.arm() is Result.ACCEPTED
-    bench.wait(1.2, NEUTRAL)
-    assert not bench.newest(m.RoverFailsafeStatus).latched & Failsafe.LOOP_OVERRUN
+class TestDisarming:
+    def test_it_is_reported_closes_the_interlock_and_ends_autonomy(self) -> None:
+        rig = Rig().armed()
+        rig.safety.choose_mode(Mode.GUIDED, rig.now)
+        rig.stick(NEUTRAL)
+        generation = rig.safety.mode_generation
+        rig.safety.disarm("by GCS", rig.now)
+        assert rig.safety.state is SafetyState.SAFE
+        assert not rig.control.neutral_seen
+        assert not rig.safety.autonomy_confirmed
+        assert rig.safety.mode_generation > generation
+        assert rig.severity("Disarmed: by GCS") is Severity.NOTICE
+
+    def test_again_changes_nothing(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        rig.safety.disarm("by GCS", rig.now)
+        assert rig.texts == []
+
+    def test_a_silent_owner_loses_control_at_once_and_a_present_one_keeps_it(self) -> None:
+        for silence, owner in ((4.9, DRIVER), (5.1, 0)):
+            rig = Rig(FS_GCS_TIMEOUT=5).armed()
+            rig.safety.disarm("by GCS", rig.now + silence)
+            assert rig.control.owner == owner
+
+    def test_the_end_of_a_motor_test_ends_what_was_requested_while_disarmed(self) -> None:
+        rig = Rig()
+        rig.cycle()
+        generation = rig.safety.mode_generation
+        rig.safety.end_motor_test()
+        assert rig.safety.mode_generation == generation + 1
+        assert not rig.safety.autonomy_confirmed
+        rig = Rig().armed()
+        rig.safety.choose_mode(Mode.GUIDED, rig.now)
+        generation = rig.safety.mode_generation
+        rig.safety.end_motor_test()
+        assert (rig.safety.mode_generation, rig.safety.autonomy_confirmed) == (generation, True)
