@@ -6,11 +6,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from groundstation.input.keymap import CONFIRM_KEY
+from groundstation.intents import HOLD_TIME
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.keynames import format_key
 
 MAX_SILENCE = 99.0
 """s without a heartbeat that are still counted; after that the text is "minutes"."""
+
+BAR = 10
+"""Cells of the bar that fills while a key is held."""
 
 GENERIC_AUTOPILOT = 0
 """MAV_AUTOPILOT_GENERIC. With a CONTROL_STATUS it is our own vehicle, whose failsafes stop it without a heartbeat."""
@@ -26,7 +30,7 @@ class AlertLevel(Enum):
     DANGER = auto()
     """The operator must act now."""
     QUESTION = auto()
-    """A question waits for its answer."""
+    """A key is held to confirm an action."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,14 +56,17 @@ def _station(now: DisplayState) -> Iterator[Alert]:
 
 def _emergency(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
-    if now.question is None and vehicle is not None and vehicle.emergency_stop:
-        clear = f"{now.key('stop.clear')}, then {CONFIRM_KEY}, releases it"
+    if now.hold is None and vehicle is not None and vehicle.emergency_stop:
+        clear = f"Hold {now.key('stop.clear')} to release it"
         yield Alert(AlertLevel.DANGER, f"EMERGENCY STOP: the motors are off and locked. {clear}")
 
 
-def _question(now: DisplayState) -> Iterator[Alert]:
-    if now.question is not None:
-        yield Alert(AlertLevel.QUESTION, f"{now.question.label}? {CONFIRM_KEY} = yes, any other key = no")
+def _hold(now: DisplayState) -> Iterator[Alert]:
+    if now.hold is not None:
+        full = int(BAR * now.hold.held / HOLD_TIME)
+        bar = "█" * full + "░" * (BAR - full)
+        text = f"{now.hold.action.label}: hold {format_key(now.hold.key)} {bar} {now.hold.held:.1f} s"
+        yield Alert(AlertLevel.QUESTION, text)
 
 
 def _silence(now: DisplayState) -> Iterator[Alert]:
@@ -79,7 +86,7 @@ def _failsafe(now: DisplayState) -> Iterator[Alert]:
 
 
 def _gate(now: DisplayState) -> Iterator[Alert]:
-    if now.closure is not None and now.question is None:
+    if now.closure is not None:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
 
 
@@ -128,7 +135,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
             AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves"
         )
     elif not vehicle.armed:
-        yield Alert(AlertLevel.HINT, f"disarmed: {now.key('vehicle.arm')}, then {CONFIRM_KEY}, arms {vehicle.name}")
+        yield Alert(AlertLevel.HINT, f"disarmed: hold {now.key('vehicle.arm')} to arm {vehicle.name}")
     elif vehicle.mode != "MANUAL":
         yield Alert(
             AlertLevel.HINT, f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
@@ -144,6 +151,6 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _question, _emergency, _silence, _failsafe, _gate, _refusal, _limits, _driver, _settings, _hint,
+    _station, _hold, _emergency, _silence, _failsafe, _gate, _refusal, _limits, _driver, _settings, _hint,
 )  # fmt: skip
 """Most urgent first."""
