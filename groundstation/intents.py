@@ -17,6 +17,9 @@ LEASE_TIMEOUT = 0.3
 """s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz, and longer than its longest
 drawing (0.1 s). A frozen screen then means neutral well within 0.5 s."""
 
+HOLD_TIME = 1.0
+"""s for which the key of an action with `confirm` must be held (input/hold_to_confirm.py); the station checks it."""
+
 STOP_KEY = "stop key"
 """The reason of a Stop that the operator requested with a key; other reasons mean that the screen cannot drive now."""
 
@@ -67,6 +70,9 @@ class EmergencyStop(Intent, frozen=True):
 class ClearEmergencyStop(Intent, frozen=True):
     """Release the emergency stop; arming is a separate step."""
 
+    held: float = 0.0
+    """s for which the key was held; refused below HOLD_TIME."""
+
 
 class ScaleLimits(Intent, frozen=True):
     """Scale the limits of the sticks; never moves the vehicle. Factors above 0, e.g. 1.1."""
@@ -105,6 +111,9 @@ class RenewLease(Intent, frozen=True):
 
 class Arm(Intent, frozen=True):
     """Arm the vehicle, after changing to MANUAL if it is in HOLD."""
+
+    held: float = 0.0
+    """s for which the key was held; refused below HOLD_TIME."""
 
 
 class Disarm(Intent, frozen=True):
@@ -169,7 +178,7 @@ class OperatorAction:
     keys: tuple[str, ...] = ()
     """Keys in every key map, by Textual's names ("i", "comma", "up", "ctrl+q"). KEYMAPS (input/keymap.py) adds more."""
     confirm: bool = False
-    """Needs CONFIRM_KEY (input/keymap.py) after it; the screen asks and then sends `intent`."""
+    """The key must be held for HOLD_TIME; then `intent` is sent, with that time in its field `held` if it has one."""
     when_armed: AnyIntent | None = None
     """Sent in place of `intent`, without confirmation, while the vehicle is armed."""
 
@@ -207,7 +216,7 @@ _ROWS = (
     _speed("steering_slower", "Steering -", "Lower the steering limit by 10 %", 1.0, SLOWER),
     OperatorAction("drive.style", "Style", "Next drive style: hold, latch, step", "drive", SetStyle(style="next"),
                    ("tab",)),
-    OperatorAction("vehicle.arm", "Arm", "Arm; when armed, disarm in one key", "vehicle", Arm(), ("r",), confirm=True,
+    OperatorAction("vehicle.arm", "Arm", "Arm; when armed, one press disarms", "vehicle", Arm(), ("r",), confirm=True,
                    when_armed=Disarm()),
     OperatorAction("vehicle.disarm", "Disarm", "Disarm", "vehicle", Disarm()),
     OperatorAction("vehicle.manual", "MANUAL", "Mode MANUAL: the keys drive", "vehicle", SetMode(mode="MANUAL"),

@@ -97,7 +97,7 @@ class Drive:
         """Arm, press the key, and wait until the wheels turn at the full demand."""
         self.until(lambda: self.station.snapshot(self.world.now, 0).vehicle is not None)
         self.run(2.0)
-        self.tell(i.Arm())
+        self.tell(i.Arm(held=1.0))
         self.until(lambda: self.rover.state is SafetyState.ARMED)
         self.run(1.5)
         self.held = "i"
@@ -226,7 +226,7 @@ def test_thirty_percent_loss_never_moves_late(seed: int) -> None:
     drive = Drive(loss=0.30, delay=0.010, seed=seed)
     drive.until(lambda: drive.station.snapshot(drive.world.now, 0).vehicle is not None)
     for _ in range(8):
-        drive.tell(i.Arm())
+        drive.tell(i.Arm(held=1.0))
         drive.run(2.0)
         drive.held = "i"
         drive.run(3.0)
@@ -243,11 +243,11 @@ def test_emergency_stop_is_at_once_and_stays() -> None:
     drive.tell(i.EmergencyStop())
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.05)
     assert drive.rover.state is SafetyState.ESTOP
-    drive.tell(i.Arm())
+    drive.tell(i.Arm(held=1.0))
     drive.run(3.0)
     assert drive.rover.state is SafetyState.ESTOP
     drive.held = None
-    drive.tell(i.ClearEmergencyStop())
+    drive.tell(i.ClearEmergencyStop(held=1.0))
     drive.run(2.0)
     drive.get_going()
 
@@ -289,7 +289,7 @@ def test_a_key_pressed_right_after_arming_drives(wait: float) -> None:
     """The vehicle needs a neutral demand first; the station sends it before it lets the first key through."""
     drive = Drive()
     drive.run(2.0)
-    drive.tell(i.Arm())
+    drive.tell(i.Arm(held=1.0))
     drive.until(lambda: drive.station.snapshot(drive.world.now, 0).operator.gate_open)
     drive.run(wait)
     drive.held = "i"
@@ -301,7 +301,7 @@ def test_arming_with_a_key_held_does_not_drive_off() -> None:
     drive.run(2.0)
     drive.held = "i"
     drive.run(1.0)
-    drive.tell(i.Arm())
+    drive.tell(i.Arm(held=1.0))
     drive.run(5.0)
     assert drive.rover.state is SafetyState.ARMED
     assert max(power for _, power in drive.moved) == 0.0

@@ -38,8 +38,8 @@ examples:
   groundstation --keys teleop              the keys of teleop_twist_keyboard
   groundstation --keys my.toml             your own keys; see below
 
-first drive: `r` then `y` arms, hold `i` (or w, or the up arrow) to drive, release to stop,
-`r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
+first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
+one press of `r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
 
 endpoints:
 {endpoint_help()}

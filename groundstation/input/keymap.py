@@ -22,9 +22,6 @@ from groundstation.intents import (
     Stop,
 )
 
-CONFIRM_KEY = "y"
-"""The second key of an action that needs confirmation. No key map may bind it."""
-
 
 class KeymapError(ValueError):
     """A key map that cannot be used; the message is one line for the user."""
@@ -72,7 +69,7 @@ class Keymap:
         return tuple(key for key, bound in self.bindings.items() if bound == action_id)
 
     def build_intents(self, batch: Sequence[KeyEvent], *, armed: bool, driving: bool) -> list[AnyIntent]:
-        """Return the intents of ONE read of keys. Actions that need confirmation or belong to the screen make none.
+        """Return the intents of ONE read of keys. Actions of the screen and those that a held key confirms make none.
 
         A stop key anywhere in the read wins: then only intents that stop are left, because over a slow line "ik" may
         arrive in one read, and the key that was pressed last must not be overruled by an earlier one. While the vehicle

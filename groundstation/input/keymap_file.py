@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping, Set
 from pathlib import Path
 
-from groundstation.input.keymap import CONFIRM_KEY, KEYMAPS, Keymap, KeymapError
+from groundstation.input.keymap import KEYMAPS, Keymap, KeymapError
 from groundstation.intents import ACTIONS
 from link.runtime.toml_file import TomlError, read_toml
 
@@ -115,8 +115,6 @@ def parse_key(key: object, where: str) -> str:
 
 
 def _check(bindings: Mapping[str, str], where: str) -> None:
-    if CONFIRM_KEY in bindings:
-        raise KeymapError(f"key map {where}: key {CONFIRM_KEY!r} confirms actions and cannot be bound")
     for action_id in REQUIRED_ACTIONS:
         keys = {key for key, bound in bindings.items() if bound == action_id}
         if not keys - {"escape"}:

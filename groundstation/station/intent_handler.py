@@ -34,6 +34,8 @@ class VehicleCommand:
     """Called with the commander, the vehicle, the intent and the time."""
     neutral: bool = True
     """Go neutral first; keys that are held must be pressed again."""
+    confirmed: str = ""
+    """Name of what needs a held key: the intent's `held` must be HOLD_TIME and the screen must allow keys."""
 
 
 class IntentHandler:
@@ -76,7 +78,16 @@ class IntentHandler:
             return
         if command.neutral:
             self._operator.sticks.block(now)
+        if command.confirmed and (reason := self._unconfirmed_reason(intent, now)):
+            self._log.add(now, "station", f"{command.confirmed} refused: {reason}", Severity.WARNING)
+            return
         command.send(self._commander, selected.state, intent, now)
+
+    def _unconfirmed_reason(self, intent: Any, now: float) -> str | None:
+        """Return why an intent that needs a held key is refused: a screen that is frozen or hidden confirms nothing."""
+        if not intent.held >= i.HOLD_TIME:
+            return f"the key was not held for {i.HOLD_TIME:.0f} s"
+        return self._operator.blocked_reason(now)
 
     def _press(self, intent: i.DriveKeyDown, now: float) -> None:
         self._operator.press(intent, now)
@@ -143,10 +154,11 @@ def _request_control(commander: Commander, vehicle: VehicleState, intent: i.Requ
 
 
 VEHICLE_COMMANDS: dict[type[i.Intent], VehicleCommand] = {
-    i.Arm: VehicleCommand(lambda commander, vehicle, _, now: commander.arm(vehicle, now)),
+    i.Arm: VehicleCommand(lambda commander, vehicle, _, now: commander.arm(vehicle, now), confirmed="arming"),
     i.Disarm: VehicleCommand(lambda commander, vehicle, _, now: commander.disarm(vehicle, now)),
     i.ClearEmergencyStop: VehicleCommand(
-        lambda commander, vehicle, _, now: commander.clear_emergency_stop(vehicle, now)
+        lambda commander, vehicle, _, now: commander.clear_emergency_stop(vehicle, now),
+        confirmed="release of the emergency stop",
     ),
     i.SetMode: VehicleCommand(_set_mode, neutral=False),
     i.RequestControl: VehicleCommand(_request_control, neutral=False),

@@ -6,12 +6,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from groundstation.input.keymap import CONFIRM_KEY
+from groundstation.intents import HOLD_TIME
 from groundstation.snapshot import EmergencyProgress, VehicleView
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.keynames import format_key
 
 MAX_SILENCE = 99.0
 """s without a heartbeat that are still counted; after that the text is "minutes"."""
+
+BAR = 10
+"""Cells of the bar that fills while a key is held."""
 
 
 class AlertLevel(Enum):
@@ -24,7 +28,7 @@ class AlertLevel(Enum):
     DANGER = auto()
     """The operator must act now."""
     QUESTION = auto()
-    """A question waits for its answer."""
+    """A key is held to confirm an action."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +54,8 @@ def _station(now: DisplayState) -> Iterator[Alert]:
 
 def _emergency(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
-    if now.question is None and vehicle is not None and vehicle.emergency_stop:
-        clear = f"{now.key('stop.clear')}, then {CONFIRM_KEY}, releases it"
+    if now.hold is None and vehicle is not None and vehicle.emergency_stop:
+        clear = f"Hold {now.key('stop.clear')} to release it"
         yield Alert(AlertLevel.DANGER, emergency_text(vehicle, clear))
 
 
@@ -80,9 +84,12 @@ def _reports(vehicle: VehicleView) -> str:
     return "reports" if vehicle.alive else "last reported"
 
 
-def _question(now: DisplayState) -> Iterator[Alert]:
-    if now.question is not None:
-        yield Alert(AlertLevel.QUESTION, f"{now.question.label}? {CONFIRM_KEY} = yes, any other key = no")
+def _hold(now: DisplayState) -> Iterator[Alert]:
+    if now.hold is not None:
+        full = int(BAR * now.hold.held / HOLD_TIME)
+        bar = "█" * full + "░" * (BAR - full)
+        text = f"{now.hold.action.label}: hold {format_key(now.hold.key)} {bar} {now.hold.held:.1f} s"
+        yield Alert(AlertLevel.QUESTION, text)
 
 
 def _silence(now: DisplayState) -> Iterator[Alert]:
@@ -103,7 +110,7 @@ def _failsafe(now: DisplayState) -> Iterator[Alert]:
 
 
 def _gate(now: DisplayState) -> Iterator[Alert]:
-    if now.closure is not None and now.question is None:
+    if now.closure is not None:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
 
 
@@ -157,7 +164,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
             AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves"
         )
     elif not vehicle.armed:
-        yield Alert(AlertLevel.HINT, f"disarmed: {now.key('vehicle.arm')}, then {CONFIRM_KEY}, arms {vehicle.name}")
+        yield Alert(AlertLevel.HINT, f"disarmed: hold {now.key('vehicle.arm')} to arm {vehicle.name}")
     elif vehicle.mode != "MANUAL":
         yield Alert(
             AlertLevel.HINT, f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
@@ -173,7 +180,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _question, _silence, _emergency, _failsafe, _gate, _refusal, _id_conflict, _limits, _driver, _settings,
+    _station, _hold, _silence, _emergency, _failsafe, _gate, _refusal, _id_conflict, _limits, _driver, _settings,
     _hint,
 )  # fmt: skip
 """Most urgent first."""

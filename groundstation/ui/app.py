@@ -168,7 +168,7 @@ class ConsoleApp(App[int]):
             self._snapshot,
             self._keys,
             closure=self.gate.closure,
-            question=self.drive.question,
+            hold=self.gate.hold,
             station_alive=self._client.alive,
             pressed=frozenset(self._pressed),
             terminal_round_trip=self.gate.ping.round_trip,
@@ -198,7 +198,6 @@ class ConsoleApp(App[int]):
             (self._leaving is not None, self._leaving or STARTING),
             (not self._client.alive, GateClosure("the station has ended")),
             (self.screen is not self.drive, GateClosure("another screen is open", GateLevel.STOPS)),
-            (self.drive.question is not None, GateClosure("a question is open", GateLevel.STOPS)),
             (not self.app_focus, GateClosure("this window does not have the focus")),
             (self.drive.too_small, GateClosure("the terminal is too small")),
             (self.gate.ping.is_silent(now), GateClosure("the terminal does not answer")),
@@ -254,18 +253,15 @@ class ConsoleApp(App[int]):
             perform()
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """Return the palette's commands: all actions but the drive keys, because driving means holding a key."""
+        """Return the palette's commands: all actions but those that mean holding a key, to drive or to confirm."""
         for action in ACTIONS.values():
-            if not isinstance(action.intent, DriveKeyDown):
+            if not isinstance(action.intent, DriveKeyDown) and not action.confirm:
                 yield SystemCommand(action.label, action.help, partial(self.choose_action, action))
 
     def choose_action(self, action: OperatorAction) -> None:
         """Perform an action from the palette: no key has sent its intent."""
-        vehicle = self._snapshot.vehicle
-        if vehicle is not None and vehicle.armed and action.when_armed is not None:
-            self._send(action.when_armed)
-        elif action.confirm or action.intent is None:
-            self.drive.request_action(action)
+        if action.intent is None:
+            self.perform_action(action)
         else:
             self._send(action.intent)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.input.keymap import Keymap
-from groundstation.intents import OperatorAction
 from groundstation.snapshot import Snapshot
 from groundstation.ui.key_gate import GateClosure
 from groundstation.ui.keynames import format_key, main_key
@@ -19,8 +19,8 @@ class DisplayState:
     keymap: Keymap
     closure: GateClosure | None = None
     """Why keys do not drive now, as far as the UI knows; None when they do."""
-    question: OperatorAction | None = None
-    """The action that waits for its second key."""
+    hold: HoldProgress | None = None
+    """The action whose key is held to confirm it."""
     station_alive: bool = True
     pressed: frozenset[str] = frozenset()
     """Keys that the UI saw go down, sooner than a snapshot can report them."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Protocol
 
+from groundstation.input.hold_to_confirm import HoldProgress, HoldToConfirm
 from groundstation.input.keymap import KeyEvent, Keymap
 from groundstation.intents import (
     AnyIntent,
@@ -50,7 +51,7 @@ class GateLevel(Enum):
     COMMANDS = auto()
     """Commands (disarm, mode) but no drive keys: the Drive screen is shown, but its driver may be absent."""
     STOPS = auto()
-    """Only stops: keys are text or answers of what is on top."""
+    """Only stops: keys are text for what is on top."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +82,7 @@ class KeyGate:
         self._exact = False
         self._armed = False
         self._driving = True
+        self._hold = HoldToConfirm(keymap)
         self.ping = TerminalPing()
 
     @property
@@ -95,12 +97,26 @@ class KeyGate:
     def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         """Handle the keys of one read, in the input thread."""
         with self._lock:
-            intents = self.keymap.build_intents(
-                self._drop_stray_repeats(batch), armed=self._armed, driving=self._driving
+            read = self._hold.handle_read(
+                self._drop_stray_repeats(batch), armed=self._armed, allowed=self._closure is None, now=self._clock()
             )
+            intents = self.keymap.build_intents(read.passing, armed=self._armed, driving=self._driving)
             passing = [intent for intent in intents if self._passes(intent)]
+            if read.confirmed is not None:
+                passing.append(read.confirmed)
             if passing:
                 self._client.send(*passing)
+
+    def cancel_hold(self) -> None:
+        """End the hold of a key that confirms an action; it must be released before it counts again."""
+        with self._lock:
+            self._hold.cancel()
+
+    @property
+    def hold(self) -> HoldProgress | None:
+        """Progress of the key that is held to confirm an action."""
+        with self._lock:
+            return self._hold.progress(self._clock())
 
     def handle_release_support(self) -> None:
         """Note that the terminal reports repeats and releases."""
@@ -123,6 +139,7 @@ class KeyGate:
                 self._client.send(SetKeyGate(open=True))
                 return
             self._down.clear()
+            self._hold.cancel()
             # The gate first: it makes the station record which keys are held, and the stop clears them.
             self._client.send(SetKeyGate(open=False, reason=closure.reason), Stop(closure.reason))
 

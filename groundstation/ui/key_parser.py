@@ -76,6 +76,9 @@ class KeySink(Protocol):
     def handle_pong(self) -> None:
         """Note the answer to a ping."""
 
+    def cancel_hold(self) -> None:
+        """End the hold of a key that confirms an action: the mouse was used."""
+
 
 class KeyEventParser(XTermParser):
     """Textual's parser, which also understands repeats, releases and non-Latin layouts of the kitty protocol."""
@@ -96,7 +99,10 @@ class KeyEventParser(XTermParser):
 
     def feed(self, data: str) -> Iterable[Message]:
         """Return the events of one read. Its keys have gone to the sink when this returns."""
+        reports = self._mouse.removed
         found = self._parse_batch(self._mouse.feed(data, self._clock()))
+        if self._mouse.removed != reports:
+            self._sink.cancel_hold()
         self._follow_paste(data)
         return found
 

@@ -50,6 +50,8 @@ class MouseReportFilter:
     """Removes mouse reports from terminal input, wherever reads split them. The rest passes unchanged."""
 
     def __init__(self) -> None:
+        self.removed = 0
+        """Number of reports removed so far."""
         self._held = ""
         """The beginning of what may be a report."""
         self._passed = 0
@@ -64,7 +66,8 @@ class MouseReportFilter:
                 return self._hold(text, data, now)
             text = text if _REPORT.match(text) else text[self._passed :]
         self._passed = 0
-        text = _REPORT.sub("", text)
+        text, removed = _REPORT.subn("", text)
+        self.removed += removed
         begun = _BEGUN.search(text)
         self._hold(begun.group() if begun else "", data, now)
         return text[: begun.start()] if begun else text

@@ -7,6 +7,7 @@ polls at each tick. A measurement ends with the vehicle's own timestamp of the c
 from __future__ import annotations
 
 import random
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from tests.benchmarks.figures import ROUNDS, BenchmarkError, Goal, Options, Repo
 from tests.benchmarks.motor_feed import MotorFeed
 from tests.benchmarks.programs import Program, free_port, on_pipe, on_terminal, python, scratch
 from tests.benchmarks.watch import Watch
+from tests.groundstation.held_key import event_times
 
 KEYS = 60
 """Keys of one contender in one round: 180 in all."""
@@ -51,7 +53,7 @@ class Contender:
     columns: int = 80
     lines: int = 24
     arms: bool = False
-    """True if it must be armed with r and y before keys drive."""
+    """True if it must be armed by holding r before keys drive."""
 
 
 _OURS = (
@@ -120,9 +122,12 @@ class Rig:
 
     def arm(self) -> None:
         """Arm with keys, as a driver does; then drive once, so that nothing happens for the first time later."""
-        for key in (b"r", b"y"):
-            self.watch.pause(0.5)
-            self.ground.type(key)
+        self.watch.pause(0.5)
+        begun = time.monotonic()
+        for at in event_times(1.5):
+            self.watch.pause(max(0.0, begun + at - time.monotonic()))
+            self.ground.type(b"r")
+        self.watch.pause(0.5)
         if not self.watch.until(self._drives, 15):
             raise BenchmarkError(f"the wheels never turned; the screen says {self.ground.text[-500:]!r}")
 

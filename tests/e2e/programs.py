@@ -17,10 +17,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-REPEAT = 0.033
-"""s between the auto-repeats of a held key: 30 a second, as most systems do."""
-FIRST_REPEAT = 0.4
-"""s from pressing a key to its first repeat; shorter than the longest in use (0.66 s, X11)."""
+from tests.groundstation.held_key import DELAY, GAP
+
 LET_GO = 1.2
 """s without a repeat after which a key counts as released, whatever the ground station has learned (1.1 s at most)."""
 PATIENCE = 60.0
@@ -140,12 +138,12 @@ class GroundStation:
         """Do the same; return False if the condition is not true within `within` s."""
         deadline = time.monotonic() + within
         self.type(key)
-        self.look(FIRST_REPEAT)
+        self.look(DELAY)
         while not until():
             if time.monotonic() > deadline:
                 return False
             self.type(key)
-            self.look(REPEAT)
+            self.look(GAP)
         return True
 
     def look(self, seconds: float) -> None:
@@ -240,8 +238,5 @@ def _arms(station: GroundStation, armed: Callable[[], bool]) -> bool:
     """Try once to arm: a bad link may lose the command, and a vehicle that has just started refuses it."""
     if armed():
         return True
-    asked = len(station.screen)
-    station.type("r")
-    station.soon(lambda: b"Arm?" in station.screen[asked:], 3.0)
-    station.type("y")
+    station.held("r", armed, 5.0)
     return station.soon(lambda: armed() and station.says_armed(), 3.0)

@@ -19,6 +19,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.e2e.programs import LET_GO
+from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.wheel import modes, notch
 from tests.ports import free_port
 
@@ -70,6 +72,17 @@ class Tmux:
             select.select([], [], [], PAUSE)
         return screen
 
+    def hold_until(self, key: str, condition: Callable[[str], bool], within: float) -> None:
+        """Hold a key for 2 s at a time until the condition holds for the screen."""
+        deadline = time.monotonic() + within
+        while not condition(screen := self.screen()):
+            assert time.monotonic() < deadline, f"not within {within} s:\n{screen}"
+            begun = time.monotonic()
+            for at in event_times(2.0):
+                select.select([], [], [], max(0.0, begun + at - time.monotonic()))
+                self.press(key)
+            select.select([], [], [], LET_GO)
+
     def end(self) -> None:
         """Close the terminal and everything in it."""
         self._run("kill-server")
@@ -103,11 +116,8 @@ def speed_shown(screen: str) -> bool:
 @pytest.mark.parametrize(("columns", "lines"), [(80, 24), (140, 45)])
 def test_the_first_drive(tmux: Callable[..., Tmux], columns: int, lines: int) -> None:
     terminal = tmux(columns, lines, "--sitl")
-    terminal.until(lambda screen: "DISARMED" in screen and "arms" in screen, PATIENCE)
-    terminal.press("r")
-    terminal.until(lambda screen: "Arm?" in screen, PATIENCE)
-    terminal.press("y")
-    terminal.until(lambda screen: "hold i to drive" in screen, PATIENCE)
+    terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
+    terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
     terminal.until(lambda screen: home_distance(screen) > 1.0 and speed_shown(screen), PATIENCE, holding="i")
     stood = terminal.until(lambda screen: re.search(r"left\s.*\+0%", screen) is not None, PATIENCE)
     assert home_distance(stood) > 1.0

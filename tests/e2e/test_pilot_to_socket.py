@@ -16,6 +16,7 @@ from groundstation.intents import SetStyle
 from groundstation.processes import start_module
 from groundstation.ui.app import ConsoleApp
 from tests.groundstation.crashing_station import ORDER
+from tests.groundstation.held_key import hold_until
 from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.groundstation.ui.frames import text
 from tests.groundstation.ui.ptys import PATIENCE, until
@@ -32,8 +33,7 @@ async def test_a_held_key_reaches_the_vehicle_and_the_stop_key_ends_it(tmp_path:
         with UdpVehicle(endpoint) as vehicle:
             async with app.run_test(size=(80, 24)) as pilot:
                 await until(lambda: app.drive.snapshot.vehicle is not None)
-                await pilot.press("r", "y")
-                await until(lambda: vehicle.core.armed)
+                await hold_until(lambda: pilot.press("r"), lambda: vehicle.core.armed)
                 await until(lambda: app.drive.snapshot.operator.gate_open)
                 pressed = time.monotonic()
 

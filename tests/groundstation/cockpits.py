@@ -14,7 +14,7 @@ LEFT = DriveKeyDown(key="j", throttle=0, steering=-1)
 def armed_cockpit(vehicle: FakeVehicle | None = None) -> Cockpit:
     cockpit = Cockpit(vehicle)
     cockpit.run(1.5)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.5)
     assert cockpit.view.armed
     return cockpit

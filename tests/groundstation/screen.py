@@ -75,7 +75,9 @@ class Screen:
         """Arm and hold `i`; return when the snapshot shows the demand."""
         self.see(lambda snapshot: snapshot.vehicle is not None)
         self.client.send(ReportKeyReleases())
-        self.insist(lambda: self.client.send(Arm()), lambda seen: seen.vehicle is not None and seen.vehicle.armed)
+        self.insist(
+            lambda: self.client.send(Arm(held=1.0)), lambda seen: seen.vehicle is not None and seen.vehicle.armed
+        )
         self.see(lambda snapshot: snapshot.operator.gate_open)
         self.insist(lambda: self.client.send(DriveKeyUp(key="i"), FORWARD), lambda seen: seen.operator.throttle > 0)
 

@@ -168,7 +168,9 @@ def late(snapshot: Snapshot) -> int:
 def test_intents_that_waited_in_the_pipe_of_a_frozen_station_are_dropped() -> None:
     with Screen() as screen, UdpVehicle(screen.endpoint) as vehicle:
         screen.see(lambda snapshot: snapshot.vehicle is not None)
-        old = IntentBatch(time.monotonic() - 2.0, (Arm(), FORWARD, SetKeyGate(open=False, reason="late but true")))
+        old = IntentBatch(
+            time.monotonic() - 2.0, (Arm(held=1.0), FORWARD, SetKeyGate(open=False, reason="late but true"))
+        )
         screen.client._pipe.send(encode(old))
         screen.see(lambda snapshot: snapshot.operator.gate_reason == "late but true")
         screen.see(lambda snapshot: any("late and was dropped" in line.text for line in snapshot.texts))

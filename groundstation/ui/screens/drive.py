@@ -1,4 +1,4 @@
-"""Drive screen: the instruments, and the questions that actions ask. Drive keys take another way, see key_gate.py."""
+"""Drive screen: the instruments. Keys that drive, stop or command take another way, see key_gate.py."""
 
 from __future__ import annotations
 
@@ -11,9 +11,8 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Static
 
-from groundstation.input.keymap import CONFIRM_KEY
-from groundstation.intents import OperatorAction, StartSimulator
-from groundstation.snapshot import Snapshot
+from groundstation.intents import StartSimulator
+from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.instruments import INSTRUMENTS, InstrumentRow
 from groundstation.ui.key_parser import KeyRepeat
@@ -38,8 +37,7 @@ class DriveScreen(ConsoleScreen):
         self._state = DisplayState(Snapshot(), context.keymap)
         self._instruments: dict[str, Instrument[Any]] = {}
         self._slow_at = -SLOW
-        self.question: OperatorAction | None = None
-        """The action that waits for its second key."""
+        self._too_small_text = ""
 
     @property
     def snapshot(self) -> Snapshot:
@@ -75,12 +73,7 @@ class DriveScreen(ConsoleScreen):
     def on_resize(self, event: events.Resize) -> None:
         """Show the size that is needed instead of an incomplete console."""
         self.set_class(self.too_small, "-too-small")
-        width, height = event.size
-        self.query_one("#too-small", Static).update(
-            f"This terminal has {width} x {height} characters.\n"
-            f"The console needs {MIN_CONSOLE_SIZE[0]} x {MIN_CONSOLE_SIZE[1]}.\n\n"
-            "Keys do not drive now; stop and emergency stop work."
-        )
+        self._show_too_small()
 
     @property
     def too_small(self) -> bool:
@@ -88,9 +81,23 @@ class DriveScreen(ConsoleScreen):
         width, height = self.size
         return width < MIN_CONSOLE_SIZE[0] or height < MIN_CONSOLE_SIZE[1]
 
+    def _show_too_small(self) -> None:
+        width, height = self.size
+        text = (
+            f"This terminal has {width} x {height} characters.\n"
+            f"The console needs {MIN_CONSOLE_SIZE[0]} x {MIN_CONSOLE_SIZE[1]}.\n\n"
+            f"{format_arming(self.snapshot.vehicle)}\n\n"
+            "Keys neither drive nor arm now;\nstop, disarm and emergency stop work."
+        )
+        if text != self._too_small_text:
+            self._too_small_text = text
+            self.query_one("#too-small", Static).update(text)
+
     def show_state(self, now: DisplayState) -> None:
         """Give every instrument its value; each redraws only the lines that changed."""
         self._state = now
+        if self.too_small:
+            self._show_too_small()
         self.set_class(now.snapshot.vehicle is None, "-waiting")
         slow = self._is_slow_due(now.snapshot)
         for row in INSTRUMENTS:
@@ -114,28 +121,23 @@ class DriveScreen(ConsoleScreen):
                 self._show(row)
 
     def on_key(self, event: events.Key) -> None:
-        """Handle answers and actions of the screen; keys that drive and stop were sent by the input thread."""
+        """Handle actions of the app; keys that drive, stop or command were sent by the input thread."""
         if isinstance(event, KeyRepeat):
             return
         action = self.context.keymap.get_action(event.key)
-        if self.question is not None:
-            self._answer(event.key)
-        elif action is not None:
-            self.request_action(action)
-        elif event.key == "enter" and self.snapshot.vehicle is None:
+        if action is not None and action.intent is None:
+            self.context.perform(action)
+        elif action is None and event.key == "enter" and self.snapshot.vehicle is None:
             self.context.send(StartSimulator())
 
-    def request_action(self, action: OperatorAction) -> None:
-        """Ask first where the action requires it. Intents without a question have been sent already."""
-        vehicle = self.snapshot.vehicle
-        if action.when_armed is not None and vehicle is not None and vehicle.armed:
-            return
-        if action.confirm and vehicle is not None:
-            self.question = action
-        elif action.intent is None:
-            self.context.perform(action)
 
-    def _answer(self, key: str) -> None:
-        action, self.question = self.question, None
-        if key == CONFIRM_KEY and action is not None and action.intent is not None:
-            self.context.send(action.intent)
+def format_arming(vehicle: VehicleView | None) -> str:
+    """Return what a driver must know in any case: name, mode, armed or not, emergency stop, silence."""
+    if vehicle is None:
+        return "no vehicle yet"
+    parts = [vehicle.name, vehicle.mode, "ARMED" if vehicle.armed else "DISARMED"]
+    if vehicle.emergency_stop:
+        parts.append("EMERGENCY STOP")
+    if not vehicle.alive:
+        parts.append("no heartbeat")
+    return " · ".join(parts)

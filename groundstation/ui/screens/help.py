@@ -10,7 +10,6 @@ from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from groundstation.input.keymap import CONFIRM_KEY
 from groundstation.intents import ACTIONS
 from groundstation.screens import SCREENS
 from groundstation.ui.colours import BLUE, DIM, RED, YELLOW
@@ -89,4 +88,4 @@ _OTHER_SCREENS = frozenset(row.action for row in SCREENS if not row.target.endsw
 
 def _key_list(keys: tuple[str, ...], *, confirm: bool) -> str:
     names = "  ".join(format_key(key) for key in keys)
-    return f"{names}, then {CONFIRM_KEY}" if confirm else names
+    return f"hold {names}" if confirm else names

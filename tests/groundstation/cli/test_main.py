@@ -97,7 +97,7 @@ def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:
         "groundstation --sitl",
         "udpin:HOST:PORT",
         "teleop",
-        "`r` then `y` arms",
+        "hold `r` for a second to arm",
         '"drive.forward" = ["e", "up"]',
     ):
         assert word in text

@@ -57,7 +57,6 @@ def test_every_punctuation_name_is_textuals() -> None:
         ('[keys]\n"drive.forward" = ["e"]\n"drive.left" = ["e"]', ["'e' is bound to drive.forward and to drive.left"]),
         ('[keys]\n"drive.stop" = []', ["drive.stop needs a key other than escape"]),
         ('[keys]\n"stop.emergency" = ["escape"]', ["stop.emergency needs a key other than escape"]),
-        ('[keys]\n"app.help" = ["y"]', ["'y' confirms actions and cannot be bound"]),
         ('base = "emacs"', ["unknown base 'emacs'", "standard, teleop"]),
         ("speed = 1", ["unknown entry 'speed'", "base, keys"]),
         ("keys = 1", ["'keys' must be a table"]),

@@ -19,7 +19,7 @@ ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.D
 def test_arming_in_hold_changes_to_manual_first() -> None:
     vehicle = FakeVehicle(mode=Mode.HOLD)
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     order = [message.command for _, message in vehicle.all(m.CommandLong) if message.command in (ARM, MODE)]
     assert order == [MODE, ARM]
@@ -35,7 +35,7 @@ def test_arming_in_guided_leaves_the_mode_alone() -> None:
 def test_neutral_demands_precede_arming_without_control_status() -> None:
     vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     armed_at = min(at for at, message in vehicle.all(m.CommandLong) if message.command == ARM)
     before = [message for at, message in vehicle.all(m.ManualControl) if at < armed_at]
@@ -53,7 +53,7 @@ def test_refused_mode_ends_the_arming() -> None:
     vehicle = FakeVehicle(mode=Mode.HOLD)
     vehicle.answers[MODE] = Result.FAILED
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(3.0)
     assert vehicle.commands(ARM) == []
     assert cockpit.view.refusal == "mode MANUAL failed"
@@ -63,7 +63,7 @@ def test_acknowledged_but_not_armed_is_reported() -> None:
     vehicle = FakeVehicle()
     vehicle._obey = lambda message, source: None  # type: ignore[method-assign]
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(4.0)
     assert cockpit.view.refusal == "arming acknowledged, but the heartbeat reports disarmed"
 
@@ -71,7 +71,7 @@ def test_acknowledged_but_not_armed_is_reported() -> None:
 def test_disarm_during_arming_ends_the_arming() -> None:
     vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(0.05)
     cockpit.do(Disarm())
     cockpit.run(2.0)
@@ -82,7 +82,7 @@ def test_disarm_during_arming_ends_the_arming() -> None:
 def test_emergency_stop_during_arming_ends_the_arming() -> None:
     vehicle = FakeVehicle(autopilot=Autopilot.ARDUPILOT, driver=None)
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(0.05)
     cockpit.do(EmergencyStop())
     cockpit.run(3.0)

@@ -54,7 +54,7 @@ def test_after_a_disarm_nobody_is_in_control() -> None:
     cockpit.do(Disarm())
     cockpit.run(1.5)
     assert (cockpit.view.armed, cockpit.view.in_control) == (False, False)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.5)
     assert (cockpit.view.armed, cockpit.view.in_control) == (True, True)
 

@@ -17,7 +17,7 @@ def test_refusal_comes_with_the_vehicles_reason() -> None:
     vehicle = FakeVehicle()
     vehicle.answers[ARM], vehicle.reasons[ARM] = Result.FAILED, b"PreArm: battery low"
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     assert cockpit.view.refusal == "arm failed: PreArm: battery low"
     assert not cockpit.view.armed
@@ -27,7 +27,7 @@ def test_a_reason_after_the_refusal_counts_and_a_later_text_does_not() -> None:
     vehicle = FakeVehicle()
     vehicle.answers[ARM] = Result.DENIED
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(0.3)
     vehicle.send(m.StatusText(4, b"wheel blocked"))
     cockpit.run(2.0)
@@ -41,11 +41,11 @@ def test_acceptance_clears_the_refusal() -> None:
     vehicle = FakeVehicle()
     vehicle.answers[ARM] = Result.TEMPORARILY_REJECTED
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     assert cockpit.view.refusal == "arm temporarily rejected"
     del vehicle.answers[ARM]
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     assert cockpit.view.refusal is None
     assert cockpit.view.armed
@@ -55,7 +55,7 @@ def test_no_answer_is_reported() -> None:
     vehicle = FakeVehicle()
     vehicle.silent_on.add(ARM)
     cockpit = cockpit_with(vehicle)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(4.0)
     assert cockpit.view.refusal == "arm: no answer"
     assert len(vehicle.commands(ARM)) == 6

@@ -137,7 +137,7 @@ def test_without_a_vehicle_it_just_ends() -> None:
         screen.client.send(
             RenewLease(),
             SetKeyGate(open=True),
-            Arm(),
+            Arm(held=1.0),
             ReportKeyReleases(),
             DriveKeyDown(key="i", throttle=1, steering=0),
         )

@@ -77,7 +77,7 @@ def test_nothing_is_sent_to_a_disarmed_vehicle() -> None:
 def test_a_key_held_while_arming_does_not_drive() -> None:
     cockpit = Cockpit()
     cockpit.run(1.5)
-    cockpit.do(ReportKeyReleases(), FORWARD, Arm())
+    cockpit.do(ReportKeyReleases(), FORWARD, Arm(held=1.0))
     cockpit.run(2.0)
     assert cockpit.view.armed
     assert all(x == 0 for _, x, _ in cockpit.demands())
@@ -174,7 +174,7 @@ def test_latency_is_that_of_a_changed_demand() -> None:
 def test_thirty_percent_loss_does_not_stop_the_stream() -> None:
     cockpit = Cockpit(loss=0.3)
     cockpit.run(3.0)
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(3.0)
     assert cockpit.view.armed
     cockpit.do(ReportKeyReleases(), FORWARD)

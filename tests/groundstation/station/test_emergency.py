@@ -115,7 +115,7 @@ def test_arming_is_refused_here_while_the_emergency_stop_is_on() -> None:
     cockpit.do(EmergencyStop())
     cockpit.run(1.0)
     before = len(cockpit.vehicle.commands(ARM))
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     assert len(cockpit.vehicle.commands(ARM)) == before
     assert cockpit.view.refusal == "arm: emergency stop active, clear it first"
@@ -129,11 +129,11 @@ def test_clearing_unlocks_when_the_vehicle_agrees(answer: Result) -> None:
     cockpit.run(2.0)
     assert cockpit.view.emergency_stop
     assert not cockpit.view.armed
-    cockpit.do(ClearEmergencyStop())
+    cockpit.do(ClearEmergencyStop(held=1.0))
     cockpit.run(2.0)
     assert not cockpit.view.emergency_stop
     assert not cockpit.view.armed, "clearing must not arm"
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     assert cockpit.view.armed
 
@@ -143,7 +143,7 @@ def test_refused_clearing_keeps_the_lock() -> None:
     cockpit.do(EmergencyStop())
     cockpit.run(1.0)
     cockpit.vehicle.answers[SWITCH] = Result.FAILED
-    cockpit.do(ClearEmergencyStop())
+    cockpit.do(ClearEmergencyStop(held=1.0))
     cockpit.run(2.0)
     assert cockpit.view.emergency_stop
     assert cockpit.view.refusal == "clear emergency stop failed"
@@ -151,7 +151,7 @@ def test_refused_clearing_keeps_the_lock() -> None:
 
 def test_clearing_where_no_stop_is_on_sends_nothing() -> None:
     cockpit = armed_cockpit()
-    cockpit.do(ClearEmergencyStop())
+    cockpit.do(ClearEmergencyStop(held=1.0))
     cockpit.run(1.0)
     assert cockpit.vehicle.commands(SWITCH) == []
     assert cockpit.view.armed

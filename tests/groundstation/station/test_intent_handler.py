@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import math
+
+import pytest
+
 from dialects import messages as m
+from dialects.enums import Command
 from groundstation.intents import (
+    ACTIONS,
     Arm,
+    ClearEmergencyStop,
     DriveKeyDown,
     Quit,
     ReportKeyReleases,
     ScaleLimits,
     SelectVehicle,
+    SetKeyGate,
     SetStyle,
     Stop,
 )
+from groundstation.station.intent_handler import VEHICLE_COMMANDS
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
 from tests.groundstation.fake_vehicle import Cockpit
 
@@ -32,7 +41,7 @@ def test_style_changes_are_logged_and_latch_drives_without_a_held_key() -> None:
 def test_commands_without_a_vehicle_are_logged() -> None:
     cockpit = Cockpit()
     cockpit.world.cut()
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     assert "no vehicle yet" in cockpit.texts
 
 
@@ -87,3 +96,31 @@ def test_speed_keys_change_the_demand_but_never_make_one() -> None:
     cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(0.1)
     assert cockpit.demands()[-1][1] == 660
+
+
+@pytest.mark.parametrize("held", [0.0, 0.99, math.nan])
+def test_arming_without_a_held_key_is_refused(held: float) -> None:
+    cockpit = Cockpit()
+    cockpit.run(1.5)
+    cockpit.do(Arm(held=held), ClearEmergencyStop(held=held))
+    cockpit.run(1.5)
+    assert not cockpit.view.armed
+    assert "arming refused: the key was not held for 1 s" in cockpit.texts
+    assert "release of the emergency stop refused: the key was not held for 1 s" in cockpit.texts
+    assert not cockpit.vehicle.commands(Command.COMPONENT_ARM_DISARM)
+
+
+def test_arming_is_refused_while_the_screen_lets_no_key_drive() -> None:
+    cockpit = Cockpit()
+    cockpit.run(1.5)
+    cockpit.do(SetKeyGate(open=False, reason="the terminal is too small"), Arm(held=1.0))
+    cockpit.run(1.5)
+    assert not cockpit.view.armed
+    assert "arming refused: the terminal is too small" in cockpit.texts
+
+
+def test_every_intent_that_a_held_key_confirms_is_refused_as_it_stands_in_the_table() -> None:
+    for action in ACTIONS.values():
+        if action.confirm:
+            assert action.intent in {Arm(held=0.0), ClearEmergencyStop(held=0.0)}
+            assert VEHICLE_COMMANDS[type(action.intent)].confirmed

@@ -100,7 +100,7 @@ def convoy(request: pytest.FixtureRequest) -> Convoy:
     convoy.run(2.0)
     assert convoy.station.fleet.system_ids == (1, 2)
     assert convoy.view.system == 1
-    convoy.do(Arm())
+    convoy.do(Arm(held=1.0))
     convoy.run(1.5)
     convoy.do(ReportKeyReleases(), FORWARD)
     convoy.run(0.5)
@@ -128,7 +128,7 @@ def test_commands_and_demands_go_to_the_selected_vehicle_only(convoy: Convoy) ->
     convoy.run(1.0)
     before = convoy.orders(1)
     start = convoy.now
-    convoy.do(Arm())
+    convoy.do(Arm(held=1.0))
     convoy.run(1.5)
     assert convoy.vehicles[2].armed
     convoy.do(FORWARD)
@@ -239,7 +239,7 @@ def test_alone_there_is_no_next_one() -> None:
 
 def test_answers_of_one_vehicle_are_not_those_of_the_other(convoy: Convoy) -> None:
     convoy.vehicles[2].silent_on.add(Command.COMPONENT_ARM_DISARM)
-    convoy.do(Disarm(), SelectNextVehicle(), Arm())
+    convoy.do(Disarm(), SelectNextVehicle(), Arm(held=1.0))
     convoy.run(4.0)
     assert not convoy.vehicles[1].armed
     assert convoy.view.refusal == "arm: no answer"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from groundstation.ui.app import ConsoleApp
 from groundstation.ui.key_gate import STARTING
 from groundstation.ui.key_parser import KeyEventParser
 from groundstation.ui.screens.help import HelpScreen
+from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import Recorder, snapshot
 from tests.groundstation.ui.ptys import until
@@ -42,6 +43,10 @@ class Console:
         """Press keys one after the other."""
         await self.pilot.press(*keys)
         await self.pilot.pause()
+
+    async def hold(self, key: str, wanted: Callable[[], object]) -> None:
+        """Hold a key until it is true."""
+        await hold_until(lambda: self.press(key), wanted)
 
     @property
     def text(self) -> str:

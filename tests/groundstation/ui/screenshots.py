@@ -19,6 +19,7 @@ from textual.pilot import Pilot
 from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.ui.app import ConsoleApp
+from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames
 
 SIZES = ((80, 24), (140, 45))
@@ -41,8 +42,10 @@ async def armed_app(size: tuple[int, int]) -> AsyncIterator[tuple[ConsoleApp, Pi
         app = ConsoleApp(client, Keymap("standard", KEYMAPS["standard"]))
         async with app.run_test(size=size) as pilot:
             await _until(pilot, lambda: app.drive.snapshot.vehicle is not None)
-            await pilot.press("r", "y")
-            await _until(pilot, lambda: app.drive.snapshot.vehicle is not None and app.drive.snapshot.vehicle.armed)
+            await hold_until(
+                lambda: pilot.press("r"),
+                lambda: app.drive.snapshot.vehicle is not None and app.drive.snapshot.vehicle.armed,
+            )
             yield app, pilot
     finally:
         client.close()

@@ -13,6 +13,7 @@ class Sink:
     def __init__(self) -> None:
         self.batches: list[list[KeyEvent]] = []
         self.told: list[str] = []
+        self.cancelled = 0
 
     def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         self.batches.append(list(batch))
@@ -22,6 +23,9 @@ class Sink:
 
     def close(self, reason: str) -> None:
         self.told.append(f"shut: {reason}")
+
+    def cancel_hold(self) -> None:
+        self.cancelled += 1
 
     def handle_pong(self) -> None:
         self.told.append("pong")

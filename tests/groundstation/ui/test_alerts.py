@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents import ACTIONS
 from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot
 from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts
@@ -20,7 +21,7 @@ PROBLEM = LinkView(name="udp", problem="messages arrive with another dialect's c
 CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
     (waiting(), {}, AlertLevel.HINT, "no vehicle yet"),
     (snapshot(), {}, AlertLevel.HINT, "hold i to drive · SPACE stops, ! cuts the motors"),
-    (snapshot(vehicle=vehicle(armed=False)), {}, AlertLevel.HINT, "disarmed: r, then y, arms Rover 1"),
+    (snapshot(vehicle=vehicle(armed=False)), {}, AlertLevel.HINT, "disarmed: hold r to arm Rover 1"),
     (snapshot(vehicle=vehicle(mode="HOLD")), {}, AlertLevel.HINT, "HOLD: 1 changes to MANUAL"),
     (snapshot(vehicle=vehicle(limits=("slew", "neutral first"))), {}, AlertLevel.WARNING, "neutral first: release"),
     (snapshot(vehicle=vehicle(limits=("stale",))), {}, AlertLevel.WARNING, "stale: the vehicle has no recent command"),
@@ -91,7 +92,12 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         AlertLevel.WARNING,
         "the terminal does not answer",
     ),
-    (snapshot(), {"question": ACTIONS["vehicle.arm"]}, AlertLevel.QUESTION, "Arm? y = yes"),
+    (
+        snapshot(),
+        {"hold": HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4)},
+        AlertLevel.QUESTION,
+        "Arm: hold r ████░░░░░░ 0.4 s",
+    ),
     (snapshot(), {"station_alive": False}, AlertLevel.DANGER, "the station process has ended"),
 ]
 
@@ -112,7 +118,7 @@ EMERGENCY = [
     (EmergencyProgress.SENT, False, "EMERGENCY STOP sent, waiting for an answer; the vehicle reports dis"),
     (EmergencyProgress.UNANSWERED, False, "EMERGENCY STOP sent, NOT acknowledged; the vehicle reports disarmed"),
     (EmergencyProgress.REFUSED, False, "EMERGENCY STOP REFUSED by the vehicle; the vehicle reports disarmed"),
-    (EmergencyProgress.ACCEPTED, False, "EMERGENCY STOP acknowledged, disarmed. t, then y, releases it"),
+    (EmergencyProgress.ACCEPTED, False, "EMERGENCY STOP acknowledged, disarmed. Hold t to release it"),
 ]
 
 

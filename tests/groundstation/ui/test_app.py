@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from textual import events
 
-from groundstation.intents import Disarm, DriveKeyDown, EmergencyStop, Quit, RenewLease, SetKeyGate, Stop
-from groundstation.ui.key_gate import GateLevel
+from groundstation.intents import ACTIONS, Arm, Disarm, DriveKeyDown, EmergencyStop, Quit, RenewLease, SetKeyGate, Stop
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import console, helps_pushed, type_in
 from tests.groundstation.ui.ptys import until
@@ -37,14 +37,21 @@ def _busy_for(seconds: float) -> None:
         pass
 
 
-async def test_the_gate_is_shut_while_a_question_is_open() -> None:
+async def test_another_screen_cancels() -> None:
     async with console(picture=DISARMED) as screen:
         await screen.press("r")
+        screen.app.choose_action(ACTIONS["app.help"])
+        assert screen.app.gate.hold is None
+        await screen.press(*["r"] * 20)
+        assert screen.station.of(Arm) == []
+
+
+async def test_a_lost_focus_cancels() -> None:
+    async with console(picture=DISARMED) as screen:
+        await screen.press("r")
+        screen.app.post_message(events.AppBlur())
         await until(lambda: screen.app.gate.closure is not None)
-        assert screen.app.gate.closure is not None
-        assert screen.app.gate.closure.level is GateLevel.STOPS
-        await screen.press("n")
-        await until(lambda: screen.app.gate.closure is None)
+        assert screen.app.gate.hold is None
 
 
 @pytest.mark.parametrize("opener", ["question_mark", "ctrl+p"])
@@ -90,6 +97,21 @@ async def test_quit_needs_no_question_and_works_everywhere(key: str, first: tupl
         assert screen.station.of(SetKeyGate)[-1].reason == "quitting"
 
 
+async def test_a_dead_station_is_said() -> None:
+    async with console() as screen:
+        screen.station.alive = False
+        await until(lambda: "the station process has ended" in screen.text)
+        assert screen.station.of(SetKeyGate)[-1].reason == "the station has ended"
+
+
+async def test_a_beat_after_the_screens_are_gone_is_no_fault() -> None:
+    # Textual takes the screens down before it stops the timers.
+    async with console() as screen:
+        app = screen.app
+    assert not app.screen_stack
+    app._tick()
+
+
 LEAVES = snapshot(left_armed=("Rover 1 is left ARMED in MANUAL",))
 
 
@@ -120,18 +142,3 @@ async def test_without_a_station_one_key_quits() -> None:
         screen.station.alive = False
         await screen.press("ctrl+q")
         assert screen.app.return_value == 0
-
-
-async def test_a_dead_station_is_said() -> None:
-    async with console() as screen:
-        screen.station.alive = False
-        await until(lambda: "the station process has ended" in screen.text)
-        assert screen.station.of(SetKeyGate)[-1].reason == "the station has ended"
-
-
-async def test_a_beat_after_the_screens_are_gone_is_no_fault() -> None:
-    # Textual takes the screens down before it stops the timers.
-    async with console() as screen:
-        app = screen.app
-    assert not app.screen_stack
-    app._tick()

@@ -9,6 +9,7 @@ import pytest
 from rich.color import Color, ColorSystem
 from rich.segment import Segment
 
+from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents import ACTIONS
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import FAINT, GROUND, MUTED, badge
@@ -32,8 +33,8 @@ SYSTEMS = {"256": ColorSystem.EIGHT_BIT, "16": ColorSystem.STANDARD}
 
 def segments(picture: Snapshot) -> Iterator[Segment]:
     closures = (None, GateClosure("this window does not have the focus"))
-    for closure, question in product(closures, (None, ACTIONS["vehicle.arm"])):
-        state = DisplayState(picture, STANDARD, closure=closure, question=question)
+    for closure, hold in product(closures, (None, HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4))):
+        state = DisplayState(picture, STANDARD, closure=closure, hold=hold)
         for row in INSTRUMENTS:
             for line in row.build(row.value(state), id=row.id).draw(80, 5):
                 yield from line

@@ -8,9 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from groundstation.input.hold_to_confirm import HoldProgress
+from groundstation.intents import ACTIONS
 from groundstation.snapshot import Snapshot
+from groundstation.ui.display_state import DisplayState
 from tests.groundstation.ui.examples import helm, snapshot, vehicle, waiting
 from tests.groundstation.ui.pilots import console
+from tests.groundstation.ui.ptys import STANDARD
 
 GOLDEN = Path(__file__).parent / "golden"
 SMALL, WIDE = (80, 24), (140, 45)
@@ -38,7 +42,7 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_140x45": (WIDE, snapshot(), ()),
     "latched_80x24": (SMALL, snapshot(operator=helm(style="latch", stop_bound=math.inf, reports_releases=False)), ()),
     "disarmed_80x24": (SMALL, STANDING, ()),
-    "question_80x24": (SMALL, STANDING, ("r",)),
+    "hold_80x24": (SMALL, STANDING, ()),
     "emergency_80x24": (SMALL, STOPPED, ()),
     "unknown_80x24": (SMALL, UNKNOWN, ()),
     "waiting_80x24": (SMALL, waiting(), ()),
@@ -55,6 +59,9 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
         await screen.press(*keys)
         if keys:
             await screen.show(picture)
+        if name.startswith("hold"):
+            hold = HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4)
+            screen.app.drive.show_state(DisplayState(picture, STANDARD, hold=hold))
         shown = screen.text
     file = GOLDEN / f"{name}.txt"
     if os.environ.get("GOLDEN") == "write":

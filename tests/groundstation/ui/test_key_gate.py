@@ -8,6 +8,8 @@ import pytest
 
 from groundstation.input.keymap import KeyEvent
 from groundstation.intents import (
+    HOLD_TIME,
+    Arm,
     Disarm,
     DriveKeyDown,
     DriveKeyUp,
@@ -19,8 +21,10 @@ from groundstation.intents import (
     Stop,
 )
 from groundstation.ui.key_gate import GateClosure, GateLevel, KeyGate
+from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.examples import Recorder
 from tests.groundstation.ui.ptys import STANDARD
+from tests.groundstation.ui.sinks import Clock
 
 SMALL, TEXT = GateClosure("the terminal is too small"), GateClosure("another screen is open", GateLevel.STOPS)
 
@@ -121,3 +125,63 @@ def test_what_is_driven_decides_whether_a_strange_key_stops(gate: KeyGate, stati
     gate.update(armed=True, driving=True)
     gate.handle_keys([press("b")])
     assert station.intents == [Stop()]
+
+
+def hold_r(gate: KeyGate, clock: Clock, seconds: float) -> None:
+    begun = clock.now
+    for at in event_times(seconds):
+        clock.now = begun + at
+        gate.handle_keys([press("r")])
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def disarmed(station: Recorder, clock: Clock) -> KeyGate:
+    """An open gate, of a vehicle that is not armed."""
+    made = KeyGate(station, STANDARD, clock)
+    made.set_closure(None)
+    made.update(armed=False, driving=False)
+    return made
+
+
+def test_a_held_key_arms_and_says_how_long_it_was_held(disarmed: KeyGate, station: Recorder, clock: Clock) -> None:
+    hold_r(disarmed, clock, 0.9)
+    assert disarmed.hold is not None
+    assert not station.of(Arm)
+    hold_r(disarmed, clock, 5.0)
+    (arm,) = station.of(Arm)
+    assert arm.held >= HOLD_TIME
+    assert disarmed.hold is None
+
+
+@pytest.mark.parametrize("shut", [SMALL, TEXT])
+def test_a_shut_gate_arms_nothing(disarmed: KeyGate, station: Recorder, clock: Clock, shut: GateClosure) -> None:
+    disarmed.set_closure(shut)
+    hold_r(disarmed, clock, 5.0)
+    assert disarmed.hold is None
+    assert not station.of(Arm)
+
+
+@pytest.mark.parametrize("shut", [SMALL, TEXT])
+def test_closing_cancels_and_opening_does_not_resume(
+    disarmed: KeyGate, station: Recorder, clock: Clock, shut: GateClosure
+) -> None:
+    hold_r(disarmed, clock, 0.9)
+    disarmed.set_closure(shut)
+    disarmed.set_closure(None)
+    assert disarmed.hold is None
+    clock.now += 0.03
+    for _ in range(100):
+        clock.now += 0.03
+        disarmed.handle_keys([press("r")])
+    assert not station.of(Arm)
+
+
+def test_the_mouse_cancels(disarmed: KeyGate, station: Recorder, clock: Clock) -> None:
+    hold_r(disarmed, clock, 0.9)
+    disarmed.cancel_hold()
+    assert disarmed.hold is None

@@ -111,6 +111,17 @@ def test_sequences_of_keys_may_still_come_in_pieces() -> None:
     assert keys_of(["\x1b[", "20~"], 0.05) == ["f9"]
 
 
+@pytest.mark.parametrize("report", REPORTS.values(), ids=REPORTS)
+def test_a_report_cancels_the_hold_of_a_key(report: str) -> None:
+    sink = Sink()
+    parser = KeyEventParser(sink, clock=Clock())
+    parser.feed("r\x1b[0n")
+    assert sink.cancelled == 0
+    for part in (report[:2], report[2:]):
+        parser.feed(part)
+    assert sink.cancelled == 1
+
+
 def test_a_flood_without_an_end_does_not_grow() -> None:
     mouse = MouseReportFilter()
     assert mouse.feed("\x1b[<", 0.0) == ""

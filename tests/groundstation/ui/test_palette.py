@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from groundstation.intents import Disarm
+from groundstation.intents import ACTIONS, Disarm
+from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import until
+
+DISARMED = snapshot(vehicle=vehicle(armed=False))
 
 
 async def test_an_action_of_the_palette_is_done() -> None:
@@ -16,3 +19,10 @@ async def test_an_action_of_the_palette_is_done() -> None:
         await until(lambda: "Disarm" in screen.text)
         await screen.press("down", "enter")
         await until(lambda: screen.station.of(Disarm))
+
+
+async def test_the_palette_arms_nothing() -> None:
+    async with console(picture=DISARMED) as screen:
+        titles = [command.title for command in screen.app.get_system_commands(screen.app.screen)]
+        assert "Disarm" in titles
+        assert not {action.label for action in ACTIONS.values() if action.confirm} & set(titles)

@@ -36,7 +36,7 @@ def driving(style: str = "hold", vehicle: FakeArduPilot | None = None) -> tuple[
     vehicle = vehicle or FakeArduPilot(mode=Mode.HOLD)
     cockpit = Cockpit(vehicle)
     cockpit.run(2.0)
-    cockpit.do(SetStyle(style=style), Arm())
+    cockpit.do(SetStyle(style=style), Arm(held=1.0))
     cockpit.run(2.0)
     assert (cockpit.view.armed, cockpit.view.mode) == (True, "MANUAL")
     cockpit.do(ReportKeyReleases(), FORWARD, *([LEFT] if style == "hold" else []))
@@ -145,12 +145,12 @@ def test_arming_waits_for_neutral_and_shows_why_it_was_refused() -> None:
     cockpit = Cockpit(vehicle)
     cockpit.run(1.5)
     vehicle._throttle, vehicle._demand_at = 400, cockpit.now
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     assert not vehicle.armed
     assert cockpit.view.refusal == "arm failed: Arm: Throttle (RC3) is not neutral"
     vehicle._station = 255
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     assert vehicle.armed
     first_arm = next(at for at, each in vehicle.all(m.CommandLong) if each.command == Command.COMPONENT_ARM_DISARM)
@@ -163,7 +163,7 @@ def test_a_vehicle_of_another_station_does_not_move_and_a_warning_names_that_sta
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
     assert "obeys ground station 252 only and we are 255: use --system 252" in cockpit.view.warnings
-    cockpit.do(Arm())
+    cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     cockpit.do(ReportKeyReleases(), FORWARD)
     cockpit.run(1.0)

@@ -1,13 +1,23 @@
-"""The Drive screen: its questions, and what it shows."""
+"""The Drive screen: arming by a held key, and what it shows."""
 
 from __future__ import annotations
 
 import math
+import time
 
 import pytest
 
-from groundstation.intents import Arm, ClearEmergencyStop, Disarm, EmergencyStop, SetKeyGate, StartSimulator
+from groundstation.intents import (
+    HOLD_TIME,
+    Arm,
+    ClearEmergencyStop,
+    Disarm,
+    EmergencyStop,
+    SetKeyGate,
+    StartSimulator,
+)
 from groundstation.snapshot import LinkView
+from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import until
@@ -16,33 +26,49 @@ DISARMED = snapshot(vehicle=vehicle(armed=False))
 STOPPED = snapshot(vehicle=vehicle(armed=False, emergency_stop=True))
 
 
-async def test_arming_asks_and_a_second_key_answers() -> None:
+async def test_arming_shows_a_bar_and_needs_the_key_held() -> None:
     async with console(picture=DISARMED) as screen:
+        begun = time.monotonic()
         await screen.press("r")
         assert screen.station.of(Arm) == []
-        await until(lambda: "Arm? y = yes" in screen.text)
-        await screen.press("y")
-        assert screen.station.of(Arm) == [Arm()]
+        await until(lambda: "Arm: hold r" in screen.text)
+        await screen.hold("r", lambda: screen.station.of(Arm))
+        (arm,) = screen.station.of(Arm)
+        assert HOLD_TIME <= arm.held <= time.monotonic() - begun
 
 
-@pytest.mark.parametrize("key", ["n", "space", "i", "escape", "r"])
-async def test_any_other_key_is_a_no(key: str) -> None:
+async def test_the_bar_ends_by_itself_and_a_late_answer_does_nothing() -> None:
     async with console(picture=DISARMED) as screen:
-        await screen.press("r", key, "y")
+        await screen.press("r")
+        await until(lambda: "Arm: hold r" in screen.text)
+        await until(lambda: "disarmed: hold r to arm" in screen.text)
+        await screen.press("y", "r", "y")
         assert screen.station.of(Arm) == []
 
 
-async def test_disarming_is_one_key_and_no_question() -> None:
+@pytest.mark.parametrize("key", ["n", "space", "i", "escape", "y"])
+async def test_another_key_cancels(key: str) -> None:
+    async with console(picture=DISARMED) as screen:
+        await screen.press("r")
+        await until(lambda: screen.app.gate.hold is not None)
+        await screen.press(key)
+        assert screen.app.gate.hold is None
+        assert screen.station.of(Arm) == []
+
+
+async def test_disarming_is_one_press() -> None:
     async with console() as screen:
         await screen.press("r")
         assert screen.station.of(Disarm) == [Disarm()]
-        assert screen.app.drive.question is None
+        assert screen.app.gate.hold is None
 
 
-async def test_the_emergency_stop_is_released_with_two_keys() -> None:
+async def test_the_emergency_stop_is_released_by_a_held_key() -> None:
     async with console(picture=STOPPED) as screen:
-        await screen.press("t", "y")
-        assert screen.station.of(ClearEmergencyStop) == [ClearEmergencyStop()]
+        await screen.press("t")
+        assert not screen.station.of(ClearEmergencyStop)
+        await screen.hold("t", lambda: screen.station.of(ClearEmergencyStop))
+        assert screen.station.of(ClearEmergencyStop)[0].held >= HOLD_TIME
 
 
 async def test_without_a_vehicle_enter_starts_the_simulator() -> None:
@@ -63,9 +89,24 @@ async def test_with_a_vehicle_enter_starts_nothing() -> None:
 async def test_a_small_terminal_says_what_it_needs_and_still_stops() -> None:
     async with console(size=(70, 20)) as screen:
         assert "needs 80 x 24" in screen.text
+        assert "Rover 1 · MANUAL · ARMED\n" in screen.text
         assert screen.station.of(SetKeyGate)[-1].open is False
         await screen.press("space", "exclamation_mark")
         assert screen.station.of(EmergencyStop)
+
+
+async def test_a_small_terminal_arms_nothing_and_shows_the_state() -> None:
+    async with console(size=(60, 20), picture=DISARMED) as screen:
+        await screen.press("r")
+        assert screen.app.gate.hold is None
+        with pytest.raises(TimeoutError):
+            await hold_until(lambda: screen.press("r"), lambda: screen.station.of(Arm), 2.0)
+        assert "Rover 1 · MANUAL · DISARMED\n" in screen.text
+        await screen.show(STOPPED)
+        assert "DISARMED · EMERGENCY STOP\n" in screen.text
+        await screen.show(snapshot())
+        await screen.press("r")
+        assert screen.station.of(Disarm)
 
 
 async def test_growing_opens_the_gate() -> None:

@@ -1,0 +1,138 @@
+"""Confirmation by a held key: which reads of keys are one key held long enough. Time is an argument.
+
+A held key sends its press, a pause (the repeat delay), then repeats. Only those repeats, in separate reads and spread
+over HOLD_TIME, confirm an action. Typed or pasted text cannot: it is faster, slower, or contains other keys. A key
+that has acted (armed, or disarmed) does nothing more until it was released. Terminals that report releases must send
+repeats, too: on a bad line the release may be late or lost, and such a key must not arm.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import msgspec
+
+from groundstation.input.key_repeat import LONGEST_DELAY, REPEAT_GAP, REPEAT_WINDOW_MAX, REPEAT_WINDOW_MIN
+from groundstation.input.keymap import KeyEvent, Keymap
+from groundstation.intents import HOLD_TIME, AnyIntent, OperatorAction
+
+MIN_REPEATS = 5
+"""Repeats at most REPEAT_GAP apart that a hold needs, so that quick taps of a finger never count as one."""
+
+MAX_EVENTS = 8
+"""Events of one read above which it is pasted text: 0.25 s of repeats every 33 ms, when the machine was late."""
+
+
+@dataclass(frozen=True, slots=True)
+class HoldProgress:
+    """A hold that has begun."""
+
+    action: OperatorAction
+    key: str
+    held: float
+    """s since the press, at most HOLD_TIME."""
+
+
+@dataclass(frozen=True, slots=True)
+class HoldResult:
+    """What one read of keys means."""
+
+    passing: list[KeyEvent]
+    """The read without the repeats of a key that has acted already."""
+    confirmed: AnyIntent | None = None
+    """The intent of the action that this read has confirmed."""
+
+
+@dataclass(slots=True)
+class _Hold:
+    """The events of one key since its press."""
+
+    key: str
+    action: OperatorAction
+    pressed: float
+    seen: float
+    """Time of the newest event."""
+    events: int = 1
+    repeats: int = 0
+    """Events at most REPEAT_GAP after the one before."""
+    longest_gap: float = 0.0
+    """Longest gap of those repeats, s."""
+    spent: bool = False
+    """The key has acted or was cancelled: it must be released first."""
+
+    @property
+    def window(self) -> float:
+        """Return the time after the newest event for which the key counts as held, s."""
+        if self.events == 1:
+            return LONGEST_DELAY
+        if self.spent and self.repeats >= MIN_REPEATS:
+            return min(max(2.5 * self.longest_gap, REPEAT_WINDOW_MIN), REPEAT_WINDOW_MAX)
+        return REPEAT_WINDOW_MAX
+
+    def extend(self, now: float) -> None:
+        """Record a further event. Those of one read count once."""
+        gap, self.seen = now - self.seen, now
+        if gap <= 0:
+            return
+        self.events += 1
+        if gap <= REPEAT_GAP:
+            self.repeats += 1
+            self.longest_gap = max(self.longest_gap, gap)
+
+
+class HoldToConfirm:
+    """Follows the key of an action that needs confirmation. Times are of one monotonic clock, s."""
+
+    def __init__(self, keymap: Keymap) -> None:
+        self._keymap = keymap
+        self._hold: _Hold | None = None
+
+    def handle_read(self, batch: Sequence[KeyEvent], *, armed: bool, allowed: bool, now: float) -> HoldResult:
+        """Handle the keys of one read. `allowed`: a hold may begin or end now."""
+        text = len(batch) > MAX_EVENTS or len({press.key for press in batch}) > 1
+        passing = [press for press in batch if not self._swallow(press, armed, allowed and not text, now)]
+        if text or not allowed:
+            self.cancel()
+        return HoldResult(passing, self._confirm(now) if batch else None)
+
+    def cancel(self) -> None:
+        """End a hold; its key must be released before it counts again."""
+        if self._hold is not None:
+            self._hold.spent = True
+
+    def progress(self, now: float) -> HoldProgress | None:
+        """Return the hold that has begun, None if there is none or its key is no longer held."""
+        hold = self._hold
+        if hold is None or hold.spent or now - hold.seen > hold.window:
+            return None
+        return HoldProgress(hold.action, hold.key, min(now - hold.pressed, HOLD_TIME))
+
+    def _swallow(self, press: KeyEvent, armed: bool, allowed: bool, now: float) -> bool:
+        """Follow an event. Return whether it is a repeat of a key that has acted: it must not act again."""
+        hold = self._hold
+        if hold is None or press.key != hold.key or press.release or now - hold.seen > hold.window:
+            self._hold = self._begin(press, armed, allowed, now)
+            return False
+        hold.extend(now)
+        hold.spent |= armed and hold.action.when_armed is not None
+        return hold.spent and hold.repeats > 0
+
+    def _begin(self, press: KeyEvent, armed: bool, allowed: bool, now: float) -> _Hold | None:
+        action = self._keymap.get_action(press.key)
+        if action is None or not action.confirm or press.release or press.repeat:
+            return None
+        acts = armed and action.when_armed is not None
+        return _Hold(press.key, action, now, now, spent=acts) if acts or allowed else None
+
+    def _confirm(self, now: float) -> AnyIntent | None:
+        hold = self._hold
+        if hold is None or hold.spent or now - hold.pressed < HOLD_TIME or hold.repeats < MIN_REPEATS:
+            return None
+        hold.spent = True
+        return None if hold.action.intent is None else _with_time(hold.action.intent, now - hold.pressed)
+
+
+def _with_time(intent: AnyIntent, held: float) -> AnyIntent:
+    """Return the intent with the time of its hold, which the station checks."""
+    return msgspec.structs.replace(intent, held=held) if "held" in intent.__struct_fields__ else intent
