@@ -44,7 +44,7 @@ class ParamService:
             allowed=lambda received: context.control.denial_reason(received.system) is None,
             armed=lambda: context.safety.armed,
             changed=self._handle_change,
-            send_text=lambda text, now: context.statustext.send(Severity.WARNING, text, now),
+            refused=lambda received, text, now: context.statustext.reply(received, Severity.WARNING, text, now),
         )
 
     def messages(self) -> InboundTable:
@@ -65,12 +65,12 @@ class ParamService:
         """Check about once a second that values are saved; retry failed saves, with backoff."""
         if problem := self._store.problem:
             text = f"Parameters are not saved: {problem}; trying again"
-            self._texts.send_once(f"param store {problem}", Severity.WARNING, text, now)
+            self._texts.send_once(f"param_store {problem}", Severity.WARNING, text, now)
             self._retry(now)
         elif self._retry_due is not None:
             self._retry_due = None
             self._backoff.reset()
-            self._texts.reset_once("param store ")
+            self._texts.reset_once("param_store")
             self._texts.send(Severity.NOTICE, "Parameters are saved now", now)
 
     @property
