@@ -8,7 +8,7 @@ why a request is refused, go to their asker only (vehicle/replies.py).
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from dialects.enums import Severity
@@ -30,6 +30,8 @@ EVENT_LOG_BURST = 100
 """Texts of the two upper lanes that are logged at once; after them RATE a second."""
 RECENT_TEXTS = 32
 """Reports that are remembered to find repeats."""
+LIST_MAX = 10
+"""Reports of one list that are sent, 1 s of the rate."""
 ONCE_KEYS_MAX = 300
 """Keys of one group of `send_once`; beyond that the group is forgotten."""
 
@@ -71,6 +73,18 @@ class StatusTextQueue:
         """Queue a report, unless the same text was queued less than REPEAT_AFTER ago."""
         if not self._repeats.is_repeat(text, now):
             self._add(self._reports, severity, text, now)
+
+    def send_list(self, severity: Severity, texts: Sequence[str], now: float) -> None:
+        """Queue the first LIST_MAX reports and the number of the others; the log gets all of them in one line."""
+        whole = "; ".join(texts)
+        if not texts or self._repeats.is_repeat(whole, now):
+            return
+        if self._events.log_bucket.consume(now):
+            self._on_text(severity, whole)
+        more = len(texts) - LIST_MAX
+        self._reports.waiting.extend((severity, text) for text in texts[:LIST_MAX])
+        if more > 0:
+            self._reports.waiting.append((severity, f"and {more} more"))
 
     def send_once(self, key: str, severity: Severity, text: str, now: float) -> None:
         """Queue a report only the first time for its key; `reset_once` allows it again."""

@@ -60,7 +60,7 @@ class Vehicle:
             pacer=BulkPacer(lambda peer: self.rate),
             allowed=lambda received: self.allowed,
             armed=lambda: self.armed,
-            changed=lambda name, value: self.changed.append((name, value)),
+            changed=lambda received, name, value: self.changed.append((name, value)),
             refused=lambda received, text, now: self.said.append(text),
         )
 

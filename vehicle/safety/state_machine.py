@@ -16,6 +16,7 @@ from vehicle.safety.arming import ArmingFacts, find_problems
 from vehicle.safety.battery import BatteryMonitor
 from vehicle.safety.failsafe import RULES
 from vehicle.safety.failsafe_state import Failsafes
+from vehicle.safety.param_report import list_changed_safety_params
 from vehicle.safety.pi_monitor import PiMonitor
 from vehicle.safety.states import TRANSITIONS, SafetyEvent, SafetyState
 from vehicle.statustext import StatusTextQueue
@@ -120,6 +121,7 @@ class Safety:
         self._texts.send_event(Severity.NOTICE, f"Armed by GCS {system}, mode {self.mode.name}", now)
         if MODES[self.mode].autonomous and self.mode is not Mode.GUIDED:
             self._texts.send_event(Severity.NOTICE, f"Choose {self.mode.name} again to start", now)
+        self._texts.send_list(Severity.WARNING, list_changed_safety_params(self._params), now)
         return []
 
     def disarm(self, why: str, now: float) -> None:
