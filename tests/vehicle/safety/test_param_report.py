@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from dialects.enums import ParamErrorCode, Result, Severity
+from dialects.enums import Command, ParamErrorCode, Result, Severity
 from link.services.param.values import REAL32
 from tests.vehicle.bench import OTHER, Bench, logged, said
 from vehicle.config.merge import merge_params
@@ -130,3 +130,14 @@ class TestLimit:
     def test_values_beyond_the_range_are_an_error_everywhere(self) -> None:
         with pytest.raises(ParamError):
             Params({"MAN_TIMEOUT": 2.1})
+
+
+class TestFence:
+    def test_a_fence_that_a_command_disables_is_announced_to_all(self) -> None:
+        bench = Bench()
+        for wanted in (1, 1, 0):
+            assert bench.command(Command.DO_FENCE_ENABLE, wanted, system=OTHER) is Result.ACCEPTED
+            bench.wait(0.5)
+        for texts in (bench.texts, bench.logged):
+            changes = [text for text in texts if text.startswith("GCS")]
+            assert changes == [f"GCS {OTHER}: fence enabled", f"GCS {OTHER}: fence disabled"]
