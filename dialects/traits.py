@@ -6,10 +6,12 @@ row; the transmit queue, the channel, the router and the recorders all read the 
 
 from __future__ import annotations
 
+import math
 from enum import Flag, auto
 
 from dialects import messages as m
 from dialects import rover
+from dialects.modes import Mode
 
 
 class Trait(Flag):
@@ -105,11 +107,28 @@ UNLOGGED = ids_with(Trait.UNLOGGED)
 SECRET = ids_with(Trait.SECRET)
 
 
+_STOPS_AT_ZERO = (
+    rover.MAV_CMD_COMPONENT_ARM_DISARM,
+    rover.MAV_CMD_DO_SET_SAFETY_SWITCH_STATE,
+    rover.MAV_CMD_DO_PAUSE_CONTINUE,
+)
+"""Commands that stop if parameter 1 is 0."""
+
+
 def is_stop(message: m.Message) -> bool:
-    """Return whether this is a command that only stops: disarm, safety switch to SAFE, flight termination."""
+    """Return whether this only stops: disarm, safety switch to SAFE, termination, pause, ArduRover's HOLD."""
+    if isinstance(message, m.SetMode):
+        return _holds(message.base_mode, message.custom_mode, 0.0)
     if not isinstance(message, m.CommandLong | m.CommandInt):
         return False
     if message.command == rover.MAV_CMD_DO_FLIGHTTERMINATION:
         return bool(message.param1 > 0.5)
-    stops = (rover.MAV_CMD_COMPONENT_ARM_DISARM, rover.MAV_CMD_DO_SET_SAFETY_SWITCH_STATE)
-    return message.command in stops and bool(message.param1 == 0)
+    if message.command == rover.MAV_CMD_DO_SET_MODE:
+        return _holds(message.param1, message.param2, message.param3)
+    return message.command in _STOPS_AT_ZERO and bool(message.param1 == 0)
+
+
+def _holds(base: float, custom: float, sub: float) -> bool:
+    """Return whether a mode is HOLD by its custom mode; with a third parameter it is another one (PX4)."""
+    by_custom = math.isfinite(base) and bool(int(base) & rover.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
+    return by_custom and bool(custom == Mode.HOLD) and (sub == 0 or math.isnan(sub))

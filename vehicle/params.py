@@ -28,6 +28,8 @@ class Parameter:
     """Takes effect after a restart."""
     read_only: bool = False
     """No ground station may set it: it must match the hardware, or rover.toml pins it."""
+    remote_high: float | None = None
+    """Largest value that a ground station may set; a larger one only in rover.toml or by --param. None: `high`."""
 
 
 MOTORS = 4
@@ -61,7 +63,7 @@ TABLE: tuple[Parameter, ...] = (
               "reboots or shuts down the computer on board", whole=True, read_only=True),
     # Manual driving
     Parameter("MAN_TIMEOUT", 0.45, 0.2, 2, "s", "A demand older than this is neutral: 9 frames at 20 Hz. Below 0.5 s, "
-              "so that the wheels slow down by then", safety=True),
+              "so that the wheels slow down by then; above it only in rover.toml", safety=True, remote_high=0.5),
     Parameter("MAN_DEADBAND", 3, 0, 20, "%", "Demands smaller than this are neutral", safety=True),
     Parameter("MANUAL_EXPO", 0, 0, 0.9, "", "Expo of throttle and sideways demand; 0 is linear"),
     Parameter("MANUAL_STR_EXPO", 0, 0, 0.9, "", "Expo of steering; 0 is linear"),
@@ -69,7 +71,8 @@ TABLE: tuple[Parameter, ...] = (
     Parameter("OPR_TIMEOUT", 10, 2, 60, "s", "Stop after this long without a key or stick event while moving",
               safety=True),
     Parameter("OPR_ECHO_MAX", 0.45, 0.2, 5, "s", "A demand is rejected if the newest telemetry that its sender has "
-              "seen is older than this; raise it on slow radios", safety=True),
+              "seen is older than this; for slow radios higher, above 0.5 s only in rover.toml", safety=True,
+              remote_high=0.5),
     *(Parameter(f"BTN{bit}_FUNCTION", 0, 0, 7, "", f"Button {bit} of MANUAL_CONTROL, when pressed: 0 none, "
                 "1 arm, 2 disarm, 3 emergency stop, 4 HOLD, 5 MANUAL, 6 AUTO, 7 RTL", safety=True, whole=True)
       for bit in range(BUTTONS)),
@@ -164,6 +167,9 @@ TABLE: tuple[Parameter, ...] = (
 
 PARAMETERS: dict[str, Parameter] = {parameter.name: parameter for parameter in TABLE}
 
+SAFETY_PARAMETERS: tuple[str, ...] = tuple(parameter.name for parameter in TABLE if parameter.safety)
+"""The parameters that are locked while armed."""
+
 ORDERED_PAIRS: tuple[tuple[str, str], ...] = tuple((f"MOT{n}_MIN", f"MOT{n}_MAX") for n in range(1, MOTORS + 1))
 """Pairs whose first value must be smaller. Their defaults are their extremes, so that two values that fit each other
 can be set in any order."""
@@ -203,12 +209,20 @@ class Params:
 
     @property
     def table(self) -> tuple[Parameter, ...]:
-        """TABLE for ground stations: pinned parameters are read only, and the defaults are those of this car."""
-        usual, pinned = self._usual, self.pinned
+        """TABLE for ground stations: pinned parameters are read only, the defaults are those of this car."""
         return tuple(
-            replace(each, read_only=each.read_only or each.name in pinned, default=usual.get(each.name, each.default))
+            replace(
+                each,
+                read_only=each.read_only or each.name in self.pinned,
+                default=self.get_default(each.name),
+                high=each.high if each.remote_high is None else each.remote_high,
+            )
             for each in TABLE
         )
+
+    def get_default(self, name: str) -> float:
+        """Return the default of a parameter for this car."""
+        return self._usual.get(name, PARAMETERS[name].default)
 
     @property
     def damage(self) -> str | None:
@@ -265,30 +279,3 @@ class Params:
         for small, large in ORDERED_PAIRS:
             if values[small] >= values[large]:
                 raise ParamError(f"{small} {values[small]:g} must be smaller than {large} {values[large]:g}")
-
-
-def merge_params(
-    given: Mapping[str, float],
-    *,
-    kept: Mapping[str, float],
-    usual: Mapping[str, float],
-    pinned: Collection[str] = (),
-    run: Mapping[str, float] | None = None,
-) -> tuple[Params, list[str]]:
-    """Merge defaults, values `usual` for this car, saved (`kept`) and `given` values; the later wins.
-
-    `run` holds the given values that end with the program. Raises ParamError for an invalid given value. A saved value
-    that does not fit is left out, and a line says why: it comes from another version of this program, or rover.toml
-    has changed since, and no ground station could correct it.
-    """
-    Params({**usual, **given})  # raises if the given values are invalid, whatever is saved
-    first = {name: value for name, value in usual.items() if name not in kept}
-    params = Params({**first, **given}, pinned=pinned, usual=usual, run=run)
-    left_out = []
-    for name, value in kept.items():
-        if name not in given:
-            try:
-                params.set(name, value)
-            except ParamError as error:
-                left_out.append(str(error))
-    return params, left_out

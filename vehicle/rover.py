@@ -241,6 +241,7 @@ class Rover:
         """Queue telemetry and texts that are due."""
         self._outgoing += self._telemetry.build_due(self._build_view(now))
         self._outgoing += [Outgoing(text) for text in self._texts.pop_due(now)]
+        self._outgoing += self._texts.pop_replies()
 
     def _demand_in_use(self, now: float) -> Demand | None:
         """Return the demand that the mode obeys; the clearance decides whether it may move anything."""

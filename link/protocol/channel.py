@@ -2,7 +2,8 @@
 
 Rules: only a valid frame creates a peer; a peer gets no telemetry before its first HEARTBEAT; a reply is never longer
 than the request allows; every table is bounded. A repeated frame has no second effect. Of state messages (all but
-dialects.traits.ACKED) one that a newer one has overtaken is dropped.
+dialects.traits.ACKED) one that a newer one has overtaken is dropped. A stop is handed on whoever sends it, also when
+all places are taken, and can be answered.
 """
 
 from __future__ import annotations
@@ -13,13 +14,14 @@ from itertools import count
 from dialects import codec
 from dialects.messages import MESSAGES, Heartbeat, RadioStatus
 from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
-from link.core import LinkReport, Outgoing, Peer, Received, SourceCount
+from link.core import LinkReport, Outgoing, Peer, Received
 from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, FramerCounts, noise_hint, payload_of
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
-from link.protocol.peer import PeerState
+from link.protocol.peer import PeerState, count_sources
 from link.protocol.sequence import NEW, FrameOrder
+from link.protocol.stops import find_stops
 
 MAX_PEERS = 24
 """Sixteen ground stations on one port, and room for half of them to restart: a restarted program has a new port, and
@@ -66,6 +68,8 @@ class Channel:
         self._wanted = wanted
         self._new_peer_framer = Framer(stream=False)
         self._peers: dict[Hashable, PeerState] = {}
+        self._transient: PeerState | None = None
+        """The newest sender of a stop for whom there was no place, so that the stop can be acknowledged."""
         self._conversations = count()
         self._past_counts = FramerCounts()
         self._bytes_received = 0
@@ -88,7 +92,7 @@ class Channel:
         state = self._admit(address, now)
         if state is None:
             self._refused_peers += 1
-            return []
+            return self._accept_stops(frames, address, now)
         return self._accept(state, state.framer.feed(data, now) if self._stream else frames, now)
 
     def tick(self, now: float) -> list[Received]:
@@ -162,6 +166,18 @@ class Channel:
                 accepted.append(received)
         return accepted
 
+    def _accept_stops(self, frames: list[Frame], address: Hashable, now: float) -> list[Received]:
+        """Return the stops among the frames of a sender for whom there is no place; all else is dropped."""
+        accepted: list[Received] = []
+        for frame, message in find_stops(frames, self.ids, self._wanted):
+            _, system, component, sequence, _ = frame
+            if self.log_tap is not None:
+                self.log_tap.record_received([frame], now)
+            if self._transient is None or self._transient.peer.address != address:
+                self._transient = self._new_peer(address, now)
+            accepted.append(Received(message, system, component, sequence, self._transient.peer, introduced=False))
+        return accepted
+
     def _handle_radio_status(self, raw: bytes, now: float) -> None:
         status = codec.decode(RadioStatus.id, payload_of(raw))
         if isinstance(status, RadioStatus):
@@ -222,11 +238,11 @@ class Channel:
 
     def _known(self, peers: tuple[Peer, ...]) -> list[PeerState]:
         """Return those of `peers` on this link whose conversation is still the same."""
-        found = []
+        found: list[PeerState] = []
         for peer in peers:
-            state = self._peers.get(peer.address) if peer.link == self.index else None
-            if state is not None and state.peer == peer:
-                found.append(state)
+            if peer.link == self.index:
+                places = (self._peers.get(peer.address), self._transient)
+                found += [state for state in places if state is not None and state.peer == peer]
         return found
 
     # ---- reporting ----
@@ -274,7 +290,7 @@ class Channel:
             capacity=self._capacity,
             headroom=self._flow.headroom(now) if self._capacity is not None else 1.0,
             dropped=dropped,
-            sources=self._source_counts(),
+            sources=count_sources(self._peers.values()),
             audience=tuple(state.peer for state in self._peers.values() if state.accepts_target(0)),
         )
 
@@ -282,11 +298,3 @@ class Channel:
         if self._capacity is None:
             return None
         return noise_hint(self.name, self._bytes_received, counts.frames + counts.unknown)
-
-    def _source_counts(self) -> dict[tuple[int, int], SourceCount]:
-        totals: dict[tuple[int, int], SourceCount] = {}
-        for state in self._peers.values():
-            for key, source in state.sources.items():
-                before = totals.get(key, SourceCount(0, 0))
-                totals[key] = SourceCount(before.received + source.received, before.lost + source.lost)
-        return totals

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from link.core import Peer
+from link.core import Peer, SourceCount
 from link.protocol.frame import Frame
 from link.protocol.framer import Framer
 from link.protocol.rate import TokenBucket
@@ -56,3 +57,13 @@ class PeerState:
             message_id, system, component, sequence, _ = frame
             self.sources[system, component] = SequenceTracker(sequence, message_id)
         return FrameOrder.NEW
+
+
+def count_sources(states: Iterable[PeerState]) -> dict[tuple[int, int], SourceCount]:
+    """Return the frames of each system and component, over all peers."""
+    totals: dict[tuple[int, int], SourceCount] = {}
+    for state in states:
+        for key, source in state.sources.items():
+            before = totals.get(key, SourceCount(0, 0))
+            totals[key] = SourceCount(before.received + source.received, before.lost + source.lost)
+    return totals

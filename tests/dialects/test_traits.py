@@ -63,8 +63,28 @@ def test_the_sets_hold_what_the_table_says() -> None:
     [
         *((400, 0.0, True), (400, 1.0, False), (5300, 0.0, True), (5300, 1.0, False), (176, 0.0, False)),
         *((185, 1.0, True), (185, 0.0, False), (185, math.nan, False)),
+        *((193, 0.0, True), (193, 1.0, False), (193, math.nan, False)),
     ],
 )
 def test_what_counts_as_a_stop(command: int, param1: float, stops: bool) -> None:
     assert is_stop(CommandLong(1, 1, command, 0, param1, 0, 0, 0, 0, 0, 0)) is stops
     assert is_stop(CommandInt(1, 1, 0, command, 0, 0, param1, 0, 0, 0, 0, 0, 0)) is stops
+
+
+@pytest.mark.parametrize(
+    ("base", "custom", "sub", "holds"),
+    [
+        *((1.0, 4.0, 0.0, True), (217.0, 4.0, 0.0, True), (1.0, 4.0, math.nan, True)),
+        *((0.0, 4.0, 0.0, False), (1.0, 0.0, 0.0, False), (1.0, 10.0, 0.0, False), (1.0, 4.0, 4.0, False)),
+        *((math.nan, 4.0, 0.0, False), (math.inf, 4.0, 0.0, False), (1.0, math.nan, 0.0, False)),
+    ],
+)
+def test_hold_is_a_stop_and_other_modes_are_not(base: float, custom: float, sub: float, holds: bool) -> None:
+    assert is_stop(CommandLong(1, 1, 176, 0, base, custom, sub, 0, 0, 0, 0)) is holds
+    assert is_stop(CommandInt(1, 1, 0, 176, 0, 0, base, custom, sub, 0, 0, 0, 0)) is holds
+
+
+def test_the_old_set_mode_stops_with_hold_only() -> None:
+    assert is_stop(m.SetMode(1, 1, 4))
+    assert not is_stop(m.SetMode(1, 0, 4))
+    assert not is_stop(m.SetMode(1, 1, 0))

@@ -95,7 +95,12 @@ class Vehicle:
         self.changes.append((kind, len(items)))
 
     def handle_plan_rejected(
-        self, kind: MissionType, wrong: tuple[int, MissionItem] | None, verdict: MissionResult, now: float
+        self,
+        kind: MissionType,
+        wrong: tuple[int, MissionItem] | None,
+        verdict: MissionResult,
+        received: Received | None,
+        now: float,
     ) -> None:
         self.unfits.append((kind, wrong[0] if wrong else None, verdict))
 

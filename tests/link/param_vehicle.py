@@ -60,8 +60,8 @@ class Vehicle:
             pacer=BulkPacer(lambda peer: self.rate),
             allowed=lambda received: self.allowed,
             armed=lambda: self.armed,
-            changed=lambda name, value: self.changed.append((name, value)),
-            send_text=lambda text, now: self.said.append(text),
+            changed=lambda received, name, value: self.changed.append((name, value)),
+            refused=lambda received, text, now: self.said.append(text),
         )
 
     def ask(self, message: m.Message, now: float = 0.0) -> list[m.Message]:

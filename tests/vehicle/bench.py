@@ -62,7 +62,16 @@ class Bench:
         self.now = now
         self.rack = AccessorySet(self.outputs)
         self.rack.open()
-        self.rover = Rover(Params(params), now=now, plan_store=self.plans, recording=self.recording, rack=self.rack)
+        self.logged: list[str] = []
+        """The texts in the log of the daemon."""
+        self.rover = Rover(
+            Params(params),
+            now=now,
+            plan_store=self.plans,
+            recording=self.recording,
+            rack=self.rack,
+            on_text=lambda severity, text: self.logged.append(text),
+        )
         self.readings = Readings()
         self.sent: list[m.Message] = []
         self.peers: list[Peer | None] = []
@@ -212,3 +221,8 @@ class Equipped(Bench):
 def said(bench: Bench, part: str) -> bool:
     """Did the driver read this?"""
     return any(part in text for text in bench.texts)
+
+
+def logged(bench: Bench, part: str) -> bool:
+    """Is this in the log of the daemon?"""
+    return any(part in text for text in bench.logged)

@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from vehicle.params import ORDERED_PAIRS, PARAMETERS, TABLE, ParamError, Parameter, Params, merge_params
+from vehicle.config.merge import merge_params
+from vehicle.params import ORDERED_PAIRS, PARAMETERS, TABLE, ParamError, Parameter, Params
 
 
 @pytest.mark.parametrize("parameter", TABLE, ids=lambda parameter: parameter.name)

@@ -98,5 +98,35 @@ def test_memory_is_bounded() -> None:
     texts = StatusTextQueue()
     for number in range(10_000):
         texts.send(Severity.INFO, f"{number} " * 100, number * 0.01)
-    assert len(texts._waiting) <= 30
-    assert len(texts._sent_at) <= 301
+    assert all(len(lane.waiting) <= 30 for lane in texts._lanes)
+    assert len(texts._repeats) <= 32
+
+
+def test_the_most_important_comes_first_and_is_never_dropped_for_less() -> None:
+    heard: list[str] = []
+    texts = StatusTextQueue(lambda severity, text: heard.append(text))
+    texts.send_event(Severity.EMERGENCY, "EMERGENCY STOP", 0.0)
+    texts.send_event(Severity.NOTICE, "Disarmed", 0.0)
+    for number in range(1000):
+        texts.send(Severity.WARNING, f"report {number}", 0.0)
+    texts.send(Severity.CRITICAL, "Motor driver failed", 0.0)
+    sent = [decode_text(message) for message in texts.pop_due(0.0)]
+    assert sent[:3] == ["EMERGENCY STOP", "Motor driver failed", "Disarmed"]
+    assert {"EMERGENCY STOP", "Disarmed", "Motor driver failed"} <= set(heard)
+
+
+def test_an_event_is_no_repeat_but_a_report_is() -> None:
+    texts = StatusTextQueue()
+    for text in ("Armed", "Disarmed", "Armed"):
+        texts.send_event(Severity.NOTICE, text, 0.0)
+    for text in ("Log: full", "Log: slow", "Log: full"):
+        texts.send(Severity.WARNING, text, 0.0)
+    sent = [decode_text(message) for message in texts.pop_due(0.0) + texts.pop_due(1.0)]
+    assert sent == ["Armed", "Disarmed", "Armed", "Log: full", "Log: slow"]
+
+
+def test_the_keys_of_once_are_bounded() -> None:
+    texts = StatusTextQueue()
+    for number in range(2000):
+        texts.send_once(f"setpoint {number}", Severity.INFO, f"ignored {number}", float(number))
+    assert sum(map(len, texts._once.values())) <= 300

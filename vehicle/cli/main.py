@@ -27,9 +27,6 @@ if TYPE_CHECKING:
 
 # The daemon, its loop and the dialect are imported only to run: --help and usage errors respond at once.
 
-SIMULATION_PARAMS = {"FS_LOOP_TIMEOUT": 1.0}
-"""A desktop computer is not a real-time system: a pause of 0.2 s, critical for a real vehicle, is tolerated there."""
-
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the vehicle or a subcommand and return the exit code."""
@@ -91,7 +88,7 @@ def _load_config(options: argparse.Namespace, parser: CommandLineParser) -> Conf
 
 
 def _build_settings(options: argparse.Namespace, config: Config, parser: CommandLineParser) -> RunSettings:
-    from vehicle.config.run_settings import RunSettings, Simulation
+    from vehicle.config.run_settings import SIMULATION_PARAMS, RunSettings, Simulation
     from vehicle.sim.body import SimulatedHome
 
     _reject_conflicts(options, config, parser)

@@ -62,7 +62,7 @@ class CommandAccess:
     def reject(self, request: CommandRequest, reason: str, now: float) -> Result:
         """Send the reason as STATUSTEXT and return FAILED: the command may work later."""
         name = command_name(request.command)
-        self._texts.send(Severity.WARNING, f"GCS {request.system}: {name} refused: {reason}", now)
+        self._texts.reply(request, Severity.WARNING, f"GCS {request.system}: {name} refused: {reason}", now)
         return Result.FAILED
 
 

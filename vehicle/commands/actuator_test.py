@@ -100,7 +100,7 @@ class ActuatorTest:
         if end_reason is None:
             return run.test
         self._run = None
-        self._texts.send(Severity.INFO, f"Motor test over: {end_reason}", now)
+        self._texts.send_change(Severity.INFO, f"Motor test over: {end_reason}", now)
         return None
 
     def _end_reason(self, run: ActiveTest, now: float, *, late: bool) -> str | None:
@@ -127,7 +127,8 @@ class ActuatorTest:
             return Result.ACCEPTED
         largest = self._params["MOT_TEST_MAX"]
         if abs(test.throttle) * 100 > largest + PERCENT_TOLERANCE:
-            self._texts.send(Severity.WARNING, f"Motor test refused: more than {largest:g} % (MOT_TEST_MAX)", now)
+            text = f"Motor test refused: more than {largest:g} % (MOT_TEST_MAX)"
+            self._texts.reply(request, Severity.WARNING, text, now)
             return Result.DENIED
         if self._safety.state is not SafetyState.SAFE:
             return self._access.reject(request, f"vehicle is in state {self._safety.state.value}", now)
@@ -139,10 +140,11 @@ class ActuatorTest:
         if self._run is None:
             if self._last and self._last[0] == key and now - self._last[1] < PROGRESS_TIMEOUT:
                 # The acknowledgement was lost and the command came again: the motor has run already.
-                self._texts.send(Severity.NOTICE, f"Motor test: repeated too soon, wait {PROGRESS_TIMEOUT:g} s", now)
+                text = f"Motor test: repeated too soon, wait {PROGRESS_TIMEOUT:g} s"
+                self._texts.reply(request, Severity.NOTICE, text, now)
                 return Result.ACCEPTED
             description = f"{self._motors[test.motor]} at {test.throttle:+.0%} for {test.time:g} s"
-            self._texts.send(Severity.WARNING, f"Motor test: {description}, by GCS {request.system}", now)
+            self._texts.send_change(Severity.WARNING, f"Motor test: {description}, by GCS {request.system}", now)
         elif (self._run.request.system, self._run.test.motor) != (request.system, test.motor):
             return Result.TEMPORARILY_REJECTED
         self._last = (key, now)

@@ -18,6 +18,7 @@ from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
 from vehicle.modes import describe_mode, parse_mode, standard_mode
+from vehicle.replies import Asker
 
 FORCE_VALUES = (21196, 2989)
 """COMPONENT_ARM_DISARM parameter 2 that skips soft checks: the specification's value and ArduPilot's second one."""
@@ -75,9 +76,9 @@ class ArmingCommands:
         asked = (message.base_mode, message.custom_mode)
         denial = None if _holds((*asked, 0.0)) else self._access.denial_reason(received.system, received.introduced)
         if denial:
-            self._texts.send(Severity.WARNING, f"GCS {received.system}: SET_MODE refused: {denial}", now)
+            self._texts.reply(received, Severity.WARNING, f"GCS {received.system}: SET_MODE refused: {denial}", now)
         else:
-            self._choose(parse_mode(*asked), describe_mode(*asked), now)
+            self._choose(parse_mode(*asked), describe_mode(*asked), received, now)
 
     def _arm_disarm(self, request: CommandRequest, now: float) -> Result:
         arm, force = request.params[:2]
@@ -87,21 +88,26 @@ class ArmingCommands:
             self._safety.disarm(f"by GCS {request.system}", now)
             self._safety.end_motor_test()
             return Result.ACCEPTED
-        return Result.FAILED if self._safety.arm(request.system, now, force=force in FORCE_VALUES) else Result.ACCEPTED
+        problems = self._safety.arm(request.system, now, force=force in FORCE_VALUES)
+        self._report_problems(problems, request, now)
+        return Result.FAILED if problems else Result.ACCEPTED
 
     def _run_prearm_checks(self, request: CommandRequest, now: float) -> Result:
         if self._safety.armed:
             return Result.TEMPORARILY_REJECTED
         problems = self._safety.prearm_problems(now)
-        for problem in problems:
-            self._texts.send(Severity.WARNING, f"PreArm: {problem}", now)
+        self._report_problems(problems, request, now)
         if not problems:
-            self._texts.send(Severity.INFO, "PreArm: ready to arm", now)
+            self._texts.reply(request, Severity.INFO, "PreArm: ready to arm", now)
         return Result.ACCEPTED
+
+    def _report_problems(self, problems: list[str], request: CommandRequest, now: float) -> None:
+        for problem in problems:
+            self._texts.reply(request, Severity.WARNING, f"PreArm: {problem}", now)
 
     def _set_mode(self, request: CommandRequest, now: float) -> Result:
         asked = request.params[:3]
-        return self._choose(parse_mode(*asked), describe_mode(*asked), now)
+        return self._choose(parse_mode(*asked), describe_mode(*asked), request, now)
 
     def _set_standard_mode(self, request: CommandRequest, now: float) -> Result:
         """SAFE_RECOVERY is RTL and MISSION is AUTO; the specification wants FAILED for a mode that is not offered."""
@@ -110,16 +116,16 @@ class ArmingCommands:
             return Result.DENIED
         mode = standard_mode(standard)
         if mode is not None:
-            return self._choose(mode, mode.name, now)
+            return self._choose(mode, mode.name, request, now)
         return self._refuse("standard mode", request, f"{standard:g} is not offered", now, Severity.NOTICE)
 
-    def _choose(self, mode: Mode | None, description: str, now: float) -> Result:
+    def _choose(self, mode: Mode | None, description: str, asker: Asker, now: float) -> Result:
         if mode is None:
-            self._texts.send(Severity.WARNING, f"Refused: {description} is not offered", now)
+            self._texts.reply(asker, Severity.WARNING, f"Refused: {description} is not offered", now)
             return Result.DENIED
         denial = self._safety.choose_mode(mode, now)
         if denial:
-            self._texts.send(Severity.WARNING, f"Mode {mode.name} refused: {denial}", now)
+            self._texts.reply(asker, Severity.WARNING, f"Mode {mode.name} refused: {denial}", now)
         return Result.FAILED if denial else Result.ACCEPTED
 
     def _set_safety_switch(self, request: CommandRequest, now: float) -> Result:
@@ -176,7 +182,7 @@ class ArmingCommands:
 
     def _refuse(self, what: str, request: CommandRequest, why: str, now: float,
                 severity: Severity = Severity.WARNING) -> Result:  # fmt: skip
-        self._texts.send(severity, f"GCS {request.system}: {what} refused: {why}", now)
+        self._texts.reply(request, severity, f"GCS {request.system}: {what} refused: {why}", now)
         return Result.FAILED
 
 

@@ -79,14 +79,18 @@ class Buttons:
             del self._held[next(iter(self._held))]
         pressed = message.buttons & ~before if known else 0
         if pressed:
-            self._press(pressed, received.system, now)
+            self._press(pressed, received, now)
 
-    def _press(self, pressed: int, system: int, now: float) -> None:
+    def _press(self, pressed: int, received: Received, now: float) -> None:
+        system = received.system
         numbers = (int(self._params[f"BTN{bit}_FUNCTION"]) for bit in range(BUTTONS) if pressed >> bit & 1)
         wanted = [FUNCTIONS[number] for number in numbers if number in FUNCTIONS]
         for function in sorted(wanted, key=lambda each: not each.stops)[:1]:
             denial = None if function.stops else self._control.denial_reason(system)
-            refusal = denial or function.run(self._safety, system, now)
-            if isinstance(refusal, str):  # arming reports its reasons itself
-                text = f"GCS {system}: button for {function.label} refused: {refusal}"
-                self._texts.send(Severity.WARNING, text, now)
+            refusal = denial or function.run(self._safety, system, now) or []
+            if isinstance(refusal, str):
+                refusal = [f"GCS {system}: button for {function.label} refused: {refusal}"]
+            else:
+                refusal = [f"PreArm: {problem}" for problem in refusal]
+            for text in refusal:
+                self._texts.reply(received, Severity.WARNING, text, now)

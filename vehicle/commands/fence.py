@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dialects.enums import Command, Result
+from dialects.enums import Command, Result, Severity
 from link.services.command.server import CommandRequest
 from link.services.mission.items import ItemRule, MissionItem
 from vehicle.autonomy.mission.rules import DoItem
@@ -20,6 +20,7 @@ class FenceCommands:
     def __init__(self, context: Context) -> None:
         self._safety = context.safety
         self._access = context.access
+        self._texts = context.statustext
         self._navigator = context.navigator
         self._fence = context.navigator.fence_avoidance.fence
 
@@ -42,8 +43,14 @@ class FenceCommands:
             return self._access.reject(request, self._fence.damage, now)
         if action == DISABLE and self._safety.armed and self._fence.enabled:
             return self._access.reject(request, "disarm first", now)
+        before = self._fence.enabled
         denial = self._fence.set_enabled(action == ENABLE)
-        return self._access.reject(request, denial, now) if denial else Result.ACCEPTED
+        if denial:
+            return self._access.reject(request, denial, now)
+        if self._fence.enabled != before:
+            text = f"GCS {request.system}: fence {'enabled' if self._fence.enabled else 'disabled'}"
+            self._texts.send_change(Severity.NOTICE, text, now)
+        return Result.ACCEPTED
 
     def _run_item(self, item: MissionItem, now: float) -> None:
         """Enable the fence; the mission ends if that fails. A mission never disables it."""

@@ -105,7 +105,7 @@ class GuidedCommands:
         if isinstance(target, SetpointRejection):
             key = f"setpoint {received.system} {target.reason}"
             text = f"Setpoint of GCS {received.system} ignored: {target.reason}"
-            self._texts.send_once(key, Severity.WARNING, text, now)
+            self._texts.reply_once(key, received, Severity.WARNING, text, now)
             return
         self._texts.reset_once("setpoint")
         self._navigator.set_target(target, now)
@@ -191,7 +191,7 @@ class GuidedCommands:
             return Result.DENIED
         largest = self._params["SPEED_MAX"]
         if speed > largest:
-            self._texts.send(Severity.WARNING, f"Speed {speed:g} m/s limited to {largest:g} (SPEED_MAX)", now)
+            self._texts.reply(request, Severity.WARNING, f"Speed {speed:g} m/s limited to {largest:g} (SPEED_MAX)", now)
         self._navigator.set_speed(min(speed, largest))
         return Result.ACCEPTED
 

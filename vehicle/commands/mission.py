@@ -131,16 +131,23 @@ class MissionService:
         if denial is None:
             return MissionResult.ACCEPTED
         text = f"GCS {received.system}: {kind.name.lower()} not changed: {denial}"
-        self._texts.send(Severity.WARNING, text, now)
+        self._texts.reply(received, Severity.WARNING, text, now)
         return MissionResult.DENIED
 
     def handle_plan_rejected(
-        self, kind: MissionType, wrong: tuple[int, MissionItem] | None, verdict: MissionResult, now: float
+        self,
+        kind: MissionType,
+        wrong: tuple[int, MissionItem] | None,
+        verdict: MissionResult,
+        received: Received | None,
+        now: float,
     ) -> None:
         """Report the rejected item as STATUSTEXT: ground stations show only the MAV_MISSION_RESULT."""
-        self._texts.send(
-            Severity.WARNING, f"{kind.name.capitalize()} refused: {describe_rejection(wrong, verdict)}", now
-        )
+        text = f"{kind.name.capitalize()} refused: {describe_rejection(wrong, verdict)}"
+        if received is None:
+            self._texts.send(Severity.WARNING, text, now)
+        else:
+            self._texts.reply(received, Severity.WARNING, text, now)
 
     def write_plan(self, kind: MissionType, items: Items) -> PendingPlanWrite:
         """Queue a plan for writing. Return a handle that reports completion."""
@@ -168,7 +175,7 @@ class MissionService:
             denial = f"there is no item {sequence}"
         if denial:
             text = f"GCS {received.system}: item {sequence} not set: {denial}"
-            self._texts.send(Severity.WARNING, text, now)
+            self._texts.reply(received, Severity.WARNING, text, now)
 
     def build_mission_current(self) -> m.MissionCurrent:
         """Build MISSION_CURRENT."""

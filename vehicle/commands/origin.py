@@ -59,7 +59,8 @@ class OriginCommands:
         else:
             denial = self._control.denial_reason(received.system) or self._rejection(*point)
         if denial:
-            self._texts.send(Severity.WARNING, f"GCS {received.system}: SET_GPS_GLOBAL_ORIGIN refused: {denial}", now)
+            text = f"GCS {received.system}: SET_GPS_GLOBAL_ORIGIN refused: {denial}"
+            self._texts.reply(received, Severity.WARNING, text, now)
         else:
             self._move(*point, message.altitude / 1e3, received.system, now)
         return self._build_reply(received.peer, now)
@@ -96,7 +97,7 @@ class OriginCommands:
 
     def _move(self, latitude: float, longitude: float, altitude: float | None, system: int, now: float) -> None:
         self._navigator.set_origin(Origin(latitude / 1e7, longitude / 1e7), altitude, self._safety, now)
-        self._texts.send(Severity.NOTICE, f"GCS {system} has set the origin of local positions", now)
+        self._texts.send_change(Severity.NOTICE, f"GCS {system} has set the origin of local positions", now)
 
     def _build_reply(self, peer: Peer, now: float) -> tuple[Outgoing, ...]:
         message = build_motion.gps_global_origin(self._build_view(now))

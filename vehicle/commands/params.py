@@ -9,13 +9,13 @@ import contextlib
 
 from dialects import messages as m
 from dialects.enums import Severity
-from link.core import Outgoing
+from link.core import Outgoing, Received
 from link.services.param.server import ParamServer
 from link.transport.backoff import Backoff
 from vehicle.commands.access import Access
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import InboundMessage, InboundTable, from_server
-from vehicle.params import ParamError
+from vehicle.params import PARAMETERS, ParamError
 from vehicle.storage.param_store import ParamStore
 
 SAVE_RETRY_TIMES = (2.0, 60.0)
@@ -33,6 +33,8 @@ class ParamService:
         self._backoff = Backoff(*SAVE_RETRY_TIMES)
         self._retry_due: float | None = None
         """When a failed save is tried again; None while everything is saved."""
+        self._changed_by: dict[str, int] = {}
+        """Safety parameter -> the ground station that has set it in this cycle."""
         context.params.pop_unannounced()
         system, component = context.ids
         self._server = ParamServer(
@@ -44,7 +46,7 @@ class ParamService:
             allowed=lambda received: context.control.denial_reason(received.system) is None,
             armed=lambda: context.safety.armed,
             changed=self._handle_change,
-            send_text=lambda text, now: context.statustext.send(Severity.WARNING, text, now),
+            refused=lambda received, text, now: context.statustext.reply(received, Severity.WARNING, text, now),
         )
 
     def messages(self) -> InboundTable:
@@ -59,18 +61,19 @@ class ParamService:
 
     def tick(self, now: float) -> list[Outgoing]:
         """Return the next values of running lists, and those that the vehicle itself has changed."""
+        self._announce_safety_changes(now)
         return self._server.broadcast(self._params.pop_unannounced()) + self._server.tick(now)
 
     def observe(self, now: float) -> None:
         """Check about once a second that values are saved; retry failed saves, with backoff."""
         if problem := self._store.problem:
             text = f"Parameters are not saved: {problem}; trying again"
-            self._texts.send_once(f"param store {problem}", Severity.WARNING, text, now)
+            self._texts.send_once(f"param_store {problem}", Severity.WARNING, text, now)
             self._retry(now)
         elif self._retry_due is not None:
             self._retry_due = None
             self._backoff.reset()
-            self._texts.reset_once("param store ")
+            self._texts.reset_once("param_store")
             self._texts.send(Severity.NOTICE, "Parameters are saved now", now)
 
     @property
@@ -122,9 +125,19 @@ class ParamService:
         if self._retry_due is None:
             self._retry_due = now + self._backoff.next_delay()
 
-    def _handle_change(self, name: str, value: float) -> None:
+    def _handle_change(self, received: Received, name: str, value: float) -> None:
         self._params.mark_announced(name)  # the server broadcasts its PARAM_VALUE
         self._save_value(name, value)
+        if PARAMETERS[name].safety:
+            self._changed_by[name] = received.system
+
+    def _announce_safety_changes(self, now: float) -> None:
+        """Report which safety parameters ground stations have set since the last cycle, to all."""
+        for name, system in self._changed_by.items():
+            default = self._params.get_default(name)
+            text = f"GCS {system}: {name} set to {self._params[name]:g}, default {default:g}"
+            self._texts.send_change(Severity.NOTICE, text, now)
+        self._changed_by.clear()
 
     def _save_value(self, name: str, value: float) -> None:
         self._params.clear_damage()

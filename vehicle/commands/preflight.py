@@ -55,7 +55,8 @@ class PreflightCommands:
     def _handle_setup_signing(self, received: Received, message: SetupSigning, now: float) -> None:
         """Report that signing is not offered. The key of the message is neither used nor stored."""
         if message.target_system == self._control.system:
-            self._texts.send_once("signing", Severity.WARNING, "Signing is not offered: the key was not used", now)
+            text = "Signing is not offered: the key was not used"
+            self._texts.reply_once(f"signing {received.system}", received, Severity.WARNING, text, now)
 
     def _reboot(self, request: CommandRequest, now: float) -> Result:
         """Parameter 1: this program; 2: the computer; 3 and 4: an action and its component, this one or all."""
@@ -74,5 +75,6 @@ class PreflightCommands:
     def _send_banner(self, request: CommandRequest, now: float) -> Result:
         version = ".".join(map(str, VERSION))
         drive = DriveType(int(self._params["DRIVE_TYPE"])).name.lower()
-        self._texts.send(Severity.INFO, f"mavhelm {version}, {drive} drive, mode {self._safety.mode.name}", now)
+        text = f"mavhelm {version}, {drive} drive, mode {self._safety.mode.name}"
+        self._texts.reply(request, Severity.INFO, text, now)
         return Result.ACCEPTED

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.config.config import Config
+from vehicle.config.merge import merge_params
 from vehicle.motors.drivers import profile_params
-from vehicle.params import Params, merge_params
+from vehicle.params import Params
 from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.motor_copy import default_state_folder
 from vehicle.storage.param_store import ParamStore

@@ -11,6 +11,9 @@ from vehicle.accessories.settings import Accessories
 from vehicle.sensors.suite import SensorSettings
 from vehicle.sim.body import SimulatedHome
 
+SIMULATION_PARAMS = {"FS_LOOP_TIMEOUT": 1.0}
+"""A desktop computer is not a real-time system: a pause of 0.2 s, critical for a real vehicle, is tolerated there."""
+
 
 @dataclass(frozen=True, slots=True)
 class Simulation:

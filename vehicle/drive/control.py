@@ -51,11 +51,11 @@ class Control:
         self.presence = OperatorPresence()
         self.reset()
         self._texts.reset_once("demand")
-        self._texts.send(Severity.NOTICE, f"GCS {system} is in control", now)
+        self._texts.send_event(Severity.NOTICE, f"GCS {system} is in control", now)
 
     def release(self, why: str, now: float) -> None:
         """Release control; `why` completes the STATUSTEXT."""
-        self._texts.send(Severity.NOTICE, f"No GCS is in control: GCS {self.owner} {why}", now)
+        self._texts.send_event(Severity.NOTICE, f"No GCS is in control: GCS {self.owner} {why}", now)
         self._texts.reset_once("demand")
         self.owner = 0
         self.reset()
@@ -103,7 +103,7 @@ class Control:
             return False  # a replay of the same packet
         demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
         if any(abs(axis) > axes.FULL_DEFLECTION and axis != INVALID_AXIS for axis in (message.x, message.r)):
-            self._report_invalid(received.system, "axes outside -1000..1000 count as neutral", now)
+            self._report_invalid(received, "axes outside -1000..1000 count as neutral", now)
         if demand is None:
             return False
         if not self._echo_is_stale():
@@ -118,7 +118,7 @@ class Control:
             return False
         used = self.override.update(message, now)
         if self.override.has_invalid_value:
-            self._report_invalid(received.system, "channels outside 800..2200 us are ignored", now)
+            self._report_invalid(received, "channels outside 800..2200 us are ignored", now)
         if not used:
             return False
         timeout = self._params["MAN_TIMEOUT"]
@@ -183,12 +183,13 @@ class Control:
         self.not_in_control_count += 1
         reason = f"GCS {self.owner} is in control" if self.owner else "no GCS is in control, arm to take it"
         text = f"Demand from GCS {received.system} ignored: {reason}"
-        self._texts.send_once(f"demand {received.system}", Severity.WARNING, text, now)
+        self._texts.reply_once(f"demand {received.system}", received, Severity.WARNING, text, now)
         return False
 
-    def _report_invalid(self, system: int, problem: str, now: float) -> None:
+    def _report_invalid(self, received: Received, problem: str, now: float) -> None:
         """Report an invalid message once: a wrong joystick program sends it all the time."""
-        self._texts.send_once(f"demand invalid {system}", Severity.WARNING, f"GCS {system}: {problem}", now)
+        text = f"GCS {received.system}: {problem}"
+        self._texts.reply_once(f"demand invalid {received.system}", received, Severity.WARNING, text, now)
 
     def _echo_is_stale(self) -> bool:
         return self.presence.known and self.presence.echo_age > self._params["OPR_ECHO_MAX"]

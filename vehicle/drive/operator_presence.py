@@ -17,7 +17,10 @@ class OperatorPresence:
         self.known = False
         """The ground station sends ROVER_OPERATOR_PRESENCE."""
         self.echo_age = 0.0
-        """Age in s of the newest vehicle data that the operator has seen; no demand with it is older. 0 if none."""
+        """Age in s of the newest vehicle data that the operator has seen; no demand with it is older.
+
+        0 before the first echo; infinite for a ground station that sends none any more."""
+        self._has_echoed = False
         self._session: int | None = None
         self._input_at = -math.inf
         self._input_lost = False
@@ -27,7 +30,8 @@ class OperatorPresence:
         new_session = self.known and message.session_id != self._session
         self.known = True
         self._session = message.session_id
-        self.echo_age = _echo_age(message.echo_time_boot_ms, since_boot)
+        self._has_echoed |= message.echo_time_boot_ms != 0
+        self.echo_age = self._measure_echo(message.echo_time_boot_ms, since_boot)
         age = message.last_input_age_ms
         self._input_at = -math.inf if age == UINT16_MAX else now - age / 1000
         self._input_lost = bool(message.flags & OperatorFlag.INPUT_LOST)
@@ -37,10 +41,12 @@ class OperatorPresence:
         """Return True if there was no key or stick event for `timeout` s, or the input device is lost."""
         return self.known and (self._input_lost or now - self._input_at > timeout)
 
+    def _measure_echo(self, echo: int, since_boot: float) -> float:
+        """Return the age of the echoed boot time in s; 0 if there was none yet.
 
-def _echo_age(echo: int, since_boot: float) -> float:
-    """Return the age of the echoed boot time in s; 0 if there is none yet.
-
-    The echo of a former boot seems to be from the future and comes out as weeks old.
-    """
-    return ((boot_ms(since_boot) - echo) % _WRAP) / 1000 if echo else 0.0
+        The echo of a former boot seems to be from the future and comes out as weeks old. An echo of 0 after others is
+        old, else a program that stopped echoing would switch the check off.
+        """
+        if echo:
+            return ((boot_ms(since_boot) - echo) % _WRAP) / 1000
+        return math.inf if self._has_echoed else 0.0

@@ -17,14 +17,15 @@ from vehicle.accessories.settings import build_specs
 from vehicle.accessories.simulated import SimulatedAccessory
 from vehicle.commands.context import COMPONENT
 from vehicle.config.conflicts import find_conflicts, find_motor_conflicts
-from vehicle.config.run_settings import RunSettings, SettingsError, Simulation
+from vehicle.config.merge import merge_params
+from vehicle.config.run_settings import SIMULATION_PARAMS, RunSettings, SettingsError, Simulation
 from vehicle.control_loop import ControlLoop
 from vehicle.drive.mixer import MIXERS
 from vehicle.motors import Motors, arming_check, estop_reader
 from vehicle.motors.drivers import open_motors, profile_params
 from vehicle.motors.log import LoggedMotors, MotorLog
 from vehicle.motors.simulated import SimulatedMotors
-from vehicle.params import Params, merge_params
+from vehicle.params import Params
 from vehicle.rover import Rover
 from vehicle.runtime.lock import MotorLock
 from vehicle.sensors import NoSensors, Sensors
@@ -51,7 +52,7 @@ def build_params(settings: RunSettings, store: ParamStore) -> Params:
 
     Raises ParamError.
     """
-    usual = {} if settings.simulation else profile_params(settings.motors["driver"])
+    usual = SIMULATION_PARAMS if settings.simulation else profile_params(settings.motors["driver"])
     given, kept = {**settings.pinned, **settings.params}, store.values
     params, left_out = merge_params(given, kept=kept, usual=usual, pinned=settings.pinned.keys(), run=settings.params)
     for problem in left_out:

@@ -53,7 +53,7 @@ class SafetyMonitor:
         self._control.expire_stale_demand(now)
         self._update_failsafes(motion, now)
         if refused >= BAD_CYCLES_MAX and safety.armed and safety.mode is not Mode.HOLD:
-            self._texts.send(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
+            self._texts.send_event(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
             safety.hold()
         if driving:
             self._last_activity = now
@@ -92,7 +92,7 @@ class SafetyMonitor:
         taken = failsafes.check(self._failsafe_inputs(motion), now, armed=armed)
         if before and armed:
             for cause in before & ~failsafes.active:
-                self._texts.send(Severity.NOTICE, f"Failsafe cleared: {RULES[cause].label}", now)
+                self._texts.send_event(Severity.NOTICE, f"Failsafe cleared: {RULES[cause].label}", now)
         for step in {each.cause: each for each in sorted(taken, key=lambda each: each.action)}.values():
             self._apply(step, now)
 
@@ -114,7 +114,7 @@ class SafetyMonitor:
         safety = self._safety
         severity = Severity.CRITICAL if step.action >= FailsafeAction.HOLD else Severity.WARNING
         label = RULES[step.cause].label
-        self._texts.send(severity, f"Failsafe: {label}: {step.action.label}", now)
+        self._texts.send_event(severity, f"Failsafe: {label}: {step.action.label}", now)
         if step.action is FailsafeAction.NEUTRAL:
             self._control.require_neutral()
         elif step.action is FailsafeAction.HOLD or (

@@ -16,6 +16,7 @@ from vehicle.safety.arming import ArmingFacts, find_problems
 from vehicle.safety.battery import BatteryMonitor
 from vehicle.safety.failsafe import RULES
 from vehicle.safety.failsafe_state import Failsafes
+from vehicle.safety.param_report import list_changed_safety_params
 from vehicle.safety.pi_monitor import PiMonitor
 from vehicle.safety.states import TRANSITIONS, SafetyEvent, SafetyState
 from vehicle.statustext import StatusTextQueue
@@ -104,12 +105,10 @@ class Safety:
         return find_problems(facts, force=force)
 
     def arm(self, system: int, now: float, *, force: bool = False) -> list[str]:
-        """Arm and give control to `system`. Return and report what prevents arming; empty if armed."""
+        """Arm and give control to `system`. Return what prevents arming, for its reply; empty if armed."""
         if self.armed and self._control.owner == system:
             return []
         refusals = self._arm_refusals(system, now, force=force)
-        for problem in refusals:
-            self._texts.send(Severity.WARNING, f"PreArm: {problem}", now)
         if refusals:
             return refusals
         self._control.set_owner(system, now)
@@ -119,9 +118,10 @@ class Safety:
         self.armed_at = now
         self.loop_overrun = False
         self.failsafes.acknowledge()
-        self._texts.send(Severity.NOTICE, f"Armed by GCS {system}, mode {self.mode.name}", now)
+        self._texts.send_event(Severity.NOTICE, f"Armed by GCS {system}, mode {self.mode.name}", now)
         if MODES[self.mode].autonomous and self.mode is not Mode.GUIDED:
-            self._texts.send(Severity.NOTICE, f"Choose {self.mode.name} again to start", now)
+            self._texts.send_event(Severity.NOTICE, f"Choose {self.mode.name} again to start", now)
+        self._texts.send_list(Severity.WARNING, list_changed_safety_params(self._params), now)
         return []
 
     def disarm(self, why: str, now: float) -> None:
@@ -129,7 +129,7 @@ class Safety:
         if not self.armed:
             return
         self._handle_event(SafetyEvent.DISARM)
-        self._texts.send(Severity.NOTICE, f"Disarmed: {why}", now)
+        self._texts.send_event(Severity.NOTICE, f"Disarmed: {why}", now)
         self.free_lost_owner(now)
 
     def end_motor_test(self) -> None:
@@ -142,7 +142,7 @@ class Safety:
         self.terminated |= terminate
         if self.state is not SafetyState.ESTOP:
             self._handle_event(SafetyEvent.STOP)
-            self._texts.send(Severity.EMERGENCY, f"EMERGENCY STOP by {who}", now)
+            self._texts.send_event(Severity.EMERGENCY, f"EMERGENCY STOP by {who}", now)
 
     def update_estop_input(self, reason: str | None, now: float) -> None:
         """Set why the emergency stop button stops the vehicle; None while its contact is closed."""
@@ -158,7 +158,7 @@ class Safety:
             return self.estop_reason
         if self.state is SafetyState.ESTOP:
             self._handle_event(SafetyEvent.RELEASE)
-            self._texts.send(Severity.NOTICE, "Emergency stop released, disarmed", now)
+            self._texts.send_event(Severity.NOTICE, "Emergency stop released, disarmed", now)
             if self.motor_fault:
                 self._handle_event(SafetyEvent.FAIL)
         return None
@@ -181,7 +181,7 @@ class Safety:
                 self._control.reset()
             else:
                 self._control.require_neutral()
-            self._texts.send(Severity.INFO, f"Mode {mode.name}", now)
+            self._texts.send_event(Severity.INFO, f"Mode {mode.name}", now)
         return None
 
     def confirm_autonomy(self) -> None:
@@ -190,7 +190,7 @@ class Safety:
 
     def finish_autonomy(self, why: str, now: float) -> None:
         """Report that the autonomous mode has finished, and change to HOLD."""
-        self._texts.send(Severity.NOTICE, f"{self.mode.name}: {why}: HOLD", now)
+        self._texts.send_event(Severity.NOTICE, f"{self.mode.name}: {why}: HOLD", now)
         self.hold()
 
     def hold(self) -> None:
@@ -202,14 +202,14 @@ class Safety:
     def motor_failed(self, reason: str, now: float) -> None:
         """Handle a failure of the motor driver: zero, disarmed, and no arming until `motor_repaired`."""
         if self.motor_fault is None:
-            self._texts.send(Severity.CRITICAL, f"Motor driver failed: {reason}", now)
+            self._texts.send_event(Severity.CRITICAL, f"Motor driver failed: {reason}", now)
         self.motor_fault = reason
         self._handle_event(SafetyEvent.FAIL)
 
     def motor_repaired(self, now: float) -> None:
         """Handle that the motor driver has recovered."""
         if self.motor_fault is not None:
-            self._texts.send(Severity.NOTICE, "Motor driver recovered", now)
+            self._texts.send_event(Severity.NOTICE, "Motor driver recovered", now)
         self.motor_fault = None
         self._handle_event(SafetyEvent.REPAIR)
 

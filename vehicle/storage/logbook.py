@@ -139,7 +139,8 @@ class Logbook:
         if not received.introduced:
             denial = "its HEARTBEAT is missing"
         if denial is not None:
-            self._texts.send(Severity.WARNING, f"GCS {received.system}: logs not erased: {denial}", now)
+            text = f"GCS {received.system}: logs not erased: {denial}"
+            self._texts.reply(received, Severity.WARNING, text, now)
             return
         self.recording.remove_all()
         self._texts.send(Severity.NOTICE, f"Logs erased by GCS {received.system}", now)

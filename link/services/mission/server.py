@@ -36,11 +36,16 @@ class MissionBackend(PlanBackend, Protocol):
         """Return ACCEPTED, or why this sender may not change this plan now."""
 
     def handle_plan_rejected(
-        self, kind: MissionType, wrong: tuple[int, MissionItem] | None, verdict: MissionResult, now: float
+        self,
+        kind: MissionType,
+        wrong: tuple[int, MissionItem] | None,
+        verdict: MissionResult,
+        received: Received | None,
+        now: float,
     ) -> None:
         """Report a rejected plan, with its invalid item and the item's number, if there is one.
 
-        MISSION_ACK does not name the item.
+        MISSION_ACK does not name the item. `received` is the last message of the upload; None for a file.
         """
 
     def set_current_item(self, sequence: int, received: Received, now: float) -> None:
@@ -115,7 +120,8 @@ class MissionServer:
         for kind, items in plans.items():
             verdict = self._rules[kind].validate(items)
             if verdict is not MissionResult.ACCEPTED:
-                self._backend.handle_plan_rejected(kind, self._rules[kind].first_invalid(items), verdict, self._now)
+                wrong = self._rules[kind].first_invalid(items)
+                self._backend.handle_plan_rejected(kind, wrong, verdict, None, self._now)
                 return None
         if any(self._uploads.get(kind) or self._changes.pending(kind) for kind in plans):
             return None
@@ -235,7 +241,7 @@ class MissionServer:
         if isinstance(answer, list):
             return answer
         if answer is not MissionResult.ACCEPTED:
-            self._backend.handle_plan_rejected(kind, upload.invalid_item, answer, now)
+            self._backend.handle_plan_rejected(kind, upload.invalid_item, answer, received, now)
         return self._end(upload, answer, received, now)
 
     def _end(self, upload: PlanUpload, verdict: MissionResult, received: Received, now: float) -> list[Outgoing]:

@@ -99,7 +99,7 @@ class ParamServer:
     """Answers for one system and component.
 
     `allowed` returns whether the sender may set parameters, `armed` whether safety parameters are locked. `changed`
-    gets every value that was set, `send_text` a line for the operator when a set was rejected.
+    gets every value that was set and its sender, `refused` a line for the sender of a set that was rejected.
     """
 
     def __init__(
@@ -112,15 +112,15 @@ class ParamServer:
         pacer: BulkPacer,
         allowed: Callable[[Received], bool] = lambda received: True,
         armed: Callable[[], bool] = lambda: False,
-        changed: Callable[[str, float], None] = lambda name, value: None,
-        send_text: Callable[[str, float], None] = lambda text, now: None,
+        changed: Callable[[Received, str, float], None] = lambda received, name, value: None,
+        refused: Callable[[Received, str, float], None] = lambda received, text, now: None,
     ) -> None:
         self._table = tuple(table)
         self._index = {setting.name: index for index, setting in enumerate(self._table)}
         self._values = values
         self._ids = (system, component)
         self._pacer = pacer
-        self._allowed, self._armed, self._changed, self._send_text = allowed, armed, changed, send_text
+        self._allowed, self._armed, self._changed, self._refused = allowed, armed, changed, refused
         self._runs: dict[Peer, _Run] = {}
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
@@ -170,36 +170,44 @@ class ParamServer:
 
     def _set(self, message: m.ParamSet, received: Received, now: float) -> list[Outgoing]:
         name, index = message.param_id, self._index.get(message.param_id)
+        if not self._allowed(received):
+            return self._deny(message, index, received, now)
         if index is None:
-            self._send_text(f"No parameter {m.printable(name)}", now)
+            self._refused(received, f"No parameter {m.printable(name)}", now)
             return [self._fault(message._param_id_raw, -1, ParamErrorCode.DOES_NOT_EXIST, received)]
-        rejection = self._rejection(self._table[index], message, received) or self._apply(name, message.param_value)
+        rejection = self._rejection(self._table[index], message) or self._apply(name, message.param_value, received)
         if rejection:
-            self._send_text(f"{name} not changed: {rejection.reason}", now)
+            self._refused(received, f"{name} not changed: {rejection.reason}", now)
             fault = self._fault(message._param_id_raw, index, rejection.fault, received)
             return [fault, Outgoing(self._value(index), received.peer)]
         return [Outgoing(self._value(index))]
 
-    def _apply(self, name: str, received: float) -> ParamRejection | None:
-        value = shortest_float32(received)
+    def _deny(self, message: m.ParamSet, index: int | None, received: Received, now: float) -> list[Outgoing]:
+        """Deny a set of a sender that may not set parameters, with the current value of those that exist."""
+        self._refused(received, f"{m.printable(message.param_id)} not changed: you are not in control", now)
+        known = -1 if index is None else index
+        fault = self._fault(message._param_id_raw, known, ParamErrorCode.PERMISSION_DENIED, received)
+        return [fault] if index is None else [fault, Outgoing(self._value(index), received.peer)]
+
+    def _apply(self, name: str, wire_value: float, received: Received) -> ParamRejection | None:
+        value = shortest_float32(wire_value)
         if same_float32(value, self._values[name]):
             return None
         try:
             self._values.set(name, value)
         except ValueError as error:
             return ParamRejection(ParamErrorCode.VALUE_OUT_OF_RANGE, str(error))
-        self._changed(name, value)
+        self._changed(received, name, value)
         return None
 
-    def _rejection(self, setting: ParamDefinition, message: m.ParamSet, received: Received) -> ParamRejection | None:
-        if not self._allowed(received):
-            return ParamRejection(ParamErrorCode.PERMISSION_DENIED, "you are not in control")
+    def _rejection(self, setting: ParamDefinition, message: m.ParamSet) -> ParamRejection | None:
         if setting.read_only:
             return ParamRejection(ParamErrorCode.READ_ONLY, "it is read-only")
         if message.param_type != REAL32:
             return ParamRejection(ParamErrorCode.TYPE_MISMATCH, "its type is REAL32")
-        unchanged = same_float32(message.param_value, self._values[setting.name])
-        if setting.safety and self._armed() and not unchanged:
+        if same_float32(message.param_value, self._values[setting.name]):
+            return None
+        if setting.safety and self._armed():
             return ParamRejection(ParamErrorCode.PERMISSION_DENIED, "disarm first")
         return check_value(setting, message.param_value)
 

@@ -9,6 +9,7 @@ from dialects.messages import Attitude, CommandAck, CommandLong, Heartbeat, Manu
 from link.core import Outgoing, Peer, Received
 from link.protocol.channel import MAX_PEERS, PEER_SILENCE, Channel
 from link.protocol.framer import Framer
+from link.protocol.log_tap import LogTap
 from link.protocol.sequence import RESTART_AFTER
 from tests.link.frames import demand, frame, heartbeat
 
@@ -325,3 +326,57 @@ def test_a_stream_gives_up_a_forged_header_while_nothing_arrives() -> None:
     channel.receive(heartbeat(0), "serial", 0.0)
     assert channel.receive(bytes([0xFD, 255, 0, 0, 0, 1, 1, 69, 0, 0]) + demand(1), "serial", 0.0) == []
     assert numbers(channel.tick(0.2)) == [1]
+
+
+# ---- stops ----
+
+HOLD = CommandLong(1, 1, 176, 0, 1, 4, 0, 0, 0, 0, 0)
+TERMINATE = CommandLong(1, 1, 185, 0, 1, 0, 0, 0, 0, 0, 0)
+
+
+def full(**options: object) -> Channel:
+    """A channel whose places are all taken by ground stations with a HEARTBEAT."""
+    channel = vehicle(**options)
+    for port in range(MAX_PEERS):
+        channel.receive(heartbeat(0), ("10.0.0.1", port), 0.0)
+    return channel
+
+
+def test_a_stop_is_handed_on_without_a_place_and_can_be_answered() -> None:
+    channel = full()
+    for number, stop in enumerate((DISARM, HOLD, TERMINATE)):
+        (found,) = channel.receive(frame(stop, number), HERE, 1.0)
+        assert isinstance(found.message, CommandLong)
+        assert (found.message.command, found.introduced, found.may_ask) == (stop.command, False, False)
+        assert sent(channel, CommandAck(stop.command, 0), peer=found.peer) == [(HERE, number)]
+    assert HERE not in [peer.address for peer in channel.report().audience]
+    assert channel.report().refused_peers == 3
+
+
+def test_without_a_place_nothing_else_is_handed_on() -> None:
+    channel = full()
+    assert channel.receive(frame(ARM) + demand(1) + heartbeat(2), HERE, 1.0) == []
+    assert channel.receive(frame(DISARM, 3, system=0), HERE, 1.0) == []
+    assert channel.receive(frame(DISARM, 4, system=1, component=1), HERE, 1.0) == []
+    assert numbers(channel.receive(frame(ARM, 5) + frame(DISARM, 6), HERE, 1.0)) == [6]
+
+
+def test_there_is_one_place_for_senders_of_stops() -> None:
+    channel = full()
+    (first,) = channel.receive(frame(DISARM), HERE, 1.0)
+    (second,) = channel.receive(frame(DISARM), THERE, 1.0)
+    assert sent(channel, CommandAck(400, 0), peer=first.peer) == []
+    assert [address for address, _ in sent(channel, CommandAck(400, 0), peer=second.peer)] == [THERE]
+    assert len(channel._peers) == MAX_PEERS
+
+
+def test_a_stop_without_a_place_is_in_the_telemetry_log() -> None:
+    recorded: list[bytes] = []
+    channel = full()
+    channel.log_tap = LogTap(lambda now, frames: recorded.extend(frames), system=1, component=1)
+    channel.receive(frame(DISARM, 7), HERE, 1.0)
+    assert recorded == [frame(DISARM, 7)]
+
+
+def test_an_unwanted_stop_is_not_handed_on() -> None:
+    assert full(wanted=frozenset({Heartbeat.id})).receive(frame(DISARM), HERE, 1.0) == []

@@ -11,7 +11,7 @@ from dialects import messages as m
 from dialects.axes import Axes
 from dialects.enums import Command, ModeFlag, Result, SystemState
 from dialects.modes import Mode
-from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, Bench, said
+from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER, Bench, logged, said
 from vehicle.drive.gate import Outputs
 from vehicle.readings import Readings
 
@@ -95,7 +95,7 @@ class TestArming:
         bench = Bench()
         assert bench.command(ARM, 1, introduced=False) is Result.FAILED
         assert not bench.armed
-        assert said(bench, "COMPONENT_ARM_DISARM refused: no HEARTBEAT received")
+        assert logged(bench, "COMPONENT_ARM_DISARM refused: no HEARTBEAT received")
 
     def test_51_broadcast_arming_is_ignored_and_disarming_obeyed(self) -> None:
         bench = Bench()

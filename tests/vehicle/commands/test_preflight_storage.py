@@ -13,8 +13,9 @@ from tests.vehicle.bench import OTHER, Bench, said
 from tests.vehicle.field import Field
 from tests.vehicle.missions import send, way
 from tests.vehicle.storage.test_plan_store import SlowDisk, field_with
+from vehicle.config.merge import merge_params
 from vehicle.navigation.geo import Point
-from vehicle.params import Params, merge_params
+from vehicle.params import Params
 from vehicle.rover import Rover
 from vehicle.storage.file_writer import FileWriter
 from vehicle.storage.param_store import ParamStore

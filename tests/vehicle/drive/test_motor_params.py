@@ -14,11 +14,12 @@ from dialects.axes import Axes
 from dialects.enums import Command, DriveLimit, Failsafe, ParamErrorCode, Result
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, EVERYTHING, NEUTRAL, Bench, said
+from vehicle.config.merge import merge_params
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
 from vehicle.drive.gate import Clearance, Outputs
 from vehicle.motors.drivers import profile_params
-from vehicle.params import ORDERED_PAIRS, PARAMETERS, Params, merge_params
+from vehicle.params import ORDERED_PAIRS, PARAMETERS, Params
 from vehicle.rover import Rover
 
 MOTOR_PARAMS = [name for name in PARAMETERS if name.startswith("MOT")]

@@ -63,13 +63,57 @@ def test_an_echo_of_an_earlier_boot_is_rejected() -> None:
     assert not bench.turning
 
 
-def test_a_missing_echo_does_not_reject_demands() -> None:
-    bench = going()
+def without_echo(bench: Bench, axes: Axes) -> None:
+    """Send demands for 1 s with an echo of 0."""
     for _ in range(20):
         say(bench, 0)
-        bench.stick(AHEAD)
+        bench.stick(axes)
         bench.wait(0.05)
+
+
+def test_before_the_first_echo_demands_are_not_rejected() -> None:
+    bench = Bench()
+    bench.arm()
+    without_echo(bench, NEUTRAL)
+    without_echo(bench, AHEAD)
     assert bench.turning
+
+
+def test_after_the_first_echo_an_echo_of_0_is_old() -> None:
+    bench = going()
+    without_echo(bench, AHEAD)
+    assert not bench.turning
+    assert said(bench, "older than OPR_ECHO_MAX on arrival")
+
+
+def test_an_echo_of_0_does_not_stop_a_stop() -> None:
+    bench = going()
+    for axes in (AHEAD, NEUTRAL):
+        say(bench, 0)
+        bench.stick(axes)
+    bench.wait(0.45)
+    assert not bench.turning
+
+
+def test_a_new_session_does_not_forget_that_there_was_an_echo() -> None:
+    bench = going()
+    for axes in (NEUTRAL, AHEAD):
+        for _ in range(10):
+            say(bench, 0, session=2)
+            bench.stick(axes)
+            bench.wait(0.05)
+    assert not bench.turning
+    drive_session(bench, 2, NEUTRAL)
+    drive_session(bench, 2, AHEAD)
+    assert bench.turning
+
+
+def drive_session(bench: Bench, session: int, axes: Axes) -> None:
+    """Send demands for 0.5 s with a current echo, in another session."""
+    for _ in range(10):
+        say(bench, int((bench.now - 100.0 - 0.1) * 1000), session=session)
+        bench.stick(axes)
+        bench.wait(0.05)
 
 
 def test_a_key_without_input_stops_after_the_timeout() -> None:
@@ -97,7 +141,7 @@ def test_after_a_new_key_press_neutral_comes_first() -> None:
 def test_a_lost_input_device_stops_at_once() -> None:
     bench = going()
     for _ in range(10):
-        say(bench, 0, flags=4)
+        say(bench, int((bench.now - 100.0 - 0.1) * 1000), flags=4)
         bench.stick(AHEAD)
         bench.wait(0.05)
     assert not bench.turning
@@ -105,10 +149,7 @@ def test_a_lost_input_device_stops_at_once() -> None:
 
 def test_a_new_session_requires_neutral_first() -> None:
     bench = going()
-    for _ in range(10):
-        say(bench, 0, session=2)
-        bench.stick(AHEAD)
-        bench.wait(0.05)
+    drive_session(bench, 2, AHEAD)
     assert not bench.turning
 
 

@@ -10,6 +10,7 @@ from gpiozero.pins.mock import MockFactory, MockPWMPin
 from msgspec.structs import astuple
 
 from tests.vehicle.motors.contract import Bench, MotorsContract
+from vehicle.config.merge import merge_params
 from vehicle.drive.demand import Demand
 from vehicle.drive.drive import Drive
 from vehicle.drive.gate import Clearance
@@ -17,7 +18,6 @@ from vehicle.motors import MotorError, Motors, MotorSettingsError
 from vehicle.motors.drivers import DRIVERS, open_motors, profile_params, safe_stop
 from vehicle.motors.gpio import GpioMotors, GpioSettings, PhaseEnable, TwoInputs
 from vehicle.motors.pins import translated
-from vehicle.params import merge_params
 
 TWO_INPUTS = GpioSettings(bridges=(TwoInputs(10, 9), TwoInputs(8, 7)))
 PHASE_ENABLE = GpioSettings(bridges=(PhaseEnable(enable=12, phase=5), PhaseEnable(enable=13, phase=6)))
