@@ -130,11 +130,13 @@ class Rover:
         route = self._routes.get(type(message))
         if route is None or not (received.introduced or route.accepts_unintroduced(received)):
             return
+        demand = self._control.demand
         replies = route.handle(received, message, now)
         if replies:
             self._outgoing += replies
-        if route.effect is not None:
-            self._act(route.effect, now)
+        effect = route.effect
+        if effect is not None and (effect is not Effect.NEW_DEMAND or self._control.demand is not demand):
+            self._act(effect, now)
 
     def tick(self, now: float) -> None:
         """Run one control cycle. `messages_to_send` then builds the messages that are due."""
@@ -219,7 +221,7 @@ class Rover:
 
     def _act(self, effect: Effect, now: float) -> None:
         """Bring outputs and telemetry up to date with what a message has changed."""
-        if effect is Effect.DEMAND:
+        if effect is not Effect.MOTION:
             self._update_outputs(now)
             self._demanded = now
         else:

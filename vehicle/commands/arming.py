@@ -17,6 +17,7 @@ from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
+from vehicle.drive.operator_session import Source
 from vehicle.modes import describe_mode, parse_mode, standard_mode
 
 FORCE_VALUES = (21196, 2989)
@@ -87,7 +88,9 @@ class ArmingCommands:
             self._safety.disarm(f"by GCS {request.system}", now)
             self._safety.end_motor_test()
             return Result.ACCEPTED
-        return Result.FAILED if self._safety.arm(request.system, now, force=force in FORCE_VALUES) else Result.ACCEPTED
+        source = Source(request.system, request.component, request.peer)
+        problems = self._safety.arm(request.system, now, force=force in FORCE_VALUES, source=source)
+        return Result.FAILED if problems else Result.ACCEPTED
 
     def _run_prearm_checks(self, request: CommandRequest, now: float) -> Result:
         if self._safety.armed:
@@ -151,7 +154,7 @@ class ArmingCommands:
             return self._release_control(request, now)
         denial = self._control.takeover_denial_reason(request.system, now)
         if denial is None:
-            self._control.set_owner(request.system, now)
+            self._control.set_owner(request.system, now, Source(request.system, request.component, request.peer))
             self._control.allow_takeover(bool(takeover))
             return Result.ACCEPTED
         forwarded = self._forward(request, now)

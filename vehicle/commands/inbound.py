@@ -24,6 +24,8 @@ class Effect(Enum):
 
     DEMAND = "demand"
     """Motor outputs at once, and the telemetry that follows a demand."""
+    NEW_DEMAND = "new demand"
+    """As DEMAND, but only if the handler has replaced the demand: else the ramp's time belongs to the next one."""
     MOTION = "motion"
     """Mode, motor outputs, and the telemetry that is due."""
 
