@@ -135,7 +135,7 @@ class Rover:
         if replies:
             self._outgoing += replies
         effect = route.effect
-        if effect is not None and (effect is not Effect.NEW_DEMAND or self._control.demand is not demand):
+        if effect is Effect.MOTION or (effect is Effect.DEMAND and self._control.demand is not demand):
             self._act(effect, now)
 
     def tick(self, now: float) -> None:
@@ -221,7 +221,7 @@ class Rover:
 
     def _act(self, effect: Effect, now: float) -> None:
         """Bring outputs and telemetry up to date with what a message has changed."""
-        if effect is not Effect.MOTION:
+        if effect is Effect.DEMAND:
             self._update_outputs(now)
             self._demanded = now
         else:

@@ -26,7 +26,7 @@ class DemandMessages:
                            self._handle_rc_override, Effect.DEMAND),
             InboundMessage(m.RoverOperatorPresence, Access.DRIVER,
                            "demand by axes with the proof of its age; without axes: how current the next demand is",
-                           self._handle_operator_presence, Effect.NEW_DEMAND),
+                           self._handle_operator_presence, Effect.DEMAND),
         )  # fmt: skip
 
     def _handle_manual_control(self, received: Received, message: m.ManualControl, now: float) -> None:

@@ -23,9 +23,7 @@ class Effect(Enum):
     """What the rover updates after the handler of a message."""
 
     DEMAND = "demand"
-    """Motor outputs at once, and the telemetry that follows a demand."""
-    NEW_DEMAND = "new demand"
-    """As DEMAND, but only if the handler has replaced the demand: else the ramp's time belongs to the next one."""
+    """If the handler has replaced the demand: motor outputs at once, and the telemetry that follows a demand."""
     MOTION = "motion"
     """Mode, motor outputs, and the telemetry that is due."""
 

@@ -11,7 +11,7 @@ from dialects import axes
 from dialects.enums import DriveType, Severity
 from dialects.messages import INVALID_AXIS, ManualControl, RcChannelsOverride, RoverOperatorPresence
 from link.core import Received
-from vehicle.drive.demand import Demand, RcOverride, from_manual_control, from_presence
+from vehicle.drive.demand import Demand, RcOverride, from_manual_control
 from vehicle.drive.mixer import MIXERS
 from vehicle.drive.operator_presence import OperatorPresence
 from vehicle.drive.operator_session import DemandOrder, DrivingSession, Proof, RecentProofs, Source, parse_proof
@@ -164,7 +164,7 @@ class Control:
         self, received: Received, message: RoverOperatorPresence, proof: Proof, now: float, *, good: bool
     ) -> bool:
         """Handle a proof with the owner's system id while a session is in control."""
-        demand = from_presence(message, received, now, sideways=self._sideways)
+        demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
         session = self.session
         if session is None or proof.session != session.id:
             session = self._succeed(proof, now) if good and demand else None

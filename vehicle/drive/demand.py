@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from dialects import axes
 from dialects.messages import ManualControl, RcChannelsOverride, RoverOperatorPresence
-from link.core import Received
 
 STEERING_CHANNEL, THROTTLE_CHANNEL = 1, 3
 """ArduRover's default RCMAP_ROLL and RCMAP_THROTTLE."""
@@ -49,9 +48,9 @@ class Demand(NamedTuple):
 
 
 def from_manual_control(
-    message: ManualControl, system: int, sequence: int, now: float, *, sideways: bool = False
+    message: ManualControl | RoverOperatorPresence, system: int, sequence: int, now: float, *, sideways: bool = False
 ) -> Demand | None:
-    """Return the demand of a MANUAL_CONTROL, None if no axis is valid. Axes: dialects/axes.py.
+    """Return the demand of a message with axes, None if no axis is valid. Axes: dialects/axes.py.
 
     `sideways`: this vehicle can move sideways, which y requests (the specification calls it roll).
     """
@@ -60,14 +59,6 @@ def from_manual_control(
     if throttle is None and steering is None and side is None:
         return None
     return Demand(throttle, steering, now, system, sequence, side)
-
-
-def from_presence(
-    message: RoverOperatorPresence, received: Received, now: float, *, sideways: bool = False
-) -> Demand | None:
-    """Return the demand of a ROVER_OPERATOR_PRESENCE with axes; None if none of our axes is valid."""
-    manual = ManualControl(message.target_system, message.x, message.y, message.z, message.r, 0)
-    return from_manual_control(manual, received.system, received.sequence, now, sideways=sideways)
 
 
 @dataclass(frozen=True, slots=True)
