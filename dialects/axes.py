@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 from dialects.enums import Autopilot
-from dialects.messages import INVALID_AXIS, ManualControl
+from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence
 
 FULL_DEFLECTION = 1000
 """Full deflection of an axis (common.xml, MANUAL_CONTROL)."""
@@ -80,7 +80,7 @@ def _clamp(value: float) -> float:
 
 
 def parse_manual_control(
-    message: ManualControl, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]
+    message: ManualControl | RoverOperatorPresence, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]
 ) -> tuple[float | None, float | None]:
     """Return throttle and steering of a message in -1..1; None for an axis that is not valid.
 

@@ -130,11 +130,13 @@ class Rover:
         route = self._routes.get(type(message))
         if route is None or not (received.introduced or route.accepts_unintroduced(received)):
             return
+        demand = self._control.demand
         replies = route.handle(received, message, now)
         if replies:
             self._outgoing += replies
-        if route.effect is not None:
-            self._act(route.effect, now)
+        effect = route.effect
+        if effect is Effect.MOTION or (effect is Effect.DEMAND and self._control.demand is not demand):
+            self._act(effect, now)
 
     def tick(self, now: float) -> None:
         """Run one control cycle. `messages_to_send` then builds the messages that are due."""

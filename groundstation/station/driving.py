@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import math
+
 from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
-from dialects.messages import ManualControl, Message
+from dialects.messages import ManualControl, Message, RoverOperatorPresence
 from dialects.modes import DRIVABLE_MODES
 from groundstation.station.commander import Commander
 from groundstation.station.operator import OperatorSession
 from groundstation.vehicles.fleet import Contact, Fleet
 from link.core import Outgoing
+
+IDLE_PROOF_PERIOD = 0.5
+"""s between proofs of this session to the selected vehicle of our dialect while it gets no demand: the session that is
+proven in the last second before arming is the one that drives."""
 
 
 class DrivingController:
@@ -22,7 +28,9 @@ class DrivingController:
         self._ending = False
         self._demands: dict[int, list[Message]] = {}
         """Newest demand of each vehicle, with its operator presence: state, so a newer one replaces it."""
-        self._changed: ManualControl | None = None
+        self._changed: tuple[Message, ...] = ()
+        self._proven_at = -math.inf
+        """When the selected vehicle got the newest proof of this session."""
         self._changed_at = 0.0
         """When the demand in `_changed` was made: the time until it is sent is part of the latency."""
 
@@ -38,6 +46,7 @@ class DrivingController:
             )
             if axes is not None:
                 self._queue_demand(contact, axes, now)
+        self._queue_idle_proof(now)
 
     def update_permission(self, now: float) -> None:
         """Update whether keys may drive. Called before each intent is handled, and with each tick."""
@@ -52,11 +61,15 @@ class DrivingController:
 
     def handle_sent(self, message: Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
-        if not isinstance(message, ManualControl):
+        if isinstance(message, ManualControl):
+            self._operator.demand_rate.add(now)
+            target = message.target
+        elif isinstance(message, RoverOperatorPresence):
+            target = message.target_system
+        else:
             return
-        self._operator.demand_rate.add(now)
-        contact = self._fleet.get(message.target)
-        if message is self._changed and contact is not None:
+        contact = self._fleet.get(target)
+        if contact is not None and any(message is changed for changed in self._changed):
             contact.state.latency.record_sent(sequence, self._changed_at)
 
     def end(self) -> None:
@@ -119,10 +132,23 @@ class DrivingController:
         state = contact.state
         message = build_manual_control(axes, state.system, axis_map(state.autopilot))
         messages: list[Message] = [message]
-        if contact is self._fleet.selected and self._operator.record_demand(axes):
-            self._changed, self._changed_at = message, now
-            messages.append(message)  # if lost, it would be 50 ms late; both are lost once in 400 at 5 % loss
         if state.has_rover_dialect:
-            presence = self._operator.build_presence((state.system, state.component), state.boot_time, now)
-            messages.insert(0, presence)
+            target = (state.system, state.component)
+            messages.insert(0, self._operator.build_presence(target, state.boot_time, now, message))
+            self._proven_at = now
+        if contact is self._fleet.selected and self._operator.record_demand(axes):
+            self._changed, self._changed_at = tuple(messages), now
+            messages *= 2  # if lost, it would be 50 ms late; both are lost once in 400 at 5 % loss
         self._demands[state.system] = messages
+
+    def _queue_idle_proof(self, now: float) -> None:
+        """Prove this session to the selected vehicle while it gets no demands, so that arming finds it proven."""
+        contact = self._fleet.selected
+        if contact is None or self._ending or not self._operator.live or now - self._proven_at < IDLE_PROOF_PERIOD:
+            return
+        state = contact.state
+        if state.has_rover_dialect and state.system not in self._demands:
+            self._proven_at = now
+            self._demands[state.system] = [
+                self._operator.build_presence((state.system, state.component), state.boot_time, now)
+            ]

@@ -11,7 +11,7 @@ import math
 
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import OperatorFlag as Flag
-from dialects.messages import RoverOperatorPresence, boot_ms
+from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence, boot_ms
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
 from groundstation.intents import LEASE_TIMEOUT, DriveKeyDown, SetKeyGate
@@ -42,6 +42,7 @@ class OperatorSession:
         self._input_count = 0
         self._session = session
         self._lease = HeartbeatMonitor(LEASE_TIMEOUT)
+        self._clock = 0
         self._live = False
         self._unreported_lapse = False
         self._thawed_at = 0.0
@@ -132,18 +133,32 @@ class OperatorSession:
 
     # ---- what others see ----
 
-    def build_presence(self, target: tuple[int, int], echo: int | None, now: float) -> RoverOperatorPresence:
-        """Build the message that precedes a demand. `echo` is the newest time_boot_ms of the vehicle."""
+    def build_presence(
+        self, target: tuple[int, int], echo: int | None, now: float, demand: ManualControl | None = None
+    ) -> RoverOperatorPresence:
+        """Build a demand with its proof, or the proof alone. `echo` is the newest time_boot_ms of the vehicle.
+
+        Our vehicle obeys the axes in it and ignores the MANUAL_CONTROL that follows, which may be a copy or late.
+        """
         return RoverOperatorPresence(
             target_system=target[0],
             target_component=target[1],
-            time_boot_ms=boot_ms(now),
+            time_boot_ms=self._next_clock(now),
             echo_time_boot_ms=echo or 0,
             session_id=self._session,
             input_count=self._input_count & 0xFFFFFFFF,
             last_input_age_ms=self._age_ms(now),
-            flags=self._flags(now),
+            flags=self._flags(now) | Flag.AXES,
+            x=demand.x if demand else INVALID_AXIS,
+            y=INVALID_AXIS,
+            z=INVALID_AXIS,
+            r=demand.r if demand else INVALID_AXIS,
         )
+
+    def _next_clock(self, now: float) -> int:
+        """Return the sender's time for a new proof, in ms: larger than the one before, also within the same ms."""
+        self._clock = max(self._clock + 1, boot_ms(now))
+        return self._clock & 0xFFFFFFFF
 
     def build_view(self, reason: str | None, sending: bool, now: float) -> OperatorView:
         """Build the operator's part of the snapshot. `reason`: why keys do not drive, or None."""

@@ -30,7 +30,7 @@ EXTENDED = {
 """Messages with fields of additions.xml: id, CRC_EXTRA, whole payload size, the fields, last in the payload."""
 
 PRIVATE = {
-    "ROVER_OPERATOR_PRESENCE": (46000, 244, 21),
+    "ROVER_OPERATOR_PRESENCE": (46000, 244, 29),  # 21 without its extensions x, y, z, r
     "ROVER_DRIVE_STATUS": (46001, 22, 22),
     "ROVER_FAILSAFE_STATUS": (46002, 108, 16),
     "ROVER_LINK_STATUS": (46003, 245, 38),

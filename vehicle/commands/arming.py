@@ -17,6 +17,7 @@ from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
+from vehicle.drive.operator_session import Source
 from vehicle.modes import describe_mode, parse_mode, standard_mode
 from vehicle.replies import Asker
 
@@ -88,7 +89,8 @@ class ArmingCommands:
             self._safety.disarm(f"by GCS {request.system}", now)
             self._safety.end_motor_test()
             return Result.ACCEPTED
-        problems = self._safety.arm(request.system, now, force=force in FORCE_VALUES)
+        source = Source(request.system, request.component, request.peer)
+        problems = self._safety.arm(request.system, now, force=force in FORCE_VALUES, source=source)
         self._report_problems(problems, request, now)
         return Result.FAILED if problems else Result.ACCEPTED
 
@@ -157,7 +159,7 @@ class ArmingCommands:
             return self._release_control(request, now)
         denial = self._control.takeover_denial_reason(request.system, now)
         if denial is None:
-            self._control.set_owner(request.system, now)
+            self._control.set_owner(request.system, now, Source(request.system, request.component, request.peer))
             self._control.allow_takeover(bool(takeover))
             return Result.ACCEPTED
         forwarded = self._forward(request, now)

@@ -24,14 +24,17 @@ class DemandMessages:
                            self._handle_manual_control, Effect.DEMAND),
             InboundMessage(m.RcChannelsOverride, Access.DRIVER, "demand by channels 1 (steering) and 3 (throttle)",
                            self._handle_rc_override, Effect.DEMAND),
-            # It qualifies the demand that follows and has no effect of its own.
-            InboundMessage(m.RoverOperatorPresence, Access.DRIVER, "how current the next demand is",
-                           self._control.handle_operator_presence),
+            InboundMessage(m.RoverOperatorPresence, Access.DRIVER,
+                           "demand by axes with the proof of its age; without axes: how current the next demand is",
+                           self._handle_operator_presence, Effect.DEMAND),
         )  # fmt: skip
 
     def _handle_manual_control(self, received: Received, message: m.ManualControl, now: float) -> None:
         self.buttons.handle_manual_control(received, message, now)
         self._control.handle_manual_control(received, message, now)
+
+    def _handle_operator_presence(self, received: Received, message: m.RoverOperatorPresence, now: float) -> None:
+        self._control.handle_operator_presence(received, message, now)
 
     def _handle_rc_override(self, received: Received, message: m.RcChannelsOverride, now: float) -> None:
         if message.target_component in (0, COMPONENT):

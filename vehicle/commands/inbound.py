@@ -23,7 +23,7 @@ class Effect(Enum):
     """What the rover updates after the handler of a message."""
 
     DEMAND = "demand"
-    """Motor outputs at once, and the telemetry that follows a demand."""
+    """If the handler has replaced the demand: motor outputs at once, and the telemetry that follows a demand."""
     MOTION = "motion"
     """Mode, motor outputs, and the telemetry that is due."""
 

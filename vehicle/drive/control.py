@@ -14,6 +14,7 @@ from link.core import Received
 from vehicle.drive.demand import Demand, RcOverride, from_manual_control
 from vehicle.drive.mixer import MIXERS
 from vehicle.drive.operator_presence import OperatorPresence
+from vehicle.drive.operator_session import DemandOrder, DrivingSession, Proof, RecentProofs, Source, parse_proof
 from vehicle.params import Params
 from vehicle.statustext import StatusTextQueue
 
@@ -32,6 +33,10 @@ class Control:
         """Number of demands from ground stations that are not in control."""
         self.presence = OperatorPresence()
         self.override = RcOverride()
+        self.session: DrivingSession | None = None
+        """The session of the owner; None for a ground station whose demands carry no proof of their age."""
+        self._proofs = RecentProofs()
+        self._succeeded = False
         self._params = params
         self._sideways = MIXERS[DriveType(int(params["DRIVE_TYPE"]))].sideways
         self._texts = texts
@@ -41,12 +46,18 @@ class Control:
 
     # Ownership
 
-    def set_owner(self, system: int, now: float) -> None:
-        """Give control to `system`."""
+    def set_owner(self, system: int, now: float, source: Source | None = None) -> None:
+        """Give control to `system`; to the session that `source`, the sender of the request, has proven.
+
+        Without a proof in the last second it counts as a ground station without sessions, until it takes control again:
+        a proof that comes later may be that of another program with the same system id.
+        """
         self._last_heard = now
         if system == self.owner:
+            self.session = self.session or self._proofs.session_of(source, now)
             return
         self.owner = system
+        self.session = self._proofs.session_of(source, now)
         self.takeover_allowed = False
         self.presence = OperatorPresence()
         self.reset()
@@ -58,6 +69,7 @@ class Control:
         self._texts.send_event(Severity.NOTICE, f"No GCS is in control: GCS {self.owner} {why}", now)
         self._texts.reset_once("demand")
         self.owner = 0
+        self.session = None
         self.reset()
 
     def allow_takeover(self, allowed: bool) -> None:
@@ -81,8 +93,11 @@ class Control:
         return self._params["MAV_GCS_SYSID"] not in (0, system)
 
     def update_liveness(self, received: Received, now: float) -> None:
-        """Note a message of the owner as a sign of life: heartbeats alone gave false alarms on lossy links."""
-        if received.introduced and received.system == self.owner:
+        """Note a message of the owner as a sign of life: heartbeats alone gave false alarms on lossy links.
+
+        Of a session only proofs count (`_handle_proof`): any program may send heartbeats with its system id.
+        """
+        if received.introduced and received.system == self.owner and self.session is None:
             self._last_heard = now
 
     def silence_duration(self, now: float) -> float:
@@ -97,7 +112,7 @@ class Control:
 
     def handle_manual_control(self, received: Received, message: ManualControl, now: float) -> bool:
         """Handle a MANUAL_CONTROL; return True if it is the demand now."""
-        if not self._accepts(received, message.target, now):
+        if not self._accepts(received, message.target, now) or not self._accepts_without_proof(now):
             return False
         if self.demand and self.demand.sequence == received.sequence:
             return False  # a replay of the same packet
@@ -114,7 +129,7 @@ class Control:
 
     def handle_rc_override(self, received: Received, message: RcChannelsOverride, now: float) -> bool:
         """Handle an RC_CHANNELS_OVERRIDE; return True if it is the demand now."""
-        if not self._accepts(received, message.target_system, now):
+        if not self._accepts(received, message.target_system, now) or not self._accepts_without_proof(now):
             return False
         used = self.override.update(message, now)
         if self.override.has_invalid_value:
@@ -124,21 +139,95 @@ class Control:
         timeout = self._params["MAN_TIMEOUT"]
         return self._use(self.override.build_demand(received.system, received.sequence, now, timeout), now)
 
-    def handle_operator_presence(self, received: Received, message: RoverOperatorPresence, now: float) -> None:
-        """Handle a ROVER_OPERATOR_PRESENCE, which precedes a demand. An ignored one is not reported."""
-        if message.target_system != self.system or not received.introduced or received.system != self.owner:
-            return
+    def handle_operator_presence(self, received: Received, message: RoverOperatorPresence, now: float) -> bool:
+        """Handle a ROVER_OPERATOR_PRESENCE; return True if it is the demand now. An ignored one is not reported."""
+        if message.target_system != self.system or not received.introduced:
+            return False
+        proof = parse_proof(message, now - self._boot)
+        good = proof is not None and proof.age <= self._params["OPR_ECHO_MAX"]
+        if proof is not None and good:
+            self._proofs.add(Source.of(received), proof, now)
+        if received.system != self.owner:
+            return False
+        if self.session is not None:
+            return proof is not None and self._handle_proof(received, message, proof, now, good=good)
         if self.presence.handle(message, now - self._boot, now):
             self.require_neutral()
+        return False
+
+    def pop_succession(self) -> bool:
+        """Return True once after another session has taken over without having been granted control."""
+        succeeded, self._succeeded = self._succeeded, False
+        return succeeded
+
+    def _handle_proof(
+        self, received: Received, message: RoverOperatorPresence, proof: Proof, now: float, *, good: bool
+    ) -> bool:
+        """Handle a proof with the owner's system id while a session is in control."""
+        demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
+        session = self.session
+        if session is None or proof.session != session.id:
+            session = self._succeed(proof, now) if good and demand else None
+        if session is None:
+            return False
+        if good:
+            session.proven_at = self._last_heard = now
+            self.presence.handle(message, now - self._boot, now)
+        if demand is None or session.order(proof) is not DemandOrder.NEWEST:
+            return False
+        if good:
+            session.clock = proof.clock
+            return self._use(demand._replace(lifetime=self._params["OPR_ECHO_MAX"] - proof.age), now)
+        if demand.requests_motion(self.deadband):
+            return self._reject_old(now)
+        session.clock = proof.clock
+        return self._use(demand, now, proof=False)  # an old stop still stops, but proves no stick at rest
+
+    def _succeed(self, proof: Proof, now: float) -> DrivingSession | None:
+        """Return another session with the owner's system id as successor if the owner's is silent; else report it."""
+        if self.session is not None and not self.session.may_be_succeeded(now):
+            text = f"Another program uses system id {self.owner}: it cannot drive"
+            self._texts.send_once("demand session", Severity.WARNING, text, now)  # one: session ids are free to invent
+            return None
+        successor = DrivingSession(proof.session, now)
+        self._replace_session(successor, now)
+        return successor
+
+    def _accepts_without_proof(self, now: float) -> bool:
+        """Return whether a demand without a proof counts: not while the owner's session lives.
+
+        A ground station without sessions may follow one with its system id that is lost.
+        """
+        if self.session is None:
+            return True
+        if not self.is_owner_lost(now):
+            return False
+        self._replace_session(None, now)
+        return True
+
+    def _replace_session(self, session: DrivingSession | None, now: float) -> None:
+        self.session = session
+        self.presence = OperatorPresence()
+        self.reset()
+        self._last_heard = now
+        self._succeeded = True
+        text = f"GCS {self.owner} drives from another program now: release the keys first"
+        self._texts.send(Severity.NOTICE, text, now)
 
     def demand_age(self, now: float) -> float | None:
         """Return the s since the demand arrived; None without one."""
         return None if self.demand is None else now - self.demand.time
 
     def is_demand_stale(self, now: float) -> bool:
-        """Return True if the demand is older than MAN_TIMEOUT; False without one."""
+        """Return True if the demand is older than `demand_timeout`; False without one."""
         age = self.demand_age(now)
-        return age is not None and age > self._params["MAN_TIMEOUT"]
+        return age is not None and age > self.demand_timeout
+
+    @property
+    def demand_timeout(self) -> float:
+        """Age in s from which on the demand in use is stale: MAN_TIMEOUT, or sooner if its proof ends."""
+        timeout: float = self._params["MAN_TIMEOUT"]
+        return timeout if self.demand is None else min(timeout, self.demand.lifetime)
 
     def requests_motion(self) -> bool:
         """Return True if the demand, of any age, requests motion."""

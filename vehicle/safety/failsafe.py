@@ -94,7 +94,7 @@ def _manual_control_lost(inputs: FailsafeInputs, now: float) -> float | None:
     control = inputs.control
     if control.demand is None or not control.is_demand_stale(now) or not _is_relevant(inputs, Failsafe.MANUAL_LOSS):
         return None
-    lost = control.demand.time + inputs.params["MAN_TIMEOUT"]
+    lost = control.demand.time + control.demand_timeout
     # A lost neutral demand has no effect until HOLD is due: two lost frames of an idle operator raise no alarm.
     quiet = 0.0 if control.requests_motion() else inputs.params["FS_TIMEOUT"]
     return lost if now - lost >= quiet else None

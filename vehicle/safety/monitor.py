@@ -51,6 +51,8 @@ class SafetyMonitor:
         self._last_cycle = now
         safety.boot_done()
         self._control.expire_stale_demand(now)
+        if self._control.pop_succession() and MODES[safety.mode].autonomous:
+            safety.hold()  # an autonomous mode never outlives a change of the driver that nobody granted
         self._update_failsafes(motion, now)
         if refused >= BAD_CYCLES_MAX and safety.armed and safety.mode is not Mode.HOLD:
             self._texts.send_event(Severity.CRITICAL, "Motor values are not numbers: HOLD", now)
@@ -74,7 +76,7 @@ class SafetyMonitor:
             confirmed, timeout = safety.autonomy_confirmed, LATE_CYCLE_TIME
             age = None if own is None else now - own.time
         else:
-            confirmed, timeout = self._control.neutral_seen, self._params["MAN_TIMEOUT"]
+            confirmed, timeout = self._control.neutral_seen, self._control.demand_timeout
             age = self._control.demand_age(now)
         return Clearance(
             armed=safety.armed,

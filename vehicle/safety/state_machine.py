@@ -10,6 +10,7 @@ from typing import Protocol
 from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
 from vehicle.drive.control import Control
+from vehicle.drive.operator_session import Source
 from vehicle.modes import MODES, initial_mode
 from vehicle.params import Params
 from vehicle.safety.arming import ArmingFacts, find_problems
@@ -104,14 +105,17 @@ class Safety:
         )
         return find_problems(facts, force=force)
 
-    def arm(self, system: int, now: float, *, force: bool = False) -> list[str]:
-        """Arm and give control to `system`. Return what prevents arming, for its reply; empty if armed."""
+    def arm(self, system: int, now: float, *, force: bool = False, source: Source | None = None) -> list[str]:
+        """Arm and give control to `system`, whose request came from `source`.
+
+        Return what prevents arming, for its reply; empty if armed.
+        """
         if self.armed and self._control.owner == system:
             return []
         refusals = self._arm_refusals(system, now, force=force)
         if refusals:
             return refusals
-        self._control.set_owner(system, now)
+        self._control.set_owner(system, now, source)
         self._control.reset()
         self._handle_event(SafetyEvent.ARM)
         self._start_generation(confirmed=False)
