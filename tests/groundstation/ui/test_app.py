@@ -22,7 +22,7 @@ from groundstation.intents import (
 )
 from groundstation.snapshot import LinkView
 from groundstation.ui.key_gate import GateLevel
-from groundstation.ui.key_parser import KeyEventParser
+from groundstation.ui.key_parser import KeyEventParser, KeyRepeat
 from groundstation.ui.screens.help import HelpScreen
 from tests.groundstation.ui.examples import snapshot, vehicle, waiting
 from tests.groundstation.ui.pilots import Console, console
@@ -216,6 +216,15 @@ async def test_quitting_armed_disarms_first_and_a_second_key_leaves_it_armed(key
         await screen.press(key)
         assert screen.app.return_value == 0
         assert screen.station.of(Quit) == [Quit(disarm=True)], "the client sends the second one when it closes"
+
+
+async def test_a_held_quit_key_is_one_request() -> None:
+    async with console(picture=LEAVES) as screen:
+        await screen.press("ctrl+q")
+        for _ in range(5):
+            await screen.app.on_event(KeyRepeat("ctrl+q", None))
+        await screen.pilot.pause()
+        assert screen.app.return_value is None
 
 
 async def test_after_quitting_armed_the_screen_ends_with_the_station() -> None:
