@@ -216,7 +216,8 @@ class ConsoleApp(App[int]):
                 self.gate.handle_keys([KeyEvent(event.key)])
             action = self._keys.get_action(event.key)
             if action is not None and action.id == "app.quit":
-                self.request_quit()
+                if not isinstance(event, KeyRepeat):  # a held key is one request
+                    self.request_quit()
                 return
             if not isinstance(event, KeyRepeat):  # snapshots report a key that counts as held
                 self._light(event.key)

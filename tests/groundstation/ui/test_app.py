@@ -129,6 +129,15 @@ async def test_quitting_armed_disarms_first_and_a_second_key_leaves_it_armed(key
         assert screen.station.of(Quit) == [Quit(disarm=True)], "the client sends the second one when it closes"
 
 
+async def test_a_held_quit_key_is_one_request() -> None:
+    async with console(picture=LEAVES) as screen:
+        await screen.press("ctrl+q")
+        for _ in range(5):
+            await screen.app.on_event(KeyRepeat("ctrl+q", None))
+        await screen.pilot.pause()
+        assert screen.app.return_value is None
+
+
 async def test_after_quitting_armed_the_screen_ends_with_the_station() -> None:
     async with console(picture=LEAVES) as screen:
         await screen.press("ctrl+q")
