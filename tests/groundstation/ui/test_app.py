@@ -6,6 +6,7 @@ import pytest
 from textual import events
 
 from groundstation.intents import ACTIONS, Arm, Disarm, DriveKeyDown, EmergencyStop, Quit, RenewLease, SetKeyGate, Stop
+from groundstation.ui.key_parser import KeyRepeat
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import console, helps_pushed, type_in
 from tests.groundstation.ui.ptys import until
