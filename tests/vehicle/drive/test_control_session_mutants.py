@@ -21,8 +21,19 @@ class Sessions(Rig):
         super().__init__(**{"OPR_ECHO_MAX": ECHO_MAX, "MAN_TIMEOUT": 1.0} | params)
         self.clock = 0
 
-    def prove(self, session: int = 7, *, age: float = 0.1, system: int = DRIVER, target: int = 1, x: int = 0,
-              r: int = 0, y: int = INVALID_AXIS, clock: int | None = None, introduced: bool = True) -> bool:  # fmt: skip
+    def prove(
+        self,
+        session: int = 7,
+        *,
+        age: float = 0.1,
+        system: int = DRIVER,
+        target: int = 1,
+        x: int = 0,
+        r: int = 0,
+        y: int = INVALID_AXIS,
+        clock: int | None = None,
+        introduced: bool = True,
+    ) -> bool:
         """A ROVER_OPERATOR_PRESENCE with axes, at once."""
         self.clock += 1
         message = RoverOperatorPresence(

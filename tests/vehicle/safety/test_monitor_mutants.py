@@ -10,6 +10,7 @@ from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, Bench, said
 from tests.vehicle.safety.rig import STANDING, START, Rig
 from vehicle.drive.demand import Demand
 from vehicle.drive.gate import MotorTest
+from vehicle.drive.operator_session import DrivingSession
 from vehicle.safety.monitor import BAD_CYCLES_MAX, LATE_CYCLE_TIME
 from vehicle.safety.states import SafetyState
 
@@ -84,6 +85,16 @@ class TestCycle:
         rig.cycle(5.0, refused=4)
         assert rig.safety.mode_generation == generation
         assert len([text for _, text in rig.texts if "not numbers" in text]) == 1
+
+    @pytest.mark.parametrize(("mode", "held"), [(Mode.MANUAL, False), (Mode.GUIDED, True)])
+    def test_an_autonomous_mode_does_not_outlive_a_succession(self, mode: Mode, held: bool) -> None:
+        rig = Rig(FS_GCS_TIMEOUT=5, FS_GCS_ENABLE=0).armed()
+        assert rig.safety.choose_mode(mode, rig.now) is None
+        rig.control.session = DrivingSession(7, rig.now)
+        rig.now += 5.1
+        assert rig.stick(NEUTRAL)
+        rig.cycle()
+        assert (rig.safety.mode is Mode.HOLD) is held
 
     def test_a_disarmed_vehicle_stays_in_its_mode(self) -> None:
         rig = Rig()

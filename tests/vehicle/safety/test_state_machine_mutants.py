@@ -85,6 +85,11 @@ class TestArming:
         assert rig.control.owner == 0
         assert rig.safety.arm(DRIVER, rig.now, force=True) == []
 
+    def test_changed_safety_parameters_are_reported(self) -> None:
+        rig = Rig(FS_TIMEOUT=5).armed()
+        assert rig.severity("FS_TIMEOUT is 5") is Severity.WARNING
+        assert not Rig().armed().said(", default")
+
     def test_what_was_latched_is_over(self) -> None:
         rig = Rig().armed()
         rig.endure(Failsafe.TILT)

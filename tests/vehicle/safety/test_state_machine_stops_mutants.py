@@ -223,6 +223,14 @@ def test_an_overrun_of_the_loop_is_reported_with_its_length() -> None:
     assert rig.safety.latched == Failsafe.LOOP_OVERRUN
 
 
+def test_an_overrun_is_cleared_by_the_next_arming() -> None:
+    rig = Rig().armed()
+    rig.safety.handle_loop_overrun(0.3, rig.now)
+    assert rig.safety.latched == Failsafe.LOOP_OVERRUN
+    assert rig.safety.arm(DRIVER, rig.now) == []
+    assert not rig.safety.latched
+
+
 def test_all_that_is_latched_is_reported_together() -> None:
     rig = Rig().armed()
     rig.endure(Failsafe.BLOCKED)
