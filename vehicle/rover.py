@@ -130,12 +130,12 @@ class Rover:
         route = self._routes.get(type(message))
         if route is None or not (received.introduced or route.accepts_unintroduced(received)):
             return
-        demand = self._control.demand
+        before = self._motion_inputs()
         replies = route.handle(received, message, now)
         if replies:
             self._outgoing += replies
         effect = route.effect
-        if effect is Effect.MOTION or (effect is Effect.DEMAND and self._control.demand is not demand):
+        if effect is Effect.MOTION or (effect is Effect.DEMAND and self._motion_inputs() != before):
             self._act(effect, now)
 
     def tick(self, now: float) -> None:
@@ -218,6 +218,10 @@ class Rover:
         )
         reporting = Reporting(self._telemetry, self._links, self._build_view)
         return Dispatcher(context, reporting, stores, self._rack)
+
+    def _motion_inputs(self) -> tuple[Demand | None, SafetyState, int]:
+        """Return what a demand or a button may have changed."""
+        return self._control.demand, self._safety.state, self._safety.mode_generation
 
     def _act(self, effect: Effect, now: float) -> None:
         """Bring outputs and telemetry up to date with what a message has changed."""

@@ -27,7 +27,7 @@ from groundstation.ui.display_state import DisplayState
 from groundstation.ui.exit import exit_on_signals
 from groundstation.ui.key_gate import STARTING, GateClosure, GateLevel, KeyGate, StationConnection
 from groundstation.ui.key_parser import KeyRepeat, KeyUp
-from groundstation.ui.navigation import Navigator
+from groundstation.ui.navigation import ScreenNavigator
 from groundstation.ui.palette import ActionProvider
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
@@ -75,7 +75,7 @@ class ConsoleApp(App[int]):
         self._own_loop: asyncio.AbstractEventLoop | None = None
         context = ScreenContext(keymap, self._send, self.perform_action)
         self.drive = DriveScreen(context)
-        self._navigator = Navigator(self, context)
+        self._navigator = ScreenNavigator(self, context)
         self._actions: dict[str, Callable[[], None]] = {"app.quit": self.request_quit}
         self._actions |= {row.action: partial(self._navigator.open, row) for row in SCREENS}
 

@@ -21,7 +21,7 @@ def load_screen(row: ScreenRow) -> type[ConsoleScreen]:
     return found
 
 
-class Navigator:
+class ScreenNavigator:
     """Opens and closes screens of an app."""
 
     def __init__(self, app: App[Any], context: ScreenContext) -> None:

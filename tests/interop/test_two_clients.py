@@ -41,7 +41,7 @@ def test_the_second_sees_all_and_drives_only_when_it_is_given_control(
         one.arm()
         other.sees_armed(True)
         other.push(-0.6)
-        one.reads("Demand from GCS 254 ignored: GCS 255 is in control")
+        other.reads("Demand from GCS 254 ignored: GCS 255 is in control")
         one.push(0.6)
         rover.drives()
         for sight in ("attitude", "position", "motion"):

@@ -23,7 +23,7 @@ class Effect(Enum):
     """What the rover updates after the handler of a message."""
 
     DEMAND = "demand"
-    """If the handler has replaced the demand: motor outputs at once, and the telemetry that follows a demand."""
+    """If the demand, the mode or the safety state has changed: motor outputs at once, and the telemetry of a demand."""
     MOTION = "motion"
     """Mode, motor outputs, and the telemetry that is due."""
 
