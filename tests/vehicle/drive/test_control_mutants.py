@@ -9,7 +9,7 @@ from dialects.enums import Severity
 from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, RcChannelsOverride
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER
-from tests.vehicle.safety.rig import START, Rig
+from tests.vehicle.safety.rig import BOOT, START, Rig
 
 
 def raw(rig: Rig, **axes: int) -> bool:
@@ -32,7 +32,7 @@ def test_at_the_start_no_station_is_in_control_and_no_neutral_was_seen() -> None
     assert not control.neutral_seen
     assert not control.presence.known
     assert control.override.channels == {}
-    assert control.silence_duration(2.0) == 2.0  # since the boot
+    assert control.silence_duration(BOOT + 2.0) == 2.0  # since the boot
     assert control.demand_age(START) is None
     assert not control.is_demand_stale(START)
     assert not control.requests_motion()
@@ -154,7 +154,7 @@ class TestNeutralFirst:
 class TestOperator:
     def old(self, rig: Rig, age: float) -> None:
         """The driver has seen nothing newer than of `age` s ago."""
-        rig.presence(echo=round((rig.now - age) * 1000))
+        rig.presence(echo=round((rig.now - BOOT - age) * 1000))
 
     def test_demands_that_are_old_are_refused_and_that_is_reported_once(self) -> None:
         rig = Rig(OPR_ECHO_MAX=0.5).controlled()

@@ -7,7 +7,7 @@ import pytest
 from dialects.enums import OperatorFlag
 from dialects.messages import INVALID_AXIS, RoverOperatorPresence
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER
-from tests.vehicle.safety.rig import Rig
+from tests.vehicle.safety.rig import BOOT, Rig
 from vehicle.drive.operator_session import PROOF_VALID, SUCCESSION_TIME, Source
 
 ECHO_MAX = 0.5
@@ -37,7 +37,7 @@ class Sessions(Rig):
         """A ROVER_OPERATOR_PRESENCE with axes, at once."""
         self.clock += 1
         message = RoverOperatorPresence(
-            target, 1, self.clock if clock is None else clock, round((self.now - age) * 1000), session, 1, 0,
+            target, 1, self.clock if clock is None else clock, round((self.now - BOOT - age) * 1000), session, 1, 0,
             int(OperatorFlag.AXES), x, y, INVALID_AXIS, r,
         )  # fmt: skip
         received = self.received(message, system, introduced=introduced)
@@ -209,6 +209,12 @@ class TestSuccession:
         assert not rig.control.neutral_seen
         assert rig.said("release the keys first")
         assert rig.control.silence_duration(rig.now) == 0.0
+
+    def test_the_stick_at_rest_of_the_one_before_is_no_proof_for_the_successor(self) -> None:
+        rig = Sessions().owned()
+        rig.now += 1.0
+        assert rig.prove(8, x=900)
+        assert not rig.control.neutral_seen
 
     def test_a_station_without_sessions_may_follow_one_that_is_lost(self) -> None:
         rig = Sessions(FS_GCS_TIMEOUT=5).owned()

@@ -17,7 +17,7 @@ from vehicle.safety.monitor import SafetyMonitor
 from vehicle.safety.state_machine import Safety
 from vehicle.statustext import StatusTextQueue
 
-START = 100.0
+BOOT, START = 50.0, 100.0
 
 
 STANDING = MotionInputs(
@@ -53,7 +53,7 @@ class Rig:
         self.ready = Ready()
         self.params = Params(params)
         queue = StatusTextQueue(lambda severity, text: self.texts.append((severity, text)))
-        self.control = Control(self.params, queue, system=1, boot=0.0)
+        self.control = Control(self.params, queue, system=1, boot=BOOT)
         self.safety = Safety(self.params, self.control, queue, START, self.ready)
         self.monitor = SafetyMonitor(self.params, self.safety, self.control, queue, START)
         self._sequence = 0
