@@ -130,11 +130,11 @@ class Rover:
         route = self._routes.get(type(message))
         if route is None or not (received.introduced or route.accepts_unintroduced(received)):
             return
-        before = self._motion_inputs()
+        effect = route.effect
+        before = self._motion_inputs() if effect is Effect.DEMAND else None
         replies = route.handle(received, message, now)
         if replies:
             self._outgoing += replies
-        effect = route.effect
         if effect is Effect.MOTION or (effect is Effect.DEMAND and self._motion_inputs() != before):
             self._act(effect, now)
 
