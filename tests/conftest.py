@@ -26,6 +26,12 @@ if reason := fault():
     raise SystemExit(reason)  # here and not in a hook, because other conftest.py files import the dialect
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """Return the workers of `-n auto`: three for two processors, because many tests wait for programs."""
+    return max(1, 3 * (os.cpu_count() or 1) // 2)
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Give each worker a state folder of its own, because a vehicle locks its folder."""
     state = tempfile.TemporaryDirectory(prefix="mavhelm-tests-")
