@@ -253,7 +253,11 @@ def _is_held(history: list[tuple[float, list[KeyEvent]]]) -> bool:
     key = history[-1][1][0].key
     run: list[float] = []
     for at, batch in reversed(history):
-        if any(press.key != key or press.release for press in batch):
+        if any(press.key != key for press in batch):
+            break
+        if any(press.release for press in batch):
+            if not batch[-1].release:  # the press that follows the release begins the run
+                run.append(at)
             break
         run.append(at)
     close = sum(later - earlier <= 0.12 + 1e-9 for later, earlier in pairwise(run))
