@@ -37,5 +37,4 @@ bench:  ## Measure; ARGS=--quick, or the names of benchmarks.
 mutate:  ## Change the safety code line by line and report what no test notices.
 	.venv/bin/python -m tests.mutation $(ARGS)
 
-FAST = tests/vehicle/drive tests/vehicle/safety tests/vehicle/navigation tests/link/protocol tests/link/routing \
-	tests/link/services tests/groundstation/input tests/groundstation/station tests/dialects/test_axes.py tests/test_stops.py
+FAST = tests/vehicle/drive tests/vehicle/safety tests/link/protocol tests/groundstation/input tests/dialects/test_axes.py
