@@ -65,6 +65,15 @@ class Program:
         pid, status = os.waitpid(self.process.pid, os.WUNTRACED)
         return pid == self.process.pid and os.WIFSTOPPED(status)
 
+    def quit(self) -> int:
+        """Press Ctrl-Q until the program ends: while the terminal is not raw again, it takes the key for XON."""
+        deadline = time.monotonic() + LIMIT
+        while self.process.poll() is None and time.monotonic() < deadline:
+            os.write(self.master, b"\x11")
+            if select.select([self.master], [], [], 0.3)[0]:
+                self.drawn += os.read(self.master, 1 << 16)
+        return self.end()
+
     def end(self) -> int:
         """Read to the end and give the exit code."""
         os.close(self.slave)

@@ -201,6 +201,5 @@ def test_a_suspended_program_releases_the_mouse_and_captures_it_again(program: P
     program.process.send_signal(signal.SIGCONT)
     program.read_until(CAPTURE_MOUSE.encode(), suspended)
     assert not modes(program.drawn)[1007]
-    os.write(program.master, b"\x11")
-    assert program.end() == 0
+    assert program.quit() == 0
     assert modes(program.drawn)[1007]
