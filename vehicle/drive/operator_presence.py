@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 from dialects.enums import OperatorFlag
-from dialects.messages import UINT16_MAX, RoverOperatorPresence, boot_ms
-
-_WRAP = 2**32
+from dialects.messages import UINT16_MAX, RoverOperatorPresence
+from vehicle.drive.operator_session import echo_age
 
 
 class OperatorPresence:
@@ -44,9 +43,6 @@ class OperatorPresence:
     def _measure_echo(self, echo: int, since_boot: float) -> float:
         """Return the age of the echoed boot time in s; 0 if there was none yet.
 
-        The echo of a former boot seems to be from the future and comes out as weeks old. An echo of 0 after others is
-        old, else a program that stopped echoing would switch the check off.
+        An echo of 0 after others is old, else a program that stopped echoing would switch the check off.
         """
-        if echo:
-            return ((boot_ms(since_boot) - echo) % _WRAP) / 1000
-        return math.inf if self._has_echoed else 0.0
+        return echo_age(echo, since_boot) if echo or self._has_echoed else 0.0
