@@ -121,11 +121,7 @@ class Control:
             self._report_invalid(received, "axes outside -1000..1000 count as neutral", now)
         if demand is None:
             return False
-        if not self._echo_is_stale():
-            return self._use(demand, now)
-        if demand.requests_motion(self.deadband):
-            return self._reject_old(now)
-        return self._use(demand, now, proof=False)  # an old stop still stops, but proves no stick at rest
+        return self._use_old(demand, now) if self._echo_is_stale() else self._use(demand, now)
 
     def handle_rc_override(self, received: Received, message: RcChannelsOverride, now: float) -> bool:
         """Handle an RC_CHANNELS_OVERRIDE; return True if it is the demand now."""
@@ -176,12 +172,12 @@ class Control:
         if demand is None or session.order(proof) is not DemandOrder.NEWEST:
             return False
         if good:
+            used = self._use(demand._replace(lifetime=self._params["OPR_ECHO_MAX"] - proof.age), now)
+        else:
+            used = self._use_old(demand, now)
+        if used:
             session.clock = proof.clock
-            return self._use(demand._replace(lifetime=self._params["OPR_ECHO_MAX"] - proof.age), now)
-        if demand.requests_motion(self.deadband):
-            return self._reject_old(now)
-        session.clock = proof.clock
-        return self._use(demand, now, proof=False)  # an old stop still stops, but proves no stick at rest
+        return used
 
     def _succeed(self, proof: Proof, now: float) -> DrivingSession | None:
         """Return another session with the owner's system id as successor if the owner's is silent; else report it."""
@@ -264,6 +260,14 @@ class Control:
             self.neutral_seen = True
         return True
 
+    def _use_old(self, demand: Demand, now: float) -> bool:
+        """Use a demand older than OPR_ECHO_MAX if it requests no motion; else report it."""
+        if not demand.requests_motion(self.deadband):
+            return self._use(demand, now, proof=False)  # an old stop still stops, but proves no stick at rest
+        text = "Demands rejected: older than OPR_ECHO_MAX on arrival"
+        self._texts.send_once("demand stale", Severity.WARNING, text, now)
+        return False
+
     def _accepts(self, received: Received, target: int, now: float) -> bool:
         if target != self.system or not received.introduced:
             return False
@@ -282,8 +286,3 @@ class Control:
 
     def _echo_is_stale(self) -> bool:
         return self.presence.known and self.presence.echo_age > self._params["OPR_ECHO_MAX"]
-
-    def _reject_old(self, now: float) -> bool:
-        text = "Demands rejected: older than OPR_ECHO_MAX on arrival"
-        self._texts.send_once("demand stale", Severity.WARNING, text, now)
-        return False

@@ -74,6 +74,21 @@ def going() -> tuple[Bench, Station]:
     return bench, station
 
 
+def guided() -> Field:
+    """A rover that drives to a target in GUIDED, with its driver's stick at rest."""
+    field = Field()
+    station = Station(field)
+    station.bench.wait(3.0)
+    station.send(None)
+    field.begin(Mode.GUIDED)
+    field.goto(100.0, 0.0)
+    for _ in range(40):
+        station.send(NEUTRAL)
+        field.wait(0.05)
+    assert field.turning
+    return field
+
+
 # ---- a session drives by its proofs, and by nothing else ----
 
 
@@ -215,16 +230,7 @@ def test_copies_of_a_proof_move_nothing() -> None:
 
 
 def test_heartbeats_of_a_twin_do_not_keep_the_failsafe_quiet() -> None:
-    field = Field()
-    station = Station(field)
-    station.bench.wait(3.0)
-    station.send(None)
-    field.begin(Mode.GUIDED)
-    field.goto(100.0, 0.0)
-    for _ in range(40):
-        station.send(NEUTRAL)
-        field.wait(0.05)
-    assert field.turning
+    field = guided()
     for _ in range(70):  # the driver is killed; another program with its system id goes on
         field.heartbeat()
         field.wait(0.1)
@@ -268,16 +274,7 @@ def test_a_successor_shows_neutral_first() -> None:
 
 
 def test_an_autonomous_mode_does_not_outlive_a_succession() -> None:
-    field = Field()
-    station = Station(field)
-    station.bench.wait(3.0)
-    station.send(None)
-    field.begin(Mode.GUIDED)
-    field.goto(100.0, 0.0)
-    for _ in range(40):
-        station.send(NEUTRAL)
-        field.wait(0.05)
-    assert field.turning
+    field = guided()
     field.wait(SUCCESSION_TIME + 0.1)
     Station(field, session=9).send(NEUTRAL)
     field.wait(0.1)
