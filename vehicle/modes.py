@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from dialects.modes import Mode
-from link.services.command.server import value_or_default
+from link.services.command.request import value_or_default
 
 
 class ModeRequirement(Enum):

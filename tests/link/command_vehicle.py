@@ -5,7 +5,8 @@ from __future__ import annotations
 from dialects.enums import Command, Result
 from dialects.messages import CommandAck, CommandLong, Message
 from link.core import Peer, Received
-from link.services.command.server import CommandHandler, CommandRequest, CommandServer
+from link.services.command.request import CommandRequest
+from link.services.command.server import CommandHandler, CommandServer
 
 PEER = Peer(0, "there")
 

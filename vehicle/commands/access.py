@@ -7,7 +7,8 @@ from enum import Enum
 
 from dialects.enums import Result, Severity, command_name
 from link.services.command.jobs import CommandJob
-from link.services.command.server import CommandReply, CommandRequest
+from link.services.command.request import CommandRequest
+from link.services.command.server import CommandReply
 from vehicle.drive.control import Control
 from vehicle.navigation.geo import Home
 from vehicle.statustext import StatusTextQueue

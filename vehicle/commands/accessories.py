@@ -12,7 +12,7 @@ from functools import partial
 from typing import NamedTuple
 
 from dialects.enums import Command, Result, Severity, command_name
-from link.services.command.server import PROGRESS_TIMEOUT, CommandRequest
+from link.services.command.request import PROGRESS_TIMEOUT, CommandRequest
 from link.services.mission.items import ItemRule, MissionItem
 from vehicle.accessories import LARGEST_RELAY, LARGEST_SERVO, PERIOD_MAX, TIMES_MAX
 from vehicle.accessories.accessory_set import AccessorySet

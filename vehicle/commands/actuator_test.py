@@ -15,7 +15,7 @@ from functools import partial
 
 from dialects.enums import Command, Result, Severity
 from link.core import Received
-from link.services.command.server import PROGRESS_TIMEOUT, CommandRequest
+from link.services.command.request import PROGRESS_TIMEOUT, CommandRequest
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context

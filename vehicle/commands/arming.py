@@ -12,7 +12,8 @@ from dialects import messages as m
 from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from link.core import Outgoing, Received
-from link.services.command.server import CommandReply, CommandRequest, value_or_default
+from link.services.command.request import CommandRequest, value_or_default
+from link.services.command.server import CommandReply
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context

@@ -11,7 +11,7 @@ import math
 
 from dialects.enums import Command, Result, Severity
 from link.services.command.jobs import CommandJob
-from link.services.command.server import CommandRequest
+from link.services.command.request import CommandRequest
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context

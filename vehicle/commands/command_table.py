@@ -10,7 +10,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from dialects.messages import CommandInt, CommandLong
-from link.services.command.server import CommandHandler, CommandRequest, RunCommand
+from link.services.command.request import CommandRequest
+from link.services.command.server import CommandHandler, RunCommand
 from vehicle.autonomy.mission.rules import DoItem
 from vehicle.commands.access import Access, CommandAccess, CommandResult
 

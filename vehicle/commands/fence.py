@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dialects.enums import Command, Result, Severity
-from link.services.command.server import CommandRequest
+from link.services.command.request import CommandRequest
 from link.services.mission.items import ItemRule, MissionItem
 from vehicle.autonomy.mission.rules import DoItem
 from vehicle.commands.access import Access

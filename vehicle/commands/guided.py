@@ -12,7 +12,7 @@ from dialects import messages as m
 from dialects.enums import Command, Result, Severity
 from dialects.modes import Mode
 from link.core import Received
-from link.services.command.server import CommandRequest, value_or_default
+from link.services.command.request import CommandRequest, value_or_default
 from link.services.mission.items import ItemRule, MissionItem
 from vehicle.autonomy.mission.rules import DoItem
 from vehicle.autonomy.navigator import Navigator

@@ -12,7 +12,8 @@ from dialects import messages as m
 from dialects.enums import Command, MissionResult, MissionType, Result, Severity
 from dialects.modes import Mode
 from link.core import Outgoing, Received
-from link.services.command.server import CommandReply, CommandRequest, value_or_default
+from link.services.command.request import CommandRequest, value_or_default
+from link.services.command.server import CommandReply
 from link.services.ftp.files import Folder
 from link.services.mission.commit import PendingPlanWrite, PlanChange
 from link.services.mission.files import PlanFolder

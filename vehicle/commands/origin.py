@@ -10,7 +10,8 @@ from __future__ import annotations
 from dialects.enums import Command, Result, Severity
 from dialects.messages import SetGpsGlobalOrigin
 from link.core import Outgoing, Peer, Received
-from link.services.command.server import CommandReply, CommandRequest
+from link.services.command.request import CommandRequest
+from link.services.command.server import CommandReply
 from vehicle.autonomy.setpoints import global_to_local
 from vehicle.commands.access import ALTITUDE_MAX, Access, parse_altitude, parse_position
 from vehicle.commands.command_table import CommandSpec, CommandTable

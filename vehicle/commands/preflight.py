@@ -5,7 +5,7 @@ from __future__ import annotations
 from dialects.enums import Command, DriveType, Result, Severity
 from dialects.messages import SetupSigning
 from link.core import Received
-from link.services.command.server import CommandRequest
+from link.services.command.request import CommandRequest
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context

@@ -12,7 +12,7 @@ from typing import Protocol
 
 from dialects.enums import Command, MissionResult, Result
 from link.services.command.jobs import CommandJob
-from link.services.command.server import CommandRequest, value_or_default
+from link.services.command.request import CommandRequest, value_or_default
 from link.services.mission.commit import WRITE_TIMEOUT, PlanChange
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable

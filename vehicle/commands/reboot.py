@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from enum import IntEnum
 
-from link.services.command.server import value_or_default
+from link.services.command.request import value_or_default
 
 REBOOT_DELAY = 0.5
 """s between the acknowledgement and the end: a client repeats the command if the acknowledgement was lost."""

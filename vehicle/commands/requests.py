@@ -12,7 +12,8 @@ from collections.abc import Callable, Mapping
 from dialects import messages as m
 from dialects.enums import Command, Result
 from link.core import Outgoing
-from link.services.command.server import CommandReply, CommandRequest, value_or_default
+from link.services.command.request import CommandRequest, value_or_default
+from link.services.command.server import CommandReply
 from vehicle.commands.access import Access, CommandResult
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Reporting

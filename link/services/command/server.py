@@ -16,17 +16,7 @@ from dialects.enums import Result
 from dialects.messages import CommandCancel, CommandInt, CommandLong
 from link.core import Outgoing, Received
 from link.services.command.jobs import CommandJob, CommandJobs, ack
-from link.services.command.request import PROGRESS_TIMEOUT, CommandRequest, parse_command, value_or_default
-
-__all__ = [
-    "PROGRESS_TIMEOUT",
-    "CommandHandler",
-    "CommandReply",
-    "CommandRequest",
-    "CommandServer",
-    "RunCommand",
-    "value_or_default",
-]
+from link.services.command.request import CommandRequest, parse_command
 
 
 class CommandReply(NamedTuple):

@@ -8,7 +8,7 @@ import pytest
 
 from dialects.enums import Command, Result
 from link.core import Peer
-from link.services.command.server import CommandRequest
+from link.services.command.request import CommandRequest
 from vehicle.commands.access import Access, CommandAccess, is_invalid_position, parse_altitude, parse_position
 from vehicle.drive.control import Control
 from vehicle.navigation.geo import Home

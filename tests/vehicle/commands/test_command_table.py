@@ -8,7 +8,7 @@ import pytest
 
 from dialects.enums import Command, Result
 from dialects.messages import CommandLong
-from link.services.command.server import CommandRequest
+from link.services.command.request import CommandRequest
 from link.services.mission.items import ItemRule, MissionItem
 from tests.vehicle.bench import Bench
 from tests.vehicle.commands.test_access import OTHER, Denials, request

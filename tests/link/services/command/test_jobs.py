@@ -7,7 +7,8 @@ from dialects.messages import CommandAck, CommandCancel, CommandInt, CommandLong
 from link.core import Outgoing, Peer, Received
 from link.services.command.client import CommandClient
 from link.services.command.jobs import PROGRESS_PERIOD, REPEAT_WINDOW, CommandJob
-from link.services.command.server import CommandHandler, CommandRequest, CommandServer
+from link.services.command.request import CommandRequest
+from link.services.command.server import CommandHandler, CommandServer
 
 HERE, THERE = Peer(0, "here"), Peer(0, "there")
 TEST, OTHER = 209, 310
