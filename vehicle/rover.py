@@ -85,7 +85,7 @@ class Rover:
         self._actuator_test = self._dispatcher.actuator_test
         self._routes = {row.message: row for row in self._dispatcher.messages}
         self._observers = (
-            self._control.update_liveness,
+            self._control.hear,
             self._actuator_test.update_liveness,
             self._telemetry.observe,
         )
@@ -212,7 +212,7 @@ class Rover:
             control=self._control,
             navigator=self._navigator,
             statustext=self._texts,
-            access=CommandAccess(self._control, self._texts),
+            access=CommandAccess(self._control.ownership, self._texts),
             mixer=self._drive.mixer,
             pacer=self._bandwidth.pacer,
         )

@@ -12,7 +12,7 @@ from collections.abc import Hashable, Iterator
 from itertools import count
 
 from dialects import codec
-from dialects.messages import MESSAGES, Heartbeat, RadioStatus
+from dialects.messages import MESSAGES, Heartbeat, Message, RadioStatus
 from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
 from link.core import LinkReport, Outgoing, Peer, Received
 from link.protocol.flow_control import FlowControl
@@ -151,19 +151,28 @@ class Channel:
         if self.log_tap is not None and frames:
             self.log_tap.record_received(frames, now)
         for frame in frames:
-            number, system, component, sequence, _ = frame
+            number, system, component, sequence, raw = frame
             sender = (system, component)
             if not system or sender == self.ids:  # component 0 is valid: pymavlink sends it by default
                 self._own_id |= sender == self.ids
                 continue
             state.last_seen, state.silent = now, False
+            digest = hash(raw)
             source = state.sources.get(sender)
-            order = source.accept(sequence, number) if source else state.add_source(frame)
-            if order is not NEW and self._is_old(order, number):
+            if source is None:
+                source = state.add_source(frame, digest, now)
+            elif (order := source.accept(sequence, number, digest, now)) is not NEW and self._is_old(order, frame):
                 continue
-            received = self._decode(state, frame, now)
-            if received is not None:
-                accepted.append(received)
+            message = self._decode(state, frame, now)
+            if message is None:
+                continue
+            numbering, clash = (source.numbering.index, source.clash) if source else (0, False)
+            known = system in state.systems
+            accepted.append(
+                Received(
+                    message, system, component, sequence, state.peer, known, state.is_expected, numbering, clash, digest
+                )
+            )
         return accepted
 
     def _accept_stops(self, frames: list[Frame], address: Hashable, now: float) -> list[Received]:
@@ -183,16 +192,20 @@ class Channel:
         if isinstance(status, RadioStatus):
             self._flow.handle_radio_status(status.txbuf, now)
 
-    def _is_old(self, order: FrameOrder, number: int) -> bool:
-        """Count a repeated or overtaken frame; return whether to drop it. ACKED messages are never too old."""
+    def _is_old(self, order: FrameOrder, frame: Frame) -> bool:
+        """Count a repeated or overtaken frame; return whether to drop it.
+
+        ACKED messages are never too late, and a stop is never a repeat: a simple script gives each frame the number 0.
+        """
+        number, _, _, _, raw = frame
         if order is FrameOrder.DUPLICATE:
             self._duplicates += 1
-            return True
+            return number not in COMMANDS or not is_stop(codec.decode(number, payload_of(raw)))
         self._late += 1
         return number not in ACKED
 
-    def _decode(self, state: PeerState, frame: Frame, now: float) -> Received | None:
-        number, system, component, sequence, raw = frame
+    def _decode(self, state: PeerState, frame: Frame, now: float) -> Message | None:
+        number, system, _, _, raw = frame
         if number == _RADIO_STATUS:
             self._handle_radio_status(raw, now)
         if self._wanted is not None and number not in self._wanted:
@@ -208,7 +221,7 @@ class Channel:
             return None
         if number == Heartbeat.id:
             state.systems.add(system)
-        return Received(message, system, component, sequence, state.peer, system in state.systems, state.is_expected)
+        return message
 
     # ---- sending ----
 

@@ -126,8 +126,9 @@ def _mode(view: TelemetryView) -> Mode:
 
 def control_status(view: TelemetryView) -> m.Message:
     """Build CONTROL_STATUS: the ground station in control."""
-    flags = SYSTEM_MANAGER | (TAKEOVER_ALLOWED if view.control.takeover_allowed else 0)
-    return m.ControlStatus(flags=flags, gcs_main=view.control.owner, gcs_secondary=[0] * 10)
+    ownership = view.control.ownership
+    flags = SYSTEM_MANAGER | (TAKEOVER_ALLOWED if ownership.takeover_allowed else 0)
+    return m.ControlStatus(flags=flags, gcs_main=ownership.owner, gcs_secondary=[0] * 10)
 
 
 def system_time(view: TelemetryView) -> m.Message:

@@ -70,7 +70,7 @@ STREAMS: tuple[Stream, ...] = (
     Stream(m.RoverFailsafeStatus, ROVER, 1, build_status.failsafe_status,
            change_key=lambda view: (view.safety.failsafes.active, view.safety.latched)),
     Stream(m.ControlStatus, NEWER, 1, build_status.control_status,
-           change_key=lambda view: (view.control.owner, view.control.takeover_allowed)),
+           change_key=lambda view: (view.control.ownership.owner, view.control.ownership.takeover_allowed)),
     Stream(m.CurrentMode, NEWER, 0.5, build_status.current_mode,
            change_key=lambda view: (view.safety.mode, view.safety.intended)),
     Stream(m.MissionCurrent, COMMON, 1, build_navigation.mission_current, DataStream.EXTENDED_STATUS,

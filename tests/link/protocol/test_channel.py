@@ -10,7 +10,6 @@ from link.core import Outgoing, Peer, Received
 from link.protocol.channel import MAX_PEERS, PEER_SILENCE, Channel
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
-from link.protocol.sequence import RESTART_AFTER
 from tests.link.frames import demand, frame, heartbeat
 
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
@@ -91,10 +90,25 @@ def test_a_sender_that_restarts_is_heard_again() -> None:
     channel = vehicle()
     channel.receive(demand(200), HERE, 0.0)
     assert numbers(channel.receive(demand(0), HERE, 0.1)) == [0]  # 56 on: plainly new
-    channel.receive(demand(20), HERE, 0.2)
-    heard = [numbers(channel.receive(demand(number), HERE, 0.3)) for number in range(RESTART_AFTER + 2)]
-    assert heard[-1] == [RESTART_AFTER + 1]
-    assert heard.count([]) == RESTART_AFTER
+    channel.receive(demand(90), HERE, 0.2)
+    (found,) = channel.receive(demand(1), HERE, 0.3)
+    assert (found.sequence, found.numbering, found.clash) == (1, 2, False)
+
+
+def test_frames_of_two_programs_in_one_numbering_are_marked() -> None:
+    channel = vehicle()
+    channel.receive(demand(7), HERE, 0.0)
+    (found,) = channel.receive(heartbeat(7), HERE, 0.0)
+    assert (found.numbering, found.clash) == (1, True)
+    assert found.digest != channel.receive(heartbeat(8), HERE, 0.0)[0].digest
+
+
+def test_a_stop_is_never_a_repeat() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), HERE, 0.0)
+    assert len(channel.receive(frame(ARM, 5) * 2, HERE, 0.0)) == 1
+    assert len(channel.receive(frame(DISARM, 6) * 2, HERE, 0.0)) == 2
+    assert channel.report().duplicates == 2
 
 
 def test_loss_is_counted_by_source() -> None:
@@ -108,15 +122,14 @@ def test_loss_is_counted_by_source() -> None:
 
 
 @given(st.lists(st.integers(0, 255), max_size=300))
-def test_demands_never_go_back_in_order(order: list[int]) -> None:
+def test_demands_never_go_back_within_a_numbering(order: list[int]) -> None:
     channel = vehicle()
-    newest: int | None = None
-    backward = 0
+    newest: dict[int, int] = {}
     for now, number in enumerate(order):
-        for found in channel.receive(demand(number), HERE, float(now)):
-            backward = backward + 1 if newest is not None and ((found.sequence - newest) & 0xFF) > 223 else 0
-            newest = found.sequence
-            assert backward <= 1  # only a restart steps back, and then counts on from there
+        for found in channel.receive(demand(number), HERE, now / 20):
+            ahead = (found.sequence - newest.get(found.numbering, found.sequence - 1)) & 0xFF
+            assert 0 < ahead < 128  # within one numbering
+            newest[found.numbering] = found.sequence
 
 
 # ---- who is answered ----

@@ -1,0 +1,129 @@
+"""Who sends: one run of packet numbers of one (system, component) from one peer.
+
+A system id is no identity: 255 is the default of most ground stations. A program that restarts, one that comes over
+another address, a second program with the same ids, and copies of old frames are all other conversations with the
+same ids, and one rule decides about them (vehicle/drive/driver.py).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+from link.core import Peer, Received
+
+FRAMES_REMEMBERED = 512
+"""Frames of the driver's ids that are remembered: each packet number twice."""
+NEWCOMERS_MAX = 8
+"""Other conversations with the driver's ids that are remembered."""
+FRAMES_OF_A_PROGRAM = 3
+"""Frames in order that make a conversation: a single one that fits may be an accident."""
+
+Ids = tuple[int, int]
+"""System id and component id."""
+
+
+class Sender(Protocol):
+    """The sender of a message or a command: `link.core.Received` and `CommandRequest` are two."""
+
+    @property
+    def system(self) -> int:
+        """System id."""
+
+    @property
+    def component(self) -> int:
+        """Component id."""
+
+    @property
+    def peer(self) -> Peer:
+        """Where it is."""
+
+    @property
+    def numbering(self) -> int:
+        """Its run of packet numbers."""
+
+
+class Conversation(NamedTuple):
+    """One conversation of a ground station with this vehicle."""
+
+    system: int
+    component: int
+    peer: Peer
+    numbering: int
+
+    @classmethod
+    def of(cls, sender: Sender) -> Conversation:
+        """Return the conversation of the sender of a message or a command."""
+        return cls(sender.system, sender.component, sender.peer, sender.numbering)
+
+    @property
+    def ids(self) -> Ids:
+        """System id and component id."""
+        return self.system, self.component
+
+    @property
+    def may_ask(self) -> bool:
+        """Texts may be sent to it: only who has sent a HEARTBEAT takes control."""
+        return True
+
+
+@dataclass(slots=True)
+class Newcomer:
+    """Another conversation with the driver's ids."""
+
+    frames: int = 0
+    is_copy: bool = True
+    """It has only repeated frames of the driver, byte for byte."""
+    reported_at: float = -math.inf
+    """When the driver was told of it."""
+
+    @property
+    def is_program(self) -> bool:
+        """True if it is a program of its own and not some frames that came late, or again."""
+        return self.frames >= FRAMES_OF_A_PROGRAM and not self.is_copy
+
+
+class FrameMemory:
+    """What the driver has said last, and who else speaks with its ids; kept after the driver has released control."""
+
+    def __init__(self) -> None:
+        self._ids: Ids | None = None
+        self._digests: dict[int, None] = {}
+        self._newcomers: dict[Conversation, Newcomer] = {}
+
+    def begin(self, ids: Ids) -> None:
+        """Remember the frames of these ids from now on."""
+        if ids != self._ids:
+            self._ids = ids
+            self._digests.clear()
+            self._newcomers.clear()
+
+    def is_repeat(self, received: Received) -> bool:
+        """Return whether the driver has sent this frame before, byte for byte."""
+        return received.digest in self._digests
+
+    def record(self, received: Received) -> None:
+        """Remember a frame of the driver."""
+        if received.digest:
+            self._digests.pop(received.digest, None)
+            self._digests[received.digest] = None
+            if len(self._digests) > FRAMES_REMEMBERED:
+                del self._digests[next(iter(self._digests))]
+
+    def note_newcomer(self, received: Received) -> Newcomer | None:
+        """Count a frame of another conversation; None if it has other ids than the driver."""
+        if (received.system, received.component) != self._ids:
+            return None
+        conversation = Conversation.of(received)
+        newcomer = self._newcomers.pop(conversation, None) or Newcomer()
+        self._newcomers[conversation] = newcomer
+        if len(self._newcomers) > NEWCOMERS_MAX:
+            del self._newcomers[next(iter(self._newcomers))]
+        newcomer.frames += 1
+        newcomer.is_copy &= self.is_repeat(received)
+        return newcomer
+
+    def newcomer(self, conversation: Conversation) -> Newcomer | None:
+        """Return what is known of another conversation with the driver's ids."""
+        return self._newcomers.get(conversation)
