@@ -25,7 +25,7 @@ NUMBERINGS_MAX = 4
 NUMBERING_SILENCE = 5.0
 """s of silence after which a numbering is forgotten."""
 CLASH_SILENCE = 0.7
-"""s of silence after which a numbering clashes with no other any more."""
+"""s of silence after which a numbering clashes with no other any more, and takes no frames from one in use."""
 
 _WINDOW_BITS = (1 << LATE_WINDOW + 1) - 1
 _RING = 64
@@ -66,6 +66,10 @@ class Numbering:
         self._digests[sequence % _RING] = digest
         self._rate = RATE_MIN
         self._window_at, self._window_count = now, 1
+
+    def is_in_use(self, now: float) -> bool:
+        """Return whether it was heard within CLASH_SILENCE."""
+        return now - self.heard_at <= CLASH_SILENCE
 
     def distance(self, sequence: int, now: float) -> int | None:
         """Return how far a number is from the newest, negative for behind; None if it is of another numbering."""
@@ -142,13 +146,13 @@ class SequenceTracker:
     def _accept_any(self, sequence: int, message_id: int, digest: int, now: float) -> FrameOrder:
         self._numberings = [each for each in self._numberings if now - each.heard_at <= NUMBERING_SILENCE]
         near = [
-            (abs(distance), distance, each)
+            (not each.is_in_use(now), abs(distance), distance, each)
             for each in self._numberings
             if (distance := each.distance(sequence, now)) is not None
         ]
         if not near:
             return self._begin(sequence, message_id, digest, now)
-        _, distance, self.numbering = min(near, key=lambda each: each[0])
+        _, _, distance, self.numbering = min(near, key=lambda each: each[:2])  # one in use goes before a silent one
         if distance <= 0:
             return self._accept_old(sequence, message_id, digest, now)
         self.lost += distance - 1
@@ -181,5 +185,5 @@ class SequenceTracker:
         return any(
             (each.newest - newest + CLOSE) & 0xFF <= 2 * CLOSE
             for each in self._numberings
-            if each is not self.numbering and now - each.heard_at <= CLASH_SILENCE
+            if each is not self.numbering and each.is_in_use(now)
         )

@@ -8,15 +8,18 @@ same ids, and one rule decides about them (vehicle/drive/driver.py).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections import deque
+from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
 from link.core import Peer, Received
 
 FRAMES_REMEMBERED = 512
 """Frames of the driver's ids that are remembered: each packet number twice."""
-NEWCOMERS_MAX = 8
-"""Other conversations with the driver's ids that are remembered."""
+FRAMES_BEFORE = 256
+"""Frames of each other conversation that are remembered, in case that it takes control."""
+NEWCOMERS_MAX = 16
+"""Conversations beside the driver's that are remembered."""
 FRAMES_OF_A_PROGRAM = 3
 """Frames in order that make a conversation: a single one that fits may be an accident."""
 
@@ -70,13 +73,15 @@ class Conversation(NamedTuple):
 
 @dataclass(slots=True)
 class Newcomer:
-    """Another conversation with the driver's ids."""
+    """Another conversation than the driver's."""
 
     frames: int = 0
     is_copy: bool = True
     """It has only repeated frames of the driver, byte for byte."""
     reported_at: float = -math.inf
     """When the driver was told of it."""
+    digests: deque[int] = field(default_factory=lambda: deque(maxlen=FRAMES_BEFORE))
+    """Its newest frames."""
 
     @property
     def is_program(self) -> bool:
@@ -85,19 +90,21 @@ class Newcomer:
 
 
 class FrameMemory:
-    """What the driver has said last, and who else speaks with its ids; kept after the driver has released control."""
+    """What the driver has said last, and who else speaks; kept after the driver has released control."""
 
     def __init__(self) -> None:
         self._ids: Ids | None = None
         self._digests: dict[int, None] = {}
         self._newcomers: dict[Conversation, Newcomer] = {}
 
-    def begin(self, ids: Ids) -> None:
-        """Remember the frames of these ids from now on."""
-        if ids != self._ids:
-            self._ids = ids
+    def begin(self, conversation: Conversation) -> None:
+        """Remember the frames of a conversation that takes control, also those that it has sent before."""
+        if conversation.ids != self._ids:
+            self._ids = conversation.ids
             self._digests.clear()
-            self._newcomers.clear()
+        newcomer = self._newcomers.pop(conversation, None)
+        for digest in newcomer.digests if newcomer else ():
+            self._record(digest)
 
     def is_repeat(self, received: Received) -> bool:
         """Return whether the driver has sent this frame before, byte for byte."""
@@ -105,16 +112,10 @@ class FrameMemory:
 
     def record(self, received: Received) -> None:
         """Remember a frame of the driver."""
-        if received.digest:
-            self._digests.pop(received.digest, None)
-            self._digests[received.digest] = None
-            if len(self._digests) > FRAMES_REMEMBERED:
-                del self._digests[next(iter(self._digests))]
+        self._record(received.digest)
 
-    def note_newcomer(self, received: Received) -> Newcomer | None:
-        """Count a frame of another conversation; None if it has other ids than the driver."""
-        if (received.system, received.component) != self._ids:
-            return None
+    def note_newcomer(self, received: Received) -> Newcomer:
+        """Count a frame of another conversation."""
         conversation = Conversation.of(received)
         newcomer = self._newcomers.pop(conversation, None) or Newcomer()
         self._newcomers[conversation] = newcomer
@@ -122,8 +123,16 @@ class FrameMemory:
             del self._newcomers[next(iter(self._newcomers))]
         newcomer.frames += 1
         newcomer.is_copy &= self.is_repeat(received)
+        newcomer.digests.append(received.digest)
         return newcomer
 
     def newcomer(self, conversation: Conversation) -> Newcomer | None:
-        """Return what is known of another conversation with the driver's ids."""
+        """Return what is known of another conversation."""
         return self._newcomers.get(conversation)
+
+    def _record(self, digest: int) -> None:
+        if digest:
+            self._digests.pop(digest, None)
+            self._digests[digest] = None
+            if len(self._digests) > FRAMES_REMEMBERED:
+                del self._digests[next(iter(self._digests))]

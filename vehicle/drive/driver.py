@@ -59,10 +59,8 @@ class Driver:
         A session is followed by a session, and a driver that streamed demands to its end by anybody, after
         SUCCESSION_TIME. One that sent heartbeats only is not missed so soon.
         """
-        if self.session is not None:
-            soon = by_session
-        else:
-            soon = self.last_heard - self.demand_at <= SUCCESSION_TIME
+        streamed = self.last_heard - self.demand_at <= SUCCESSION_TIME
+        soon = by_session if self.session is not None else streamed
         return now - self.last_heard > (SUCCESSION_TIME if soon else timeout)
 
     def hear(self, now: float, *, is_demand: bool, repeated: bool) -> None:

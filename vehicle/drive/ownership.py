@@ -200,7 +200,7 @@ class Ownership:
 
     def _set_driver(self, conversation: Conversation, session: DrivingSession | None, now: float) -> None:
         newcomer = self._memory.newcomer(conversation)
-        self._memory.begin(conversation.ids)
+        self._memory.begin(conversation)
         is_copy = session is None and newcomer is not None and newcomer.is_copy
         self.driver = Driver(conversation, session, now, is_copy=is_copy)
         self.clashed_at = None
@@ -208,7 +208,7 @@ class Ownership:
     def _hear_newcomer(self, driver: Driver, received: Received, now: float) -> bool:
         """Handle a message of a sender that is not the driver; return True if it has succeeded it."""
         newcomer = self._memory.note_newcomer(received)
-        if newcomer is None or type(received.message).id not in _ACTS:
+        if not self.has_driver_ids(received) or type(received.message).id not in _ACTS:
             return False
         conversation = Conversation.of(received)
         session = self._proofs.session_of(conversation, now)

@@ -176,6 +176,17 @@ def test_a_silent_numbering_clashes_with_none() -> None:
     assert not cross(CLASH_SILENCE + 0.01)
 
 
+def test_a_silent_numbering_takes_no_frames_from_one_in_use() -> None:
+    sender = Sender().stream(1, 100, 20)
+    sender.take(50)
+    sender.tracker.numbering.newest = 120
+    for number in range(101, 140):
+        assert sender.take(number, wait=0.05) is NEW
+        if number > 101 + 20 * CLASH_SILENCE:
+            assert sender.numbering == 1
+            assert not sender.tracker.clash
+
+
 def test_of_too_many_numberings_the_least_used_is_forgotten() -> None:
     sender = Sender().stream(1, 100, 20)
     for index, start in enumerate((160, 200, 240, 30)):

@@ -11,7 +11,6 @@ from tests.vehicle.conversations import conversation
 from tests.vehicle.safety.rig import BOOT, Rig
 from vehicle.drive.conversation import Conversation
 from vehicle.drive.driver import SUCCESSION_TIME
-from vehicle.drive.operator_session import PROOF_VALID
 
 ECHO_MAX = 0.5
 NO_AXES: dict[str, int] = {"x": INVALID_AXIS, "r": INVALID_AXIS}
