@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.axes import Axes
-from dialects.enums import Command, Result
+from dialects.enums import Command, ControlFlag, Result
 from dialects.modes import Mode
 from tests.vehicle.wires import Program, SessionProgram, Wires
 from vehicle.drive.driver import SUCCESSION_TIME
@@ -356,6 +356,45 @@ def test_crossing_numbers_stop_the_rover_and_both_are_told() -> None:
     driver.hold(1.5, NEUTRAL)
     driver.hold(0.5, AHEAD)
     assert wires.throttle > 0.0
+
+
+# ---- ROVER_CONTROL ----
+
+
+def newest_control(driver: Program) -> tuple[int, int, int, ControlFlag]:
+    """Session, system, component and flags of the newest ROVER_CONTROL that a program got."""
+    message = next(
+        each for address, each in reversed(driver.wires.sent)
+        if address == driver.address and isinstance(each, m.RoverControl)
+    )  # fmt: skip
+    return message.session_id, message.driver_system, message.driver_component, ControlFlag(message.flags)
+
+
+def test_rover_control_names_the_program_in_control() -> None:
+    wires, driver = driving(SessionProgram)
+    assert newest_control(driver) == (7, 255, 190, ControlFlag(0))
+    assert driver.command(Command.REQUEST_OPERATOR_CONTROL, 1, 1) is Result.ACCEPTED
+    driver.hold(0.1, NEUTRAL)
+    assert newest_control(driver) == (7, 255, 190, ControlFlag.TAKEOVER_ALLOWED)
+    wires.wait(0.8)
+    assert newest_control(driver)[3] & ControlFlag.SILENT
+    driver.hold(0.1, NEUTRAL)
+    assert not newest_control(driver)[3] & ControlFlag.SILENT
+    driver.command(Command.REQUEST_OPERATOR_CONTROL, 0)
+    driver.hold(0.1, None)
+    assert newest_control(driver)[:3] == (0, 0, 0)
+
+
+def test_rover_control_of_a_driver_without_sessions_tells_of_a_clash() -> None:
+    wires, driver = driving()
+    watcher = SessionProgram(wires, "watcher", ids=(254, 190))
+    watcher.hold(1.5, None)
+    driver.hold(0.1, NEUTRAL)
+    assert newest_control(watcher)[:3] == (0, 255, 190)
+    twin = Program(wires, driver.address, number=(driver.number - 1) & 0xFF)
+    twin.demand(BACK)
+    driver.hold(0.1, NEUTRAL)
+    assert newest_control(watcher)[3] == ControlFlag.CLASH
 
 
 # ---- any mix ----

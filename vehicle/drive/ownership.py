@@ -74,6 +74,11 @@ class Ownership:
         """Return True if the driver has sent nothing for FS_GCS_TIMEOUT."""
         return self.silence_duration(now) > self._params["FS_GCS_TIMEOUT"]
 
+    def is_silent(self, now: float) -> bool:
+        """Return whether another program with the driver's ids may take over, if it has a session."""
+        timeout = self._params["FS_GCS_TIMEOUT"]
+        return self.driver is not None and self.driver.may_be_succeeded(now, by_session=True, timeout=timeout)
+
     def denial_reason(self, sender: Sender, now: float) -> str | None:
         """Return why a sender may not command, or None if it is in control or no ground station is."""
         if self._is_excluded(sender):
