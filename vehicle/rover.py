@@ -102,6 +102,12 @@ class Rover:
         return self._safety.state
 
     @property
+    def reserved_ids(self) -> tuple[int, int] | None:
+        """Ids of the ground station in control: it gets a place on each link even if all are taken."""
+        driver = self._control.ownership.driver
+        return driver.conversation.ids if driver else None
+
+    @property
     def messages(self) -> InboundTable:
         """The messages that are handled; others need not be decoded."""
         return self._dispatcher.messages

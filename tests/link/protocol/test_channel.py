@@ -7,9 +7,10 @@ from hypothesis import strategies as st
 
 from dialects.messages import Attitude, CommandAck, CommandLong, Heartbeat, ManualControl, Message, StatusText
 from link.core import Outgoing, Peer, Received
-from link.protocol.channel import MAX_PEERS, PEER_SILENCE, Channel
+from link.protocol.channel import Channel
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
+from link.protocol.peer_table import MAX_PEERS, PEER_SILENCE, RESERVED_PLACES
 from tests.link.frames import demand, frame, heartbeat
 
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
@@ -265,12 +266,28 @@ def test_a_connection_that_says_nothing_keeps_no_place_that_another_needs() -> N
 # ---- too much ----
 
 
+def test_the_ids_in_control_get_a_place_when_all_are_taken() -> None:
+    channel = vehicle()
+    for port in range(MAX_PEERS):
+        channel.receive(heartbeat(0, system=100), f"10.0.0.9:{port}", 0.0)
+    assert channel.receive(heartbeat(0), HERE, 0.1) == []
+    channel.reserve((255, 190))
+    (found,) = channel.receive(heartbeat(1), HERE, 0.2)
+    assert found.introduced
+    assert channel.receive(heartbeat(0, system=100), "10.0.0.9:99", 0.2) == []  # nobody else does
+    for port in range(1, RESERVED_PLACES + 2):
+        channel.receive(heartbeat(0), f"10.0.0.7:{port}", 0.3)
+    assert len(audience(channel)) == MAX_PEERS + RESERVED_PLACES
+    channel.reserve(None)
+    assert channel.receive(heartbeat(0), "10.0.0.7:99", 0.4) == []
+
+
 def test_22_peers_are_limited_and_a_real_one_keeps_its_place() -> None:
     channel = vehicle()
     real = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
     for port in range(5000):
         channel.receive(demand(port % 256), ("10.0.0.1", port), 0.001 * port)
-    assert len(channel._peers) <= MAX_PEERS
+    assert len(list(channel._peers)) <= MAX_PEERS
     assert sent(channel, CommandAck(400, 0), peer=real) == [(HERE, 0)]
     assert channel.receive(heartbeat(1), HERE, 5.0) != []
 
@@ -321,7 +338,7 @@ def test_noise_makes_no_peer_and_is_counted() -> None:
     channel = vehicle()
     assert channel.receive(b"Init ArduRover V4.7.0-dev\n", HERE, 0.0) == []
     assert channel.report().resync_bytes == 26
-    assert not channel._peers
+    assert not list(channel._peers)
 
 
 def test_a_foreign_dialect_is_named_after_three_frames() -> None:
@@ -380,7 +397,7 @@ def test_there_is_one_place_for_senders_of_stops() -> None:
     (second,) = channel.receive(frame(DISARM), THERE, 1.0)
     assert sent(channel, CommandAck(400, 0), peer=first.peer) == []
     assert [address for address, _ in sent(channel, CommandAck(400, 0), peer=second.peer)] == [THERE]
-    assert len(channel._peers) == MAX_PEERS
+    assert len(list(channel._peers)) == MAX_PEERS
 
 
 def test_a_stop_without_a_place_is_in_the_telemetry_log() -> None:
