@@ -16,7 +16,9 @@ from dialects import messages as m
 from dialects.axes import Axes
 from dialects.enums import Command, ControlFlag, Result
 from dialects.modes import Mode
-from tests.vehicle.wires import Program, SessionProgram, Wires
+from link.core import Peer
+from tests.vehicle.wires import IDS, Program, SessionProgram, Wires
+from vehicle.drive.conversation import Conversation
 from vehicle.drive.driver import SUCCESSION_TIME
 
 AHEAD, BACK, NEUTRAL = Axes(throttle=1.0), Axes(throttle=-1.0), Axes()
@@ -308,6 +310,38 @@ def test_a_request_for_control_is_forwarded_to_the_driver_and_not_to_its_twin() 
     other.command(Command.REQUEST_OPERATOR_CONTROL, 1)
     asked = [address for address, message in wires.sent if isinstance(message, m.CommandLong)]
     assert asked == [driver.address]
+
+
+def test_commands_and_setpoints_of_a_late_link_are_refused() -> None:
+    wires, driver = driving(SessionProgram, links=2)
+    assert isinstance(driver, SessionProgram)
+    late = SessionProgram(wires, "gcs by the slow link", link=1, number=77)
+    late.clock = 500
+    late.beat()
+    for _ in range(60):  # proofs that are 2 s old on arrival
+        driver.step(NEUTRAL)
+        late.send(late.build(AHEAD, age=2.0))
+        wires.wait(0.05)
+    assert late.set_mode(Mode.GUIDED) is Result.FAILED
+    assert late.text("this link is 2.0 s late")
+    assert wires.mode is Mode.MANUAL
+    assert not driver.text("Another program")
+    assert wires.rover._control.ownership.setpoint_denial_reason(Conversation(*IDS, *peer_of(late)), wires.now)
+    assert (
+        wires.rover._control.ownership.setpoint_denial_reason(Conversation(*IDS, *peer_of(driver)), wires.now) is None
+    )
+    wires.wait(0.5)
+    assert (
+        wires.rover._control.ownership.setpoint_denial_reason(Conversation(*IDS, *peer_of(driver)), wires.now)
+        == "older than OPR_ECHO_MAX on arrival"
+    )
+
+
+def peer_of(program: Program) -> tuple[Peer, int]:
+    """The peer and the numbering of a program, as its channel knows them."""
+    state = program.wires.channels[program.link]._peers.get(program.address)
+    assert state is not None
+    return state.peer, state.sources[program.ids].numbering.index
 
 
 # ---- 9: stops ----
