@@ -6,7 +6,7 @@ The protocol itself is link/services/mission/server.py.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from dialects import messages as m
 from dialects.enums import Command, MissionResult, MissionType, Result, Severity
@@ -17,7 +17,7 @@ from link.services.command.server import CommandReply
 from link.services.ftp.files import Folder
 from link.services.mission.commit import PendingPlanWrite, PlanChange
 from link.services.mission.files import PlanFolder
-from link.services.mission.items import Items, MissionItem, describe_rejection
+from link.services.mission.items import ItemRequest, Items, MissionItem, describe_rejection
 from link.services.mission.server import MissionServer
 from vehicle.autonomy.mission.item_reached import ItemReachedSender
 from vehicle.autonomy.mission.rules import DoItem, plan_rules
@@ -25,7 +25,7 @@ from vehicle.autonomy.navigator import PlanIds
 from vehicle.commands.access import Access, CommandResult
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
-from vehicle.commands.inbound import InboundMessage, InboundTable, from_server
+from vehicle.commands.inbound import Effect, InboundMessage, InboundTable, from_server
 from vehicle.navigation.fence import find_ineffective_items
 from vehicle.storage.plan_store import PlanStore
 from vehicle.telemetry.build_navigation import mission_state
@@ -35,12 +35,21 @@ REMIND_PERIOD = 30.0
 CURRENT_ITEM = -1
 """Sequence of DO_SET_MISSION_CURRENT that keeps the current item."""
 
+HandleItemRequest = Callable[[ItemRequest, MissionItem, Received, float], MissionResult]
+
 
 class MissionService:
     """Owns the mission server and is its `link.services.mission.server.MissionBackend`."""
 
-    def __init__(self, context: Context, do_items: Mapping[int, DoItem], store: PlanStore | None = None) -> None:
-        """Without a `store`, plans end with the program."""
+    def __init__(
+        self,
+        context: Context,
+        do_items: Mapping[int, DoItem],
+        handle_item_request: HandleItemRequest,
+        store: PlanStore | None = None,
+    ) -> None:
+        """Without a `store`, plans end with the program. `handle_item_request` takes items that are in no plan."""
+        self.handle_item_request = handle_item_request
         self._safety = context.safety
         self._control = context.control
         self._access = context.access
@@ -77,15 +86,16 @@ class MissionService:
         writes = (
             (m.MissionCount, "starts an upload: MISSION_REQUEST_INT"),
             (m.MissionWritePartialList, "starts an upload of a part"),
-            (m.MissionItemInt, "item of an upload"),
-            (m.MissionItem, "item of an upload"),
             (m.MissionClearAll, "clears one plan or all"),
             (m.MissionSetCurrent, "chooses the next item: MISSION_CURRENT"),
         )
+        items = (m.MissionItemInt, m.MissionItem)
+        item = "item of an upload; current 2: drives there in GUIDED"
         serve = from_server(self._server.receive)
         return (
             *(InboundMessage(message, Access.CONNECTED, text, serve) for message, text in reads),
             *(InboundMessage(message, Access.DRIVER_OR_UNCLAIMED, text, serve) for message, text in writes),
+            *(InboundMessage(message, Access.DRIVER_OR_UNCLAIMED, item, serve, Effect.MOTION) for message in items),
             InboundMessage(m.MissionAck, Access.INTRODUCED, "ends an upload of its sender", serve),
         )
 
