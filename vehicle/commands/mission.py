@@ -20,7 +20,7 @@ from link.services.mission.files import PlanFolder
 from link.services.mission.items import ItemRequest, Items, MissionItem, describe_rejection
 from link.services.mission.server import MissionServer
 from vehicle.autonomy.mission.item_reached import ItemReachedSender
-from vehicle.autonomy.mission.rules import DoItem, plan_rules
+from vehicle.autonomy.mission.rules import DoItem, find_unsupported_items, plan_rules
 from vehicle.autonomy.navigator import PlanIds
 from vehicle.commands.access import Access, CommandResult
 from vehicle.commands.command_table import CommandSpec, CommandTable
@@ -60,6 +60,8 @@ class MissionService:
         self._damage: dict[MissionType, str] = {}
         self._remind_due = -math.inf
         self._notices: list[str] = []
+        self._changes: list[str] = []
+        self._sizes = dict.fromkeys(MissionType, 0)
         self._rules = plan_rules(do_items)
         self._reached = ItemReachedSender()
         system, component = context.ids
@@ -165,11 +167,15 @@ class MissionService:
         return self._store.save(kind, items)
 
     def handle_plan_changed(self, kind: MissionType, items: Items) -> None:
-        """Put a plan in force."""
+        """Put a plan in force, and report it to all: it may be another ground station's."""
         self._damage.pop(kind, None)
+        if items or self._sizes[kind]:
+            self._changes.append(
+                f"{kind.name.capitalize()} " + (f"changed, items: {len(items)}" if items else "cleared")
+            )
         self._apply(kind, items)
         if kind is MissionType.MISSION:
-            self._notices += self._find_unsupported_items(items)
+            self._notices += find_unsupported_items(items, self._do_items)
         elif kind is MissionType.FENCE:
             self._notices += find_ineffective_items(items)
 
@@ -211,6 +217,7 @@ class MissionService:
 
     def _apply(self, kind: MissionType, items: Items) -> None:
         navigator = self._navigator
+        self._sizes[kind] = len(items)
         navigator.set_plan_ids(PlanIds(**{each.name.lower(): self._server.plan_id(each) for each in self._rules}))
         if kind is MissionType.MISSION:
             self._reached.reset()
@@ -233,21 +240,12 @@ class MissionService:
             self._texts.send_once(f"plans {self._store.problem}", Severity.WARNING, text, now)
 
     def _send_notices(self, now: float) -> None:
+        for text in self._changes:
+            self._texts.send_change(Severity.NOTICE, text, now)
+        self._changes.clear()
         for text in self._notices:
             self._texts.send(Severity.WARNING, text, now)
         self._notices.clear()
-
-    def _find_unsupported_items(self, items: Items) -> list[str]:
-        """Report items that will be skipped: a plan of another vehicle runs without them, as in ArduPilot."""
-        found = {
-            number: reason
-            for number, item in enumerate(items)
-            if item.command in self._do_items and (reason := self._do_items[item.command].unsupported_reason(item))
-        }
-        if not found:
-            return []
-        numbers, reasons = ", ".join(map(str, found)), ", ".join(dict.fromkeys(found.values()))
-        return [f"Mission: no accessory for items {numbers}, will be skipped: {reasons}"]
 
     def _notify_rejected_file(self, kind: MissionType, why: str) -> None:
         self._notices.append(f"{kind.name.capitalize()} file rejected: {why}")
