@@ -121,7 +121,14 @@ class LinkView(msgspec.Struct, frozen=True, kw_only=True):
     rate: float = 0.0
     """Frames received per second."""
     bytes_per_second: float = 0.0
+    frames: int = 0
+    """Received since the link opened, like the next three."""
+    bytes_received: int = 0
     crc_errors: int = 0
+    dropped: int = 0
+    """Messages that could not be sent: no room, or the other end refused them."""
+    systems: tuple[int, ...] = ()
+    """System ids heard, of ground stations too."""
     problem: str | None = None
     """e.g. "messages arrive with another dialect's checksum: HEARTBEAT"."""
 
@@ -156,6 +163,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     number: int = 0
     uptime: float = 0.0
     endpoints: tuple[str, ...] = ()
+    addresses: tuple[str, ...] = ()
+    """IPv4 addresses of this machine without loopback, while there is no vehicle."""
     waiting: str | None = None
     """What the station waits for while there is no vehicle, in one line."""
     vehicle: VehicleView | None = None

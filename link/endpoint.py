@@ -53,7 +53,10 @@ DEFAULT_BAUD = 57600
 ANY_ADDRESSES = ("0.0.0.0", "::")
 """Addresses to listen on, and none to send to."""
 
-LOOPBACK = ("127.0.0.1", "::1", "localhost")
+
+def is_loopback(host: str) -> bool:
+    """Return whether only programs on this machine can reach this host."""
+    return host in ("::1", "localhost") or re.fullmatch(r"127(\.[0-9]+){3}", host) is not None
 
 
 def _parse_host_port(scheme: str, rest: str) -> Endpoint:
@@ -72,7 +75,7 @@ def _parse_destination(scheme: str, rest: str) -> Endpoint:
     if endpoint.host in ANY_ADDRESSES:
         raise EndpointError(
             f"endpoint {endpoint.text!r}: {endpoint.host} is not an address to send to; "
-            f"name the other end, or write udpin:{rest} to wait for it"
+            f"name the other end, or write {scheme[:3]}in:{rest} to wait for it"
         )
     return endpoint
 
@@ -115,7 +118,7 @@ SCHEMES: dict[str, Scheme] = {
     "tcpout": Scheme(
         "tcpout:HOST:PORT",
         "connect to this address; reconnect when the connection ends",
-        _parse_host_port,
+        _parse_destination,
         "link.transport.tcp:open_tcpout",
     ),
     "serial": Scheme(
@@ -165,7 +168,8 @@ def _hint(text: str, scheme: str) -> str:
     address = re.fullmatch(r"(localhost|[\w-]+(?:\.[\w-]+)+|\[[0-9a-fA-F:]+\]):[0-9]+", text)
     if not address:
         return ""
-    listen = address[1].strip("[]") in (*LOOPBACK, *ANY_ADDRESSES)
+    host = address[1].strip("[]")
+    listen = is_loopback(host) or host in ANY_ADDRESSES
     return f"did you mean {'udpin' if listen else 'udpout'}:{text}? "
 
 

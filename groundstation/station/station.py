@@ -62,6 +62,7 @@ class Station:
         self._link_events = LinkEvents()
         self._message_rates = MessageRates()
         self._simulator_state: str | None = None
+        self._addresses: tuple[str, ...] = ()
         self._outbox: list[Outgoing] = []
         self._snapshot_count = 0
 
@@ -135,6 +136,10 @@ class Station:
         """Record the state of the simulator, for the next snapshot."""
         self._simulator_state = state
 
+    def set_addresses(self, addresses: tuple[str, ...]) -> None:
+        """Record the addresses of this machine, for the next snapshot."""
+        self._addresses = addresses
+
     @property
     def finished(self) -> bool:
         """Quit was requested, the last neutral demand is out, and nothing is left to disarm."""
@@ -148,6 +153,7 @@ class Station:
             number=self._snapshot_count,
             uptime=now - self._started,
             endpoints=self._endpoints,
+            addresses=() if selected else self._addresses,
             waiting=self._waiting(),
             vehicle=self._vehicle_view(selected, now) if selected else None,
             left_armed=self._departure.left_armed(now),
@@ -187,7 +193,6 @@ class Station:
     def _waiting(self) -> str | None:
         if self.fleet.selected is not None:
             return None
-        where = ", ".join(self._endpoints)
         if self._links.has_traffic:
-            return f"receiving data on {where}, but no vehicle heartbeat yet"
-        return f"waiting for a vehicle on {where}"
+            return "receiving data, but no HEARTBEAT of a vehicle yet"
+        return f"waiting for a vehicle on {', '.join(self._endpoints)}"

@@ -53,6 +53,7 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
             "0.0.0.0 is not an address to send to; name the other end, or write udpin:0.0.0.0:14550",
         ),
         ("udpout:[::]:14550", "write udpin:[::]:14550 to wait for it"),
+        ("tcpout:0.0.0.0:5760", "write tcpin:0.0.0.0:5760 to wait for it"),
         ("tcp:127.0.0.1:5760", "did you mean tcpout:?"),
         ("udp:127.0.0.1:14550", "did you mean udpin:?"),
         ("/dev/ttyUSB0", "did you mean serial:/dev/ttyUSB0:57600?"),
