@@ -1,4 +1,4 @@
-"""What to try while no vehicle is found, by link type: what the link has received, and commands that work as printed."""
+"""What to try while no vehicle is found: what each link has received, and commands that work as printed."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def _serial(endpoint: Endpoint, addresses: Sequence[str], quit_key: str) -> Iter
     """For a serial port: what is wrong most often."""
     yield _text("Check that the vehicle and both radios have power, and at the cable:")
     yield _text("  TX goes to RX and RX to TX, and the grounds are connected")
-    yield _text(f"  both ends use {endpoint.baud} baud; radios usually 57600, USB ports of autopilots 115200")
+    yield _text(f"  both ends use {endpoint.baud} baud; radios usually 57600, USB ports 115200")
     yield _text("  the autopilot sends MAVLink on that port (ArduPilot: SERIALn_PROTOCOL 2)")
 
 

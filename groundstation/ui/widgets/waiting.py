@@ -70,15 +70,16 @@ class WaitingPage(Instrument[WaitingValue]):
         return lines if state and "ended" not in state else lines + self._offer(width)
 
     def _offer(self, width: int) -> list[list[Part]]:
-        key = style(YELLOW, bold=True)
-        simulator: list[Part] = [
-            ("  ENTER", key),
-            (" or ", style(DIM)),
-            (self.value.simulator_key, key),
-            (" starts a simulated rover.", style(TEXT)),
-        ]
         advice = advise(self.value.snapshot, self.value.quit_key)
-        return [simulator, [], *(line for each in advice for line in _advice(each, width))]
+        return [self._simulator(), [], *(line for each in advice for line in _advice(each, width))]
+
+    def _simulator(self) -> list[Part]:
+        """Return how to start a simulated rover; it can send only to a UDP port that listens."""
+        if not any(endpoint.startswith("udpin:") for endpoint in self.value.snapshot.endpoints):
+            return [("  groundstation --sitl", style(TEXT, bold=True)), (" starts a simulated rover.", style(DIM))]
+        key = style(YELLOW, bold=True)
+        keys: list[Part] = [("  ENTER", key), (" or ", style(DIM)), (self.value.simulator_key, key)]
+        return [*keys, (" starts a simulated rover.", style(TEXT))]
 
 
 def _advice(advice: Advice, width: int) -> list[list[Part]]:
