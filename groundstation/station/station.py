@@ -108,6 +108,7 @@ class Station:
         """Update the link statistics; log when a link problem starts and ends."""
         selected = self.fleet.selected
         self._links.update(reports, selected.state.system if selected else None, now)
+        self.fleet.observe(reports, now)
         for report in reports:
             event = self._link_events.update(report)
             if event:
@@ -187,7 +188,7 @@ class Station:
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
             without_link=contact.without_link,
             refusal=commander.last_refusal(state.system),
-            warnings=contact.settings_check.warnings if contact.settings_check else (),
+            warnings=contact.warnings,
         )
 
     def _waiting(self) -> str | None:

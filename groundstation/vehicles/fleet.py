@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+from dialects.axes import AxisMap, axis_map
 from dialects.enums import Autopilot, Severity, VehicleType
 from dialects.messages import Heartbeat, Message
-from groundstation.vehicles.ardupilot_checks import ArduPilotChecks
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
 from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
 from groundstation.vehicles.stream_requests import StreamRequests
 from groundstation.vehicles.vehicle_state import VehicleState
-from link.core import Received
+from link.core import LinkReport, Received
 
 MAX_VEHICLES = 16
 """More would not fit on the screen, and a flood of invented system ids must not grow a table."""
+
+
+SIGNING = "signs its frames; this ground station cannot sign: it may ignore commands"
 
 
 @dataclass(slots=True)
@@ -27,13 +31,26 @@ class Contact:
     stream_requests: StreamRequests
     link: int
     """Index of the link on which the newest message of the vehicle arrived."""
-    settings_check: ArduPilotChecks | None = None
+    settings_check: SettingsCheck | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     ours: bool = False
     """This station has armed or driven the vehicle since the vehicle was last disarmed."""
     lost_at: float | None = None
     """When the last message arrived, while the link is lost."""
+    signs: bool = False
+    """The vehicle signs its frames."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Texts for the driver: why the vehicle may ignore us, and settings that would let it drive on."""
+        settings = self.settings_check.warnings if self.settings_check else ()
+        return (SIGNING, *settings) if self.signs else settings
+
+    @property
+    def axes(self) -> AxisMap:
+        """The axes of MANUAL_CONTROL that this vehicle uses."""
+        return axis_map(self.state.autopilot, self.settings_check.frame if self.settings_check else None)
 
     @property
     def without_link(self) -> str | None:
@@ -127,11 +144,19 @@ class Fleet:
         target = (state.system, state.component)
         contact = Contact(state, StreamRequests(target, now), received.peer.link)
         self._contacts[received.system] = contact
-        if ArduPilotChecks.applies_to(state.autopilot):
-            contact.settings_check = ArduPilotChecks(*self._own_id, target=target)
+        if state.autopilot in SETTINGS:
+            contact.settings_check = SettingsCheck(SETTINGS[state.autopilot], *self._own_id, target=target)
         self._selected = self._selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Notice which vehicles sign their frames."""
+        signing = {system for report in reports for system in report.signing}
+        for contact in self._contacts.values():
+            before, contact.signs = contact.signs, contact.state.system in signing
+            if contact.signs and not before:
+                self._log.add(now, "station", f"{contact.state.name}: {SIGNING}", Severity.WARNING)
 
     def update(self, now: float) -> None:
         """Notice which vehicles are lost and which are back."""

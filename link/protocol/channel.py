@@ -19,7 +19,7 @@ from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, FramerCounts, noise_hint, payload_of
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
-from link.protocol.peer import PeerState, count_sources
+from link.protocol.peer import PeerState, count_sources, find_signing
 from link.protocol.sequence import NEW, FrameOrder
 from link.protocol.stops import find_stops
 
@@ -151,12 +151,13 @@ class Channel:
         if self.log_tap is not None and frames:
             self.log_tap.record_received(frames, now)
         for frame in frames:
-            number, system, component, sequence, _ = frame
+            number, system, component, sequence, raw = frame
             sender = (system, component)
             if not system or sender == self.ids:  # component 0 is valid: pymavlink sends it by default
                 self._own_id |= sender == self.ids
                 continue
             state.last_seen, state.silent = now, False
+            state.newest[system] = raw
             source = state.sources.get(sender)
             order = source.accept(sequence, number) if source else state.add_source(frame)
             if order is not NEW and self._is_old(order, number):
@@ -263,11 +264,8 @@ class Channel:
     def report(self, down: str | None = None, *, now: float = 0.0, dropped: int = 0) -> LinkReport:
         """Return the counters of this channel. `down` and `dropped` come from the transport."""
         counts = FramerCounts()
-        for each in (
-            self._past_counts,
-            self._new_peer_framer.counts,
-            *(state.framer.counts for state in self._peers.values()),
-        ):
+        framers = [self._new_peer_framer, *(state.framer for state in self._peers.values())]
+        for each in (self._past_counts, *(framer.counts for framer in framers)):
             counts.add(each)
         return LinkReport(
             name=self.name,
@@ -285,6 +283,7 @@ class Channel:
             dialect_mismatch=tuple(
                 sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER)
             ),
+            signing=find_signing(self._peers.values()),
             own_id=self._own_id,
             down=down or self._noise_problem(counts),
             capacity=self._capacity,

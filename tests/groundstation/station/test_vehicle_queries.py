@@ -56,12 +56,12 @@ def test_ardupilot_settings_that_let_it_drive_on_are_warned_of() -> None:
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
     assert cockpit.view.warnings == (
-        "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost",
-        "FS_GCS_ENABLE 0: no failsafe when the ground station is lost",
+        OVERRIDE,
+        "FS_GCS_ENABLE 0: no failsafe when the ground station is lost; set it to 1",
     )
 
 
-OVERRIDE = "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost"
+OVERRIDE = "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost; set it to 0.5"
 
 
 def test_settings_that_could_not_be_read_are_named_and_read_later() -> None:

@@ -172,8 +172,8 @@ def test_its_dangerous_settings_are_warned_of() -> None:
     vehicle = replay().moments[-1].snapshot.vehicle
     assert vehicle is not None
     assert set(vehicle.warnings) >= {
-        "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost",
-        "FS_GCS_ENABLE 0: no failsafe when the ground station is lost",
+        "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost; set it to 0.5",
+        "FS_GCS_ENABLE 0: no failsafe when the ground station is lost; set it to 1",
     }
 
 
