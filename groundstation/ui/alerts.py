@@ -109,6 +109,18 @@ def _failsafe(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.DANGER, f"failsafe: {', '.join(vehicle.failsafes)}{soon}")
 
 
+STATES = {5: "CRITICAL (a failsafe or fault)", 6: "EMERGENCY"}
+"""MAV_STATE of the HEARTBEAT that a driver must know -> its text."""
+
+
+def _state(now: DisplayState) -> Iterator[Alert]:
+    vehicle = now.snapshot.vehicle
+    if vehicle is None or vehicle.emergency_stop or vehicle.failsafes or vehicle.status not in STATES:
+        return
+    level = AlertLevel.DANGER if vehicle.armed else AlertLevel.WARNING
+    yield Alert(level, f"{vehicle.name} reports {STATES[vehicle.status]}: see the log for the reason")
+
+
 def _gate(now: DisplayState) -> Iterator[Alert]:
     if now.closure is not None:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
@@ -157,12 +169,20 @@ def _settings(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, warning)
 
 
+def _vehicles(now: DisplayState) -> Iterator[Alert]:
+    if now.snapshot.not_shown:
+        shown = len(now.snapshot.vehicles)
+        yield Alert(AlertLevel.WARNING, f"{now.snapshot.not_shown} vehicles are not shown: {shown} are the most")
+
+
 def _hint(now: DisplayState) -> Iterator[Alert]:
     vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
     if vehicle is None:
         yield Alert(
             AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves"
         )
+    elif not vehicle.armed and vehicle.prearm is False:
+        yield Alert(AlertLevel.HINT, f"disarmed: not ready to arm, {vehicle.prearm_reason or 'pre-arm checks fail'}")
     elif not vehicle.armed:
         yield Alert(AlertLevel.HINT, f"disarmed: hold {now.key('vehicle.arm')} to arm {vehicle.name}")
     elif vehicle.mode != "MANUAL":
@@ -180,7 +200,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _silence, _emergency, _failsafe, _gate, _refusal, _id_conflict, _limits, _driver, _settings,
-    _hint,
+    _station, _hold, _silence, _emergency, _failsafe, _state, _gate, _refusal, _id_conflict, _limits, _driver,
+    _settings, _vehicles, _hint,
 )  # fmt: skip
 """Most urgent first."""

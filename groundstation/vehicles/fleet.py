@@ -13,7 +13,7 @@ from groundstation.vehicles.dialect_probe import DialectProbe
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
 from groundstation.vehicles.stream_requests import StreamRequests
-from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
 from link.core import LinkReport, Received
 
 MAX_VEHICLES = 16
@@ -90,6 +90,8 @@ class Fleet:
         self._own_id = (system, component)
         self._contacts: dict[int, Contact] = {}
         self._selected: Contact | None = None
+        self._not_shown: dict[int, float] = {}
+        """System id of a vehicle for which there is no place -> when it was heard last."""
 
     def __iter__(self) -> Iterator[Contact]:
         return iter(self._contacts.values())
@@ -103,6 +105,11 @@ class Fleet:
     def system_ids(self) -> tuple[int, ...]:
         """System ids of all contacts, in rising order."""
         return tuple(sorted(self._contacts))
+
+    @property
+    def not_shown(self) -> int:
+        """How many vehicles are heard for which there is no place."""
+        return len(self._not_shown)
 
     @property
     def also_armed(self) -> tuple[int, ...]:
@@ -137,8 +144,12 @@ class Fleet:
         contact = self._contacts.get(received.system)
         if contact is not None:
             contact.link = received.peer.link
-        if contact is not None or not is_vehicle(received.message) or len(self._contacts) >= MAX_VEHICLES:
+        if contact is not None or not is_vehicle(received.message):
             return contact
+        if len(self._contacts) >= MAX_VEHICLES:
+            self._leave_out(received.system, now)
+            return None
+        self._not_shown.pop(received.system, None)
         state = VehicleState(received.system, received.component)
         state.receive(received, now)
         target = (state.system, state.component)
@@ -150,6 +161,14 @@ class Fleet:
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact
 
+    def _leave_out(self, system: int, now: float) -> None:
+        """Note a vehicle for which there is no place."""
+        if system not in self._not_shown:
+            self._log.add(
+                now, "station", f"vehicle {system} is not shown: {MAX_VEHICLES} are the most", Severity.WARNING
+            )
+        self._not_shown[system] = now
+
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Notice which vehicles sign their frames."""
         signing = {system for report in reports for system in report.signing}
@@ -160,6 +179,7 @@ class Fleet:
 
     def update(self, now: float) -> None:
         """Notice which vehicles are lost and which are back."""
+        self._not_shown = {system: at for system, at in self._not_shown.items() if now - at <= LOST_AFTER}
         for contact in self._contacts.values():
             monitor, name = contact.state.monitor, contact.state.name
             if contact.lost_at is None and not monitor.is_alive(now):

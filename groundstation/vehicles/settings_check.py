@@ -119,7 +119,7 @@ class SettingsCheck:
             self._params.read(self._settings.former_names[name], now)
 
     def _missing_warning(self) -> list[str]:
-        return [f"could not read {', '.join(self._missing)}: trying again"] if self._missing else []
+        return [f"could not read, trying again: {', '.join(self._missing)}"] if self._missing else []
 
     def _check(self, name: str) -> list[str]:
         param = self._params.params.get(name)

@@ -29,6 +29,7 @@ STATUS_LINE = (
     ("cmd", "age of the demand that the motors obey; from 450 ms on they stop"),
     ("key→motor", "time from a changed demand to the vehicle that applies it"),
     ("tty", "round trip to this terminal; without answers keys do not drive"),
+    ("pre-arm", "the vehicle's checks before arming; the log has the reasons"),
     ("gps, batt", "GPS fix and satellites; battery voltage and charge"),
 )
 """Readings of the status line, in its order, and their meaning."""

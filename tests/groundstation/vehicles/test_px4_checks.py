@@ -105,7 +105,7 @@ def test_settings_that_cannot_be_read_are_named_and_asked_for_again() -> None:
     del vehicle.values["COM_RC_LOSS_T"]
     cockpit = Cockpit(vehicle)
     cockpit.run(5.0)
-    assert list(cockpit.view.warnings) == ["could not read COM_RC_LOSS_T: trying again"]
+    assert list(cockpit.view.warnings) == ["could not read, trying again: COM_RC_LOSS_T"]
     assert cockpit.view.without_link is None
     vehicle.values["COM_RC_LOSS_T"] = 0.5
     cockpit.run(15.0)

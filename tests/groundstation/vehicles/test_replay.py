@@ -168,6 +168,17 @@ def test_every_text_is_shown_and_repeats_are_counted() -> None:
     assert all((one.text, one.severity) != (two.text, two.severity) for one, two in itertools.pairwise(shown))
 
 
+def test_its_pre_arm_state_is_that_of_sys_status() -> None:
+    seen = set()
+    for moment in replay().moments:
+        status, vehicle = moment.recorded.get("SYS_STATUS"), moment.snapshot.vehicle
+        if status is not None and vehicle is not None:
+            ready = bool(status.onboard_control_sensors_health & ardupilotmega.MAV_SYS_STATUS_PREARM_CHECK)
+            assert vehicle.prearm == ready
+            seen.add(ready)
+    assert True in seen
+
+
 def test_its_dangerous_settings_are_warned_of() -> None:
     vehicle = replay().moments[-1].snapshot.vehicle
     assert vehicle is not None

@@ -65,12 +65,12 @@ def test_parameters_that_were_not_answered_are_named() -> None:
     assert check.pop_missing_warning() == []
     check.receive(value("FS_GCS_ENABLE", 1.0), 3.0)
     requests(check, 3.0, 4.0)
-    words = "could not read RC_OVERRIDE_TIME, FS_THR_ENABLE, MAV_GCS_SYSID: trying again"
+    words = "could not read, trying again: RC_OVERRIDE_TIME, FS_THR_ENABLE, MAV_GCS_SYSID"
     assert check.warnings == (words,)
     assert [check.pop_missing_warning() for _ in range(2)] == [[words], []], "logged once"
     check.receive(value("SYSID_MYGCS", 255.0), 5.0)
     check.receive(value("RC_OVERRIDE_TIME", 1.0), 5.0)
-    assert check.warnings == ("could not read FS_THR_ENABLE: trying again",)
+    assert check.warnings == ("could not read, trying again: FS_THR_ENABLE",)
     check.receive(value("FS_THR_ENABLE", 1.0), 5.0)
     assert not check.warnings
 
