@@ -54,6 +54,7 @@ cmd: age of the demand that the motors obey; key→motor: latency; tty: round tr
 
 key release: terminals with the kitty keyboard protocol report it, and driving ends with the key.
 In others, and inside tmux, driving ends when the key has stopped repeating; the screen shows the time.
+With that protocol a Cyrillic or Greek keyboard drives by the position of its keys; elsewhere choose a Latin layout.
 
 exit codes: 0 after a session, 1 if the station crashed, 2 for wrong arguments
 """

@@ -126,6 +126,11 @@ def _gate(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
 
 
+def _key(now: DisplayState) -> Iterator[Alert]:
+    if now.key_hint is not None:
+        yield Alert(AlertLevel.WARNING, now.key_hint)
+
+
 def _refusal(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.refusal:
@@ -200,7 +205,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _silence, _emergency, _failsafe, _state, _gate, _refusal, _id_conflict, _limits, _driver,
+    _station, _hold, _silence, _emergency, _failsafe, _state, _key, _gate, _refusal, _id_conflict, _limits, _driver,
     _settings, _vehicles, _hint,
 )  # fmt: skip
 """Most urgent first."""
