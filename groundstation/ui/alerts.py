@@ -163,7 +163,7 @@ def _driver(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
-        yield Alert(AlertLevel.WARNING, f"{who}: {now.key('vehicle.control')} asks for control")
+        yield Alert(AlertLevel.WARNING, f"{who}: {now.key('vehicle.control')} requests control")
 
 
 def _settings(now: DisplayState) -> Iterator[Alert]:
@@ -184,7 +184,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
     vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
     if vehicle is None:
         yield Alert(
-            AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves"
+            AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} quits"
         )
     elif not vehicle.armed and vehicle.prearm is False:
         yield Alert(AlertLevel.HINT, f"disarmed: not ready to arm, {vehicle.prearm_reason or 'pre-arm checks fail'}")

@@ -31,6 +31,6 @@ class KeyHint:
         if len(key) != 1 or not key.isalpha():
             return None
         if not key.isascii():
-            return f"{key} is no key here: choose a Latin keyboard layout"
+            return f"{key} is not bound: switch to a Latin keyboard layout"
         action = self._keymap.get_action(key.swapcase())
-        return f"{key} is no key, {key.swapcase()} is {action.label}: Caps Lock?" if action else None
+        return f"{key} is not bound, {key.swapcase()} is {action.label}: is Caps Lock on?" if action else None

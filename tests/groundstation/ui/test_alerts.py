@@ -86,13 +86,13 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         snapshot(vehicle=vehicle(in_control=False, driver=254)),
         {},
         AlertLevel.WARNING,
-        "ground station 254 drives: g asks",
+        "ground station 254 drives: g requests control",
     ),
     (
         snapshot(vehicle=vehicle(in_control=False, driver=None)),
         {},
         AlertLevel.WARNING,
-        "you are not in control: g asks",
+        "you are not in control: g requests control",
     ),
     (snapshot(vehicle=vehicle(warnings=("FS_GCS_ENABLE is 0",))), {}, AlertLevel.WARNING, "FS_GCS_ENABLE is 0"),
     (
