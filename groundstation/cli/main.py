@@ -8,7 +8,6 @@ import errno
 import shutil
 import sys
 from collections.abc import Sequence
-from importlib.metadata import version
 from pathlib import Path
 
 from platformdirs import user_log_path
@@ -94,14 +93,20 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         speed=options.speed,
         sitl=options.sitl,
         log_file=log_file,
+        meanwhile=_import_screen,
     )
     try:
-        from groundstation.ui.app import run  # takes half a second, so only after the arguments are checked
+        from groundstation.ui.app import run
 
         return run(client, keymap=keymap, log_file=log_file)
     finally:
         client.close()
         report_armed(client.left_armed)
+
+
+def _import_screen() -> None:
+    """Import the screen, which takes 0.2 s: after the arguments are checked, and while the station starts."""
+    import groundstation.ui.app  # noqa: F401
 
 
 def report_armed(lines: Sequence[str]) -> None:
@@ -168,6 +173,17 @@ def _speed(text: str) -> float:
     return value
 
 
+class _Version(argparse.Action):
+    """Prints the version. Looking it up takes 30 ms, so only here."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Print the version and exit."""
+        from importlib.metadata import version
+
+        print(f"{parser.prog} {version('mavhelm')}")
+        parser.exit()
+
+
 def _parser() -> tuple[CommandLineParser, list[str]]:
     """Return the parser and the names of all options."""
     parser = CommandLineParser(
@@ -187,7 +203,7 @@ def _parser() -> tuple[CommandLineParser, list[str]]:
             help="limit of the sticks, 0.1 to 1 (default: 0.6)"),
         add("--system", type=_system_id, default=255, metavar="ID", help="our MAVLink system id (default: 255)"),
         add("--log-file", type=Path, metavar="FILE", help=f"default: {user_log_path('mavhelm') / 'groundstation.log'}"),
-        add("--version", action="version", version=f"%(prog)s {version('mavhelm')}"),
+        add("--version", action=_Version, nargs=0, help="show the version and exit"),
     )  # fmt: skip
     return parser, ["--help", *(name for action in actions for name in action.option_strings)]
 

@@ -175,9 +175,10 @@ def _settings(now: DisplayState) -> Iterator[Alert]:
 
 
 def _vehicles(now: DisplayState) -> Iterator[Alert]:
-    if now.snapshot.not_shown:
-        shown = len(now.snapshot.vehicles)
-        yield Alert(AlertLevel.WARNING, f"{now.snapshot.not_shown} vehicles are not shown: {shown} are the most")
+    further = now.snapshot.not_shown
+    if further:
+        what = "1 more vehicle is" if further == 1 else f"{further} more vehicles are"
+        yield Alert(AlertLevel.WARNING, f"{what} not shown: the limit is {len(now.snapshot.vehicles)}")
 
 
 def _hint(now: DisplayState) -> Iterator[Alert]:

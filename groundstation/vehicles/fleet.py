@@ -165,7 +165,7 @@ class Fleet:
         """Note a vehicle for which there is no place."""
         if system not in self._not_shown:
             self._log.add(
-                now, "station", f"vehicle {system} is not shown: {MAX_VEHICLES} are the most", Severity.WARNING
+                now, "station", f"vehicle {system} is not shown: the limit is {MAX_VEHICLES}", Severity.WARNING
             )
         self._not_shown[system] = now
 

@@ -57,7 +57,7 @@ def test_vehicles_without_a_place_are_counted_and_named_once_while_they_are_hear
             assert fleet.get_or_add(beat(system), now) is None
         fleet.update(now)
     assert fleet.not_shown == 2
-    assert texts(log)[-2:] == [f"vehicle {system} is not shown: 16 are the most" for system in (201, 202)]
+    assert texts(log)[-2:] == [f"vehicle {system} is not shown: the limit is 16" for system in (201, 202)]
     fleet.update(5.4)
     assert fleet.not_shown == 2
     fleet.update(5.6)
