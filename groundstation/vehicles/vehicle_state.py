@@ -25,6 +25,9 @@ LOST_AFTER = 2.5
 FRESH_TIMEOUT = 1.5
 """s for which a reading is preferred to that of a coarser message, and for which a ROVER_DRIVE_STATUS is shown."""
 
+PREARM_TEXTS = ("PreArm: ", "Preflight Fail: ")
+"""What texts start with that say why arming would be refused: those of ArduPilot and our rover, and of PX4."""
+
 UNKNOWN_U16 = 0xFFFF
 
 _AUTOPILOTS: dict[int, str] = {Autopilot.ARDUPILOT: "ArduPilot ", Autopilot.PX4: "PX4 "}
@@ -109,8 +112,8 @@ class VehicleState:
         self.ready_at = None
 
     def handle_text(self, text: str) -> None:
-        """Keep the reason why the vehicle cannot be armed, as ArduPilot and our rover word it."""
-        if text.startswith("PreArm: ") and self.ready_at is None:
+        """Keep the reason why the vehicle cannot be armed."""
+        if text.startswith(PREARM_TEXTS) and self.ready_at is None:
             self._values["prearm_reason"] = text
 
     def build_view(self, now: float, **station: Any) -> VehicleView:
@@ -191,10 +194,7 @@ class VehicleState:
 
     def _system(self, message: m.SysStatus, now: float) -> None:
         if message.onboard_control_sensors_present & Sensor.PREARM:
-            self._values["prearm"] = ready = bool(message.onboard_control_sensors_health & Sensor.PREARM)
-            self.ready_at = (self.ready_at or now) if ready else None
-            if ready:
-                self._values.pop("prearm_reason", None)
+            self._prearm(bool(message.onboard_control_sensors_health & Sensor.PREARM), now)
         if m.BatteryStatus not in self._times:
             volts = None if message.voltage_battery == UNKNOWN_U16 else message.voltage_battery / 1000
             self._battery(volts, message.current_battery, message.battery_remaining)
@@ -212,6 +212,14 @@ class VehicleState:
 
     def _read(self, **values: float) -> None:
         self._values.update({name: value for name, value in values.items() if math.isfinite(value)})
+
+    def _prearm(self, ready: bool, now: float) -> None:
+        self._values["prearm"] = ready
+        if not ready:
+            self.ready_at = None
+        elif self.ready_at is None:
+            self.ready_at = now
+            self._values.pop("prearm_reason", None)
 
     def _battery(self, volts: float | None, centiamperes: int, percent: int) -> None:
         self._values["battery_voltage"] = volts

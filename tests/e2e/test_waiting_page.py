@@ -104,3 +104,14 @@ def test_bytes_that_are_not_mavlink_are_counted(start: Start) -> None:
 def test_nobody_at_the_other_end_is_named(start: Start) -> None:
     station = start(f"udpout:127.0.0.1:{free_port()}")
     station.wait_for(lambda: b"nothing listens there" in station.screen, PATIENCE, "refused messages")
+
+
+def test_a_silent_serial_port_and_one_with_the_wrong_baud_rate(start: Start) -> None:
+    radio, port = os.openpty()
+    station = start(f"serial:{os.ttyname(port)}:57600")
+    for words in (b"57600: 0 bytes received", b"TX goes to RX", b"both ends use 57600 baud"):
+        station.wait_for(lambda words=words: words in station.screen, PATIENCE, words.decode())  # type: ignore[misc]
+    os.write(radio, bytes(range(1, 200)) * 4)
+    station.wait_for(lambda: b"wrong baud rate?" in station.screen, PATIENCE, "the baud rate")
+    os.close(radio)
+    os.close(port)

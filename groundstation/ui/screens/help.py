@@ -38,6 +38,7 @@ _NOTES = (
     "Any key without a drive action stops the vehicle while it is driven. The emergency stop works on every screen.",
     "Keys drive only on the Drive screen and while this window has the focus; leaving either stops the vehicle.",
     "The limits are the largest demand that a key sends: speed and turn, in percent of the full range.",
+    "Where the terminal reports key releases, keys of a Cyrillic or Greek layout count by their position.",
     "Mouse reports are captured, so that the wheel cannot drive as arrow keys: Shift and drag selects text.",
 )
 
