@@ -254,9 +254,7 @@ def _run(options: argparse.Namespace, endpoints: tuple[str, ...], links: list[Li
     started = time.monotonic()  # the loop's clock
     session = secrets.randbits(32)
     style = Style(options.style)
-    station = Station(
-        endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started
-    )  # fmt: skip
+    station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
     process = StationProcess(station, links, pipe)
     if options.sitl:
         process.start_simulator(started)

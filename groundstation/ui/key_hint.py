@@ -7,7 +7,7 @@ import math
 from groundstation.input.keymap import Keymap
 
 SHOWN_FOR = 5.0
-"""s"""
+"""s, as long as it takes to read."""
 
 
 class KeyHint:

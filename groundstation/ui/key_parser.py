@@ -46,6 +46,7 @@ _LOCKS = _CAPS_LOCK | 128
 _COMMAND = 2 | 4 | 8 | 16 | 32
 """Bits of the kitty protocol's modifiers: _LOCKS with Num Lock; _COMMAND is Alt, Ctrl, Super, Hyper, Meta."""
 MAX_CODE = 0x10FFFF
+"""Highest code point of Unicode."""
 
 
 class KeyRepeat(events.Key):

@@ -12,6 +12,9 @@ from link.endpoint import ANY_ADDRESSES, Endpoint, EndpointError, is_loopback, p
 MAX_ADDRESSES = 2
 """Addresses of this machine for which a command is printed; the first is that of the default route."""
 
+MAX_SYSTEMS = 5
+"""System ids that are named; bytes of another protocol may look like frames of many."""
+
 
 class AdviceKind(Enum):
     """How a line is drawn."""
@@ -39,7 +42,8 @@ def describe_link(link: LinkView) -> Advice:
     bad = f", {link.crc_errors} bad checksums" if link.crc_errors else ""
     if not link.frames:
         return _warning(f"{link.name}: {link.bytes_received} bytes received, no MAVLink frame{bad}")
-    heard = f" from system {', '.join(map(str, link.systems))}" if link.systems else ""
+    more = " ..." if len(link.systems) > MAX_SYSTEMS else ""
+    heard = f" from system {', '.join(map(str, link.systems[:MAX_SYSTEMS]))}{more}" if link.systems else ""
     return _warning(f"{link.name}: {link.frames} frames received{heard}, no HEARTBEAT of a vehicle{bad}")
 
 

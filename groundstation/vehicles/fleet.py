@@ -162,11 +162,10 @@ class Fleet:
         return contact
 
     def _leave_out(self, system: int, now: float) -> None:
-        """Note a vehicle for which there is no place."""
-        if system not in self._not_shown:
-            self._log.add(
-                now, "station", f"vehicle {system} is not shown: the limit is {MAX_VEHICLES}", Severity.WARNING
-            )
+        """Count a vehicle for which there is no place; only the first is logged, so that a flood fills no log."""
+        if not self._not_shown:
+            text = f"more than {MAX_VEHICLES} vehicles: vehicle {system} and further ones are not shown"
+            self._log.add(now, "station", text, Severity.WARNING)
         self._not_shown[system] = now
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:

@@ -52,7 +52,7 @@ def _described(name: str, meanings: Mapping[int, str], remedy: str) -> ParamChec
 
 
 def _frame(value: float, system: int) -> str | None:
-    return None if value in PX4_FRAMES else f"CA_AIRFRAME {value:g} is not a rover: try the steering slowly"
+    return None if value in PX4_FRAMES else f"CA_AIRFRAME {value:g} is not a rover: test the steering slowly"
 
 
 def _without_link(values: Mapping[str, float]) -> str | None:

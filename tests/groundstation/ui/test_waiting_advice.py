@@ -100,6 +100,11 @@ def test_a_serial_port_names_its_baud_rate_and_the_cable() -> None:
             True,
             "udpin:0.0.0.0:14550: 12 frames received from system 2, 254, no HEARTBEAT of a vehicle",
         ),
+        (
+            {"bytes_received": 300, "frames": 12, "systems": tuple(range(1, 200))},
+            True,
+            "udpin:0.0.0.0:14550: 12 frames received from system 1, 2, 3, 4, 5 ..., no HEARTBEAT of a vehicle",
+        ),
     ],
 )
 def test_a_link_tells_what_it_has_received(link: dict[str, Any], warns: bool, text: str) -> None:

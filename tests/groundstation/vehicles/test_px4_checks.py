@@ -66,7 +66,7 @@ class FakePx4(FakeVehicle):
         ("COM_DL_LOSS_T", 10, 60, "COM_DL_LOSS_T 60: notices a lost ground station after 60 s; set it to 10"),
         ("COM_RC_IN_MODE", 1, 0, "COM_RC_IN_MODE 0: obeys RC only, keys do not drive; set it to 1"),
         ("COM_RC_IN_MODE", 2, 4, "COM_RC_IN_MODE 4: ignores manual control, keys do not drive; set it to 1"),
-        ("CA_AIRFRAME", 13, 0, "CA_AIRFRAME 0 is not a rover: try the steering slowly"),
+        ("CA_AIRFRAME", 13, 0, "CA_AIRFRAME 0 is not a rover: test the steering slowly"),
     ],
 )
 def test_each_setting(name: str, good: float, bad: float, warning: str) -> None:
