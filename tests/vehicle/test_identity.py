@@ -155,7 +155,12 @@ def test_old_frames_that_come_again_move_nothing(kind: type[Program], address: s
     for number, data in enumerate(old):
         wires.put(data, address, delay=number / rate)
     outputs: list[float] = []
-    wires.wait(count / rate + 1.0, lambda now: (driver.step(NEUTRAL), outputs.append(wires.throttle))[0])
+
+    def each(now: float) -> None:
+        driver.step(NEUTRAL)
+        outputs.append(wires.throttle)
+
+    wires.wait(count / rate + 1.0, each)
     if kind is Program and address == "gcs" and count / rate > 10.0:
         # U2, see below: each hit is in force for 0.45 s at most, then the ramp ends it. Old frames at 1 Hz hit twice.
         assert sum(output > 0.0 for output in outputs) * 0.02 <= 2 * (0.45 + 0.4)
@@ -208,8 +213,10 @@ def test_presence_alone_drives_and_demands_alone_do_not() -> None:
     driver.hold(1.0, NEUTRAL)
     wires.wait(0.5, lambda now: Program.demand(driver, AHEAD))
     assert not wires.turning
-    wires.wait(0.2, lambda now: driver.send(driver.build(NEUTRAL)) and None)
-    wires.wait(0.5, lambda now: driver.send(driver.build(AHEAD)) and None)
+    for axes, seconds in ((NEUTRAL, 0.2), (AHEAD, 0.5)):
+        for _ in range(round(seconds / 0.02)):
+            driver.send(driver.build(axes))
+            wires.wait(0.02)
     assert wires.turning
 
 
@@ -259,9 +266,9 @@ def test_self_driving_does_not_outlive_a_change_of_driver() -> None:
     driver.hold(0.5, NEUTRAL)
     wires.rover._safety.mode = Mode.GUIDED
     driver.hold(0.5, NEUTRAL)
-    assert wires.mode is Mode.GUIDED
+    assert [wires.mode] == [Mode.GUIDED]
     Program(wires, "elsewhere").hold(1.5, NEUTRAL)
-    assert wires.mode is Mode.HOLD
+    assert [wires.mode] == [Mode.HOLD]
 
 
 def test_a_driver_of_heartbeats_only_is_not_missed_so_soon() -> None:
