@@ -130,7 +130,7 @@ class DrivingController:
 
     def _queue_demand(self, contact: Contact, axes: Axes, now: float) -> None:
         state = contact.state
-        message = build_manual_control(axes, state.system, contact.axes)
+        message = build_manual_control(axes, state.system, contact.choose_axes(axes))
         messages: list[Message] = [message]
         if state.has_rover_dialect:
             target = (state.system, state.component)

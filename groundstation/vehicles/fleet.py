@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from dialects.axes import AxisMap, axis_map
+from dialects.axes import Axes, AxisMap, axis_map
 from dialects.enums import Autopilot, Severity, VehicleType
 from dialects.messages import Heartbeat, Message
 from groundstation.vehicles.demand_stream import DemandStream
@@ -40,6 +40,8 @@ class Contact:
     """When the last message arrived, while the link is lost."""
     signs: bool = False
     """The vehicle signs its frames."""
+    axes: AxisMap | None = None
+    """Of the newest demand."""
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -47,10 +49,14 @@ class Contact:
         settings = self.settings_check.warnings if self.settings_check else ()
         return (SIGNING, *settings) if self.signs else settings
 
-    @property
-    def axes(self) -> AxisMap:
-        """The axes of MANUAL_CONTROL that this vehicle uses."""
-        return axis_map(self.state.autopilot, self.settings_check.frame if self.settings_check else None)
+    def choose_axes(self, demand: Axes) -> AxisMap:
+        """Return the axes of MANUAL_CONTROL that this vehicle uses.
+
+        They change only with a neutral demand: a frame that is read late must not turn the steering while driving.
+        """
+        if self.axes is None or demand.neutral:
+            self.axes = axis_map(self.state.autopilot, self.settings_check.frame if self.settings_check else None)
+        return self.axes
 
     @property
     def without_link(self) -> str | None:

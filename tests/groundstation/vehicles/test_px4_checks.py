@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import struct
+
 import pytest
 
-from dialects.axes import AXIS_MAPS, PX4_FRAMES
+from dialects.axes import AXIS_MAPS, NEUTRAL, PX4_FRAMES
 from dialects.enums import Autopilot
-from dialects.messages import ParamRequestRead, ParamValue
+from dialects.messages import ManualControl, ParamRequestRead, ParamValue
+from groundstation.intents import DriveKeyDown, DriveKeyUp, ReportKeyReleases
 from groundstation.vehicles.px4_checks import PX4
 from groundstation.vehicles.settings_check import SettingsCheck
 from link.core import Peer, Received
-from link.services.param.values import REAL32, to_wire
+from link.services.param.values import REAL32
+from tests.groundstation.cockpits import armed_cockpit
 from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 
+ACKERMANN = 5
+"""CA_AIRFRAME"""
 INT32 = 6
 """MAV_PARAM_TYPE_INT32"""
 ALERT_WIDTH = 76
@@ -26,8 +32,12 @@ DEFAULTS: dict[str, float] = {
 
 
 def value(name: str, number: float) -> Received:
-    kind = REAL32 if name == "COM_RC_LOSS_T" else INT32
-    message = ParamValue(name.encode(), to_wire(number, kind, bytewise=True), kind, 1000, 500)
+    """Return a PARAM_VALUE of PX4: the bytes of an int32 in the place of the float."""
+    if name == "COM_RC_LOSS_T":
+        message = ParamValue(name.encode(), number, REAL32, 1000, 500)
+    else:
+        (coded,) = struct.unpack("<f", struct.pack("<i", int(number)))
+        message = ParamValue(name.encode(), coded, INT32, 1000, 500)
     return Received(message, 1, 1, 0, Peer(0, "vehicle"), introduced=True)
 
 
@@ -131,4 +141,25 @@ def test_the_frame_selects_the_axes(frame: int) -> None:
     cockpit.run(2.0)
     contact = cockpit.station.fleet.selected
     assert contact is not None
-    assert contact.axes is PX4_FRAMES.get(frame, AXIS_MAPS[Autopilot.PX4])
+    assert contact.choose_axes(NEUTRAL) is PX4_FRAMES.get(frame, AXIS_MAPS[Autopilot.PX4])
+
+
+def test_a_frame_that_is_read_while_driving_turns_the_steering_only_after_a_neutral_demand() -> None:
+    vehicle = FakePx4(CA_AIRFRAME=ACKERMANN)
+    del vehicle.values["CA_AIRFRAME"]
+    cockpit = armed_cockpit(vehicle)
+    back_left = DriveKeyDown(key="m", throttle=-1, steering=1)
+    cockpit.do(ReportKeyReleases(), back_left)
+    cockpit.run(5.0)
+    vehicle.values["CA_AIRFRAME"] = ACKERMANN
+    cockpit.run(15.0)
+    assert "could not read" not in str(cockpit.view.warnings)
+    sent = {message.y for _, message in vehicle.all(ManualControl) if message.z < 500}
+    assert sent == {600}
+    cockpit.do(DriveKeyUp(key="m"))
+    cockpit.run(1.0)
+    released = cockpit.now
+    cockpit.do(back_left)
+    cockpit.run(1.0)
+    sent = {message.y for at, message in vehicle.all(ManualControl) if message.z < 500 and at > released}
+    assert sent == {-600}
