@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from vehicle.drive.conversation import Conversation
+from vehicle.drive.conversation import Conversation, Sender
 from vehicle.drive.operator_session import DrivingSession
 
 SUCCESSION_TIME = 0.7
@@ -43,11 +43,17 @@ class Driver:
         """Its ids as "255/190"."""
         return f"{self.conversation.system}/{self.conversation.component}"
 
-    def is_sender(self, conversation: Conversation, now: float) -> bool:
-        """Return whether what arrives in `conversation` is from the driver."""
-        if self.session is None:
-            return conversation == self.conversation
-        return self.session.is_proven(conversation, now)
+    def is_sender(self, sender: Sender, now: float) -> bool:
+        """Return whether a message or command is from the driver."""
+        if self.session is not None:
+            return self.session.is_proven(Conversation.of(sender), now)
+        system, component, peer, numbering = self.conversation
+        return (
+            sender.numbering == numbering
+            and sender.system == system
+            and sender.component == component
+            and sender.peer == peer
+        )
 
     def is_barred(self, now: float) -> bool:
         """Return whether only stops count, because it cannot be told from another program."""

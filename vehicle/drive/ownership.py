@@ -56,7 +56,7 @@ class Ownership:
 
     def is_driver(self, sender: Sender, now: float) -> bool:
         """Return whether a message or command is from the driver."""
-        return self.driver is not None and self.driver.is_sender(Conversation.of(sender), now)
+        return self.driver is not None and self.driver.is_sender(sender, now)
 
     def has_driver_ids(self, sender: Sender) -> bool:
         """Return whether a sender has the ids of the driver, and may yet be another program."""
@@ -170,7 +170,7 @@ class Ownership:
             return False
         if driver.session is None and received.clash and self._is_beside_driver(driver, received):
             self._handle_clash(driver, now)
-        elif not driver.is_sender(Conversation.of(received), now):
+        elif not driver.is_sender(received, now):
             return self._hear_newcomer(driver, received, now)
         else:
             if driver.session is None:
