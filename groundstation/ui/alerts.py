@@ -188,7 +188,9 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
             AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} quits"
         )
     elif not vehicle.armed and vehicle.prearm is False:
-        yield Alert(AlertLevel.HINT, f"disarmed: not ready to arm, {vehicle.prearm_reason or 'pre-arm checks fail'}")
+        # The key all the same: PX4 is not ready until it gets MANUAL_CONTROL, which arming begins with.
+        reason = vehicle.prearm_reason or "pre-arm checks fail"
+        yield Alert(AlertLevel.HINT, f"disarmed: hold {now.key('vehicle.arm')} to arm · not ready, {reason}")
     elif not vehicle.armed:
         yield Alert(AlertLevel.HINT, f"disarmed: hold {now.key('vehicle.arm')} to arm {vehicle.name}")
     elif vehicle.mode != "MANUAL":
