@@ -26,6 +26,7 @@ from groundstation.ui.colours import THEME
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.exit import exit_on_signals
 from groundstation.ui.key_gate import STARTING, GateClosure, GateLevel, KeyGate, StationConnection
+from groundstation.ui.key_hint import KeyHint
 from groundstation.ui.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.navigation import ScreenNavigator
 from groundstation.ui.palette import ActionProvider
@@ -70,6 +71,7 @@ class ConsoleApp(App[int]):
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
         self._snapshot = Snapshot()
         self._pressed: dict[str, float] = {}
+        self._key_hint = KeyHint(keymap)
         self._shown_at = 0.0
         self._leaving: GateClosure | None = None
         self._own_loop: asyncio.AbstractEventLoop | None = None
@@ -171,6 +173,7 @@ class ConsoleApp(App[int]):
             hold=self.gate.hold,
             station_alive=self._client.alive,
             pressed=frozenset(self._pressed),
+            key_hint=self._key_hint.text(self._clock()),
             terminal_round_trip=self.gate.ping.round_trip,
         )
 
@@ -243,6 +246,7 @@ class ConsoleApp(App[int]):
     def _light(self, key: str) -> None:
         self._pressed[key] = self._clock() + LIT
         if self.screen is self.drive:
+            self._key_hint.press(key, self._clock())
             self.drive.light_keycaps(frozenset(self._pressed))
 
     # ---- actions ----

@@ -24,6 +24,8 @@ class DisplayState:
     station_alive: bool = True
     pressed: frozenset[str] = frozenset()
     """Keys that the UI saw go down, sooner than a snapshot can report them."""
+    key_hint: str | None = None
+    """Why the last key did nothing, if that has a usual reason."""
     terminal_round_trip: float | None = None
     """Seconds from a ping of the terminal to its answer."""
 
