@@ -141,6 +141,12 @@ class TestDemands:
         assert not rig.control.neutral_seen
         assert not rig.prove(x=500, clock=49)  # sent before that stop
 
+    def test_a_proof_over_a_second_link_is_not_another_program(self) -> None:
+        rig = Sessions().owned()
+        rig.control.hear(rig.received(BEAT)._replace(numbering=2), rig.now)
+        assert rig.prove(x=500, numbering=2)
+        assert not rig.said("Another program")
+
     def test_without_an_axis_it_is_a_sign_of_life_and_no_demand(self) -> None:
         rig = Sessions().owned()
         before = rig.control.demand

@@ -279,6 +279,14 @@ class TestReports:
         assert not any(counts[:2])
         assert scene.said("Another program uses your ids 255/190: it may only stop") == 2
 
+    def test_a_session_is_told_as_well(self) -> None:
+        scene = Scene(None)
+        scene.prove(GCS)
+        scene.ownership.take(GCS, scene.now)
+        for _ in range(3):
+            scene.hear(TWIN)
+        assert scene.told(GCS)
+
     def test_a_minute_later_is_again(self) -> None:
         scene = Scene()
         scene.hear(TWIN, BEAT)
