@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias, Union
 import msgspec
 
 from groundstation.screens import SCREENS
+from groundstation.views import AnyRequest
 
 LEASE_TIMEOUT = 0.3
 """s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz, and longer than its longest
@@ -144,6 +145,14 @@ class SelectNextVehicle(Intent, frozen=True):
 
 class StartSimulator(Intent, frozen=True):
     """Start a simulated rover as a child of the station process and let it connect to us."""
+
+
+class Watch(Intent, frozen=True):
+    """Send these views from now on, and no others: what the screen on top needs beside the snapshot."""
+
+    is_input = False
+    valid_when_late = True
+    requests: tuple[AnyRequest, ...] = ()
 
 
 class Quit(Intent, frozen=True):

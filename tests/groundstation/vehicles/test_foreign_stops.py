@@ -162,7 +162,7 @@ def test_a_vehicle_of_another_station_does_not_move_and_a_warning_names_that_sta
     vehicle.parameters["MAV_GCS_SYSID"] = 252.0
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
-    assert "obeys ground station 252 only and we are 255: use --system 252" in cockpit.view.warnings
+    assert cockpit.view.obeys == "obeys ground station 252 only and we are 255: use --system 252"
     cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     cockpit.do(ReportKeyReleases(), FORWARD)

@@ -18,8 +18,9 @@ from pymavlink.dialects.v20 import ardupilotmega
 from dialects.messages import MESSAGES
 from groundstation.intents import RenewLease, SetKeyGate
 from groundstation.ipc import encode
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import LogLine, Snapshot
 from groundstation.station.station import COMPONENT, Station
+from groundstation.views import LogRequest
 from link.core import LinkReport
 from link.protocol.channel import Channel
 from link.tlog.tlog import Record, read_records
@@ -49,12 +50,23 @@ class Replay(NamedTuple):
     recorded: dict[str, list[Any]]
     systems: tuple[int, ...]
     """System ids of the vehicles found."""
+    log: list[LogLine]
+    """The whole message log."""
 
 
 def seconds(records: list[Record]) -> Iterator[tuple[float, bytes]]:
     start = records[0].microseconds
     for record in records:
         yield (record.microseconds - start) / 1e6, record.raw
+
+
+def log_lines(station: Station) -> list[LogLine]:
+    lines: list[LogLine] = []
+    state = 0
+    while (page := station.log.build_page(LogRequest(state), 0.0, 0.0)) is not None:
+        lines += page.lines
+        state = page.state
+    return lines
 
 
 @cache
@@ -88,7 +100,7 @@ def replay() -> Replay:
         if message.get_srcSystem() == 1:
             newest[message.get_type()] = message
             everything.setdefault(message.get_type(), []).append(message)
-    return Replay(moments, sizes, channel.report(), everything, station.fleet.system_ids)
+    return Replay(moments, sizes, channel.report(), everything, station.fleet.system_ids, log_lines(station))
 
 
 def test_it_is_known_for_what_it_is() -> None:
@@ -161,7 +173,7 @@ def test_unknown_ids_are_counted_and_are_no_loss() -> None:
 
 
 def test_every_text_is_shown_and_repeats_are_counted() -> None:
-    shown = [line for line in replay().moments[-1].snapshot.texts if line.label == "vehicle"]
+    shown = [line for line in replay().log if line.label == "vehicle"]
     texts = [message.text for message in replay().recorded["STATUSTEXT"]]
     assert sum(line.count for line in shown) == len(texts)
     assert "Throttle armed" in {line.text for line in shown}
