@@ -93,7 +93,7 @@ def _run(options: argparse.Namespace) -> int:
         log_file=log_file,
     )
     try:
-        from groundstation.ui.app import run  # takes half a second, so only after the arguments are checked
+        from groundstation.ui.run import run  # takes half a second, so only after the arguments are checked
 
         return run(client, keymap=keymap, log_file=log_file)
     finally:

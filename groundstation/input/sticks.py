@@ -84,7 +84,7 @@ class Sticks:
         self.stop()
 
     def require_quiet(self) -> None:
-        """Ignore drive keys until none was seen for a while: without reported releases an auto-repeat looks like presses.
+        """Ignore drive keys until none was seen for a while: without reported releases a repeat looks like a press.
 
         Called when the key gate closes, e.g. for another screen: a key that was pressed there may still repeat here.
         """

@@ -1,4 +1,4 @@
-"""Lasting alerts for the log file: settings, link problems and conflicts that the screen shows for as long as they hold."""
+"""Lasting alerts for the log file: settings, link problems and conflicts, which the screen shows while they hold."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ class ArduPilotChecks:
 
     @property
     def obeys(self) -> str | None:
-        """Another ground station that the vehicle obeys and no other one, as a warning; None: it obeys us, or not known."""
+        """Warning that the vehicle obeys another ground station only; None: it obeys us, or not known."""
         return next(filter(None, map(self._found.get, _OBEYED)), None)
 
     def pop_missing_warning(self) -> list[str]:

@@ -1,4 +1,4 @@
-"""Message log: STATUSTEXT, results of commands, changes of state, events of the station. Bounded; repeats are counted."""
+"""Message log: STATUSTEXT, results of commands, changes of state, events of the station. Repeats are counted."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NEWEST = 16
 """Lines in each snapshot: what the log panel of the Drive screen can show."""
 
 PAGE = 250
-"""Lines in one view of the log. With the longest texts, four bytes a character, they take 175 kB: less than a packet."""
+"""Lines in one view of the log. With the longest texts, 4 bytes a character, they take 175 kB: less than a packet."""
 
 STATE = "state"
 """Label of changes of mode, arming and control."""

@@ -47,6 +47,7 @@ class HelpScreen(ConsoleScreen):
     """Two columns of text; any key that does not scroll goes back, the key of another screen opens it."""
 
     AUTO_FOCUS = "#page"
+    ROWS = ()
     CSS_PATH = "help.tcss"
 
     def compose(self) -> ComposeResult:

@@ -36,7 +36,7 @@ def feed() -> tuple[ViewFeed, Source, Pipe]:
 
 
 def test_nothing_is_sent_that_no_screen_watches() -> None:
-    made, source, pipe = feed()
+    made, _source, pipe = feed()
     made.send_due(pipe.send, 1.0, 1.0)
     made.watch([LogRequest()])
     made.watch([])
@@ -45,7 +45,7 @@ def test_nothing_is_sent_that_no_screen_watches() -> None:
 
 
 def test_the_first_view_is_due_at_once_and_an_equal_one_is_not_sent_again() -> None:
-    made, source, pipe = feed()
+    made, _source, pipe = feed()
     made.watch([LogRequest()])
     for step in range(10):
         made.send_due(pipe.send, 1.0 + step, 1.0)
@@ -63,7 +63,7 @@ def test_changes_are_sent_at_the_rate_of_the_source_and_the_newest_wins() -> Non
 
 
 def test_a_view_that_the_pipe_did_not_take_is_sent_when_it_does() -> None:
-    made, source, pipe = feed()
+    made, _source, pipe = feed()
     made.watch([LogRequest()])
     pipe.full = True
     made.send_due(pipe.send, 1.0, 1.0)

@@ -11,6 +11,7 @@ import msgspec
 
 from groundstation.intents import AnyIntent, RenewLease, SetKeyGate
 from groundstation.snapshot import LinkView, LogLine, MessageRate, OperatorView, Snapshot, VehicleView
+from groundstation.views import LogPage, View
 
 NOON = 1_700_000_000.0
 """A wall clock for log lines; the tests run in UTC."""
@@ -25,6 +26,7 @@ class Recorder:
         self.intents: list[AnyIntent] = []
         self.alive = True
         self._waiting: list[Snapshot] = []
+        self._views: list[View] = []
         self._ours, self._theirs = socket.socketpair()
         self._ours.setblocking(False)
 
@@ -44,6 +46,15 @@ class Recorder:
         newest = self._waiting[-1]
         self._waiting.clear()
         return newest
+
+    def pop_views(self) -> list[View]:
+        """The views that were offered since the last call."""
+        views, self._views = self._views, []
+        return views
+
+    def offer_view(self, view: View) -> None:
+        """Let this view come with the next snapshot."""
+        self._views.append(view)
 
     def offer(self, snapshot: Snapshot) -> None:
         """Let this be the newest snapshot."""
@@ -104,6 +115,28 @@ TEXTS = (
     LogLine(time=NOON + 27, severity=2, label="vehicle", text="no MANUAL_CONTROL for 520 ms, motors stopped"),
     LogLine(time=NOON + 28, severity=6, label="vehicle", text="control regained"),
 )
+
+LONG = (
+    "PreArm: Compass 1 is not healthy, and a reason that is much longer than the width of a small terminal, so that it "
+    "takes two rows or three"
+)
+LOG_PAGE = LogPage(
+    tuple(
+        LogLine(time=NOON + at, severity=severity, label=label, text=text, count=count, number=number)
+        for number, (at, severity, label, text, count) in enumerate(
+            [
+                (0, 5, "station", "Rover 1 found", 1), (1, 6, "vehicle", "rover 1, mavhelm vehicle 0.1, MANUAL", 1),
+                (2, 4, "vehicle", LONG, 1), (3, 6, "ack", "arm accepted", 1), (3, 5, "state", "Rover 1: armed", 1),
+                (20, 4, "vehicle", "battery 11.9 V below 12.0 V", 3),
+                (27, 2, "vehicle", "no MANUAL_CONTROL for 520 ms, motors stopped", 1),
+                (28, 6, "vehicle", "control regained", 1),
+            ],
+            start=1,
+        )
+    ),
+    state=10,
+)  # fmt: skip
+"""What the Log screen gets."""
 
 RATES: Sequence[tuple[str, float, int, bool]] = (
     ("HEARTBEAT", 1.0, 2023, False), ("ATTITUDE", 10.0, 6577, False), ("VFR_HUD", 4.0, 7363, False),

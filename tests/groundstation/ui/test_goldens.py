@@ -12,7 +12,7 @@ from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents import ACTIONS
 from groundstation.snapshot import Snapshot
 from groundstation.ui.display_state import DisplayState
-from tests.groundstation.ui.examples import helm, snapshot, vehicle, waiting
+from tests.groundstation.ui.examples import LOG_PAGE, helm, snapshot, vehicle, waiting
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD
 
@@ -37,6 +37,18 @@ UNKNOWN = snapshot(
     )
 )  # fmt: skip
 
+WARNED = snapshot(
+    vehicle=vehicle(
+        name="ArduPilot rover 1", driver=None, demand=None, command_age=None, latency=None, limits=(),
+        obeys="obeys ground station 250 only and we are 255: use --system 250",
+        warnings=(
+            "RC_OVERRIDE_TIME -1: never stops when the link is lost",
+            "FS_THR_ENABLE 0: without an RC receiver never stops when the link is lost",
+            "FS_GCS_ENABLE 0: no failsafe when the ground station is lost",
+        ),
+    )
+)  # fmt: skip
+
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_80x24": (SMALL, snapshot(), ()),
     "drive_140x45": (WIDE, snapshot(), ()),
@@ -47,7 +59,14 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "unknown_80x24": (SMALL, UNKNOWN, ()),
     "waiting_80x24": (SMALL, waiting(), ()),
     "waiting_140x45": (WIDE, waiting(simulator="ended with code 1: no free port"), ()),
-    "too_small_60x20": ((60, 20), snapshot(), ()),
+    "warned_80x24": (SMALL, WARNED, ()),
+    "too_small_39x12": ((39, 12), snapshot(), ()),
+    "strip_40x10": ((40, 10), snapshot(), ()),
+    "strip_60x15": ((60, 15), WARNED, ()),
+    "strip_79x23": ((79, 23), STANDING, ()),
+    "log_80x24": (SMALL, WARNED, ("f6",)),
+    "log_140x45": (WIDE, WARNED, ("f6",)),
+    "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
 
@@ -58,10 +77,14 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
     async with console(size, picture) as screen:
         await screen.press(*keys)
         if keys:
+            screen.station.offer_view(LOG_PAGE)
             await screen.show(picture)
+            await screen.show(picture)  # the height of the alerts is known after the first one
         if name.startswith("hold"):
-            hold = HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4)
-            screen.app.drive.show_state(DisplayState(picture, STANDARD, hold=hold))
+            state = DisplayState(picture, STANDARD, hold=HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4))
+            while "Arm: hold r" not in screen.text:  # the app itself shows no hold, ten times a second
+                screen.app.drive.show_state(state)
+                await screen.pilot.pause()
         shown = screen.text
     file = GOLDEN / f"{name}.txt"
     if os.environ.get("GOLDEN") == "write":

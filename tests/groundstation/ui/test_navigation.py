@@ -14,7 +14,7 @@ from tests.groundstation.ui.extra_screen import ExtraScreen
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
 
-EXTRA = ScreenRow("extra", "Extra", "One more screen", ("f6",), "tests.groundstation.ui.extra_screen:ExtraScreen")
+EXTRA = ScreenRow("extra", "Extra", "One more screen", ("f7",), "7", "tests.groundstation.ui.extra_screen:ExtraScreen")
 HELP = next(row for row in SCREENS if row.id == "help")
 
 
