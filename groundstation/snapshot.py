@@ -22,6 +22,15 @@ class EmergencyProgress(Enum):
     """Acknowledged. Whether the motors are off is for the HEARTBEAT to report."""
 
 
+class OutputView(msgspec.Struct, frozen=True, kw_only=True):
+    """One motor output."""
+
+    name: str
+    """What it drives, e.g. "left wheel", "steering servo"; its number where that is not known, e.g. "servo 1"."""
+    value: float
+    """-1..1"""
+
+
 class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """The selected vehicle."""
 
@@ -65,8 +74,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     gps_satellites: int | None = None
     demand: tuple[float, float] | None = None
     """Throttle and steering that the vehicle reports as obeyed, -1..1."""
-    outputs: tuple[float, ...] = ()
-    """Output of each motor, -1..1."""
+    outputs: tuple[OutputView, ...] = ()
+    """Motor outputs that are known."""
     limits: tuple[str, ...] = ()
     """Why outputs differ from the demand: "slew", "neutral first" ..."""
     command_age: float | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import errno
+import os
 import shutil
 import sys
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ from pathlib import Path
 
 from platformdirs import user_log_path
 
+from groundstation.cli.terminal import needs_ascii
 from groundstation.cli.unknown_options import describe_unknown
 from groundstation.client import StationClient, StationError
 from groundstation.input.keymap import KEYMAPS, KeymapError
@@ -95,7 +97,8 @@ def _run(options: argparse.Namespace) -> int:
     try:
         from groundstation.ui.run import run  # takes half a second, so only after the arguments are checked
 
-        return run(client, keymap=keymap, log_file=log_file)
+        ascii_only = needs_ascii() if options.ascii is None else options.ascii
+        return run(client, keymap=keymap, log_file=log_file, ascii_only=ascii_only)
     finally:
         client.close()
         report_armed(client.left_armed)
@@ -115,6 +118,10 @@ def _check_endpoint(text: str) -> None:
 
 
 def _check_terminal() -> None:
+    if os.environ.get("TERM") == "dumb":
+        raise UsageError(
+            "TERM=dumb cannot place text on the screen: run groundstation in a terminal such as xterm or tmux"
+        )
     for name, stream in (("input", sys.stdin), ("output", sys.stdout)):
         if stream is None or not stream.isatty():
             raise UsageError(
@@ -182,6 +189,8 @@ def _parser() -> tuple[CommandLineParser, list[str]]:
             help="limit of the sticks, 0.1 to 1 (default: 0.6)"),
         add("--system", type=_system_id, default=255, metavar="ID", help="our MAVLink system id (default: 255)"),
         add("--log-file", type=Path, metavar="FILE", help=f"default: {user_log_path('mavhelm') / 'groundstation.log'}"),
+        add("--ascii", action=argparse.BooleanOptionalAction, default=None,
+            help="draw with ASCII characters only (default: where the locale is not UTF-8, and with TERM=linux)"),
         add("--version", action="version", version=f"%(prog)s {version('mavhelm')}"),
     )  # fmt: skip
     return parser, [name for action in actions for name in action.option_strings]

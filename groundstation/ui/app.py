@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import signal
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
@@ -15,12 +14,14 @@ from textual import events
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
+from textual.filter import LineFilter
 from textual.screen import Screen
 
 from groundstation.input.keymap import KeyEvent, Keymap
 from groundstation.intents import ACTIONS, AnyIntent, DriveKeyDown, OperatorAction, Quit, RenewLease, Watch
-from groundstation.screens import SCREENS
 from groundstation.snapshot import Snapshot
+from groundstation.ui import garbage
+from groundstation.ui.ascii import AsciiFilter
 from groundstation.ui.colours import THEME
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.key_gate import (
@@ -69,6 +70,7 @@ class ConsoleApp(App[int]):
         *,
         terminal: TerminalFile | None = None,
         folder: Path = Path(),
+        ascii_only: bool = False,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.gate = KeyGate(client, keymap, clock)
@@ -80,17 +82,12 @@ class ConsoleApp(App[int]):
         self._shown_at = 0.0
         self._leaving: GateClosure | None = None
         self._own_loop: asyncio.AbstractEventLoop | None = None
+        self._ascii = AsciiFilter(enabled=ascii_only)
         self._watched: tuple[ViewRequest, ...] = ()
         context = ScreenContext(keymap, self._send, self.perform_action, folder)
         self.drive = DriveScreen(context)
         self._navigator = ScreenNavigator(self, context)
-        self._actions: dict[str, Callable[[], None]] = {
-            "app.quit": self.request_quit,
-            "app.goto": self._navigator.open_menu,
-            "app.next_screen": partial(self._navigator.open_neighbour, 1),
-            "app.previous_screen": partial(self._navigator.open_neighbour, -1),
-        }
-        self._actions |= {row.action: partial(self._navigator.open, row) for row in SCREENS}
+        self._actions = {"app.quit": self.request_quit, **self._navigator.actions}
 
     # ---- start and end ----
 
@@ -105,7 +102,7 @@ class ConsoleApp(App[int]):
         self.set_interval(TICK, self._tick)
         self.set_interval(PERIOD, self._ping)
         if self._terminal is not None:
-            self.call_after_refresh(_freeze)
+            self.call_after_refresh(garbage.freeze)
 
     def on_unmount(self) -> None:
         """Close the gate, which means neutral, before anything else ends."""
@@ -135,7 +132,7 @@ class ConsoleApp(App[int]):
         self._own_loop.call_soon_threadsafe(self.end, code)
 
     def on_terminal_closed(self, event: TerminalClosed) -> None:
-        """End as after a hang-up: there is no input and no output any more."""
+        """End as after a hang-up."""
         self.end(128 + signal.SIGHUP)
 
     def push_screen(self, screen: Any, *arguments: Any, **options: Any) -> Any:
@@ -196,13 +193,18 @@ class ConsoleApp(App[int]):
             station_alive=self._client.alive,
             pressed=frozenset(self._pressed),
             terminal_round_trip=self.gate.ping.round_trip,
+            ascii=self._ascii.enabled,
         )
+
+    def get_line_filters(self) -> Sequence[LineFilter]:
+        """Return the filters of all that is drawn."""
+        return [*super().get_line_filters(), *([self._ascii] if self._ascii.enabled else [])]
 
     # ---- timers ----
 
     def _tick(self) -> None:
-        if not self.screen_stack:
-            return  # the app has removed its screens, and timers live a little longer
+        if not self.screen_stack:  # the app has removed its screens, and timers live a little longer
+            return
         now = self._clock()
         self._client.send(RenewLease())
         self.gate.set_closure(self._gate_closure(now))
@@ -291,10 +293,3 @@ class ConsoleApp(App[int]):
             self.perform_action(action)
         else:
             self._send(action.intent)
-
-
-def _freeze() -> None:
-    """Exempt the objects that exist now from garbage collection: a pass over them took 28-61 ms."""
-    gc.collect()
-    gc.freeze()
-    gc.set_threshold(50_000, 20, 20)

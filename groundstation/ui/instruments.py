@@ -78,7 +78,7 @@ INSTRUMENTS: tuple[InstrumentRow, ...] = (
     _STATUS,
     _TABS,
     _row("waiting", "top", WaitingPage, WaitingValue.from_state),
-    _row("track", "left", TrackMap, lambda now: TrackValue.from_vehicle(now.snapshot.vehicle)),
+    _row("track", "left", TrackMap, lambda now: TrackValue.from_vehicle(now.snapshot.vehicle, ascii=now.ascii)),
     _row("speed", "motion", SpeedReadout, lambda now: speed_text(now.snapshot.vehicle)),
     _row("horizon", "motion", Horizon, lambda now: HorizonValue.from_vehicle(now.snapshot.vehicle)),
     _row("tape", "heading", HeadingTape, lambda now: heading_degrees(now.snapshot.vehicle)),

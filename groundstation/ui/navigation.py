@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from importlib import import_module
 from typing import Any
 
@@ -30,6 +32,16 @@ class ScreenNavigator:
     def __init__(self, app: App[Any], context: ScreenContext) -> None:
         self._app, self._context = app, context
         self._current = self._before = ROOT
+
+    @property
+    def actions(self) -> dict[str, Callable[[], None]]:
+        """Id of an action -> what it does."""
+        return {
+            "app.goto": self.open_menu,
+            "app.next_screen": partial(self.open_neighbour, 1),
+            "app.previous_screen": partial(self.open_neighbour, -1),
+            **{row.action: partial(self.open, row) for row in SCREENS},
+        }
 
     def open(self, row: ScreenRow) -> None:
         """Open a screen instead of the one on top of Drive. Several keys of one read may ask for the same one."""

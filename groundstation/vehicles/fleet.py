@@ -11,6 +11,7 @@ from groundstation.vehicles.ardupilot_checks import ArduPilotChecks
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
 from groundstation.vehicles.message_log import STATE, MessageLog
+from groundstation.vehicles.outputs import ServoFunctions
 from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
 from groundstation.vehicles.vehicle_state import VehicleState
@@ -30,6 +31,7 @@ class Contact:
     """Index of the link on which the newest message of the vehicle arrived."""
     changes: StateChanges
     settings_check: ArduPilotChecks | None = None
+    servo_functions: ServoFunctions | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     ours: bool = False
@@ -65,6 +67,8 @@ class Contact:
         """Read the settings again: after a restart they may be others."""
         if self.settings_check is not None:
             self.settings_check.restart()
+        if self.servo_functions is not None:
+            self.servo_functions.restart()
 
 
 class Fleet:
@@ -131,6 +135,8 @@ class Fleet:
         self._contacts[received.system] = contact
         if ArduPilotChecks.applies_to(state.autopilot):
             contact.settings_check = ArduPilotChecks(*self._own_id, target=target)
+        if ServoFunctions.applies_to(state.autopilot):
+            contact.servo_functions = ServoFunctions(*self._own_id, target=target)
         self._selected = self._selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact

@@ -16,7 +16,7 @@ from groundstation.ui.widgets.tabs import WIDE, goto_parts
 STALE_COMMAND, OLD_COMMAND = 0.45, 0.2
 """Age of a demand, s: from 0.45 on the vehicle no longer obeys (its MAN_TIMEOUT); 0.2 is four frames at 20 Hz."""
 
-_BARS = "▂▄▆█"
+_BARS, _NO_BAR = "▂▄▆█", "▁"
 _MODES = {"MANUAL": GREEN, "HOLD": AMBER}
 
 
@@ -133,7 +133,7 @@ def _links(snapshot: Snapshot) -> list[StatusField]:
     loss, trip = finite_or_none(link.loss), finite_or_none(link.round_trip)
     bars, colour = _quality(link, alive)
     strength = StatusField(
-        1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_BARS[bars:]} ", style(FAINT)))
+        1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_NO_BAR * (4 - bars)} ", style(FAINT)))
     )
     return [
         strength,

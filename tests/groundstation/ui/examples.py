@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from groundstation.intents import AnyIntent, RenewLease, SetKeyGate
-from groundstation.snapshot import LinkView, LogLine, MessageRate, OperatorView, Snapshot, VehicleView
+from groundstation.snapshot import LinkView, LogLine, MessageRate, OperatorView, OutputView, Snapshot, VehicleView
 from groundstation.views import LogPage, View
 
 NOON = 1_700_000_000.0
@@ -87,6 +87,11 @@ def path(count: int = 160) -> tuple[tuple[float, float], ...]:
     return tuple(points)
 
 
+def wheels(left: float, right: float) -> tuple[OutputView, ...]:
+    """The outputs of a rover with skid steering."""
+    return OutputView(name="left wheel", value=left), OutputView(name="right wheel", value=right)
+
+
 def vehicle(**changes: Any) -> VehicleView:
     """A rover that drives a curve, armed, with everything known."""
     track = path()
@@ -94,7 +99,7 @@ def vehicle(**changes: Any) -> VehicleView:
         system=1, name="Rover 1", autopilot=0, mode="MANUAL", armed=True, status=4, alive=True, silence=0.1, driver=255,
         in_control=True, position=track[-1], home=(0.0, 0.0), track=track, heading=2.4, roll=0.06, pitch=-0.03,
         speed=0.84, battery_voltage=11.82, battery_current=2.4, battery_remaining=0.76, gps_fix=3, gps_satellites=14,
-        demand=(0.58, 0.24), outputs=(0.71, 0.46), limits=("slew",), command_age=0.042, latency=0.0013,
+        demand=(0.58, 0.24), outputs=wheels(0.71, 0.46), limits=("slew",), command_age=0.042, latency=0.0013,
     )  # fmt: skip
     return msgspec.structs.replace(view, **changes)
 

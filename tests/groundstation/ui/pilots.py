@@ -61,10 +61,12 @@ async def console(
     picture: Snapshot | None = None,
     keymap: str = "standard",
     folder: Path = Path(),
+    *,
+    ascii_only: bool = False,
 ) -> AsyncIterator[Console]:
     """The app at work: a picture is shown and, where the size allows, keys drive."""
     station = Recorder()
-    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder)
+    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, ascii_only=ascii_only)
     try:
         async with app.run_test(size=size) as pilot:
             await until(lambda: app.gate.closure != STARTING)

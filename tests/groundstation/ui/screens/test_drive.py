@@ -20,7 +20,7 @@ from groundstation.intents import (
 from groundstation.snapshot import EmergencyProgress, LinkView
 from groundstation.ui.alerts import LIMITS
 from tests.groundstation.held_key import hold_until
-from tests.groundstation.ui.examples import snapshot, vehicle, waiting
+from tests.groundstation.ui.examples import snapshot, vehicle, waiting, wheels
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import until
 
@@ -166,7 +166,7 @@ async def test_numbers_that_are_none_do_not_break_the_screen() -> None:
     nan = math.nan
     strange = vehicle(
         position=(nan, math.inf), heading=nan, roll=nan, pitch=math.inf, speed=nan, battery_voltage=nan,
-        battery_remaining=nan, demand=(nan, nan), outputs=(nan, math.inf), command_age=nan, latency=math.inf,
+        battery_remaining=nan, demand=(nan, nan), outputs=wheels(nan, math.inf), command_age=nan, latency=math.inf,
     )  # fmt: skip
     for size in ((80, 24), (140, 45)):
         links = (LinkView(name="x", loss=nan, round_trip=nan),)
