@@ -84,7 +84,7 @@ class ConsoleApp(App[int]):
         self._own_loop: asyncio.AbstractEventLoop | None = None
         self._ascii = AsciiFilter(enabled=ascii_only)
         self._watched: tuple[ViewRequest, ...] = ()
-        context = ScreenContext(keymap, self._send, self.perform_action, folder)
+        context = ScreenContext(keymap, self._send, self.perform_action, self._display_state, folder)
         self.drive = DriveScreen(context)
         self._navigator = ScreenNavigator(self, context)
         self._actions = {"app.quit": self.request_quit, **self._navigator.actions}

@@ -132,6 +132,7 @@ class DriveScreen(ConsoleScreen):
             return
         action = self.context.keymap.get_action(event.key)
         if action is not None and action.intent is None:
+            event.stop()  # else the app would handle it again, for the screen that opens now
             self.context.perform(action)
         elif action is None and event.key == "enter" and self.snapshot.vehicle is None:
             self.context.send(StartSimulator())

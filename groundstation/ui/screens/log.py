@@ -79,6 +79,10 @@ class LogScreen(ConsoleScreen):
         self._alerts.border_subtitle = f"{wanted} rows · TAB, then ↑ ↓" if wanted > room else ""
         self._show_lines()
 
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out the alerts and wrap the lines for the new size."""
+        self.show_body(self._state)
+
     @property
     def hint(self) -> str:
         """Return the result of a save for some seconds, else what the window shows."""

@@ -14,7 +14,6 @@ from textual.widget import Widget
 from groundstation.input.keymap import Keymap
 from groundstation.intents import AnyIntent, OperatorAction
 from groundstation.screens import find_screen
-from groundstation.snapshot import Snapshot
 from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.instruments import CHROME, InstrumentRow
 from groundstation.ui.widgets.instrument import Instrument
@@ -30,7 +29,9 @@ class ScreenContext:
     """Sends an intent to the station."""
     perform: Callable[[OperatorAction], None]
     """Performs an action of the app itself, such as opening another screen."""
-    folder: Path = Path()
+    newest: Callable[[], DisplayState]
+    """Returns the newest display state: what a screen shows first."""
+    folder: Path
     """Where screens save files."""
 
 
@@ -55,7 +56,7 @@ class ConsoleScreen(Screen[None]):
         super().__init__()
         self.context = context
         self._built: dict[str, Instrument[Any]] = {}
-        self._state = DisplayState(Snapshot(), context.keymap)
+        self._state = context.newest()
 
     # ---- what a screen defines ----
 
