@@ -42,6 +42,7 @@ examples:
 
 first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
 one press of `r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
+Keys drive on the Drive screen only. F6 lists all alerts and messages, Ctrl-G goes to the other screens, Escape back.
 
 endpoints:
 {endpoint_help()}
@@ -53,6 +54,8 @@ key map file (--keys my.toml): replaces the keys of the actions it names
 
 status line: loss: lost frames; rtt: round trip to the vehicle; sent: demands per second;
 cmd: age of the demand that the motors obey; key→motor: latency; tty: round trip to the terminal
+
+size: 80x24 and more; below that a strip with what a driver must see; below 40x10 keys neither drive nor arm.
 
 key release: terminals with the kitty keyboard protocol report it, and driving ends with the key.
 In others, and inside tmux, driving ends when the key has stopped repeating; the screen shows the time.

@@ -32,7 +32,7 @@ class StateChanges:
             yield "armed" if now.armed else "disarmed"
         if now.mode != before.mode:
             yield f"mode {now.mode}, was {before.mode}"
-        if now.driver != before.driver:
+        if now.driver != before.driver and (now.driver or before.driver):
             yield self._control(now.driver)
 
     def _control(self, driver: int | None) -> str:

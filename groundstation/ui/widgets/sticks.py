@@ -71,7 +71,8 @@ def _marked(parts: list[Part], at: int) -> Iterator[Part]:
     for text, look in parts:
         if start <= at < start + len(text):
             yield text[: at - start], look
-            ground = look.bgcolor.name if look.bgcolor is not None else BACKGROUND
+            under = look.color if text[at - start] == "█" else look.bgcolor
+            ground = under.name if under is not None else BACKGROUND
             yield "┃", style(WHITE, ground, bold=True)
             yield text[at - start + 1 :], look
         else:
