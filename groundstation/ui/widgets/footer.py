@@ -64,9 +64,13 @@ class KeyFooter(Instrument[FooterValue]):
             return
         yield _parts(self._stop_key(), "Stop", RED)
         yield self._item("E-STOP", ("stop.emergency",))
+        if screen.text:
+            yield _parts("ENTER", "Keep", YELLOW)
+            yield _parts("ESC", "Clear", YELLOW)
+            return
         for each in screen.keys:
             yield _parts(format_key(each.key), each.label, YELLOW)
-        yield _parts("ESC", "Clear" if screen.text else "Drive", YELLOW)
+        yield _parts("ESC", "Drive", YELLOW)
 
     def _stop_key(self) -> str:
         """Return a stop key that works now: a text field takes the keys that are characters."""
