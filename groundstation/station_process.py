@@ -30,11 +30,12 @@ from groundstation.ipc import (
     encode,
 )
 from groundstation.sitl import SimulatorControl, free_port
-from groundstation.snapshot import LogLine, OperatorView, Snapshot
+from groundstation.snapshot import Snapshot
 from groundstation.station.crash_neutral import CrashNeutral
+from groundstation.station.crash_snapshot import crash_snapshot
 from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
+from groundstation.station.lasting_alerts import LastingAlerts
 from groundstation.station.station import COMPONENT, Station
-from groundstation.vehicles.message_log import MAX_LENGTH
 from link.endpoint import EndpointError, parse_endpoint
 from link.runner import Runner, open_links
 from link.runtime.event_loop import run_loop
@@ -70,6 +71,7 @@ class StationProcess:
         self._simulator = SimulatorControl()
         self._last_snapshot = Snapshot()
         self._addresses = LocalAddresses()
+        self._lasting_alerts = LastingAlerts()
         self._broken = self._ending = False
 
     async def run(self) -> int:
@@ -105,6 +107,7 @@ class StationProcess:
                 break
             self._handle_packet(packet, now)
         self._runner.flush()
+        self._send_views(now)
 
     def _packet(self) -> bytes | None:
         try:
@@ -150,16 +153,25 @@ class StationProcess:
         self._watch_simulator(now)
         self._station.set_addresses(self._addresses.find(now))
         self._last_snapshot = self._station.snapshot(now, time.time())
+        for text in self._lasting_alerts.new_in(self._last_snapshot):
+            log.warning(text)
         self._send(self._last_snapshot)
+        self._send_views(now)
 
-    def _send(self, message: msgspec.Struct) -> None:
-        """Send now or drop: a screen that does not read gets a newer snapshot later."""
+    def _send_views(self, now: float) -> None:
+        self._station.views.send_due(self._send, now, time.time())
+
+    def _send(self, message: msgspec.Struct) -> bool:
+        """Send now or drop: a screen that does not read gets a newer snapshot later. Return whether it was sent."""
         try:
             self._pipe.send(encode(message))
         except BlockingIOError:
             log.debug("the screen does not read")
         except OSError:
             log.debug("the screen has exited")  # _read_pipe sees the end of the pipe
+        else:
+            return True
+        return False
 
     def _watch_simulator(self, now: float) -> None:
         exited = self._simulator.pop_exit()
@@ -218,17 +230,6 @@ class StationProcess:
     def _handle_loop_exception(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
         """Handle an exception in a callback of the loop that is not the runner's."""
         self._handle_crash(context.get("exception") or RuntimeError(str(context.get("message"))))
-
-
-def crash_snapshot(last: Snapshot, what: str, wall: float) -> Snapshot:
-    """Return the last snapshot with the reason why no other follows."""
-    line = LogLine(time=wall, severity=Severity.CRITICAL, label="station", text=what[:MAX_LENGTH])
-    stopped = OperatorView(
-        style=last.operator.style,
-        reports_releases=last.operator.reports_releases,
-        gate_reason="station crashed",
-    )
-    return msgspec.structs.replace(last, number=last.number + 1, operator=stopped, texts=(*last.texts, line))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

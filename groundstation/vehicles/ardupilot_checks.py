@@ -50,6 +50,9 @@ def _without_link(values: Mapping[str, float]) -> str | None:
     return f"by its settings it drives on for {override:g} s"
 
 
+FORMER_NAMES = {"MAV_GCS_SYSID": "SYSID_MYGCS"}
+"""Renamed in ArduPilot 4.7."""
+
 ARDUPILOT = AutopilotSettings(
     checks={
         "RC_OVERRIDE_TIME": _override_time,
@@ -58,6 +61,7 @@ ARDUPILOT = AutopilotSettings(
         "MAV_GCS_SYSID": _station_system,
         "SYSID_MYGCS": _station_system,
     },
-    former_names={"MAV_GCS_SYSID": "SYSID_MYGCS"},  # renamed in ArduPilot 4.7
+    former_names=FORMER_NAMES,
     without_link=_without_link,
+    obeyed=("MAV_GCS_SYSID", "SYSID_MYGCS"),
 )

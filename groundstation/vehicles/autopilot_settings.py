@@ -19,6 +19,8 @@ class AutopilotSettings:
     """Takes the known values; returns what the vehicle does when it loses us, or None if that is not known."""
     former_names: Mapping[str, str] = field(default_factory=dict)
     """Parameter -> its name in older versions; a vehicle has one of them. Both are in `checks`."""
+    obeyed: tuple[str, ...] = ()
+    """Parameters with the ground station that the vehicle obeys; their warning goes before all others."""
     bytewise: bool = False
     """Integers are stored in the bytes of the float (link/services/param/values.py)."""
     frame: str = ""

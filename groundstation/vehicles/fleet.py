@@ -10,8 +10,10 @@ from dialects.enums import Autopilot, Severity, VehicleType
 from dialects.messages import Heartbeat, Message
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
-from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.message_log import STATE, MessageLog
+from groundstation.vehicles.outputs import ServoFunctions
 from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
+from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
 from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
 from link.core import LinkReport, Received
@@ -31,7 +33,9 @@ class Contact:
     stream_requests: StreamRequests
     link: int
     """Index of the link on which the newest message of the vehicle arrived."""
+    changes: StateChanges
     settings_check: SettingsCheck | None = None
+    servo_functions: ServoFunctions | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     ours: bool = False
@@ -86,6 +90,8 @@ class Contact:
         """Read the settings again: after a restart they may be others."""
         if self.settings_check is not None:
             self.settings_check.restart()
+        if self.servo_functions is not None:
+            self.servo_functions.restart()
 
 
 class Fleet:
@@ -159,10 +165,12 @@ class Fleet:
         state = VehicleState(received.system, received.component)
         state.receive(received, now)
         target = (state.system, state.component)
-        contact = Contact(state, StreamRequests(target, now), received.peer.link)
+        contact = Contact(state, StreamRequests(target, now), received.peer.link, StateChanges(self._own_id[0]))
         self._contacts[received.system] = contact
         if state.autopilot in SETTINGS:
             contact.settings_check = SettingsCheck(SETTINGS[state.autopilot], *self._own_id, target=target)
+        if ServoFunctions.applies_to(state.autopilot):
+            contact.servo_functions = ServoFunctions(*self._own_id, target=target)
         self._selected = self._selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact
@@ -183,10 +191,12 @@ class Fleet:
                 self._log.add(now, "station", f"{contact.state.name}: {SIGNING}", Severity.WARNING)
 
     def update(self, now: float) -> None:
-        """Notice which vehicles are lost and which are back."""
+        """Notice which vehicles are lost and which are back, and what has changed."""
         self._not_shown = {system: at for system, at in self._not_shown.items() if now - at <= LOST_AFTER}
         for contact in self._contacts.values():
             monitor, name = contact.state.monitor, contact.state.name
+            for change in contact.changes.update(contact.state):
+                self._log.add(now, STATE, f"{name}: {change}", Severity.NOTICE)
             if contact.lost_at is None and not monitor.is_alive(now):
                 contact.lose(now)
                 self._log.add(now, "station", f"{name}: link lost for {monitor.timeout:g} s", Severity.CRITICAL)

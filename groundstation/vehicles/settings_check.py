@@ -65,8 +65,13 @@ class SettingsCheck:
     @property
     def warnings(self) -> tuple[str, ...]:
         """One line for each dangerous parameter, and one that names those that could not be read."""
-        found = tuple(warning for warning in self._found.values() if warning)
-        return (*found, *self._missing_warning())
+        found = (warning for name, warning in self._found.items() if name not in self._settings.obeyed)
+        return (*filter(None, found), *self._missing_warning())
+
+    @property
+    def obeys(self) -> str | None:
+        """Warning that the vehicle obeys another ground station only; None: it obeys us, or not known."""
+        return next(filter(None, map(self._found.get, self._settings.obeyed)), None)
 
     def pop_missing_warning(self) -> list[str]:
         """Return the warning that names the parameters that could not be read, once after each (re)start."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from textual.strip import Strip
@@ -9,8 +10,8 @@ from textual.strip import Strip
 from groundstation.input.keymap import Keymap
 from groundstation.intents import ACTIONS
 from groundstation.ui.colours import DIM, PANEL, RED, TEXT, YELLOW, style
-from groundstation.ui.display_state import DisplayState
-from groundstation.ui.keynames import format_key, main_key
+from groundstation.ui.display_state import DRIVE_INFO, DisplayState, ScreenInfo
+from groundstation.ui.keynames import format_key, is_character, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 FooterItem = tuple[str | None, tuple[str, ...]]
@@ -41,16 +42,17 @@ class FooterValue:
     armed: bool = False
     place: str = ""
     """Which of several vehicles is selected, e.g. "2/16"; "" for one alone."""
+    screen: ScreenInfo = DRIVE_INFO
 
     @classmethod
     def from_state(cls, now: DisplayState) -> FooterValue:
         """Return the footer of a display state."""
         vehicle, systems = now.snapshot.vehicle, now.snapshot.vehicles
         if vehicle is None:
-            return cls(now.keymap)
+            return cls(now.keymap, screen=now.screen)
         several = len(systems) > 1 and vehicle.system in systems
         place = f"{systems.index(vehicle.system) + 1}/{len(systems)}" if several else ""
-        return cls(now.keymap, vehicle.armed, place)
+        return cls(now.keymap, vehicle.armed, place, now.screen)
 
 
 class KeyFooter(Instrument[FooterValue]):
@@ -60,19 +62,39 @@ class KeyFooter(Instrument[FooterValue]):
         """Draw keys in yellow, stop keys in red."""
         parts: list[Part] = []
         tail = [("│ ", style(DIM, PANEL)), ("^p", style(YELLOW, PANEL, bold=True)), (" Commands ", style(TEXT, PANEL))]
-        for label, ids in self._items():
-            item = self._item(label, ids)
+        for item in self._items():
             if item and length(parts) + length(item) + length(tail) <= width:
                 parts += item
         gap = max(0, width - length(parts) - length(tail))
         return [strip(*parts, (" " * gap, style(TEXT, PANEL)), *tail).crop(0, width)]
 
-    def _items(self) -> list[FooterItem]:
+    def _items(self) -> Iterator[list[Part]]:
+        screen = self.value.screen
+        if screen.drives:
+            yield from (self._item(label, ids) for label, ids in self._drive_items())
+            return
+        yield _parts(self._stop_key(), "Stop", RED)
+        yield self._item("E-STOP", ("stop.emergency",))
+        if screen.text:
+            yield _parts("ENTER", "Keep", YELLOW)
+            yield _parts("ESC", "Clear", YELLOW)
+            return
+        for each in screen.keys:
+            yield _parts(format_key(each.key), each.label, YELLOW)
+        yield _parts("ESC", "Drive", YELLOW)
+
+    def _drive_items(self) -> list[FooterItem]:
         """Return the table; with several vehicles the key that selects the next one takes the place of the speed."""
         if not self.value.place:
             return list(FOOTER_ITEMS)
         following: FooterItem = (f"Vehicle {self.value.place}", ("vehicle.next",))
         return [*(following if item == SPEED else item for item in FOOTER_ITEMS), SPEED]
+
+    def _stop_key(self) -> str:
+        """Return a stop key that works now: a text field takes the keys that are characters."""
+        keys = self.value.keymap.get_keys("drive.stop")
+        usable = [key for key in keys if not (self.value.screen.text and is_character(key))]
+        return format_key("space" if "space" in usable else usable[0]) if usable else "?"
 
     def _item(self, label: str | None, ids: tuple[str, ...]) -> list[Part]:
         keys = [self._key(action_id) for action_id in ids]
@@ -80,13 +102,13 @@ class KeyFooter(Instrument[FooterValue]):
             return []
         action = ACTIONS[ids[0]]
         text = label or ("Disarm" if self.value.armed and action.when_armed is not None else action.label)
-        colour = RED if action.group == "stop" else YELLOW
-        return [
-            (f" {' '.join(filter(None, keys))}", style(colour, PANEL, bold=True)),
-            (f" {text} ", style(TEXT, PANEL)),
-        ]
+        return _parts(" ".join(filter(None, keys)), text, RED if action.group == "stop" else YELLOW)
 
     def _key(self, action_id: str) -> str | None:
         keymap = self.value.keymap
         key = "space" if "space" in keymap.get_keys(action_id) else main_key(keymap, action_id)
         return None if key is None else format_key(key)
+
+
+def _parts(keys: str, label: str, colour: str) -> list[Part]:
+    return [(f" {keys}", style(colour, PANEL, bold=True)), (f" {label} ", style(TEXT, PANEL))]
