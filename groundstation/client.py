@@ -24,7 +24,7 @@ from groundstation.ipc import (
     encode,
 )
 from groundstation.processes import end_process, start_module
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import Snapshot, StationOutage
 
 START_TIMEOUT = 15.0
 """s for the station to open its links: Python's start on a slow Pi (3 s) and a host name to resolve (10 s)."""
@@ -34,6 +34,10 @@ CLOSE_TIMEOUT = 1.0
 
 MAX_PENDING = 256
 """Intents kept for a station that does not read. Only those that are `valid_when_late` are kept."""
+
+
+OUTAGE_TAG, TAG_BYTES = StationOutage.__name__.encode(), 32
+"""The tag of a StationOutage, and where it stands in a packet: snapshots in between are not even decoded."""
 
 
 class StationError(RuntimeError):
@@ -51,6 +55,8 @@ class StationClient:
         self._pending: deque[AnyIntent] = deque(maxlen=MAX_PENDING)
         self._open = True
         self._newest = Snapshot()
+        self.outage = StationOutage()
+        """What the watchdog reports of a station process that has ended or does not respond."""
 
     @classmethod
     def start(
@@ -62,11 +68,17 @@ class StationClient:
         speed: float = 0.6,
         sitl: bool = False,
         log_file: Path | None = None,
+        terminal: str | None = None,
     ) -> StationClient:
-        """Start the station process and wait until its links are open. Raises StationError."""
+        """Start the station process and wait until its links are open. Raises StationError.
+
+        `terminal` is the path of the terminal that is reset if this process is killed.
+        """
         options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
         if log_file is not None:
             options.append(f"--log-file={log_file}")
+        if terminal is not None:
+            options.append(f"--terminal={terminal}")
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             for half in (ours, theirs):
@@ -105,7 +117,10 @@ class StationClient:
         return self._pipe.fileno()
 
     def receive(self) -> Snapshot | None:
-        """Return the newest snapshot received, or None. Never blocks; `alive` is False once the station has exited."""
+        """Return the newest snapshot received, or None. Never blocks; `alive` is False once the station has exited.
+
+        The watchdog writes to the same pipe; its newest report becomes `outage`.
+        """
         newest: bytes | None = None
         while True:
             try:
@@ -117,10 +132,24 @@ class StationClient:
             if not packet:
                 self._open = False
                 break
-            newest = packet
+            if OUTAGE_TAG in packet[:TAG_BYTES]:
+                self._take_outage(packet)
+            else:
+                newest = packet
         snapshot = _snapshot(newest) if newest else None
         self._newest = snapshot or self._newest
         return snapshot
+
+    def _take_outage(self, packet: bytes) -> None:
+        with contextlib.suppress(msgspec.DecodeError):
+            message = decode_from_station(packet)
+            if isinstance(message, StationOutage):
+                self.outage = message
+
+    @property
+    def open(self) -> bool:
+        """Packets may still arrive: the station or its watchdog runs."""
+        return self._open
 
     @property
     def left_armed(self) -> tuple[str, ...]:

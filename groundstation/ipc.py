@@ -7,7 +7,7 @@ import time
 import msgspec
 
 from groundstation.intents import LEASE_TIMEOUT, AnyIntent
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import Snapshot, StationOutage
 
 SOCKET_BUFFER = 1 << 20
 """Bytes requested each way, so that a snapshot (< 60 kB) or a second of keys fits; the kernel may grant less."""
@@ -39,7 +39,7 @@ class StationFailed(msgspec.Struct, frozen=True, tag=True):
     line: str
 
 
-FromStation = StationReady | StationFailed | Snapshot
+FromStation = StationReady | StationFailed | Snapshot | StationOutage
 
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(FromStation).decode

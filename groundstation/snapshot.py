@@ -172,3 +172,12 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     messages: tuple[MessageRate, ...] = ()
     simulator: str | None = None
     """State of the simulator that we started, e.g. "running", "ended with code 1: ..."; None without one."""
+
+
+class StationOutage(msgspec.Struct, frozen=True, tag=True):
+    """From the watchdog: the station process has ended or does not respond, and what follows from that."""
+
+    text: str = ""
+    """One line for the user; empty: the station responds again."""
+    ended: bool = False
+    """The process has ended, it does not only stand still."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import errno
+import os
 import shutil
 import sys
 from collections.abc import Sequence
@@ -91,6 +92,7 @@ def _run(options: argparse.Namespace) -> int:
         speed=options.speed,
         sitl=options.sitl,
         log_file=log_file,
+        terminal=os.ttyname(sys.stdout.fileno()),
     )
     try:
         from groundstation.ui.app import run  # takes half a second, so only after the arguments are checked

@@ -16,6 +16,7 @@ from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
 from groundstation.intents import LEASE_TIMEOUT, DriveKeyDown, SetKeyGate
 from groundstation.snapshot import OperatorView
+from groundstation.station.stall import StallMonitor
 from link.protocol.heartbeat import HeartbeatMonitor
 from link.protocol.rate import RateMeter
 
@@ -37,14 +38,15 @@ class OperatorSession:
         self.sticks = Sticks(style, speed)
         self.demand_rate = RateMeter()
         """Demands sent."""
+        self.stall = StallMonitor()
         self._sent_demand = NEUTRAL
         """The last demand sent to the selected vehicle."""
         self._input_count = 0
-        self._session = session
+        self.session = session
         self._lease = HeartbeatMonitor(LEASE_TIMEOUT)
         self._clock = 0
         self._live = False
-        self._unreported_lapse = False
+        self._unreported_lapse: str | None = None
         self._thawed_at = 0.0
         self._gate = SetKeyGate(open=False, reason="starting")
         self._driving_allowed = False
@@ -61,11 +63,11 @@ class OperatorSession:
         self._live = True
         self._lease.update(now)
 
-    def expire_lease(self, now: float) -> bool:
-        """Release all keys when the lease has run out. Returns True once each time that happens."""
+    def expire_lease(self, now: float) -> str | None:
+        """Release all keys when the lease has run out. Returns what happened, once each time."""
         self._check_lease(now)
-        lapsed, self._unreported_lapse = self._unreported_lapse, False
-        return lapsed
+        lapse, self._unreported_lapse = self._unreported_lapse, None
+        return lapse
 
     @property
     def live(self) -> bool:
@@ -126,10 +128,19 @@ class OperatorSession:
         return changed
 
     def _check_lease(self, now: float) -> None:
-        """Release all keys when the lease has run out, whichever event of a thawed process comes first."""
-        if self._live and not self._lease.is_alive(now):
-            self._live, self._unreported_lapse = False, True
-            self.sticks.block(now)
+        """Release all keys when the lease has run out, whichever event of a thawed process comes first.
+
+        A station that stood still counts as one whose lease has run out, even if a renewal came just before.
+        """
+        stalled = self.stall.pop_stall(now)
+        if not self._live or (stalled is None and self._lease.is_alive(now)):
+            return
+        self._live = False
+        self.sticks.block(now)
+        if stalled is None:
+            self._unreported_lapse = f"the display did not respond for {self._lease.silence(now):.1f} s"
+        else:
+            self._unreported_lapse = f"the station process did not run for {stalled:.1f} s"
 
     # ---- what others see ----
 
@@ -145,7 +156,7 @@ class OperatorSession:
             target_component=target[1],
             time_boot_ms=self._next_clock(now),
             echo_time_boot_ms=echo or 0,
-            session_id=self._session,
+            session_id=self.session,
             input_count=self._input_count & 0xFFFFFFFF,
             last_input_age_ms=self._age_ms(now),
             flags=self._flags(now) | Flag.AXES,

@@ -11,6 +11,7 @@ from groundstation.intents import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
+from groundstation.station.driven import DrivenVehicle
 from groundstation.station.driving import DrivingController
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.id_conflict import IdConflict
@@ -24,6 +25,8 @@ from groundstation.vehicles.message_log import MessageLog
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
+
+DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -124,7 +127,17 @@ class Station:
         self._message_rates.count(message, now, sent=True)
         self._driving.handle_sent(message, sequence, now)
 
+    def may_send(self, message: m.Message, now: float) -> bool:
+        """Return False for a demand that was made before the process stood still."""
+        return not isinstance(message, DEMANDS) or not self.operator.stall.is_stalled(now)
+
     # ---- the shell around the core ----
+
+    def report_to_watchdog(self, now: float) -> tuple[DrivenVehicle, ...]:
+        """Return the vehicles that the watchdog stops if no further call follows within STALL_TIMEOUT."""
+        self._expire_lease(now)
+        self.operator.stall.record_report(now)
+        return self._driving.driven_vehicles(now)
 
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
@@ -163,9 +176,16 @@ class Station:
         )
 
     def _expire_lease(self, now: float) -> None:
-        """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first."""
-        if self.operator.expire_lease(now):
-            self.log.add(now, "station", "screen not responding: neutral, control released", Severity.CRITICAL)
+        """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first.
+
+        Without an armed vehicle of ours it is not reported: a slow start would be.
+        """
+        lapse = self.operator.expire_lease(now)
+        if lapse is None:
+            return
+        self._driving.drop_demands()
+        if any(contact.ours and contact.state.armed for contact in self.fleet):
+            self.log.add(now, "station", f"{lapse}: neutral; release all drive keys", Severity.CRITICAL)
 
     def _handle_statustext(self, message: m.StatusText, system: int, now: float) -> None:
         text = self.log.handle_statustext(message, system, now)

@@ -48,8 +48,11 @@ def active_alerts(now: DisplayState) -> list[Alert]:
 
 
 def _station(now: DisplayState) -> Iterator[Alert]:
-    if not now.station_alive:
-        yield Alert(AlertLevel.DANGER, f"the station process has ended, nothing is sent: {now.key('app.quit')} quits")
+    quits = "" if now.station_alive else f"; {now.key('app.quit')} quits"
+    if now.outage:
+        yield Alert(AlertLevel.DANGER, f"{now.outage}{quits}")
+    elif not now.station_alive:
+        yield Alert(AlertLevel.DANGER, f"the station process has ended, nothing is sent{quits}")
 
 
 def _emergency(now: DisplayState) -> Iterator[Alert]:

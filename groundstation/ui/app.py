@@ -69,6 +69,7 @@ class ConsoleApp(App[int]):
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
         self._snapshot = Snapshot()
+        self._outage = client.outage
         self._pressed: dict[str, float] = {}
         self._shown_at = 0.0
         self._leaving: GateClosure | None = None
@@ -141,10 +142,14 @@ class ConsoleApp(App[int]):
         snapshot = self._client.receive()
         if snapshot is not None:
             self._handle_snapshot(snapshot)
-        if not self._client.alive:
+        if self._client.outage != self._outage:
+            self._outage = self._client.outage
+            self.gate.set_closure(self._gate_closure(self._clock()))
+            self._show()
+        if not self._client.open:
             asyncio.get_running_loop().remove_reader(self._client.fileno())
-            if self._leaving is DISARMING:
-                self.end()
+        if not self._client.alive and self._leaving is DISARMING:
+            self.end()
 
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
@@ -170,6 +175,7 @@ class ConsoleApp(App[int]):
             closure=self.gate.closure,
             hold=self.gate.hold,
             station_alive=self._client.alive,
+            outage=self._outage.text,
             pressed=frozenset(self._pressed),
             terminal_round_trip=self.gate.ping.round_trip,
         )
@@ -197,6 +203,7 @@ class ConsoleApp(App[int]):
         checks: tuple[tuple[bool, GateClosure], ...] = (
             (self._leaving is not None, self._leaving or STARTING),
             (not self._client.alive, GateClosure("the station has ended")),
+            (bool(self._outage.text), GateClosure("the station does not respond")),
             (self.screen is not self.drive, GateClosure("another screen is open", GateLevel.STOPS)),
             (not self.app_focus, GateClosure("this window does not have the focus")),
             (self.drive.too_small, GateClosure("the terminal is too small")),

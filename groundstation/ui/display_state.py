@@ -22,6 +22,8 @@ class DisplayState:
     hold: HoldProgress | None = None
     """The action whose key is held to confirm it."""
     station_alive: bool = True
+    outage: str = ""
+    """What the watchdog reports of a station that has ended or does not respond; empty while it runs."""
     pressed: frozenset[str] = frozenset()
     """Keys that the UI saw go down, sooner than a snapshot can report them."""
     terminal_round_trip: float | None = None

@@ -19,7 +19,7 @@ from groundstation.intents import (
     SetKeyGate,
     Stop,
 )
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import Snapshot, StationOutage
 from groundstation.ui.tty_ping import TerminalPing
 
 
@@ -41,6 +41,14 @@ class StationConnection(Protocol):
     @property
     def alive(self) -> bool:
         """The station process runs."""
+
+    @property
+    def open(self) -> bool:
+        """Something may still arrive: the station or its watchdog runs."""
+
+    @property
+    def outage(self) -> StationOutage:
+        """What the watchdog reports of a station that has ended or does not respond."""
 
 
 class GateLevel(Enum):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -32,6 +33,8 @@ class Contact:
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     ours: bool = False
     """This station has armed or driven the vehicle since the vehicle was last disarmed."""
+    demanded_at: float = -math.inf
+    """When the newest demand was sent to it."""
     lost_at: float | None = None
     """When the last message arrived, while the link is lost."""
 

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from groundstation.intents import AnyIntent, RenewLease, SetKeyGate
-from groundstation.snapshot import LinkView, LogLine, MessageRate, OperatorView, Snapshot, VehicleView
+from groundstation.snapshot import LinkView, LogLine, MessageRate, OperatorView, Snapshot, StationOutage, VehicleView
 
 NOON = 1_700_000_000.0
 """A wall clock for log lines; the tests run in UTC."""
@@ -24,6 +24,7 @@ class Recorder:
     def __init__(self) -> None:
         self.intents: list[AnyIntent] = []
         self.alive = True
+        self.outage = StationOutage()
         self._waiting: list[Snapshot] = []
         self._ours, self._theirs = socket.socketpair()
         self._ours.setblocking(False)
@@ -54,6 +55,11 @@ class Recorder:
         """Give the descriptors back."""
         self._ours.close()
         self._theirs.close()
+
+    @property
+    def open(self) -> bool:
+        """As long as it is alive."""
+        return self.alive
 
     @property
     def wishes(self) -> list[AnyIntent]:
