@@ -138,9 +138,9 @@ class OperatorSession:
         self._live = False
         self.sticks.block(now)
         if stalled is None:
-            self._unreported_lapse = f"the display did not respond for {self._lease.silence(now):.1f} s"
+            self._unreported_lapse = f"display not responding for {self._lease.silence(now):.1f} s"
         else:
-            self._unreported_lapse = f"the station process did not run for {stalled:.1f} s"
+            self._unreported_lapse = f"station stopped for {stalled:.1f} s"
 
     # ---- what others see ----
 

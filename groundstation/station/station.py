@@ -185,7 +185,7 @@ class Station:
             return
         self._driving.drop_demands()
         if any(contact.ours and contact.state.armed for contact in self.fleet):
-            self.log.add(now, "station", f"{lapse}: neutral; release all drive keys", Severity.CRITICAL)
+            self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
 
     def _handle_statustext(self, message: m.StatusText, system: int, now: float) -> None:
         text = self.log.handle_statustext(message, system, now)

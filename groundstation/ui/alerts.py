@@ -52,7 +52,7 @@ def _station(now: DisplayState) -> Iterator[Alert]:
     if now.outage:
         yield Alert(AlertLevel.DANGER, f"{now.outage}{quits}")
     elif not now.station_alive:
-        yield Alert(AlertLevel.DANGER, f"the station process has ended, nothing is sent{quits}")
+        yield Alert(AlertLevel.DANGER, f"station process ended: nothing is sent{quits}")
 
 
 def _emergency(now: DisplayState) -> Iterator[Alert]:

@@ -39,8 +39,8 @@ class Cause(Enum):
 
 
 _STATION = {
-    Cause.ENDED: "the station process has ended",
-    Cause.STALLED: "the station process does not respond",
+    Cause.ENDED: "station process ended",
+    Cause.STALLED: "station not responding",
 }
 
 
@@ -82,7 +82,7 @@ class _Target:
             return f"neutral could NOT be sent to {name} ({self.error or 'no link'})"
         if sending:
             return f"the watchdog sends neutral to {name}"
-        return f"neutral was sent to {name} for {SEND_FOR:.0f} s, not known whether it stands"
+        return f"{name} may still move after {SEND_FOR:.0f} s of neutral"
 
 
 @dataclass(slots=True)

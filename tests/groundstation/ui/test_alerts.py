@@ -98,7 +98,7 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         AlertLevel.QUESTION,
         "Arm: hold r ████░░░░░░ 0.4 s",
     ),
-    (snapshot(), {"station_alive": False}, AlertLevel.DANGER, "the station process has ended"),
+    (snapshot(), {"station_alive": False}, AlertLevel.DANGER, "station process ended"),
 ]
 
 

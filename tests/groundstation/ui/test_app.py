@@ -101,7 +101,7 @@ async def test_quit_needs_no_question_and_works_everywhere(key: str, first: tupl
 async def test_a_dead_station_is_said() -> None:
     async with console() as screen:
         screen.station.alive = False
-        await until(lambda: "the station process has ended" in screen.text)
+        await until(lambda: "station process ended" in screen.text)
         assert screen.station.of(SetKeyGate)[-1].reason == "the station has ended"
 
 

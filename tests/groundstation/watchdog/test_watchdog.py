@@ -213,7 +213,7 @@ def test_it_ends_when_the_vehicle_has_stood_for_a_while() -> None:
     assert not watchdog.finished(102.0)
     watchdog.handle_message(2, speed(0.0), 102.5)
     assert watchdog.finished(102.5)
-    assert watchdog.outage(102.5) == StationOutage("the station process has ended: ArduPilot rover 2 stands", True)
+    assert watchdog.outage(102.5) == StationOutage("station process ended: ArduPilot rover 2 stands", True)
 
 
 def test_it_ends_when_the_vehicle_is_disarmed_but_not_before_a_second_of_neutral() -> None:
@@ -222,7 +222,7 @@ def test_it_ends_when_the_vehicle_is_disarmed_but_not_before_a_second_of_neutral
     sent(watchdog, 100.0, 0.1)
     watchdog.handle_message(2, heartbeat(armed=False), 100.1)
     watchdog.handle_message(9, heartbeat(armed=True), 100.2)
-    assert watchdog.outage(100.2).text == "the station process has ended: ArduPilot rover 2 is disarmed"
+    assert watchdog.outage(100.2).text == "station process ended: ArduPilot rover 2 is disarmed"
     assert not watchdog.finished(100.5)
     assert watchdog.finished(101.1)
 
@@ -241,14 +241,12 @@ def test_only_what_is_known_is_said() -> None:
     assert watchdog.outage(100.1) == StationOutage()
     sent(watchdog, 100.0, 0.5, error="No such device")
     assert watchdog.outage(100.5).text == (
-        "the station process does not respond: neutral could NOT be sent to ArduPilot rover 2 (No such device)"
+        "station not responding: neutral could NOT be sent to ArduPilot rover 2 (No such device)"
     )
     sent(watchdog, 100.5, 0.5)
     assert watchdog.outage(101.0).text.endswith(": the watchdog sends neutral to ArduPilot rover 2")
     sent(watchdog, 101.0, 6.0)
-    assert watchdog.outage(107.0).text.endswith(
-        "neutral was sent to ArduPilot rover 2 for 5 s, not known whether it stands"
-    )
+    assert watchdog.outage(107.0).text.endswith("ArduPilot rover 2 may still move after 5 s of neutral")
     watchdog.handle_report(StationReport(), 107.1)
     assert watchdog.outage(107.1) == StationOutage()
 
