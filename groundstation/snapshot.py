@@ -41,6 +41,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """System id of the ground station in control, 0 for none; None if the vehicle sends no CONTROL_STATUS."""
     in_control: bool = False
     """We are in control; without CONTROL_STATUS: the vehicle accepted arming or a control request from us."""
+    control_wait: float | None = None
+    """Seconds for which the station in control may still answer our request; None without a request."""
     emergency_stop: bool = False
     """The vehicle reports an emergency stop, or we have requested one."""
     emergency_progress: EmergencyProgress | None = None
@@ -83,6 +85,17 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """The last refusal and its reason, e.g. "arm denied: PreArm: battery low". Cleared by the next acceptance."""
     warnings: tuple[str, ...] = ()
     """Settings of a foreign vehicle that would let it drive on."""
+
+
+class HandoverNotice(msgspec.Struct, frozen=True):
+    """Another ground station asks for control of a vehicle that we control."""
+
+    station: int
+    """Its system id."""
+    vehicle: str
+    """Name of the vehicle."""
+    left: float
+    """Seconds to answer; then control stays with us."""
 
 
 class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
@@ -165,6 +178,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """One line for each vehicle that this station armed and would leave armed if it ended now."""
     id_conflict: str | None = None
     """Another ground station that uses our system id, as a text for the driver."""
+    handover: HandoverNotice | None = None
+    """A request of another ground station that waits for the operator's answer."""
     operator: OperatorView = OperatorView()
     links: tuple[LinkView, ...] = ()
     texts: tuple[LogLine, ...] = ()

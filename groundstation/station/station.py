@@ -13,6 +13,7 @@ from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.driving import DrivingController
+from groundstation.station.handover import Handover
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
@@ -54,8 +55,9 @@ class Station:
         self._commander = Commander(self.log, system, COMPONENT)
         self._driving = DrivingController(self.operator, self.fleet, self._commander, system)
         self._departure = Departure(self.fleet, self._commander, self._driving)
+        self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
         self._intents = IntentHandler(
-            self.operator, self.fleet, self._commander, self._driving, self._departure, self.log
+            self.operator, self.fleet, self._commander, self._driving, self._departure, self._handover, self.log
         )
         self._links = LinkStats()
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log)
@@ -82,6 +84,7 @@ class Station:
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
         self._queries.receive(contact, received, now)
+        self._handover.receive(contact, received, now)
         match received.message:
             case m.StatusText() as message:
                 self._handle_statustext(message, received.system, now)
@@ -98,6 +101,7 @@ class Station:
         self.log.expire(now)
         self.fleet.update(now)
         self._commander.tick(now)
+        self._handover.tick(now)
         if self.operator.live:
             self._queries.tick(now)
         if self.operator.live and not self._driving.ending:
@@ -166,6 +170,7 @@ class Station:
             left_armed=self._departure.left_armed(now),
             id_conflict=self._id_conflict.text(now),
             also_armed=self.fleet.also_armed,
+            handover=self._handover.notice(now),
             operator=self.operator.build_view(
                 self._driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now
             ),
@@ -197,6 +202,7 @@ class Station:
         return state.build_view(
             now,
             in_control=self._driving.is_in_control(contact),
+            control_wait=self._handover.waits_for(contact, now),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
             without_link=contact.without_link,

@@ -95,6 +95,13 @@ def _hold(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.QUESTION, text)
 
 
+def _handover(now: DisplayState) -> Iterator[Alert]:
+    notice = now.snapshot.handover
+    if notice is not None:
+        answers = f"{now.key('vehicle.give')} gives, {now.key('vehicle.keep')} keeps ({notice.left:.0f} s)"
+        yield Alert(AlertLevel.QUESTION, f"GCS {notice.station} asks for control of {notice.vehicle}: {answers}")
+
+
 def _silence(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.alive:
@@ -149,7 +156,10 @@ def _driver(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
-        yield Alert(AlertLevel.WARNING, f"{who}: {now.key('vehicle.control')} asks for control")
+        asks = f"{now.key('vehicle.control')} asks for control"
+        if vehicle.control_wait is not None:
+            asks = f"asked for control, {vehicle.control_wait:.0f} s to answer"
+        yield Alert(AlertLevel.WARNING, f"{who}: {asks}")
 
 
 def _settings(now: DisplayState) -> Iterator[Alert]:
@@ -183,7 +193,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _silence, _emergency, _failsafe, _gate, _refusal, _id_conflict, _limits, _driver, _settings,
-    _hint,
+    _station, _hold, _silence, _emergency, _failsafe, _handover, _gate, _refusal, _id_conflict, _limits, _driver,
+    _settings, _hint,
 )  # fmt: skip
 """Most urgent first."""
