@@ -157,6 +157,8 @@ def _driver(now: DisplayState) -> Iterator[Alert]:
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
         asks = f"{now.key('vehicle.control')} asks for control"
+        if now.away is not None:
+            who = f"tmux was detached for {now.away:.0f} s, control was released"
         if vehicle.control_wait is not None:
             asks = f"asked for control, {vehicle.control_wait:.0f} s to answer"
         yield Alert(AlertLevel.WARNING, f"{who}: {asks}")

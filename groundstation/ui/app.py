@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import signal
 import sys
 import time
@@ -19,7 +18,7 @@ from textual.driver import Driver
 from textual.screen import Screen
 
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents import ACTIONS, AnyIntent, DriveKeyDown, OperatorAction, Quit, RenewLease
+from groundstation.intents import ACTIONS, AnyIntent, DriveKeyDown, OperatorAction, Quit, ReleaseControl, RenewLease
 from groundstation.screens import SCREENS
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import THEME
@@ -27,11 +26,13 @@ from groundstation.ui.display_state import DisplayState
 from groundstation.ui.exit import exit_on_signals
 from groundstation.ui.key_gate import STARTING, GateClosure, GateLevel, KeyGate, StationConnection
 from groundstation.ui.key_parser import KeyRepeat, KeyUp
+from groundstation.ui.memory import freeze_objects
 from groundstation.ui.navigation import ScreenNavigator
 from groundstation.ui.palette import ActionProvider
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.terminal import PING, ConsoleDriver, TerminalClosed
+from groundstation.ui.tmux import TmuxSession
 from groundstation.ui.tty_output import TerminalFile, redirect_output
 from groundstation.ui.tty_ping import PERIOD
 
@@ -74,6 +75,7 @@ class ConsoleApp(App[int]):
         self._shown_at = 0.0
         self._leaving: GateClosure | None = None
         self._own_loop: asyncio.AbstractEventLoop | None = None
+        self._tmux = TmuxSession.from_environment()
         context = ScreenContext(keymap, self._send, self.perform_action)
         self.drive = DriveScreen(context)
         self._navigator = ScreenNavigator(self, context)
@@ -91,13 +93,15 @@ class ConsoleApp(App[int]):
         self._own_loop.add_reader(self._client.fileno(), self._readable)
         # In this loop and not in a thread: a UI that hangs must lose its lease.
         self.set_interval(TICK, self._tick)
+        self._tmux.start(self._own_loop)
         self.set_interval(PERIOD, self._ping)
         if self._terminal is not None:
-            self.call_after_refresh(_freeze)
+            self.call_after_refresh(freeze_objects)
 
     def on_unmount(self) -> None:
         """Close the gate, which means neutral, before anything else ends."""
         self.gate.close("quitting")
+        self._tmux.stop()
         asyncio.get_running_loop().remove_reader(self._client.fileno())
 
     def end(self, code: int = 0) -> None:
@@ -154,6 +158,7 @@ class ConsoleApp(App[int]):
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
         vehicle, operator = snapshot.vehicle, snapshot.operator
+        self._tmux.handle_control(vehicle is not None and vehicle.in_control)
         driving = bool(operator.throttle or operator.steering or operator.held)
         self.gate.update(armed=vehicle is not None and vehicle.armed, driving=driving)
         if self._clock() - self._shown_at >= MIN_FRAME_TIME:
@@ -176,6 +181,7 @@ class ConsoleApp(App[int]):
             hold=self.gate.hold,
             station_alive=self._client.alive,
             outage=self._outage.text,
+            away=self._tmux.away,
             pressed=frozenset(self._pressed),
             terminal_round_trip=self.gate.ping.round_trip,
         )
@@ -188,6 +194,8 @@ class ConsoleApp(App[int]):
         now = self._clock()
         self._client.send(RenewLease())
         self.gate.set_closure(self._gate_closure(now))
+        if self._tmux.pop_release(now):
+            self._send(ReleaseControl())
         for key in [key for key, until in self._pressed.items() if now >= until]:
             del self._pressed[key]
         if now - self._shown_at >= TICK:
@@ -205,6 +213,7 @@ class ConsoleApp(App[int]):
             (not self._client.alive, GateClosure("the station has ended")),
             (bool(self._outage.text), GateClosure("the station does not respond")),
             (self.screen is not self.drive, GateClosure("another screen is open", GateLevel.STOPS)),
+            (self._tmux.detached, GateClosure("nobody is attached to tmux")),
             (not self.app_focus, GateClosure("this window does not have the focus")),
             (self.drive.too_small, GateClosure("the terminal is too small")),
             (self.gate.ping.is_silent(now), GateClosure("the terminal does not answer")),
@@ -287,10 +296,3 @@ def run(client: StationConnection, *, keymap: Keymap, log_file: Path | None = No
         )
         return 1
     return code
-
-
-def _freeze() -> None:
-    """Exempt the objects that exist now from garbage collection: a pass over them took 28-61 ms."""
-    gc.collect()
-    gc.freeze()
-    gc.set_threshold(50_000, 20, 20)

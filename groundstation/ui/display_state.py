@@ -24,6 +24,8 @@ class DisplayState:
     station_alive: bool = True
     outage: str = ""
     """What the watchdog reports of a station that has ended or does not respond; empty while it runs."""
+    away: float | None = None
+    """Seconds for which nobody was attached to tmux, so that control was released; None if it was not."""
     pressed: frozenset[str] = frozenset()
     """Keys that the UI saw go down, sooner than a snapshot can report them."""
     terminal_round_trip: float | None = None
