@@ -19,8 +19,10 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.ui.tmux import RELEASE_AFTER, TmuxSession, count_clients
+from tests.e2e.programs import LET_GO
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.fake_vehicle import FakeVehicle
+from tests.groundstation.held_key import GAP, event_times
 from tests.groundstation.line_vehicle import LineVehicle
 from tests.groundstation.ui.ptys import attach_pty
 
@@ -110,15 +112,32 @@ class Session:
         """Return what the program shows."""
         return self.run("capture-pane", "-p")
 
-    def until(self, condition: Callable[[], bool], what: str, key: bytes = b"") -> None:
-        """Wait; press a key again and again meanwhile."""
+    def until(self, condition: Callable[[], bool], what: str) -> None:
+        """Wait."""
         deadline = time.monotonic() + PATIENCE
         while not condition():
             assert time.monotonic() < deadline, f"not within {PATIENCE} s: {what}\n{self.screen()}"
-            if self._client is not None and key:
+            self._look(GAP)
+
+    def hold(self, key: bytes, condition: Callable[[], bool], what: str) -> None:
+        """Hold a key for 2 s at a time until the condition holds."""
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            begun = time.monotonic()
+            for at in event_times(2.0):
+                self._look(begun + at - time.monotonic())
+                if condition():
+                    return
                 os.write(self._master, key)
-            if select.select([self._master] if self._client else [], [], [], 0.04)[0]:
-                os.read(self._master, 1 << 16)
+            self._look(LET_GO)
+        raise AssertionError(f"not within {PATIENCE} s: {what}\n{self.screen()}")
+
+    def _look(self, seconds: float) -> None:
+        """Read what tmux draws."""
+        until = time.monotonic() + seconds
+        masters = [self._master] if self._client else []
+        while select.select(masters, [], [], max(0.0, until - time.monotonic()))[0]:
+            os.read(self._master, 1 << 16)
 
     def end(self) -> None:
         """End the server and the client."""
@@ -154,9 +173,9 @@ def test_a_lost_client_means_neutral_then_control_is_released(
     session = Session(tmp_path, line.endpoint)
     stack.callback(session.end)
     session.until(lambda: "DISARMED" in session.screen(), "a vehicle")
-    session.until(lambda: vehicle.armed, "arming", key=b"r")
+    session.hold(b"r", lambda: vehicle.armed, "arming")
     session.until(lambda: "you drive" in session.screen(), "control")
-    session.until(lambda: asks_for_motion(vehicle), "driving", key=b"i")
+    session.hold(b"i", lambda: asks_for_motion(vehicle), "driving")
     session.lose_client(kill=kill)
     session.until(lambda: not asks_for_motion(vehicle), "neutral")
     control = Command.REQUEST_OPERATOR_CONTROL
@@ -165,4 +184,4 @@ def test_a_lost_client_means_neutral_then_control_is_released(
     assert "nobody is attached to tmux" in session.screen()
     session.attach()
     session.until(lambda: "tmux was detached for" in session.screen(), "the reason")
-    session.until(lambda: "you drive" in session.screen(), "control again", key=b"g")
+    session.hold(b"g", lambda: "you drive" in session.screen(), "control again")
