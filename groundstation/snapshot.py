@@ -31,6 +31,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     autopilot: int
     mode: str
     armed: bool
+    drivable: bool = True
+    """The mode is one in which demands drive, such as MANUAL."""
     status: int
     """MAV_STATE."""
     alive: bool
@@ -118,6 +120,8 @@ class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
     gate_open: bool = False
     gate_reason: str = ""
     """Why keys do not drive now."""
+    ignored: str = ""
+    """Why the drive key that is held, or was until just now, does not count; it must be pressed again."""
     sending: bool = False
     """MANUAL_CONTROL is being sent."""
     rate: float = 0.0

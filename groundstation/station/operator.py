@@ -8,6 +8,7 @@ stops sending heartbeats.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import OperatorFlag as Flag
@@ -31,6 +32,24 @@ OLDEST_AGE = 0xFFFF
 """Largest last_input_age_ms: older, or no input yet."""
 
 
+IGNORED_SHOWN = 3.0
+"""s for which the reason is shown after the last event of a key that does not count."""
+
+
+@dataclass(slots=True)
+class _Ignored:
+    """Why a drive key does not count, and its newest event."""
+
+    reason: str = ""
+    at: float = -math.inf
+
+    def record(self, reason: str, now: float) -> None:
+        self.reason, self.at = reason, now
+
+    def shown(self, now: float) -> str:
+        return self.reason if now - self.at <= IGNORED_SHOWN else ""
+
+
 class OperatorSession:
     """One operator at one screen. `session` is a random number that distinguishes this session from others."""
 
@@ -39,6 +58,7 @@ class OperatorSession:
         self.demand_rate = RateMeter()
         """Demands sent."""
         self.stall = StallMonitor()
+        self._ignored = _Ignored()
         self._sent_demand = NEUTRAL
         """The last demand sent to the selected vehicle."""
         self._input_count = 0
@@ -97,10 +117,14 @@ class OperatorSession:
 
     def press(self, push: DriveKeyDown, now: float) -> None:
         """Handle a drive key. One pressed while the screen blocks driving must not drive later either."""
-        if self.blocked_reason(now) is None:
-            self.sticks.press(push, now)
-        else:
+        reason = self.blocked_reason(now)
+        if reason is not None:
             self.sticks.reject(push, now)
+            self._ignored.record(reason, now)
+        elif self.sticks.press(push, now):
+            self._ignored = _Ignored()
+        else:
+            self._ignored.record(self._ignored.shown(now) or "it was held before", now)
 
     def reset_demand(self, now: float) -> None:
         """Go neutral for another vehicle; the demand of the previous vehicle is not that of the new one."""
@@ -185,6 +209,7 @@ class OperatorSession:
             steering_limit=sticks.steering_limit,
             gate_open=reason is None,
             gate_reason=reason or "",
+            ignored=self._ignored.shown(now),
             sending=sending,
             rate=self.demand_rate.rate(now),
         )

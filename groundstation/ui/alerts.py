@@ -186,6 +186,8 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
         )
     elif not operator.gate_open and now.closure is None:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {operator.gate_reason}")
+    elif operator.ignored:
+        yield Alert(AlertLevel.WARNING, f"key ignored ({operator.ignored}): release it, then press again")
     elif operator.style == "latch" and (operator.throttle or operator.steering):
         yield Alert(AlertLevel.WARNING, f"latched, the vehicle keeps driving: {now.key('drive.stop')} or SPACE stops")
     else:

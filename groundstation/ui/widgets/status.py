@@ -8,6 +8,7 @@ from textual.strip import Strip
 
 from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot, VehicleView
 from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.display_state import DisplayState
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
 
 STALE_COMMAND, OLD_COMMAND = 0.45, 0.2
@@ -23,6 +24,12 @@ class StatusBarValue:
 
     snapshot: Snapshot
     terminal: float | None = None
+    station_runs: bool = True
+
+    @classmethod
+    def from_state(cls, now: DisplayState) -> StatusBarValue:
+        """Return the status bar of a display state."""
+        return cls(now.snapshot, now.terminal_round_trip, now.station_alive and not now.outage)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +46,7 @@ class StatusBar(Instrument[StatusBarValue]):
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the badges left, the rest right; on two lines the link readings go below."""
         snapshot = self.value.snapshot
-        badges, health = _badges(snapshot), _health(snapshot.vehicle)
+        badges, health = _badges(snapshot, station_runs=self.value.station_runs), _health(snapshot.vehicle)
         fields = [*_links(snapshot), *_command(snapshot), *_terminal(self.value.terminal)]
         if height > 1:
             return [
@@ -63,12 +70,12 @@ def _spread(left: list[Part], right: list[Part], width: int) -> Strip:
     return strip(*left, (" " * gap, style()), *right).crop(0, width)
 
 
-def _badges(snapshot: Snapshot) -> list[Part]:
+def _badges(snapshot: Snapshot, *, station_runs: bool) -> list[Part]:
     vehicle = snapshot.vehicle
     if vehicle is None:
         return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
     parts = [(f" {vehicle.name} ", badge(BLUE)), (f" {vehicle.mode} ", badge(_MODES.get(vehicle.mode, YELLOW)))]
-    parts += [*_arming(vehicle), (" ", style()), _driver(vehicle)]
+    parts += [*_arming(vehicle), (" ", style()), _driver(vehicle, station_runs=station_runs)]
     if snapshot.also_armed:
         systems = ", ".join(map(str, snapshot.also_armed))
         parts.append((f" also armed: {systems}", style(AMBER, bold=True)))
@@ -84,14 +91,18 @@ def _arming(vehicle: VehicleView) -> list[Part]:
     return [state, (" E-STOP SENT ", badge(RED))] if vehicle.emergency_stop else [state]
 
 
-def _driver(vehicle: VehicleView) -> Part:
+def _driver(vehicle: VehicleView, *, station_runs: bool) -> Part:
+    if not station_runs:
+        return ("station lost", style(RED, bold=True))
     if not vehicle.alive:
         return (f"link lost for {vehicle.silence:.0f} s", style(RED, bold=True))
+    if vehicle.in_control and vehicle.armed and vehicle.emergency_stop:
+        return ("", style())  # the keys do not drive, and the badge before it says why
     if vehicle.in_control:
-        return ("you drive" if vehicle.armed else "you are in control", style(GREEN, bold=True))
+        return ("you drive" if vehicle.armed and vehicle.drivable else "you are in control", style(GREEN, bold=True))
     if vehicle.driver:
         return (f"driven by {vehicle.driver}", style(AMBER, bold=True))
-    return ("no GCS in control", style(DIM))
+    return ("" if vehicle.driver is None else "no GCS in control", style(DIM))
 
 
 def _field(weight: int, name: str, text: str, colour: str = TEXT) -> StatusField:

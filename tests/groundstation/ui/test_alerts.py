@@ -9,7 +9,7 @@ import pytest
 
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents import ACTIONS
-from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot
+from groundstation.snapshot import EmergencyProgress, HandoverNotice, LinkView, Snapshot
 from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.key_gate import GateClosure
@@ -18,7 +18,21 @@ from tests.groundstation.ui.ptys import STANDARD
 
 PROBLEM = LinkView(name="udp", problem="messages arrive with another dialect's checksum: HEARTBEAT")
 
+ASKED = HandoverNotice(254, "Rover 1", 7.6)
+OTHER = {"in_control": False, "driver": 254}
+
 CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
+    (snapshot(), {"outage": "station not responding: x"}, AlertLevel.DANGER, "station not responding: x"),
+    (snapshot(), {"outage": "y", "station_alive": False}, AlertLevel.DANGER, "y; ^q quits"),
+    (snapshot(handover=ASKED), {}, AlertLevel.QUESTION, "control of Rover 1: Y gives, N keeps (8 s)"),
+    (
+        snapshot(vehicle=vehicle(**OTHER, control_wait=6.0)),
+        {},
+        AlertLevel.WARNING,
+        "drives: asked for control, 6 s",
+    ),
+    (snapshot(vehicle=vehicle(**OTHER)), {"away": 9.0}, AlertLevel.WARNING, "tmux was detached for 9 s, control was"),
+    (snapshot(operator=helm(ignored="a")), {}, AlertLevel.WARNING, "key ignored (a): release it, then press again"),
     (waiting(), {}, AlertLevel.HINT, "no vehicle yet"),
     (snapshot(), {}, AlertLevel.HINT, "hold i to drive · SPACE stops, ! cuts the motors"),
     (snapshot(vehicle=vehicle(armed=False)), {}, AlertLevel.HINT, "disarmed: hold r to arm Rover 1"),
