@@ -92,7 +92,7 @@ def _run(options: argparse.Namespace) -> int:
         speed=options.speed,
         sitl=options.sitl,
         log_file=log_file,
-        terminal=os.ttyname(sys.stdout.fileno()),
+        terminal=_terminal_path(),
     )
     try:
         from groundstation.ui.app import run  # takes half a second, so only after the arguments are checked
@@ -128,6 +128,14 @@ def _check_terminal() -> None:
         raise UsageError(
             f"the terminal is {columns}x{rows}: make it at least {least_columns}x{least_rows}, better 80x24"
         )
+
+
+def _terminal_path() -> str | None:
+    """Return the path of the terminal; None where it has none, as in some containers."""
+    try:
+        return os.ttyname(sys.stdout.fileno())
+    except OSError:
+        return None
 
 
 def _log_file(requested: Path | None) -> Path | None:

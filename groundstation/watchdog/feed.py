@@ -21,7 +21,6 @@ log = logging.getLogger(__name__)
 END_WITHIN = 0.3
 """s for the watchdog to end after the station's last report: the ports must be free when the station has ended."""
 
-
 MAX_ADDRESSES = 256
 """Addresses whose sequence is remembered; a link has 24 at a time."""
 

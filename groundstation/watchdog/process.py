@@ -66,7 +66,7 @@ class WatchdogProcess:
                 self._screen_gone = True
             else:
                 self._read_vehicle(descriptor)
-        if self._screen_gone and (self._station_gone or self._shown.text):
+        if self._screen_gone and (self._station_gone or self._watchdog.outage(time.monotonic()).text):
             self._reset_terminal()
 
     def _read_reports(self) -> None:
@@ -106,9 +106,9 @@ class WatchdogProcess:
 
     def _show(self, outage: StationOutage) -> None:
         if outage != self._shown:
-            self._shown = outage
-            with contextlib.suppress(OSError):  # a screen that does not read, or is gone
+            with contextlib.suppress(OSError):  # a screen that does not read gets it later; one that is gone does not
                 self._screen.send(encode(outage))
+                self._shown = outage
 
     def _check_screen(self) -> None:
         """Look once more whether the screen is gone: both processes may have been killed together."""

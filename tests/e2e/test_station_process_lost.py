@@ -115,6 +115,16 @@ def test_all_processes_of_the_terminal_killed_at_once(bench: Bench) -> None:
     assert_terminal_is_reset(bench)
 
 
+def test_a_screen_that_quits_resets_the_terminal_itself(bench: Bench) -> None:
+    bench.program.type("\x11")
+    bench.program.type("\x11")
+    assert bench.program.ended() == 0
+    until(lambda: not running(bench.station))
+    bench.program.look(0.5)
+    assert not modes(bench.program.screen)[1049]
+    assert b"\x1b[=0;1u" not in bench.program.screen
+
+
 def test_a_killed_screen_leaves_the_terminal_as_it_was(bench: Bench) -> None:
     drawn = modes(bench.program.screen)
     assert all(drawn[mode] for mode in (1049, 1000, 1004, 2004)), "what the screen has set"
