@@ -153,8 +153,14 @@ class StationClient:
 
     @property
     def left_armed(self) -> tuple[str, ...]:
-        """One line for each vehicle that the station armed and left armed, by its newest snapshot."""
-        return self._newest.left_armed
+        """One line for each vehicle that the station armed and left armed, by its newest snapshot.
+
+        After the station has ended too early, the last report of the watchdog comes first.
+        """
+        lines = self._newest.left_armed
+        if not self.outage.ended:
+            return lines
+        return (self.outage.text, *(f"last known before: {line}" for line in lines))
 
     @property
     def alive(self) -> bool:

@@ -29,6 +29,7 @@ class TmuxSession:
 
     def __init__(self, pane: str | None) -> None:
         self._pane = pane
+        self._had_client = False
         self._detached_at: float | None = None
         self._released = False
         self.away: float | None = None
@@ -48,8 +49,9 @@ class TmuxSession:
         return self._detached_at is not None
 
     def update(self, clients: int | None, now: float) -> None:
-        """Take an answer; None: not known, which changes nothing."""
-        if clients == 0 and self._detached_at is None:
+        """Take an answer; None: not known, which changes nothing. A session that never had a client is a script's."""
+        self._had_client = self._had_client or bool(clients)
+        if clients == 0 and self._had_client and self._detached_at is None:
             self._detached_at, self._released, self.away = now, False, None
         elif clients and self._detached_at is not None:
             self.away = now - self._detached_at if self._released else None

@@ -50,13 +50,22 @@ def test_control_is_released_once_after_a_few_seconds() -> None:
 
 def test_a_client_that_comes_back_soon_finds_control_where_it_was() -> None:
     session = TmuxSession("%0")
+    session.update(1, 99.0)
     session.update(0, 100.0)
     session.update(1, 102.0)
     assert (session.pop_release(110.0), session.detached, session.away) == (False, False, None)
 
 
+def test_a_session_that_never_had_a_client_is_driven_by_a_script() -> None:
+    session = TmuxSession("%0")
+    session.update(0, 100.0)
+    assert not session.detached
+    assert not session.pop_release(110.0)
+
+
 def test_the_notice_ends_when_we_are_in_control_again() -> None:
     session = TmuxSession("%0")
+    session.update(1, 99.0)
     session.update(0, 100.0)
     assert session.pop_release(104.0)
     session.update(1, 105.0)

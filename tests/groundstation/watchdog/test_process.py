@@ -66,7 +66,10 @@ def test_a_killed_station_stops_the_rover_at_once_and_the_screen_says_what_is_kn
     until(lambda: "the watchdog sends neutral to ArduPilot rover 1" in drive.outage())
     drive.stops_within(0.2, killed)
     until(lambda: drive.outage() == "station process ended: ArduPilot rover 1 stands")
-    assert drive.screen.client.outage.ended
+    assert drive.screen.client.left_armed == (
+        "station process ended: ArduPilot rover 1 stands",
+        "last known before: ArduPilot rover 1 is left ARMED in MANUAL",
+    )
     assert not drive.screen.client.alive
     until(lambda: not running(drive.watchdog))
     assert not [at for at, *outputs in drive.rover.turning if any(outputs) and at > drive.rover.stopped_at]
