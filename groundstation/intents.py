@@ -133,9 +133,11 @@ class RequestControl(Intent, frozen=True):
 
 
 class ReleaseControl(Intent, frozen=True):
-    """Release control of the vehicle: neutral, then it is free for others."""
+    """Release control of the selected vehicle: neutral, then it is free for others."""
 
     valid_when_late = True
+    all: bool = False
+    """Of every vehicle that we control."""
 
 
 class GiveControl(Intent, frozen=True):

@@ -1,7 +1,7 @@
 """Handing control over: our request to the station in control, its request to us, and what the operator answers.
 
 A vehicle that refuses REQUEST_OPERATOR_CONTROL forwards it to the ground station in control, which may release control
-(https://mavlink.io/en/services/gcs_control.html). The requester repeats its request once the vehicle is free.
+(development.xml, MAV_CMD_REQUEST_OPERATOR_CONTROL). The requester repeats its request once the vehicle is free.
 """
 
 from __future__ import annotations
@@ -75,9 +75,19 @@ class Handover:
     def release(self, vehicle: VehicleState, now: float) -> None:
         """Release control. Our own vehicle changes to HOLD; others get the final neutrals, then no more demands."""
         self._asked = None
-        if self._notice is not None and self._notice.contact.state is vehicle:
+        contact = self._fleet.get(vehicle.system)
+        if contact is None or not self._driving.is_in_control(contact):
+            self._log.add(now, "station", f"not in control of {vehicle.name}", Severity.NOTICE)
+            return
+        if self._notice is not None and self._notice.contact is contact:
             self._notice = None
         self._commander.release_control(vehicle, now)
+
+    def release_all(self, now: float) -> None:
+        """Release control of every vehicle that we control."""
+        for contact in self._fleet:
+            if self._driving.is_in_control(contact):
+                self.release(contact.state, now)
 
     def give(self, now: float) -> None:
         """Release control to the station that asks for it; without a request nothing happens."""

@@ -152,7 +152,9 @@ class IntentHandler:
 
     def _release_control(self, intent: i.ReleaseControl, now: float) -> None:
         self._operator.sticks.block(now)
-        if (vehicle := self._selected_vehicle(now)) is not None:
+        if intent.all:
+            self._handover.release_all(now)
+        elif (vehicle := self._selected_vehicle(now)) is not None:
             self._handover.release(vehicle, now)
 
     def _give_control(self, intent: i.GiveControl, now: float) -> None:

@@ -158,7 +158,7 @@ class ConsoleApp(App[int]):
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
         vehicle, operator = snapshot.vehicle, snapshot.operator
-        self._tmux.handle_control(vehicle is not None and vehicle.in_control)
+        self._tmux.handle_control(vehicle is not None and vehicle.in_control, any_vehicle=bool(snapshot.left_armed))
         driving = bool(operator.throttle or operator.steering or operator.held)
         self.gate.update(armed=vehicle is not None and vehicle.armed, driving=driving)
         if self._clock() - self._shown_at >= MIN_FRAME_TIME:
@@ -195,7 +195,7 @@ class ConsoleApp(App[int]):
         self._client.send(RenewLease())
         self.gate.set_closure(self._gate_closure(now))
         if self._tmux.pop_release(now):
-            self._send(ReleaseControl())
+            self._send(ReleaseControl(all=True))
         for key in [key for key, until in self._pressed.items() if now >= until]:
             del self._pressed[key]
         if now - self._shown_at >= TICK:

@@ -66,7 +66,7 @@ _SPEED_CHART = partial(Chart, title="speed", unit="m/s", series=(Series("", GREE
 _BATTERY_CHART = partial(Chart, title="battery", unit="V", series=(Series("", BLUE),), step=0.5)
 
 INSTRUMENTS: tuple[InstrumentRow, ...] = (
-    _row("status", "top", StatusBar, lambda now: StatusBarValue.from_state(now)),
+    _row("status", "top", StatusBar, StatusBarValue.from_state),
     _row("waiting", "top", WaitingPage, WaitingValue.from_state),
     _row("track", "left", TrackMap, lambda now: TrackValue.from_vehicle(now.snapshot.vehicle)),
     _row("speed", "motion", SpeedReadout, lambda now: speed_text(now.snapshot.vehicle)),

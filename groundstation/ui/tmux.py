@@ -35,7 +35,7 @@ class TmuxSession:
         self.away: float | None = None
         """For how many s nobody was attached, if control was released in that time; None once we are in control again.
         """
-        self._without_control = False
+        self._controls_any = self._was_without = False
         self._task: asyncio.Task[None] | None = None
 
     @classmethod
@@ -55,20 +55,21 @@ class TmuxSession:
             self._detached_at, self._released, self.away = now, False, None
         elif clients and self._detached_at is not None:
             self.away = now - self._detached_at if self._released else None
-            self._detached_at, self._without_control = None, False
+            self._detached_at, self._was_without = None, False
 
     def pop_release(self, now: float) -> bool:
-        """Return True once when nobody was attached for RELEASE_AFTER."""
+        """Return True once when nobody was attached for RELEASE_AFTER and there is control to release."""
         if self._detached_at is None or self._released or now - self._detached_at < RELEASE_AFTER:
             return False
-        self._released = True
-        return True
+        self._released = self._controls_any
+        return self._released
 
-    def handle_control(self, in_control: bool) -> None:
-        """Take whether we are in control of the vehicle on the screen."""
-        if in_control and self._without_control:
+    def handle_control(self, in_control: bool, *, any_vehicle: bool = False) -> None:
+        """Take whether we are in control of the vehicle on the screen, and whether another one may be ours."""
+        self._controls_any = in_control or any_vehicle
+        if in_control and self._was_without:
             self.away = None
-        self._without_control = not in_control
+        self._was_without = not in_control
 
     # ---- asking tmux ----
 

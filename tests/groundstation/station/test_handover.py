@@ -133,6 +133,23 @@ def test_release_by_key_ends_driving_of_an_ardurover_too() -> None:
     assert any("it gets no more demands from here" in text for text in cockpit.texts)
 
 
+def test_release_without_control_asks_nothing_of_the_vehicle() -> None:
+    cockpit = cockpit_with(FakeVehicle(driver=OTHER))
+    for intent in (ReleaseControl(), ReleaseControl(all=True)):
+        cockpit.do(intent)
+    cockpit.run(0.5)
+    assert not cockpit.vehicle.commands(CONTROL)
+    assert "not in control of Rover 1" in cockpit.texts
+
+
+def test_release_of_all_releases_what_we_control() -> None:
+    cockpit = armed_cockpit()
+    cockpit.do(ReleaseControl(all=True))
+    cockpit.run(0.5)
+    assert released(cockpit)
+    assert not cockpit.view.in_control
+
+
 class ForwardingVehicle(FakeVehicle):
     """A vehicle that another station drives until it gives control."""
 

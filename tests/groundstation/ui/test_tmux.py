@@ -37,6 +37,7 @@ needs_tmux = pytest.mark.skipif(
 
 def test_control_is_released_once_after_a_few_seconds() -> None:
     session = TmuxSession("%0")
+    session.handle_control(True)
     session.update(1, 100.0)
     session.update(0, 101.0)
     assert session.detached
@@ -63,8 +64,25 @@ def test_a_session_that_never_had_a_client_is_driven_by_a_script() -> None:
     assert not session.pop_release(110.0)
 
 
+def test_without_control_nothing_is_released_or_claimed() -> None:
+    session = TmuxSession("%0")
+    session.handle_control(False)
+    session.update(1, 99.0)
+    session.update(0, 100.0)
+    assert session.detached
+    assert not session.pop_release(110.0)
+    session.update(1, 111.0)
+    assert session.away is None
+    other = TmuxSession("%0")
+    other.handle_control(False, any_vehicle=True)
+    other.update(1, 99.0)
+    other.update(0, 100.0)
+    assert other.pop_release(110.0)
+
+
 def test_the_notice_ends_when_we_are_in_control_again() -> None:
     session = TmuxSession("%0")
+    session.handle_control(True)
     session.update(1, 99.0)
     session.update(0, 100.0)
     assert session.pop_release(104.0)
