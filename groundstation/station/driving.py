@@ -128,12 +128,14 @@ class DrivingController:
             return "arming" if self._commander.is_arming(state.system) else "disarmed"
         if not self.is_in_control(contact):
             return f"GCS {state.driver} is in control" if state.driver else "not in control"
+        if contact.releasing:
+            return "releasing control"
         return None if state.mode in DRIVABLE_MODES else f"mode {state.mode}"
 
     def _may_stream(self, contact: Contact) -> bool:
         """Return whether demands go to this vehicle: only if armed and ours, so as not to fight another driver."""
         state = contact.state
-        if self._ending or not self._operator.live:
+        if self._ending or contact.releasing or not self._operator.live:
             return False
         if self._commander.is_arming(state.system):
             return state.driver in (None, self._system)

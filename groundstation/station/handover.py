@@ -27,6 +27,9 @@ ANSWER_WITHIN = 10.0
 LEAST_ANSWER, MOST_ANSWER = 3.0, 60.0
 """Limits of that parameter in the specification; outside of them ANSWER_WITHIN holds."""
 
+RELEASE_WITHIN = 3.0
+"""s for the vehicle to report that we are not in control any more; then the keys drive again."""
+
 REPEAT_PERIOD = 1.0
 """s between our requests to a vehicle that has become free; the command client repeats each in between."""
 
@@ -38,6 +41,15 @@ class _Notice:
     contact: Contact
     station: int
     until: float
+
+
+@dataclass(slots=True)
+class _Release:
+    """We release a vehicle: the final neutrals first, then the command."""
+
+    contact: Contact
+    until: float
+    sent: bool = False
 
 
 @dataclass(slots=True)
@@ -62,6 +74,7 @@ class Handover:
         self._system = system
         self._notice: _Notice | None = None
         self._asked: _Asked | None = None
+        self._releases: list[_Release] = []
 
     # ---- what the operator wants ----
 
@@ -81,7 +94,8 @@ class Handover:
             return
         if self._notice is not None and self._notice.contact is contact:
             self._notice = None
-        self._commander.release_control(vehicle, now)
+        contact.releasing = True
+        self._releases.append(_Release(contact, now + RELEASE_WITHIN))
 
     def release_all(self, now: float) -> None:
         """Release control of every vehicle that we control."""
@@ -123,8 +137,10 @@ class Handover:
             self._notice = None
         elif notice is not None and now >= notice.until:
             self.keep(now)
+        for release in list(self._releases):
+            self._follow_release(release, now)
         if self._asked is not None:
-            self._follow(self._asked, now)
+            self._follow_request(self._asked, now)
 
     def notice(self, now: float) -> HandoverNotice | None:
         """Return the request that waits for the operator's answer."""
@@ -146,7 +162,16 @@ class Handover:
             self._log.add(now, "station", text, Severity.WARNING)
         self._notice = notice
 
-    def _follow(self, asked: _Asked, now: float) -> None:
+    def _follow_release(self, release: _Release, now: float) -> None:
+        contact = release.contact
+        if not release.sent and contact.demand_stream.finished:
+            release.sent = True
+            self._commander.release_control(contact.state, now)
+        if now >= release.until or (release.sent and not self._driving.is_in_control(contact)):
+            contact.releasing = False
+            self._releases.remove(release)
+
+    def _follow_request(self, asked: _Asked, now: float) -> None:
         state = asked.contact.state
         if self._driving.is_in_control(asked.contact):
             self._asked = None

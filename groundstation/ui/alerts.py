@@ -126,7 +126,7 @@ def _gate(now: DisplayState) -> Iterator[Alert]:
 
 def _refusal(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
-    if vehicle is not None and vehicle.refusal:
+    if vehicle is not None and vehicle.refusal and vehicle.control_wait is None:
         yield Alert(AlertLevel.WARNING, vehicle.refusal)
 
 

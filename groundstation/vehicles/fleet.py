@@ -33,6 +33,8 @@ class Contact:
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     ours: bool = False
     """This station has armed or driven the vehicle since the vehicle was last disarmed."""
+    releasing: bool = False
+    """Control is being released: the final neutrals go out, and no demand follows."""
     demanded_at: float = -math.inf
     """When the newest demand was sent to it."""
     lost_at: float | None = None

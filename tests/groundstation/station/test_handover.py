@@ -55,8 +55,15 @@ def test_giving_is_neutral_first_then_control_is_released() -> None:
     since = cockpit.now
     cockpit.do(GiveControl())
     cockpit.run(0.2)
+    assert not released(cockpit), "the final neutrals come first"
+    assert cockpit.operator.gate_reason == "releasing control"
+    cockpit.run(0.2)
     assert released(cockpit)
-    assert not [x for at, x, _ in cockpit.demands(since + 0.05) if x]
+    assert len([at for at, x, _ in cockpit.demands(since) if not x]) >= 5
+    assert not [x for at, x, _ in cockpit.demands(since) if x and at > since]
+    quiet = cockpit.now
+    cockpit.run(1.0)
+    assert cockpit.demands(quiet) == []
     assert notice(cockpit) is None
     assert "control given to GCS 254" in cockpit.texts
 
@@ -131,6 +138,19 @@ def test_release_by_key_ends_driving_of_an_ardurover_too() -> None:
     cockpit.run(1.0)
     assert not [at for at, message in rover.all(m.ManualControl) if at > quiet]
     assert any("it gets no more demands from here" in text for text in cockpit.texts)
+
+
+def test_a_release_that_is_not_answered_ends_and_the_keys_drive_again() -> None:
+    cockpit = driving_cockpit()
+    cockpit.vehicle.silent_on = {CONTROL}
+    cockpit.do(ReleaseControl())
+    cockpit.run(1.0)
+    assert cockpit.operator.gate_reason == "releasing control"
+    cockpit.run(3.0)
+    assert cockpit.view.in_control
+    cockpit.do(DriveKeyUp(key="i"), FORWARD)
+    cockpit.run(0.5)
+    assert cockpit.operator.throttle == pytest.approx(0.6)
 
 
 def test_release_without_control_asks_nothing_of_the_vehicle() -> None:
