@@ -10,7 +10,8 @@ from groundstation.station.driven import DrivenVehicle
 
 SEQUENCE_LEAD = 40
 """Packet sequence numbers left out: more than a station sends between two reports, and more than LATE_WINDOW
-(link/protocol/sequence.py), so that the station's own next frames are not taken for late ones."""
+(link/protocol/sequence.py). So the frames of a station that goes on are neither late nor a clash with these; the
+vehicle knows both by their session."""
 
 
 class NeutralFrames:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.e2e.conftest import Rig
-from tests.e2e.programs import PATIENCE, GroundStation
+from tests.e2e.programs import PATIENCE, GroundStation, drive_on
 from tests.e2e.test_stop_matrix import assert_stood, assert_stops
 from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
 from tests.groundstation.line_vehicle import LineVehicle
@@ -60,6 +60,7 @@ def test_a_held_key_moves_nothing_after_the_freeze(rig: Build) -> None:
     back = time.monotonic()
     world.station.hold("i", lambda: time.monotonic() > back + 2.0)
     assert not world.vehicle.moved_since(back)
+    drive_on(world.station, world.vehicle)
 
 
 class Bench:
