@@ -15,7 +15,7 @@ from dialects import messages as m
 from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, Quit, SetKeyGate
 from groundstation.ipc import IntentBatch, encode
 from groundstation.snapshot import Snapshot
-from groundstation.station_process import LOG_SIZE
+from groundstation.station_options import LOG_SIZE
 from tests.groundstation.screen import FORWARD, Screen, running, until
 from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.ports import free_port
