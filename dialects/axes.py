@@ -1,14 +1,15 @@
 """Axis conventions of MANUAL_CONTROL by autopilot: converts Axes in -1..1 to and from the message.
 
 Three conventions are in use: our rover reads x and r as the specification says, ArduPilot Rover reads z and y (z = 0 is
-neutral), PX4 rovers read z and y with z = 500 as neutral. To add one, add a row to AXIS_MAPS.
+neutral), PX4 rovers read z with 500 as neutral, and y or r. To add one, add a row to AXIS_MAPS; if the frame decides,
+as in PX4, to PX4_FRAMES.
 Definition: https://mavlink.io/en/messages/common.html#MANUAL_CONTROL.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dialects.enums import Autopilot
 from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence
@@ -46,28 +47,50 @@ class AxisMap:
 
     ArduRover does so with every frame, skid steering too (Rover/mode.cpp, get_pilot_desired_steering_and_throttle).
     `Axes.steering` always means the nose, so that the sign changes with the throttle."""
+    unused: int = INVALID_AXIS
+    """Sent on the axes that the vehicle does not use."""
 
+
+_PX4 = AxisMap(throttle="z", steering="y", throttle_neutral=500, throttle_span=500, unused=0)
+"""x is pitch, y roll, z throttle from 0 to 1000, r yaw (mavlink/mavlink_receiver.cpp). A rover ignores pitch; the
+others are sent as 0, because versions without a check of the range take INT16_MAX for a deflection of 32.767."""
 
 AXIS_MAPS: dict[int, AxisMap] = {
     Autopilot.GENERIC: AxisMap(throttle="x", steering="r"),
     Autopilot.ARDUPILOT: AxisMap(throttle="z", steering="y", reverse_flips_steering=True),
-    Autopilot.PX4: AxisMap(throttle="z", steering="y", throttle_neutral=500, throttle_span=500),
+    Autopilot.PX4: _PX4,
 }
 """MAV_AUTOPILOT of the vehicle's HEARTBEAT -> its axes."""
 
+PX4_FRAMES: dict[int, AxisMap] = {
+    5: replace(_PX4, reverse_flips_steering=True),
+    6: _PX4,
+    13: replace(_PX4, steering="r"),
+}
+"""PX4's parameter CA_AIRFRAME -> axes of the frame, in every manual mode (the modules below src/modules).
 
-def axis_map(autopilot: int) -> AxisMap:
-    """Return the axes of a vehicle; for an unknown autopilot those of the specification."""
+5, rover_ackermann: roll is the steering angle, or the yaw rate times the sign of the throttle. 6, rover_differential:
+roll turns the nose, in reverse too. 13, rover_mecanum: yaw turns the nose; roll moves it sideways."""
+
+
+def axis_map(autopilot: int, frame: int | None = None) -> AxisMap:
+    """Return the axes of a vehicle; for an unknown autopilot those of the specification.
+
+    `frame`: PX4's CA_AIRFRAME. While it is not known, the axes are those of a differential rover.
+    """
+    if autopilot == Autopilot.PX4 and frame in PX4_FRAMES:
+        return PX4_FRAMES[frame]
     return AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
 
 
 def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]) -> ManualControl:
     """Return the message for a demand.
 
-    Values are clamped here because ArduPilot does not clamp them (z = 32766 is full ahead there). Axes that the vehicle
-    does not use are sent as INT16_MAX, "invalid".
+    Values are clamped here because ArduPilot does not clamp them (z = 32766 is full ahead there). INT16_MAX on an axis
+    that is not used means "invalid".
     """
-    message = ManualControl(target, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, INVALID_AXIS, 0)
+    unused = axis_map.unused
+    message = ManualControl(target, unused, unused, unused, unused, 0)
     throttle = round(_clamp(axes.throttle) * axis_map.throttle_span)
     steering = round(_clamp(axes.steering) * FULL_DEFLECTION)
     setattr(message, axis_map.throttle, axis_map.throttle_neutral + throttle)

@@ -7,7 +7,7 @@ import socket
 import subprocess
 import threading
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import msgspec
@@ -69,10 +69,12 @@ class StationClient:
         sitl: bool = False,
         log_file: Path | None = None,
         terminal: str | None = None,
+        meanwhile: Callable[[], object] = lambda: None,
     ) -> StationClient:
         """Start the station process and wait until its links are open. Raises StationError.
 
-        `terminal` is the path of the terminal that is reset if this process is killed.
+        `terminal` is the path of the terminal that is reset if this process is killed. `meanwhile` is called first: the
+        process takes 0.2 s to import its modules.
         """
         options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
         if log_file is not None:
@@ -85,8 +87,9 @@ class StationClient:
                 half.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BUFFER)
             process = _spawn(theirs.fileno(), options, endpoints)
         try:
+            meanwhile()
             hello = _hello(ours)
-        except StationError:
+        except BaseException:
             end_process(process, CLOSE_TIMEOUT)
             ours.close()
             raise

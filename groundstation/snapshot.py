@@ -83,10 +83,15 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Seconds to the next failsafe action."""
     without_link: str | None = None
     """What the vehicle does when it loses us, e.g. "it stops by itself"; None: not known."""
+    prearm: bool | None = None
+    """The pre-arm checks are passed (SYS_STATUS); None if the vehicle does not report that."""
+    prearm_reason: str = ""
+    """The newest "PreArm: ..." text while they are not passed."""
     refusal: str | None = None
-    """The last refusal and its reason, e.g. "arm denied: PreArm: battery low". Cleared by the next acceptance."""
+    """The last refusal and its reason, e.g. "arm denied: PreArm: battery low". Cleared by the next acceptance, when the
+    pre-arm checks are passed, and with time."""
     warnings: tuple[str, ...] = ()
-    """Settings of a foreign vehicle that would let it drive on."""
+    """Why a foreign vehicle may ignore us, and its settings that would let it drive on."""
 
 
 class HandoverNotice(msgspec.Struct, frozen=True):
@@ -138,7 +143,14 @@ class LinkView(msgspec.Struct, frozen=True, kw_only=True):
     rate: float = 0.0
     """Frames received per second."""
     bytes_per_second: float = 0.0
+    frames: int = 0
+    """Received since the link opened, like the next three."""
+    bytes_received: int = 0
     crc_errors: int = 0
+    dropped: int = 0
+    """Messages that could not be sent: no room, or the other end refused them."""
+    systems: tuple[int, ...] = ()
+    """System ids heard, of ground stations too."""
     problem: str | None = None
     """e.g. "messages arrive with another dialect's checksum: HEARTBEAT"."""
 
@@ -173,9 +185,15 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     number: int = 0
     uptime: float = 0.0
     endpoints: tuple[str, ...] = ()
+    addresses: tuple[str, ...] = ()
+    """IPv4 addresses of this machine without loopback, while there is no vehicle."""
     waiting: str | None = None
     """What the station waits for while there is no vehicle, in one line."""
     vehicle: VehicleView | None = None
+    vehicles: tuple[int, ...] = ()
+    """System ids of all vehicles, in rising order; the selected one is among them."""
+    not_shown: int = 0
+    """Further vehicles that are heard, for which there is no place."""
     also_armed: tuple[int, ...] = ()
     """System ids of the other vehicles that report armed."""
     left_armed: tuple[str, ...] = ()
@@ -189,6 +207,7 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     texts: tuple[LogLine, ...] = ()
     """The newest 200, oldest first."""
     messages: tuple[MessageRate, ...] = ()
+    """Received from the selected vehicle, and sent."""
     simulator: str | None = None
     """State of the simulator that we started, e.g. "running", "ended with code 1: ..."; None without one."""
 

@@ -38,6 +38,7 @@ from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, parse_endpoint
 from link.runner import Runner, open_links
 from link.runtime.event_loop import run_loop
+from link.transport.local_addresses import LocalAddresses
 from link.transport.transport import Link, LinkError
 
 log = logging.getLogger(__name__)
@@ -66,6 +67,7 @@ class StationProcess:
         self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash, sent=watchdog.record_sent)
         self._simulator = SimulatorControl()
         self._last_snapshot = Snapshot()
+        self._addresses = LocalAddresses()
         self._broken = self._ending = False
 
     async def run(self) -> int:
@@ -153,6 +155,7 @@ class StationProcess:
     def _send_snapshot(self, now: float) -> None:
         self._report(now)
         self._watch_simulator(now)
+        self._station.set_addresses(self._addresses.find(now))
         self._last_snapshot = self._station.snapshot(now, time.time())
         self._send(self._last_snapshot)
 
@@ -267,9 +270,7 @@ def _run(
     started = time.monotonic()  # the loop's clock
     session = secrets.randbits(32)
     style = Style(options.style)
-    station = Station(
-        endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started
-    )  # fmt: skip
+    station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
     process = StationProcess(station, links, pipe, watchdog)
     if options.sitl:
         process.start_simulator(started)

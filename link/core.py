@@ -92,6 +92,8 @@ class LinkReport:
     refused_peers: int = 0
     dialect_mismatch: tuple[str, ...] = ()
     """Names of messages that arrive complete but with the checksum of another definition."""
+    signing: frozenset[int] = frozenset()
+    """System ids whose newest frame was signed."""
     own_id: bool = False
     """Another program sends with our system and component id."""
     down: str | None = None

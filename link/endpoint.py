@@ -50,10 +50,15 @@ MIN_BAUD, MAX_BAUD = 300, 12_000_000
 DEFAULT_BAUD = 57600
 """Factory setting of telemetry radios."""
 
+LISTENING = ("udpin", "tcpin")
+
 ANY_ADDRESSES = ("0.0.0.0", "::")
 """Addresses to listen on, and none to send to."""
 
-LOOPBACK = ("127.0.0.1", "::1", "localhost")
+
+def is_loopback(host: str) -> bool:
+    """Return whether only programs on this machine can reach this host."""
+    return host in ("::1", "localhost") or re.fullmatch(r"127(\.[0-9]+){3}", host) is not None
 
 
 def _parse_host_port(scheme: str, rest: str) -> Endpoint:
@@ -72,7 +77,7 @@ def _parse_destination(scheme: str, rest: str) -> Endpoint:
     if endpoint.host in ANY_ADDRESSES:
         raise EndpointError(
             f"endpoint {endpoint.text!r}: {endpoint.host} is not an address to send to; "
-            f"name the other end, or write udpin:{rest} to wait for it"
+            f"name the other end, or write {scheme[:3]}in:{rest} to wait for it"
         )
     return endpoint
 
@@ -115,7 +120,7 @@ SCHEMES: dict[str, Scheme] = {
     "tcpout": Scheme(
         "tcpout:HOST:PORT",
         "connect to this address; reconnect when the connection ends",
-        _parse_host_port,
+        _parse_destination,
         "link.transport.tcp:open_tcpout",
     ),
     "serial": Scheme(
@@ -144,13 +149,28 @@ def parse_endpoint(text: str) -> Endpoint:
 
 
 def parse_endpoints(texts: Sequence[str]) -> list[Endpoint]:
-    """Parse all endpoints. Raises EndpointError, also for a socket or port that is given twice."""
+    """Parse all endpoints. Raises EndpointError, also for two that are the same or listen on the same port."""
     endpoints = [parse_endpoint(text) for text in texts]
-    ends = [(each.scheme, each.host, each.port, each.path) for each in endpoints]
     for number, endpoint in enumerate(endpoints):
-        if ends[number] in ends[:number]:
-            raise EndpointError(f"endpoint {endpoint.text!r} is given twice")
+        for before in endpoints[:number]:
+            if _end(endpoint) == _end(before):
+                raise EndpointError(f"endpoint {endpoint.text!r} is given twice")
+            if _listens_for_both(endpoint, before) or _listens_for_both(before, endpoint):
+                raise EndpointError(
+                    f"endpoints {before.text!r} and {endpoint.text!r} listen on the same port; leave one of them out"
+                )
     return endpoints
+
+
+def _end(endpoint: Endpoint) -> tuple[str, str, int, str]:
+    host = "127.0.0.1" if endpoint.host == "localhost" else endpoint.host
+    return endpoint.scheme, host, endpoint.port, endpoint.path
+
+
+def _listens_for_both(one: Endpoint, other: Endpoint) -> bool:
+    """Return whether `one` listens on all addresses, so that `other` finds its port taken."""
+    listens = one.scheme in LISTENING and one.host in ANY_ADDRESSES
+    return listens and (one.scheme, one.port) == (other.scheme, other.port)
 
 
 def _hint(text: str, scheme: str) -> str:
@@ -161,11 +181,12 @@ def _hint(text: str, scheme: str) -> str:
         return f"did you mean serial:{path}:{baud}? "
     near = difflib.get_close_matches(scheme, SCHEMES, n=1, cutoff=0.6)
     if scheme in SCHEME_ALIASES or near:
-        return f"did you mean {SCHEME_ALIASES.get(scheme) or near[0]}:? "
+        return f"did you mean {SCHEME_ALIASES.get(scheme) or near[0]}:{text.partition(':')[2].removeprefix('//')}? "
     address = re.fullmatch(r"(localhost|[\w-]+(?:\.[\w-]+)+|\[[0-9a-fA-F:]+\]):[0-9]+", text)
     if not address:
         return ""
-    listen = address[1].strip("[]") in (*LOOPBACK, *ANY_ADDRESSES)
+    host = address[1].strip("[]")
+    listen = is_loopback(host) or host in ANY_ADDRESSES
     return f"did you mean {'udpin' if listen else 'udpout'}:{text}? "
 
 

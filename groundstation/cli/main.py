@@ -9,7 +9,6 @@ import os
 import shutil
 import sys
 from collections.abc import Sequence
-from importlib.metadata import version
 from pathlib import Path
 
 from platformdirs import user_log_path
@@ -50,13 +49,16 @@ key map file (--keys my.toml): replaces the keys of the actions it names
   [keys]
   "drive.forward" = ["e", "up"]
 
-status line: loss: lost frames; rtt: round trip to the vehicle; sent: demands per second;
-cmd: age of the demand that the motors obey; key→motor: latency; tty: round trip to the terminal
+status line: link: four bars up to 2 % loss, three up to 10 %, two up to 25 %; loss: lost frames of the last 5 s;
+rtt: round trip to the vehicle; sent: demands per second; cmd: age of the demand that the motors obey;
+key→motor: time from a changed demand to the vehicle that applies it; tty: round trip to this terminal;
+pre-arm: the vehicle's checks before arming; gps: fix and satellites; batt: voltage and charge
 
 key release: terminals with the kitty keyboard protocol report it, and driving ends with the key.
 In others, and inside tmux, driving ends when the key has stopped repeating; the screen shows the time.
+With that protocol a Cyrillic or Greek keyboard drives by the position of its keys; elsewhere choose a Latin layout.
 
-exit codes: 0 after a session, 1 if the station crashed, 2 for wrong arguments
+exit codes: 0 after a session, 1 if the station crashed, 2 for wrong arguments, 128 + n after signal n
 """
 
 
@@ -72,17 +74,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if unknown:
         parser.error(describe_unknown(unknown, names))
     try:
-        return _run(options)
+        return _run(options, names)
     except (UsageError, EndpointError, KeymapError, StationError) as error:
         print(f"groundstation: {error}", file=sys.stderr)
         return 2
 
 
-def _run(options: argparse.Namespace) -> int:
+def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
     keymap = load_keymap(options.keys)
     endpoints = options.endpoints or ([] if options.sitl else [DEFAULT_ENDPOINT])
     for endpoint in endpoints:
-        _check_endpoint(endpoint)
+        _check_endpoint(endpoint, names)
     _check_terminal()
     log_file = _log_file(options.log_file)
     client = StationClient.start(
@@ -93,14 +95,20 @@ def _run(options: argparse.Namespace) -> int:
         sitl=options.sitl,
         log_file=log_file,
         terminal=_terminal_path(),
+        meanwhile=_import_screen,
     )
     try:
-        from groundstation.ui.app import run  # takes half a second, so only after the arguments are checked
+        from groundstation.ui.app import run
 
         return run(client, keymap=keymap, log_file=log_file)
     finally:
         client.close()
         report_armed(client.left_armed)
+
+
+def _import_screen() -> None:
+    """Import the screen, which takes 0.2 s: after the arguments are checked, and while the station starts."""
+    import groundstation.ui.app  # noqa: F401
 
 
 def report_armed(lines: Sequence[str]) -> None:
@@ -110,7 +118,9 @@ def report_armed(lines: Sequence[str]) -> None:
             print(f"groundstation: {line}", file=sys.stderr, flush=True)
 
 
-def _check_endpoint(text: str) -> None:
+def _check_endpoint(text: str, names: Sequence[str]) -> None:
+    if f"--{text}" in names:
+        raise UsageError(f"{text!r} is not an endpoint: did you mean --{text}?")
     if ":" not in text and "/" not in text:
         raise UsageError(f"{text!r} is not an endpoint such as {DEFAULT_ENDPOINT} (groundstation --help lists them)")
     parse_endpoint(text)
@@ -173,6 +183,17 @@ def _speed(text: str) -> float:
     return value
 
 
+class _Version(argparse.Action):
+    """Prints the version. Looking it up takes 30 ms, so only here."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Print the version and exit."""
+        from importlib.metadata import version
+
+        print(f"{parser.prog} {version('mavhelm')}")
+        parser.exit()
+
+
 def _parser() -> tuple[CommandLineParser, list[str]]:
     """Return the parser and the names of all options."""
     parser = CommandLineParser(
@@ -192,9 +213,9 @@ def _parser() -> tuple[CommandLineParser, list[str]]:
             help="limit of the sticks, 0.1 to 1 (default: 0.6)"),
         add("--system", type=_system_id, default=255, metavar="ID", help="our MAVLink system id (default: 255)"),
         add("--log-file", type=Path, metavar="FILE", help=f"default: {user_log_path('mavhelm') / 'groundstation.log'}"),
-        add("--version", action="version", version=f"%(prog)s {version('mavhelm')}"),
+        add("--version", action=_Version, nargs=0, help="show the version and exit"),
     )  # fmt: skip
-    return parser, [name for action in actions for name in action.option_strings]
+    return parser, ["--help", *(name for action in actions for name in action.option_strings)]
 
 
 if __name__ == "__main__":

@@ -11,10 +11,18 @@ MAVPROXY_OPTIONS = {
     "--out": "the program `bridge` forwards to other ground stations",
     "--source-system": "use --system",
     "--logfile": "use --log-file",
+    "--aircraft": "use --log-file",
+    "--target-system": "every vehicle is found; a key selects the next one",
+    "--console": "the screen shows what it would; leave it out",
+    "--map": "the screen shows the track; leave it out",
+    "--load-module": "there are no modules; leave it out",
+    "--dialect": "the dialect is built in; leave it out",
+    "--streamrate": "telemetry is requested to fit the link; leave it out",
+    "--mav10": "MAVLink 1 is understood and MAVLink 2 is sent; leave it out",
 }
 """Option of MAVProxy -> what to use here."""
 
-SYNONYMS = {"--baud": "--baudrate", "--sysid": "--source-system"}
+SYNONYMS = {"--baud": "--baudrate", "--sysid": "--source-system", "--mav20": "--mav10"}
 
 
 def describe_unknown(arguments: Sequence[str], options: Sequence[str]) -> str:
@@ -28,5 +36,5 @@ def _hint(name: str, options: Sequence[str]) -> str:
     mavproxy = MAVPROXY_OPTIONS.get(SYNONYMS.get(name, name))
     if mavproxy is not None:
         return mavproxy
-    near = difflib.get_close_matches(name, options, n=1, cutoff=0.6)
+    near = difflib.get_close_matches(name, options, n=1, cutoff=0.7)
     return f"did you mean {near[0]}?" if near else ""

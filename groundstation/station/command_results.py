@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from dialects.enums import Command, Result, Severity, result_name
 from groundstation.station.emergency import DANGEROUS
 from groundstation.vehicles.message_log import MessageLog
@@ -9,6 +11,12 @@ from link.services.command.client import CommandOutcome
 
 REASON_WITHIN = 1.0
 """s between a refusal and the vehicle's STATUSTEXT that explains it; either may arrive first."""
+
+SHOWN_FOR = 20.0
+"""s for which a refusal is shown; after that what was wrong may have changed, and the log keeps it."""
+
+ARM = "arm"
+"""What every refusal to arm starts with."""
 
 
 class CommandResults:
@@ -25,10 +33,14 @@ class CommandResults:
         """Set what a command to this vehicle is called in texts."""
         self._labels[system, command] = label
 
-    def last_refusal(self, system: int) -> str | None:
-        """Return what this vehicle refused last and why; None after a command was accepted."""
-        refusal = self._refusals.get(system)
-        return refusal[0] if refusal else None
+    def last_refusal(self, system: int, ready_at: float | None, now: float) -> str | None:
+        """Return what this vehicle refused last and why; None after a command was accepted, and when that is old.
+
+        `ready_at`: when the vehicle's pre-arm checks were passed; a refusal to arm before that holds no more.
+        """
+        text, at = self._refusals.get(system, ("", -math.inf))
+        outdated = text.startswith(ARM) and ready_at is not None and ready_at > at
+        return None if outdated or now - at > SHOWN_FOR else text
 
     def handle_outcome(self, outcome: CommandOutcome, now: float) -> None:
         """Log how a command ended."""

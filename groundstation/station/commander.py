@@ -135,9 +135,11 @@ class Commander:
         """
         return system in self._claims
 
-    def last_refusal(self, system: int) -> str | None:
-        """Return what this vehicle refused last and why; None after a command was accepted."""
-        return self._results.last_refusal(system)
+    def last_refusal(self, system: int, now: float) -> str | None:
+        """Return what this vehicle refused last and why, while that may still hold."""
+        vehicle = self._vehicles.get(system)
+        ready_at = None if vehicle is None else now if vehicle.armed else vehicle.ready_at
+        return self._results.last_refusal(system, ready_at, now)
 
     # ---- time and messages ----
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
+from dialects.axes import NEUTRAL, Axes, build_manual_control
 from dialects.messages import ManualControl, Message, RoverOperatorPresence
 from dialects.modes import DRIVABLE_MODES
 from groundstation.station.commander import Commander
@@ -151,7 +151,7 @@ class DrivingController:
 
     def _queue_demand(self, contact: Contact, axes: Axes, now: float) -> None:
         state = contact.state
-        message = build_manual_control(axes, state.system, axis_map(state.autopilot))
+        message = build_manual_control(axes, state.system, contact.choose_axes(axes))
         messages: list[Message] = [message]
         if state.has_rover_dialect:
             target = (state.system, state.component)

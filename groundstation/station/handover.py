@@ -158,7 +158,7 @@ class Handover:
 
     def _show(self, notice: _Notice, now: float) -> None:
         if self._notice is None or self._notice.station != notice.station:
-            text = f"GCS {notice.station} asks for control of {notice.contact.state.name}"
+            text = f"GCS {notice.station} requests control of {notice.contact.state.name}"
             self._log.add(now, "station", text, Severity.WARNING)
         self._notice = notice
 

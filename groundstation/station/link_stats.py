@@ -76,6 +76,10 @@ def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
         round_trip=round_trip if carries_vehicle else None,
         rate=max(0.0, _delta(samples, "frames") / seconds) if seconds else 0.0,
         bytes_per_second=max(0.0, _delta(samples, "bytes_received") / seconds) if seconds else 0.0,
+        frames=newest.report.frames,
+        bytes_received=newest.report.bytes_received,
         crc_errors=newest.report.crc_errors,
+        dropped=newest.report.dropped,
+        systems=tuple(sorted({system for system, _ in newest.report.sources})),
         problem=link_problem(newest.report),
     )

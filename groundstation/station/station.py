@@ -67,6 +67,7 @@ class Station:
         self._link_events = LinkEvents()
         self._message_rates = MessageRates()
         self._simulator_state: str | None = None
+        self._addresses: tuple[str, ...] = ()
         self._outbox: list[Outgoing] = []
         self._snapshot_count = 0
 
@@ -74,20 +75,20 @@ class Station:
 
     def receive(self, received: Received, now: float) -> None:
         """Handle one message at once."""
-        self._message_rates.count(received.message, now)
         conflict = self._id_conflict.receive(received, now)
         if conflict is not None:
             self.log.add(now, "station", conflict, Severity.WARNING)
         contact = self.fleet.get_or_add(received, now)
         if contact is None:
             return
+        self._message_rates.count(received.message, now, system=received.system)
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
         match received.message:
             case m.StatusText() as message:
-                self._handle_statustext(message, received.system, now)
+                self._handle_statustext(message, contact, now)
             case m.RoverDriveStatus() as message if message.source_system == self._system:
                 contact.state.latency.record_applied(message.source_seq, now, message.demand_age_ms / 1000)
         if contact is self.fleet.selected:
@@ -114,6 +115,7 @@ class Station:
         """Update the link statistics; log when a link problem starts and ends."""
         selected = self.fleet.selected
         self._links.update(reports, selected.state.system if selected else None, now)
+        self.fleet.observe(reports, now)
         for report in reports:
             event = self._link_events.update(report)
             if event:
@@ -128,7 +130,7 @@ class Station:
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
-        self._message_rates.count(message, now, sent=True)
+        self._message_rates.count(message, now)
         self._driving.handle_sent(message, sequence, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
@@ -152,6 +154,10 @@ class Station:
         """Record the state of the simulator, for the next snapshot."""
         self._simulator_state = state
 
+    def set_addresses(self, addresses: tuple[str, ...]) -> None:
+        """Record the addresses of this machine, for the next snapshot."""
+        self._addresses = addresses
+
     @property
     def finished(self) -> bool:
         """Quit was requested, the last neutral demand is out, and nothing is left to disarm."""
@@ -165,10 +171,13 @@ class Station:
             number=self._snapshot_count,
             uptime=now - self._started,
             endpoints=self._endpoints,
+            addresses=() if selected else self._addresses,
             waiting=self._waiting(),
             vehicle=self._vehicle_view(selected, now) if selected else None,
             left_armed=self._departure.left_armed(now),
             id_conflict=self._id_conflict.text(now),
+            vehicles=self.fleet.system_ids,
+            not_shown=self.fleet.not_shown,
             also_armed=self.fleet.also_armed,
             handover=self._handover.notice(now),
             operator=self.operator.build_view(
@@ -176,7 +185,7 @@ class Station:
             ),
             links=self._links.build_views(self._timesync.round_trip),
             texts=self.log.build_lines(now, wall),
-            messages=self._message_rates.build_rates(now),
+            messages=self._message_rates.build_rates(selected.state.system if selected else 0, now),
             simulator=self._simulator_state,
         )
 
@@ -192,9 +201,11 @@ class Station:
         if any(contact.ours and contact.state.armed for contact in self.fleet):
             self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
 
-    def _handle_statustext(self, message: m.StatusText, system: int, now: float) -> None:
+    def _handle_statustext(self, message: m.StatusText, contact: Contact, now: float) -> None:
+        system = contact.state.system
         text = self.log.handle_statustext(message, system, now)
         if text is not None:
+            contact.state.handle_text(text)
             self._commander.handle_statustext(system, text, message.severity, now)
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
@@ -206,14 +217,13 @@ class Station:
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
             without_link=contact.without_link,
-            refusal=commander.last_refusal(state.system),
-            warnings=contact.settings_check.warnings if contact.settings_check else (),
+            refusal=commander.last_refusal(state.system, now),
+            warnings=contact.warnings,
         )
 
     def _waiting(self) -> str | None:
         if self.fleet.selected is not None:
             return None
-        where = ", ".join(self._endpoints)
         if self._links.has_traffic:
-            return f"receiving data on {where}, but no vehicle heartbeat yet"
-        return f"waiting for a vehicle on {where}"
+            return "receiving data, but no HEARTBEAT of a vehicle yet"
+        return f"waiting for a vehicle on {', '.join(self._endpoints)}"

@@ -30,6 +30,7 @@ class VehicleQueries:
         own = received.component == contact.state.component  # another component has a clock of its own
         if own and contact.stream_requests.handle_message(received.message, now):
             contact.check_settings_again()
+            contact.state.restart()
         if contact.settings_check is not None:
             self._log_warnings(contact, contact.settings_check.receive(received, now), now)
 

@@ -99,7 +99,7 @@ def _handover(now: DisplayState) -> Iterator[Alert]:
     notice = now.snapshot.handover
     if notice is not None:
         answers = f"{now.key('vehicle.give')} gives, {now.key('vehicle.keep')} keeps ({notice.left:.0f} s)"
-        yield Alert(AlertLevel.QUESTION, f"GCS {notice.station} asks for control of {notice.vehicle}: {answers}")
+        yield Alert(AlertLevel.QUESTION, f"GCS {notice.station} requests control of {notice.vehicle}: {answers}")
 
 
 def _silence(now: DisplayState) -> Iterator[Alert]:
@@ -119,9 +119,26 @@ def _failsafe(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.DANGER, f"failsafe: {', '.join(vehicle.failsafes)}{soon}")
 
 
+STATES = {5: "CRITICAL (a failsafe or fault)", 6: "EMERGENCY"}
+"""MAV_STATE of the HEARTBEAT that a driver must know -> its text."""
+
+
+def _state(now: DisplayState) -> Iterator[Alert]:
+    vehicle = now.snapshot.vehicle
+    if vehicle is None or vehicle.emergency_stop or vehicle.failsafes or vehicle.status not in STATES:
+        return
+    level = AlertLevel.DANGER if vehicle.armed else AlertLevel.WARNING
+    yield Alert(level, f"{vehicle.name} reports {STATES[vehicle.status]}: see the log for the reason")
+
+
 def _gate(now: DisplayState) -> Iterator[Alert]:
     if now.closure is not None:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
+
+
+def _key(now: DisplayState) -> Iterator[Alert]:
+    if now.key_hint is not None:
+        yield Alert(AlertLevel.WARNING, now.key_hint)
 
 
 def _refusal(now: DisplayState) -> Iterator[Alert]:
@@ -156,11 +173,11 @@ def _driver(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
-        asks = f"{now.key('vehicle.control')} asks for control"
+        asks = f"{now.key('vehicle.control')} requests control"
         if now.away is not None:
             who = f"tmux was detached for {now.away:.0f} s, control was released"
         if vehicle.control_wait is not None:
-            asks = f"asked for control, {vehicle.control_wait:.0f} s to answer"
+            asks = f"control requested, {vehicle.control_wait:.0f} s to answer"
         yield Alert(AlertLevel.WARNING, f"{who}: {asks}")
 
 
@@ -172,12 +189,23 @@ def _settings(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, warning)
 
 
+def _vehicles(now: DisplayState) -> Iterator[Alert]:
+    further = now.snapshot.not_shown
+    if further:
+        what = "1 more vehicle is" if further == 1 else f"{further} more vehicles are"
+        yield Alert(AlertLevel.WARNING, f"{what} not shown: the limit is {len(now.snapshot.vehicles)}")
+
+
 def _hint(now: DisplayState) -> Iterator[Alert]:
     vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
     if vehicle is None:
         yield Alert(
-            AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves"
+            AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} quits"
         )
+    elif not vehicle.armed and vehicle.prearm is False:
+        # The key all the same: PX4 is not ready until it gets MANUAL_CONTROL, which arming begins with.
+        reason = vehicle.prearm_reason or "pre-arm checks fail"
+        yield Alert(AlertLevel.HINT, f"disarmed: hold {now.key('vehicle.arm')} to arm · not ready, {reason}")
     elif not vehicle.armed:
         yield Alert(AlertLevel.HINT, f"disarmed: hold {now.key('vehicle.arm')} to arm {vehicle.name}")
     elif vehicle.mode != "MANUAL":
@@ -197,7 +225,7 @@ def _hint(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _silence, _emergency, _failsafe, _handover, _gate, _refusal, _id_conflict, _limits, _driver,
-    _settings, _hint,
+    _station, _hold, _silence, _emergency, _failsafe, _handover, _state, _key, _gate, _refusal, _id_conflict, _limits,
+    _driver, _settings, _vehicles, _hint,
 )  # fmt: skip
 """Most urgent first."""

@@ -25,6 +25,7 @@ from groundstation.ui.colours import THEME
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.exit import exit_on_signals
 from groundstation.ui.key_gate import STARTING, GateClosure, GateLevel, KeyGate, StationConnection
+from groundstation.ui.key_hint import KeyHint
 from groundstation.ui.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.memory import freeze_objects
 from groundstation.ui.navigation import ScreenNavigator
@@ -72,6 +73,7 @@ class ConsoleApp(App[int]):
         self._snapshot = Snapshot()
         self._outage = client.outage
         self._pressed: dict[str, float] = {}
+        self._key_hint = KeyHint(keymap)
         self._shown_at = 0.0
         self._leaving: GateClosure | None = None
         self._own_loop: asyncio.AbstractEventLoop | None = None
@@ -148,8 +150,7 @@ class ConsoleApp(App[int]):
             self._handle_snapshot(snapshot)
         if self._client.outage != self._outage:
             self._outage = self._client.outage
-            self.gate.set_closure(self._gate_closure(self._clock()))
-            self._show()
+            self._tick()
         if not self._client.open:
             asyncio.get_running_loop().remove_reader(self._client.fileno())
         if not self._client.alive and self._leaving is DISARMING:
@@ -183,6 +184,7 @@ class ConsoleApp(App[int]):
             outage=self._outage.text,
             away=self._tmux.away,
             pressed=frozenset(self._pressed),
+            key_hint=self._key_hint.text(self._clock()),
             terminal_round_trip=self.gate.ping.round_trip,
         )
 
@@ -259,6 +261,7 @@ class ConsoleApp(App[int]):
     def _light(self, key: str) -> None:
         self._pressed[key] = self._clock() + LIT
         if self.screen is self.drive:
+            self._key_hint.press(key, self._clock())
             self.drive.light_keycaps(frozenset(self._pressed))
 
     # ---- actions ----

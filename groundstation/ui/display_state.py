@@ -28,6 +28,8 @@ class DisplayState:
     """Seconds for which nobody was attached to tmux, so that control was released; None if it was not."""
     pressed: frozenset[str] = frozenset()
     """Keys that the UI saw go down, sooner than a snapshot can report them."""
+    key_hint: str | None = None
+    """Why the last key did nothing, if that has a usual reason."""
     terminal_round_trip: float | None = None
     """Seconds from a ping of the terminal to its answer."""
 

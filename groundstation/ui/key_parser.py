@@ -14,7 +14,7 @@ from typing import Protocol, cast
 from textual import events
 from textual._keyboard_protocol import MODIFIER_FUNCTIONAL_KEYS
 from textual._xterm_parser import XTermParser
-from textual.keys import Keys, _character_to_key
+from textual.keys import Keys
 from textual.message import Message
 
 from groundstation.input.keymap import KeyEvent
@@ -41,6 +41,12 @@ _CUT = re.compile(r"\x1b\[[0-?]*\$?[\x00-\x1a\x1c-\x20!]")
 _PASTE = KeyEvent("paste")
 """Not bound to any action, and so a stop key while driving."""
 _REPEAT, _RELEASE = "2", "3"
+_SHIFT, _CAPS_LOCK = 1, 64
+_LOCKS = _CAPS_LOCK | 128
+_COMMAND = 2 | 4 | 8 | 16 | 32
+"""Bits of the kitty protocol's modifiers: _LOCKS with Num Lock; _COMMAND is Alt, Ctrl, Super, Hyper, Meta."""
+MAX_CODE = 0x10FFFF
+"""Highest code point of Unicode."""
 
 
 class KeyRepeat(events.Key):
@@ -93,8 +99,6 @@ class KeyEventParser(XTermParser):
         """Time of the last read."""
         self._names: dict[str, str] = {}
         """Code of a key -> its name when pressed: if Shift is released before W, the release must still be of "W"."""
-        self._latin: dict[str, str] = {}
-        """Name of a key of a non-Latin layout -> name of the same key on a Latin one."""
         super().__init__(debug)
 
     def feed(self, data: str) -> Iterable[Message]:
@@ -143,8 +147,7 @@ class KeyEventParser(XTermParser):
     def _key_event(self, token: Message) -> KeyEvent | None:
         match token:
             case events.Key(key=key) | KeyUp(key=key) if key not in MODIFIER_FUNCTIONAL_KEYS:
-                name = self._latin.get(key, key)
-                return KeyEvent(name, repeat=isinstance(token, KeyRepeat), release=isinstance(token, KeyUp))
+                return KeyEvent(key, repeat=isinstance(token, KeyRepeat), release=isinstance(token, KeyUp))
             case events.Paste():
                 return _PASTE
         return None
@@ -164,9 +167,13 @@ class KeyEventParser(XTermParser):
         code, alternates, modifiers, kind, text, end = found.groups(default="")
         if kind:
             self._sink.handle_release_support()
+        latin = find_latin_sequence(code, alternates, modifiers, end)
         if kind == _RELEASE:
-            return self._released(code + end, _plain(code, modifiers, "", end), alt)
-        return self._pressed(code + end, _plain(code, modifiers, text, end), alternates, kind == _REPEAT, alt)
+            return self._released(code + end, latin or _plain(code, modifiers, "", end), alt)
+        keys = self._parse_stock(_plain(code, modifiers, text, end), alt)
+        if latin is not None:  # the key of this place, which still types its own letter
+            keys = [events.Key(key.key, keys[0].character if keys else None) for key in self._parse_stock(latin, alt)]
+        return self._pressed(code + end, keys, repeat=kind == _REPEAT)
 
     def _released(self, code: str, plain: str, alt: bool) -> Iterable[events.Key]:
         stock = self._parse_stock(plain, alt)
@@ -182,18 +189,32 @@ class KeyEventParser(XTermParser):
         except (ValueError, OverflowError):  # a sub-field where none belongs, a code point that does not exist
             return [_ignored(sequence)]
 
-    def _pressed(self, code: str, plain: str, alternates: str, repeat: bool, alt: bool) -> Iterable[events.Key]:
-        keys = self._parse_stock(plain, alt)
+    def _pressed(self, code: str, keys: list[events.Key], *, repeat: bool) -> Iterable[events.Key]:
         for key in keys:
             self._names[code] = key.key
-            self._remember_latin(key, alternates)
         return [KeyRepeat(key.key, key.character) for key in keys] if repeat else keys
 
-    def _remember_latin(self, key: events.Key, alternates: str) -> None:
-        """Store the Latin name of a key: on a Greek or Cyrillic layout the driver means its position."""
-        base = alternates.split(":")[2:3]
-        if base and base[0].isdecimal() and key.character is not None and not key.character.isascii():
-            self._latin[key.key] = _character_to_key(chr(int(base[0])))
+
+def find_latin_sequence(code: str, alternates: str, modifiers: str, end: str) -> str | None:
+    """Return the sequence of the same key on a Latin keyboard without Caps Lock; None where it is that already.
+
+    On a Greek or Cyrillic layout the driver means the position of the key, with Ctrl as well, and Caps Lock changes
+    nothing about it. `alternates` are ":shifted:base", base being the code of the position on a US keyboard.
+    """
+    base = alternates.split(":")[2:3]
+    held = max(0, int(modifiers or 1) - 1)
+    if end != "u" or int(code) > MAX_CODE:
+        return None
+    if chr(int(code)).isascii():
+        if not (held & _CAPS_LOCK and chr(int(code)).isalpha()):
+            return None
+    elif base and base[0].isdecimal() and ord(" ") <= int(base[0]) <= ord("~"):
+        code = base[0]
+    else:
+        return None
+    letter = chr(int(code))
+    typed = "" if held & _COMMAND else str(ord(letter.upper() if held & _SHIFT else letter))
+    return _plain(code, str((held & ~_LOCKS) + 1), typed, end)
 
 
 def _is_oversized(token: Message) -> bool:

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
+from dialects.axes import Axes, AxisMap, axis_map
 from dialects.enums import Autopilot, Severity, VehicleType
 from dialects.messages import Heartbeat, Message
-from groundstation.vehicles.ardupilot_checks import ArduPilotChecks
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
 from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
 from groundstation.vehicles.stream_requests import StreamRequests
-from groundstation.vehicles.vehicle_state import VehicleState
-from link.core import Received
+from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
+from link.core import LinkReport, Received
 
 MAX_VEHICLES = 16
 """More would not fit on the screen, and a flood of invented system ids must not grow a table."""
+
+
+SIGNING = "signs its frames; this ground station cannot sign: it may ignore commands"
 
 
 @dataclass(slots=True)
@@ -28,7 +32,7 @@ class Contact:
     stream_requests: StreamRequests
     link: int
     """Index of the link on which the newest message of the vehicle arrived."""
-    settings_check: ArduPilotChecks | None = None
+    settings_check: SettingsCheck | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     ours: bool = False
@@ -39,6 +43,25 @@ class Contact:
     """When the newest demand was sent to it."""
     lost_at: float | None = None
     """When the last message arrived, while the link is lost."""
+    signs: bool = False
+    """The vehicle signs its frames."""
+    axes: AxisMap | None = None
+    """Of the newest demand."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Texts for the driver: why the vehicle may ignore us, and settings that would let it drive on."""
+        settings = self.settings_check.warnings if self.settings_check else ()
+        return (SIGNING, *settings) if self.signs else settings
+
+    def choose_axes(self, demand: Axes) -> AxisMap:
+        """Return the axes of MANUAL_CONTROL that this vehicle uses.
+
+        They change only with a neutral demand: a frame that is read late must not turn the steering while driving.
+        """
+        if self.axes is None or demand.neutral:
+            self.axes = axis_map(self.state.autopilot, self.settings_check.frame if self.settings_check else None)
+        return self.axes
 
     @property
     def without_link(self) -> str | None:
@@ -78,6 +101,8 @@ class Fleet:
         self._own_id = (system, component)
         self._contacts: dict[int, Contact] = {}
         self._selected: Contact | None = None
+        self._not_shown: dict[int, float] = {}
+        """System id of a vehicle for which there is no place -> when it was heard last."""
 
     def __iter__(self) -> Iterator[Contact]:
         return iter(self._contacts.values())
@@ -91,6 +116,11 @@ class Fleet:
     def system_ids(self) -> tuple[int, ...]:
         """System ids of all contacts, in rising order."""
         return tuple(sorted(self._contacts))
+
+    @property
+    def not_shown(self) -> int:
+        """How many vehicles are heard for which there is no place."""
+        return len(self._not_shown)
 
     @property
     def also_armed(self) -> tuple[int, ...]:
@@ -125,21 +155,41 @@ class Fleet:
         contact = self._contacts.get(received.system)
         if contact is not None:
             contact.link = received.peer.link
-        if contact is not None or not is_vehicle(received.message) or len(self._contacts) >= MAX_VEHICLES:
+        if contact is not None or not is_vehicle(received.message):
             return contact
+        if len(self._contacts) >= MAX_VEHICLES:
+            self._leave_out(received.system, now)
+            return None
+        self._not_shown.pop(received.system, None)
         state = VehicleState(received.system, received.component)
         state.receive(received, now)
         target = (state.system, state.component)
         contact = Contact(state, StreamRequests(target, now), received.peer.link)
         self._contacts[received.system] = contact
-        if ArduPilotChecks.applies_to(state.autopilot):
-            contact.settings_check = ArduPilotChecks(*self._own_id, target=target)
+        if state.autopilot in SETTINGS:
+            contact.settings_check = SettingsCheck(SETTINGS[state.autopilot], *self._own_id, target=target)
         self._selected = self._selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact
 
+    def _leave_out(self, system: int, now: float) -> None:
+        """Count a vehicle for which there is no place; only the first is logged, so that a flood fills no log."""
+        if not self._not_shown:
+            text = f"more than {MAX_VEHICLES} vehicles: vehicle {system} and further ones are not shown"
+            self._log.add(now, "station", text, Severity.WARNING)
+        self._not_shown[system] = now
+
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Notice which vehicles sign their frames."""
+        signing = {system for report in reports for system in report.signing}
+        for contact in self._contacts.values():
+            before, contact.signs = contact.signs, contact.state.system in signing
+            if contact.signs and not before:
+                self._log.add(now, "station", f"{contact.state.name}: {SIGNING}", Severity.WARNING)
+
     def update(self, now: float) -> None:
         """Notice which vehicles are lost and which are back."""
+        self._not_shown = {system: at for system, at in self._not_shown.items() if now - at <= LOST_AFTER}
         for contact in self._contacts.values():
             monitor, name = contact.state.monitor, contact.state.name
             if contact.lost_at is None and not monitor.is_alive(now):

@@ -10,9 +10,10 @@ from collections.abc import Callable
 from typing import Any
 
 from dialects import messages as m
-from dialects.enums import Autopilot, DriveLimit, Failsafe, ModeFlag, SystemState, VehicleType
+from dialects.enums import Autopilot, DriveLimit, Failsafe, ModeFlag, Sensor, SystemState, VehicleType
 from dialects.modes import DRIVABLE_MODES, STANDING_MODES, mode_name
 from groundstation.snapshot import VehicleView
+from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.latency import LatencyMeter
 from groundstation.vehicles.track import LocalFrame, Track
 from link.core import Received
@@ -23,6 +24,9 @@ LOST_AFTER = 2.5
 
 FRESH_TIMEOUT = 1.5
 """s for which a reading is preferred to that of a coarser message, and for which a ROVER_DRIVE_STATUS is shown."""
+
+PREARM_TEXTS = ("PreArm: ", "Preflight Fail: ")
+"""What texts start with that say why arming would be refused: those of ArduPilot and our rover, and of PX4."""
 
 UNKNOWN_U16 = 0xFFFF
 
@@ -49,6 +53,8 @@ class VehicleState:
         self.drive_info: m.RoverDriveInfo | None = None
         self.boot_time: int | None = None
         """Newest time_boot_ms of the vehicle."""
+        self.ready_at: float | None = None
+        """When the pre-arm checks were passed; None while they are not, or it is not known."""
         self._times: dict[type[m.Message], float] = {}
         self._drive: m.RoverDriveStatus | None = None
         self._failsafe: m.RoverFailsafeStatus | None = None
@@ -83,8 +89,9 @@ class VehicleState:
 
     @property
     def emergency_stop(self) -> bool:
-        """The vehicle reports that its motors are locked."""
-        return self.status == SystemState.EMERGENCY or bool(self._drive and self._drive.limits & DriveLimit.ESTOP)
+        """The vehicle reports that its motors are locked. ArduPilot and PX4 mean something else by EMERGENCY."""
+        locked = self.status == SystemState.EMERGENCY and self.autopilot not in FOREIGN_AUTOPILOTS
+        return locked or bool(self._drive and self._drive.limits & DriveLimit.ESTOP)
 
     @property
     def drives_itself(self) -> bool:
@@ -96,6 +103,18 @@ class VehicleState:
         """Name for the driver, e.g. "Rover 1", "ArduPilot rover 1"."""
         text = f"{_AUTOPILOTS.get(self.autopilot, '')}{_KINDS.get(self.kind, 'vehicle')} {self.system}"
         return text[0].upper() + text[1:]
+
+    def restart(self) -> None:
+        """Forget where the vehicle was: it has restarted, and its origin and home may be others."""
+        self._frame, self._track, self._velocity = LocalFrame(), Track(), None
+        for name in ("position", "home", "prearm", "prearm_reason"):
+            self._values.pop(name, None)
+        self.ready_at = None
+
+    def handle_text(self, text: str) -> None:
+        """Keep the reason why the vehicle cannot be armed."""
+        if text.startswith(PREARM_TEXTS) and self.ready_at is None:
+            self._values["prearm_reason"] = text
 
     def build_view(self, now: float, **station: Any) -> VehicleView:
         """Build the vehicle's part of the snapshot; `station` are the fields that only the station knows."""
@@ -175,6 +194,8 @@ class VehicleState:
         self._values["gps_satellites"] = None if message.satellites_visible == 255 else message.satellites_visible
 
     def _system(self, message: m.SysStatus, now: float) -> None:
+        if message.onboard_control_sensors_present & Sensor.PREARM:
+            self._prearm(bool(message.onboard_control_sensors_health & Sensor.PREARM), now)
         if m.BatteryStatus not in self._times:
             volts = None if message.voltage_battery == UNKNOWN_U16 else message.voltage_battery / 1000
             self._battery(volts, message.current_battery, message.battery_remaining)
@@ -192,6 +213,14 @@ class VehicleState:
 
     def _read(self, **values: float) -> None:
         self._values.update({name: value for name, value in values.items() if math.isfinite(value)})
+
+    def _prearm(self, ready: bool, now: float) -> None:
+        self._values["prearm"] = ready
+        if not ready:
+            self.ready_at = None
+        elif self.ready_at is None:
+            self.ready_at = now
+            self._values.pop("prearm_reason", None)
 
     def _battery(self, volts: float | None, centiamperes: int, percent: int) -> None:
         self._values["battery_voltage"] = volts

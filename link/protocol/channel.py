@@ -18,7 +18,7 @@ from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, FramerCounts, noise_hint, payload_of
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
-from link.protocol.peer import PeerState, count_sources
+from link.protocol.peer import PeerState, count_sources, find_signing
 from link.protocol.peer_table import PeerTable
 from link.protocol.sent_frames import SentFrames
 from link.protocol.sequence import NEW, FrameOrder
@@ -118,6 +118,7 @@ class Channel:
                 self._own_id |= sender == self.ids and raw not in self._sent
                 continue
             state.last_seen, state.silent = now, False
+            state.newest[system] = raw
             digest = hash(raw)
             source = state.sources.get(sender)
             if source is None:
@@ -236,6 +237,7 @@ class Channel:
             dialect_mismatch=tuple(
                 sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER)
             ),
+            signing=find_signing(self._peers),
             own_id=self._own_id,
             down=down or self._noise_problem(counts),
             capacity=self._capacity,

@@ -24,6 +24,11 @@ def payload_of(raw: bytes) -> bytes:
     return raw[start : start + raw[1]]
 
 
+def is_signed(raw: bytes) -> bool:
+    """Return whether a whole frame, as received, carries a signature (https://mavlink.io/en/guide/message_signing.html)."""
+    return raw[0] == MAGIC_V2 and bool(raw[2] & INCOMPAT_SIGNED)
+
+
 class Header(NamedTuple):
     """What the first bytes of a frame claim."""
 

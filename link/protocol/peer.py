@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from link.core import Peer, SourceCount
-from link.protocol.frame import Frame
+from link.protocol.frame import Frame, is_signed
 from link.protocol.framer import Framer
 from link.protocol.rate import TokenBucket
 from link.protocol.sequence import SequenceTracker
@@ -38,6 +38,8 @@ class PeerState:
     systems: set[int] = field(default_factory=set)
     """Systems whose HEARTBEAT came from this address."""
     sources: dict[tuple[int, int], SequenceTracker] = field(default_factory=dict)
+    newest: dict[int, bytes] = field(default_factory=dict)
+    """Newest frame of each system, as received."""
     buckets: dict[str, TokenBucket] = field(default_factory=_buckets)
 
     @property
@@ -68,3 +70,8 @@ def count_sources(states: Iterable[PeerState]) -> dict[tuple[int, int], SourceCo
             before = totals.get(key, SourceCount(0, 0))
             totals[key] = SourceCount(before.received + source.received, before.lost + source.lost)
     return totals
+
+
+def find_signing(states: Iterable[PeerState]) -> frozenset[int]:
+    """Return the systems whose newest frame was signed."""
+    return frozenset(system for state in states for system, raw in state.newest.items() if is_signed(raw))

@@ -27,6 +27,7 @@ from tests.benchmarks import (
     serial_key,
     services,
     stations,
+    strangers,
 )
 from tests.benchmarks.figures import BenchmarkError, Options, Report
 from tests.benchmarks.tables import markdown
@@ -41,6 +42,7 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "bridge": (bridge.run, "the bridge as a router, beside MAVProxy, pymavlink and C"),
     "services": (services.run, "parameters, a mission and a log from a real vehicle, by UDP and at 57600 baud"),
     "stations": (stations.run, "what 1, 4 and 16 ground stations cost the vehicle"),
+    "strangers": (strangers.run, "CPU, demands and stops of a vehicle that strangers flood"),
     "mission": (mission.run, "ten minutes of AUTO in real time: how far the rover really is beside its lines"),
     "link_loss": (link_loss.run, "key to motor over a network that delays and loses"),
 }

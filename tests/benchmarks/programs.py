@@ -42,6 +42,8 @@ class Program:
         self._watch = watch
         self._terminal = terminal
         self._output = bytearray()
+        self.received = 0
+        """Bytes of output so far."""
         self._tail = b""
         os.set_blocking(terminal, False)
         self.started = time.monotonic()
@@ -108,6 +110,7 @@ class Program:
         except OSError:  # EIO: the program has closed its end of the pty
             return False
         self._output += data
+        self.received += len(data)
         del self._output[:-KEPT]
         self._answer(data)
         return bool(data)

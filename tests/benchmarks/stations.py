@@ -115,6 +115,16 @@ class Crowd:
             self.pass_time(0.5)
         self._axes = Axes(throttle=0.5, steering=0.2)
 
+    @property
+    def throttle(self) -> float:
+        """Throttle of the demand."""
+        return self._axes.throttle
+
+    def drive_at(self, axes: Axes) -> None:
+        """Change the demand, and send it at once."""
+        self._axes = axes
+        self._stations[0].say(build_manual_control(axes, 1))
+
 
 @dataclass(slots=True)
 class Seen:

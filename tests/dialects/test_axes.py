@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from itertools import permutations
+from typing import NamedTuple
 
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dialects.axes import AXIS_MAPS, NEUTRAL, Axes, axis_map, build_manual_control, parse_manual_control
+from dialects.axes import AXIS_MAPS, NEUTRAL, PX4_FRAMES, Axes, axis_map, build_manual_control, parse_manual_control
 from dialects.enums import Autopilot
 from dialects.messages import INVALID_AXIS, ManualControl
+from groundstation.input.keymap import KEYMAPS
+from groundstation.input.sticks import Sticks
+from groundstation.input.style import Style
+from groundstation.intents import ACTIONS, DriveKeyDown
 
 unit = st.floats(-1.0, 1.0)
 
@@ -59,6 +67,99 @@ def test_px4_reads_z_with_500_as_neutral() -> None:
     assert build_manual_control(NEUTRAL, 1, px4).z == 500
     assert build_manual_control(Axes(-1.0, 0.0), 1, px4).z == 0
     assert build_manual_control(Axes(1.0, 0.0), 1, px4).z == 1000
+
+
+def test_px4_gets_zero_on_unused_axes() -> None:
+    """Old versions divide INT16_MAX by 1000; a mecanum rover would move sideways."""
+    for frame in PX4_FRAMES:
+        message = build_manual_control(Axes(0.5, 0.5), 1, axis_map(Autopilot.PX4, frame))
+        assert sorted((message.x, message.y, message.r)) == [0, 0, 500]
+
+
+class Motion(NamedTuple):
+    """What a rover does: forward, nose to the right, sideways to the right; each -1..1."""
+
+    forward: float
+    turn: float
+    sideways: float = 0.0
+
+
+def px4_sticks(message: ManualControl) -> tuple[float, float, float]:
+    """Return throttle, roll and yaw as PX4's mavlink_receiver.cpp computes them."""
+    roll, yaw = (axis / 1000 if -1000 <= axis <= 1000 else 0.0 for axis in (message.y, message.r))
+    assert 0 <= message.z <= 1000
+    return message.z / 500 - 1, roll, yaw
+
+
+def ackermann(message: ManualControl) -> Motion:
+    """rover_ackermann: roll steers the front wheels, so the nose follows them forward and leaves them in reverse."""
+    throttle, roll, _ = px4_sticks(message)
+    return Motion(throttle, throttle * roll)
+
+
+def ackermann_acro(message: ManualControl) -> Motion:
+    """rover_ackermann in ACRO, STABILIZED and POSCTL: roll, times the sign of the throttle, is the yaw rate."""
+    throttle, roll, _ = px4_sticks(message)
+    return Motion(throttle, sign(throttle) * roll)
+
+
+def differential(message: ManualControl) -> Motion:
+    """rover_differential: roll is the difference of the wheels, or the yaw rate."""
+    throttle, roll, _ = px4_sticks(message)
+    return Motion(throttle, roll)
+
+
+def mecanum(message: ManualControl) -> Motion:
+    """rover_mecanum: yaw turns, roll moves sideways."""
+    throttle, roll, yaw = px4_sticks(message)
+    return Motion(throttle, yaw, roll)
+
+
+PX4_ROVERS = [(5, ackermann), (5, ackermann_acro), (6, differential), (13, mecanum)]
+"""CA_AIRFRAME, and how such a rover moves."""
+
+DRIVE_KEYS = {
+    key: action.intent
+    for key in ("u", "i", "o", "j", "l", "m", "comma", "full_stop")
+    if (action := ACTIONS[KEYMAPS["standard"][key]]) and isinstance(action.intent, DriveKeyDown)
+}
+
+
+def px4_motion(keys: tuple[str, ...], frame: int, rover: Callable[[ManualControl], Motion]) -> Motion:
+    """Return what a rover does while these keys are held, pressed in this order."""
+    sticks = Sticks(Style.HOLD, 1.0)
+    sticks.set_reports_releases()
+    for key in keys:
+        sticks.press(msgspec.structs.replace(DRIVE_KEYS[key], key=key), 0.0)
+    return rover(build_manual_control(sticks.axes(0.0), 1, axis_map(Autopilot.PX4, frame)))
+
+
+def sign(value: float) -> int:
+    return (value > 0) - (value < 0)
+
+
+@pytest.mark.parametrize(("frame", "rover"), PX4_ROVERS)
+def test_every_key_and_chord_moves_a_px4_rover_as_its_label_says(
+    frame: int, rover: Callable[[ManualControl], Motion]
+) -> None:
+    """The nose turns to the side of the newest key that steers; a car that stands cannot turn."""
+    assert len(DRIVE_KEYS) == 8
+    for keys in [*permutations(DRIVE_KEYS, 1), *permutations(DRIVE_KEYS, 2)]:
+        pushes = [DRIVE_KEYS[key] for key in keys]
+        throttle = next((push.throttle for push in reversed(pushes) if push.throttle), 0)
+        steering = next((push.steering for push in reversed(pushes) if push.steering), 0)
+        expected = (throttle, 0 if frame == 5 and not throttle else steering, 0)
+        assert tuple(map(sign, px4_motion(keys, frame, rover))) == expected, keys
+
+
+@pytest.mark.parametrize(("frame", "rover"), PX4_ROVERS)
+@pytest.mark.parametrize(("out", "back"), [("u", "m"), ("o", "full_stop"), ("i", "comma")])
+def test_a_px4_rover_comes_back_on_the_same_arc(
+    frame: int, rover: Callable[[ManualControl], Motion], out: str, back: str
+) -> None:
+    forward, backward = px4_motion((out,), frame, rover), px4_motion((back,), frame, rover)
+    assert forward.forward == -backward.forward == 1.0
+    assert forward.turn / forward.forward == backward.turn / backward.forward, "the curvature"
 
 
 def test_an_unknown_autopilot_is_treated_as_the_specification_says() -> None:

@@ -99,7 +99,7 @@ def taken() -> Iterator[dict[str, str]]:
 
 ENDPOINTS = [
     ("carrier:pigeon", ["'carrier:pigeon'", "udpin:HOST:PORT", "serial:PATH:BAUD"]),
-    ("udpn:127.0.0.1:14550", ["did you mean udpin:?"]),
+    ("udpn:127.0.0.1:14550", ["did you mean udpin:127.0.0.1:14550?"]),
     ("14550", ["'14550'"]),
     ("127.0.0.1:14550", ["did you mean udpin:127.0.0.1:14550?"]),
     ("udpout:0.0.0.0:14550", ["0.0.0.0 is not an address to send to"]),

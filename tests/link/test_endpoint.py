@@ -53,8 +53,10 @@ def test_what_is_understood(text: str, endpoint: Endpoint) -> None:
             "0.0.0.0 is not an address to send to; name the other end, or write udpin:0.0.0.0:14550",
         ),
         ("udpout:[::]:14550", "write udpin:[::]:14550 to wait for it"),
-        ("tcp:127.0.0.1:5760", "did you mean tcpout:?"),
-        ("udp:127.0.0.1:14550", "did you mean udpin:?"),
+        ("tcpout:0.0.0.0:5760", "write tcpin:0.0.0.0:5760 to wait for it"),
+        ("tcp:127.0.0.1:5760", "did you mean tcpout:127.0.0.1:5760?"),
+        ("udp:127.0.0.1:14550", "did you mean udpin:127.0.0.1:14550?"),
+        ("udp://127.0.0.1:14550", "did you mean udpin:127.0.0.1:14550?"),
         ("/dev/ttyUSB0", "did you mean serial:/dev/ttyUSB0:57600?"),
         ("/dev/ttyACM0,115200", "did you mean serial:/dev/ttyACM0:115200?"),
         (
@@ -99,6 +101,7 @@ def test_the_table_is_the_help_and_every_scheme_can_be_opened() -> None:
         ("udpin:127.0.0.1:14550", "udpin:127.0.0.1:14550"),
         ("udpout:rover.local:14550", "tcpin:0.0.0.0:5760", "UDPOUT://rover.local:14550"),
         ("serial:/dev/ttyAMA0:57600", "serial:/dev/ttyAMA0:115200"),
+        ("udpin:localhost:14550", "udpin:127.0.0.1:14550"),
     ],
 )
 def test_an_endpoint_that_is_given_twice_is_refused(texts: tuple[str, ...]) -> None:
@@ -106,6 +109,28 @@ def test_an_endpoint_that_is_given_twice_is_refused(texts: tuple[str, ...]) -> N
         parse_endpoints(texts)
 
 
+@pytest.mark.parametrize(
+    "texts",
+    [
+        ("udpin:0.0.0.0:14550", "udpin:127.0.0.1:14550"),
+        ("udpin:127.0.0.1:14550", "udpin:0.0.0.0:14550"),
+        ("tcpin:192.168.1.2:5760", "tcpin:[::]:5760"),
+        ("udpin:0.0.0.0:14550", "udpin:[::]:14550"),
+    ],
+)
+def test_two_endpoints_that_listen_on_the_same_port_are_refused(texts: tuple[str, ...]) -> None:
+    """The second could not be opened, and the error would blame another program."""
+    with pytest.raises(EndpointError, match="listen on the same port; leave one of them out") as caught:
+        parse_endpoints(texts)
+    assert all(f"'{text}'" in str(caught.value) for text in texts)
+
+
 def test_one_port_on_two_addresses_or_for_two_protocols_is_not_given_twice() -> None:
-    texts = ("udpin:127.0.0.1:14550", "udpin:192.168.1.2:14550", "tcpin:127.0.0.1:14550", "udpout:127.0.0.1:14550")
+    texts = (
+        "udpin:127.0.0.1:14550",
+        "udpin:192.168.1.2:14550",
+        "tcpin:127.0.0.1:14550",
+        "udpout:127.0.0.1:14550",
+        "tcpin:0.0.0.0:1",
+    )
     assert [each.text for each in parse_endpoints(texts)] == list(texts)

@@ -111,20 +111,14 @@ class Control:
             ownership.add_proof(conversation, proof, now, good=good)
         if not ownership.has_driver_ids(received):
             return False
-        if proof is not None and good and not self._is_of_driver(conversation, proof):
+        session = ownership.session
+        if proof is not None and good and (session is None or session.id != proof.session):
             self._handle_other_session(conversation, proof, message, now)
         if ownership.session is not None:
             return proof is not None and self._handle_proof(received, message, proof, now, good=good)
         if ownership.is_driver(received, now) and self.presence.handle(message, now - self._boot, now):
             self.require_neutral()
         return False
-
-    def _is_of_driver(self, conversation: Conversation, proof: Proof) -> bool:
-        """Return whether a proof with the driver's ids is the driver's."""
-        driver = self.ownership.driver
-        if driver is None or driver.session is None:
-            return driver is not None and driver.conversation == conversation
-        return driver.session.id == proof.session
 
     def _handle_other_session(
         self, conversation: Conversation, proof: Proof, message: RoverOperatorPresence, now: float
@@ -220,13 +214,12 @@ class Control:
 
         While it is barred, or repeats old frames, it moves nothing either.
         """
-        driver = self.ownership.driver
         if target != self.system or not received.introduced:
             return False
-        if driver is None or not self.ownership.is_driver(received, now):
+        if not self.ownership.is_driver(received, now):
             self._reject_demand(received, now)
             return False
-        return driver.session is None and not (driver.is_copy or driver.is_barred(now))
+        return self.ownership.accepts_unproven_demand(now)
 
     def _reject_demand(self, received: Received, now: float) -> None:
         """Report the demand of a ground station that is not in control, once."""

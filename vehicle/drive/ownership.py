@@ -66,6 +66,11 @@ class Ownership:
         """Return whether this is the driver, but cannot be told from another program for the moment."""
         return self.driver is not None and self.driver.is_barred(now) and self.is_driver(sender, now)
 
+    def accepts_unproven_demand(self, now: float) -> bool:
+        """Return whether a demand of the driver that carries no proof counts now."""
+        driver = self.driver
+        return driver is not None and driver.session is None and not (driver.is_copy or driver.is_barred(now))
+
     def silence_duration(self, now: float) -> float:
         """Return the s since the last message of the driver, or since boot if there was none."""
         return now - (self.driver.last_heard if self.driver else self._boot)
@@ -148,15 +153,15 @@ class Ownership:
         """Note a proof of an introduced ground station; that of the driver's session has the driver's ids."""
         if good:
             self._proofs.add(conversation, proof, now)
-        session = self.session
-        if self.driver is None or session is None or session.id != proof.session:
+        driver = self.driver
+        if driver is None or driver.session is None or not self.has_driver_ids(conversation):
             return
-        if not self.has_driver_ids(conversation):
+        if proof.session != driver.session.id:
             return
-        session.add_proof(conversation, proof, now, good=good)
+        driver.session.add_proof(conversation, proof, now, good=good)
         if good:
-            self.driver.last_heard = now
-            self.driver.conversation = conversation
+            driver.last_heard = now
+            driver.conversation = conversation
 
     def hear(self, received: Received, now: float) -> bool:
         """Note a message of an introduced sender; return True if it has succeeded the driver.
@@ -206,7 +211,7 @@ class Ownership:
     def _set_driver(self, conversation: Conversation, session: DrivingSession | None, now: float) -> None:
         newcomer = self._memory.newcomer(conversation)
         self._memory.begin(conversation)
-        is_copy = session is None and newcomer is not None and newcomer.is_copy
+        is_copy = newcomer is not None and newcomer.is_copy
         self.driver = Driver(conversation, session, now, is_copy=is_copy)
         self.clashed_at = None
 

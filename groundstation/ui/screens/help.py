@@ -29,6 +29,7 @@ STATUS_LINE = (
     ("cmd", "age of the demand that the motors obey; from 450 ms on they stop"),
     ("key→motor", "time from a changed demand to the vehicle that applies it"),
     ("tty", "round trip to this terminal; without answers keys do not drive"),
+    ("pre-arm", "the vehicle's checks before arming; the log has the reasons"),
     ("gps, batt", "GPS fix and satellites; battery voltage and charge"),
 )
 """Readings of the status line, in its order, and their meaning."""
@@ -37,6 +38,7 @@ _NOTES = (
     "Any key without a drive action stops the vehicle while it is driven. The emergency stop works on every screen.",
     "Keys drive only on the Drive screen and while this window has the focus; leaving either stops the vehicle.",
     "The limits are the largest demand that a key sends: speed and turn, in percent of the full range.",
+    "Where the terminal reports key releases, keys of a Cyrillic or Greek layout count by their position.",
     "Mouse reports are captured, so that the wheel cannot drive as arrow keys: Shift and drag selects text.",
 )
 

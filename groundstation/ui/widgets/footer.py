@@ -13,11 +13,16 @@ from groundstation.ui.display_state import DisplayState
 from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
-FOOTER_ITEMS: tuple[tuple[str | None, tuple[str, ...]], ...] = (
+FooterItem = tuple[str | None, tuple[str, ...]]
+"""A label where the action's own is too long, and the ids of actions."""
+
+SPEED: FooterItem = ("Speed", ("speed.faster", "speed.slower"))
+
+FOOTER_ITEMS: tuple[FooterItem, ...] = (
     (None, ("drive.stop",)),
     ("E-STOP", ("stop.emergency",)),
     (None, ("vehicle.arm",)),
-    ("Speed", ("speed.faster", "speed.slower")),
+    SPEED,
     (None, ("app.help",)),
     (None, ("app.quit",)),
     ("Hold/latch/step", ("drive.style",)),
@@ -25,7 +30,7 @@ FOOTER_ITEMS: tuple[tuple[str | None, tuple[str, ...]], ...] = (
     (None, ("vehicle.hold",)),
     (None, ("vehicle.control",)),
 )
-"""A label where the action's own is too long, and the ids. The most important first: the last ones may not fit."""
+"""The most important first: the last ones may not fit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +39,18 @@ class FooterValue:
 
     keymap: Keymap
     armed: bool = False
+    place: str = ""
+    """Which of several vehicles is selected, e.g. "2/16"; "" for one alone."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> FooterValue:
         """Return the footer of a display state."""
-        vehicle = now.snapshot.vehicle
-        return cls(now.keymap, vehicle is not None and vehicle.armed)
+        vehicle, systems = now.snapshot.vehicle, now.snapshot.vehicles
+        if vehicle is None:
+            return cls(now.keymap)
+        several = len(systems) > 1 and vehicle.system in systems
+        place = f"{systems.index(vehicle.system) + 1}/{len(systems)}" if several else ""
+        return cls(now.keymap, vehicle.armed, place)
 
 
 class KeyFooter(Instrument[FooterValue]):
@@ -49,12 +60,19 @@ class KeyFooter(Instrument[FooterValue]):
         """Draw keys in yellow, stop keys in red."""
         parts: list[Part] = []
         tail = [("│ ", style(DIM, PANEL)), ("^p", style(YELLOW, PANEL, bold=True)), (" Commands ", style(TEXT, PANEL))]
-        for label, ids in FOOTER_ITEMS:
+        for label, ids in self._items():
             item = self._item(label, ids)
             if item and length(parts) + length(item) + length(tail) <= width:
                 parts += item
         gap = max(0, width - length(parts) - length(tail))
         return [strip(*parts, (" " * gap, style(TEXT, PANEL)), *tail).crop(0, width)]
+
+    def _items(self) -> list[FooterItem]:
+        """Return the table; with several vehicles the key that selects the next one takes the place of the speed."""
+        if not self.value.place:
+            return list(FOOTER_ITEMS)
+        following: FooterItem = (f"Vehicle {self.value.place}", ("vehicle.next",))
+        return [*(following if item == SPEED else item for item in FOOTER_ITEMS), SPEED]
 
     def _item(self, label: str | None, ids: tuple[str, ...]) -> list[Part]:
         keys = [self._key(action_id) for action_id in ids]

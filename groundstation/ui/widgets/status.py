@@ -156,6 +156,8 @@ def _health(vehicle: VehicleView | None) -> list[StatusField]:
     if vehicle is None:
         return []
     fields: list[StatusField] = []
+    if vehicle.prearm is not None and not vehicle.armed:
+        fields.append(_field(3, "pre-arm", "ok", GREEN) if vehicle.prearm else _field(1, "pre-arm", "failed", AMBER))
     if vehicle.gps_fix is not None:
         fix = {0: "none", 1: "none", 2: "2D", 3: "3D"}.get(vehicle.gps_fix, "RTK" if vehicle.gps_fix > 4 else "DGPS")
         count = "" if vehicle.gps_satellites is None else f" {vehicle.gps_satellites}"

@@ -1,18 +1,21 @@
-"""Page without a vehicle: what the station waits for, where, and what to try."""
+"""Page without a vehicle: what the station waits for, what has arrived, and what to try."""
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
 
 from textual.strip import Strip
 
 from groundstation.snapshot import Snapshot
-from groundstation.ui.colours import BLUE, DIM, GREEN, RED, TEXT, WHITE, YELLOW, style
+from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, WHITE, YELLOW, style
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.waiting_advice import Advice, AdviceKind, advise, describe_link
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 _NO_SNAPSHOT = Snapshot()
 _SPINNER = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
+_COLOURS = {AdviceKind.TEXT: DIM, AdviceKind.WARNING: AMBER}
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,11 +24,14 @@ class WaitingValue:
 
     snapshot: Snapshot = _NO_SNAPSHOT
     simulator_key: str = "?"
+    quit_key: str = "?"
 
     @classmethod
     def from_state(cls, now: DisplayState) -> WaitingValue:
         """Return the page of a display state."""
-        return cls() if now.snapshot.vehicle is not None else cls(now.snapshot, now.key("app.simulator"))
+        if now.snapshot.vehicle is not None:
+            return cls()
+        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"))
 
 
 class WaitingPage(Instrument[WaitingValue]):
@@ -35,12 +41,13 @@ class WaitingPage(Instrument[WaitingValue]):
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the lines in the middle, all from one left edge."""
-        lines = [line for line in self._lines() if length(line) <= width] if width else []
+        lines = self._lines(width) if width else []
         left = max(0, (width - max(map(length, lines), default=0)) // 2)
         blank = strip((" " * width, style()))
-        return [blank] * max(0, (height - len(lines)) // 2) + [strip((" " * left, style()), *line) for line in lines]
+        drawn = [strip((" " * left, style()), *line).crop(0, width) for line in lines]
+        return [blank] * max(0, (height - len(lines)) // 2) + drawn
 
-    def _lines(self) -> list[list[Part]]:
+    def _lines(self, width: int) -> list[list[Part]]:
         snapshot = self.value.snapshot
         turn = _SPINNER[int(snapshot.uptime * 4) % len(_SPINNER)]
         lines: list[list[Part]] = [
@@ -51,25 +58,37 @@ class WaitingPage(Instrument[WaitingValue]):
                 (snapshot.waiting or "waiting for a vehicle", style(WHITE, bold=True)),
             ],
         ]
-        lines += [
-            [("  ", style()), (f"{link.name}: {link.problem}", style(RED))] for link in snapshot.links if link.problem
-        ]
+        for link in snapshot.links:
+            if link.problem:
+                lines += _wrapped(f"{link.name}: {link.problem}", RED, width)
+            else:
+                lines += _advice(describe_link(link), width)
         lines.append([])
         state = snapshot.simulator
         if state:
             lines.append([("  simulator: ", style(DIM)), (state, style(RED if "ended" in state else GREEN))])
-        return lines if state and "ended" not in state else lines + self._offer()
+        return lines if state and "ended" not in state else lines + self._offer(width)
 
-    def _offer(self) -> list[list[Part]]:
+    def _offer(self, width: int) -> list[list[Part]]:
+        advice = advise(self.value.snapshot, self.value.quit_key)
+        return [self._simulator(), [], *(line for each in advice for line in _advice(each, width))]
+
+    def _simulator(self) -> list[Part]:
+        """Return how to start a simulated rover; it can send only to a UDP port that listens."""
+        if not any(endpoint.startswith("udpin:") for endpoint in self.value.snapshot.endpoints):
+            return [("  groundstation --sitl", style(TEXT, bold=True)), (" starts a simulated rover.", style(DIM))]
         key = style(YELLOW, bold=True)
-        return [
-            [
-                ("  ENTER", key),
-                (" or ", style(DIM)),
-                (self.value.simulator_key, key),
-                (" starts a simulated rover.", style(TEXT)),
-            ],
-            [],
-            [("  A real vehicle must send to this computer. With the mavhelm daemon:", style(DIM))],
-            [("    vehicle udpout:<address of this computer>:14550", style(TEXT))],
-        ]
+        keys: list[Part] = [("  ENTER", key), (" or ", style(DIM)), (self.value.simulator_key, key)]
+        return [*keys, (" starts a simulated rover.", style(TEXT))]
+
+
+def _advice(advice: Advice, width: int) -> list[list[Part]]:
+    """Return the lines of one advice; a command stays in one."""
+    if advice.kind is AdviceKind.COMMAND:
+        return [[(f"    {advice.text}", style(TEXT, bold=True))]]
+    return _wrapped(advice.text, _COLOURS[advice.kind], width)
+
+
+def _wrapped(text: str, colour: str, width: int) -> list[list[Part]]:
+    parts = textwrap.wrap(text, max(20, width - 2), subsequent_indent="  ", break_on_hyphens=False)
+    return [[(f"  {part}", style(colour))] for part in parts]

@@ -55,7 +55,9 @@ def in_terminal(
         (["--keys", "/nowhere/keys.toml"], "No such file"),
         (["udpin:127.0.0.1:14999"], "is not a terminal"),
         (["drive"], "'drive' is not an endpoint such as udpin:127.0.0.1:14550 (groundstation --help lists them)"),
-        (["help"], "groundstation --help"),
+        (["help"], "'help' is not an endpoint: did you mean --help?"),
+        (["sitl"], "'sitl' is not an endpoint: did you mean --sitl?"),
+        (["--sitl", "udpin"], "'udpin' is not an endpoint such as udpin:127.0.0.1:14550"),
     ],
 )
 def test_mistakes_are_one_line(capsys: pytest.CaptureFixture[str], arguments: list[str], words: str) -> None:
@@ -99,6 +101,9 @@ def test_help_teaches(capsys: pytest.CaptureFixture[str]) -> None:
         "teleop",
         "hold `r` for a second to arm",
         '"drive.forward" = ["e", "up"]',
+        "key→motor: time",
+        "inside tmux",
+        "128 + n after signal n",
     ):
         assert word in text
 

@@ -15,6 +15,7 @@ OPTIONS = ("--sitl", "--keys", "--style", "--speed", "--system", "--log-file")
         (["--stil"], "unrecognized arguments: --stil: did you mean --sitl?"),
         (["--sytem=3"], "unrecognized arguments: --sytem=3: did you mean --system?"),
         (["--fly", "--spede"], "unrecognized arguments: --fly --spede: did you mean --speed?"),
+        (["--console"], "unrecognized arguments: --console: the screen shows what it would; leave it out"),
         (["--fly"], "unrecognized arguments: --fly"),
         (["-x"], "unrecognized arguments: -x"),
         (["--baud"], "unrecognized arguments: --baud: write serial:PATH:BAUD, e.g. serial:/dev/ttyUSB0:57600"),

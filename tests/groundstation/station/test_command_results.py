@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dialects import messages as m
-from dialects.enums import Command, Result
-from groundstation.intents import (
-    Arm,
-)
+from dialects.enums import Command, Result, Sensor
+from groundstation.intents import Arm
+from groundstation.station.command_results import SHOWN_FOR
 from tests.groundstation.cockpits import cockpit_with
-from tests.groundstation.fake_vehicle import FakeVehicle
+from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 
 ARM, MODE, SWITCH = Command.COMPONENT_ARM_DISARM, Command.DO_SET_MODE, Command.DO_SET_SAFETY_SWITCH_STATE
 
@@ -49,6 +48,56 @@ def test_acceptance_clears_the_refusal() -> None:
     cockpit.run(1.0)
     assert cockpit.view.refusal is None
     assert cockpit.view.armed
+
+
+def sys_status(*, ready: bool) -> m.SysStatus:
+    health = Sensor.PREARM if ready else 0
+    return m.SysStatus(Sensor.PREARM, Sensor.PREARM, health, 0, 12000, 100, 80, 0, 0, 0, 0, 0, 0)
+
+
+def refused_arming() -> Cockpit:
+    vehicle = FakeVehicle()
+    vehicle.answers[ARM], vehicle.reasons[ARM] = Result.FAILED, b"Arm: Accels inconsistent"
+    cockpit = cockpit_with(vehicle)
+    vehicle.send(sys_status(ready=False))
+    cockpit.do(Arm(held=1.0))
+    cockpit.run(1.0)
+    assert cockpit.view.refusal == "arm failed: Arm: Accels inconsistent"
+    return cockpit
+
+
+def test_a_refusal_to_arm_is_gone_when_the_checks_are_passed() -> None:
+    cockpit = refused_arming()
+    cockpit.vehicle.send(sys_status(ready=True))
+    cockpit.run(0.1)
+    assert cockpit.view.prearm
+    assert cockpit.view.refusal is None
+
+
+def test_a_refusal_while_the_checks_are_passed_is_shown() -> None:
+    cockpit = refused_arming()
+    cockpit.vehicle.send(sys_status(ready=True))
+    cockpit.run(1.0)
+    cockpit.do(Arm(held=1.0))
+    cockpit.run(1.0)
+    assert cockpit.view.refusal == "arm failed: Arm: Accels inconsistent"
+
+
+def test_a_refusal_to_arm_is_gone_when_another_station_arms() -> None:
+    cockpit = refused_arming()
+    cockpit.vehicle.armed = True
+    cockpit.vehicle.beat()
+    cockpit.run(0.1)
+    assert cockpit.view.refusal is None
+
+
+def test_a_refusal_is_not_shown_for_ever() -> None:
+    cockpit = refused_arming()
+    cockpit.run(SHOWN_FOR - 2.0)
+    assert cockpit.view.refusal
+    cockpit.run(2.0)
+    assert cockpit.view.refusal is None
+    assert "arm failed" in cockpit.texts
 
 
 def test_no_answer_is_reported() -> None:

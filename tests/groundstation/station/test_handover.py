@@ -46,7 +46,7 @@ def test_a_request_is_shown_with_its_time() -> None:
     assert seen is not None
     assert (seen.station, seen.vehicle) == (OTHER, "Rover 1")
     assert seen.left == pytest.approx(ANSWER_WITHIN, abs=0.2)
-    assert "GCS 254 asks for control of Rover 1" in cockpit.texts
+    assert "GCS 254 requests control of Rover 1" in cockpit.texts
 
 
 def test_giving_is_neutral_first_then_control_is_released() -> None:

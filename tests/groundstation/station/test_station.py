@@ -23,7 +23,7 @@ def test_bytes_without_a_vehicle_are_reported() -> None:
     cockpit.run(2.0)
     waiting = cockpit.snapshot.waiting
     assert waiting is not None
-    assert "no vehicle heartbeat yet" in waiting
+    assert "no HEARTBEAT of a vehicle yet" in waiting
 
 
 def test_a_ground_station_is_no_vehicle() -> None:

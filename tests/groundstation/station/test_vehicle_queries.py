@@ -56,12 +56,12 @@ def test_ardupilot_settings_that_let_it_drive_on_are_warned_of() -> None:
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
     assert cockpit.view.warnings == (
-        "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost",
-        "FS_GCS_ENABLE 0: no failsafe when the ground station is lost",
+        OVERRIDE,
+        "FS_GCS_ENABLE 0: no failsafe when the ground station is lost; set it to 1",
     )
 
 
-OVERRIDE = "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost"
+OVERRIDE = "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost; set it to 0.5"
 
 
 def test_settings_that_could_not_be_read_are_named_and_read_later() -> None:
@@ -70,7 +70,7 @@ def test_settings_that_could_not_be_read_are_named_and_read_later() -> None:
     vehicle.parameters["MAV_GCS_SYSID"] = 255.0
     cockpit = Cockpit(vehicle)
     cockpit.run(6.0)
-    words = "could not read RC_OVERRIDE_TIME: trying again"
+    words = "could not read, trying again: RC_OVERRIDE_TIME"
     assert words in cockpit.view.warnings
     assert cockpit.texts.count(f"ArduPilot rover 1: {words}") == 1
     vehicle.parameters["RC_OVERRIDE_TIME"] = 3.0
@@ -95,6 +95,21 @@ def test_settings_are_read_again_after_a_restart(silence: float) -> None:
         vehicle.send(m.Attitude(1000, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0))
     cockpit.run(2.0)
     assert cockpit.view.warnings == (OVERRIDE,)
+
+
+def test_a_restarted_vehicle_has_a_new_track_and_home() -> None:
+    vehicle = FakeArduPilot()
+    cockpit = Cockpit(vehicle)
+    cockpit.run(10.0)
+    vehicle.send(m.HomePosition(0, 0, 0, 5.0, 6.0, 0.0, [1, 0, 0, 0], 0, 0, 0))
+    vehicle.send(m.LocalPositionNed(m.boot_ms(cockpit.now), 70.0, 80.0, 0.0, 0.0, 0.0, 0.0))
+    cockpit.run(0.1)
+    assert (70.0, 80.0) in cockpit.view.track
+    assert cockpit.view.home == (5.0, 6.0)
+    vehicle.send(m.Attitude(1000, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0))
+    cockpit.run(0.1)
+    assert (70.0, 80.0) not in cockpit.view.track
+    assert cockpit.view.home is None
 
 
 def test_the_clock_of_another_component_is_no_reboot() -> None:

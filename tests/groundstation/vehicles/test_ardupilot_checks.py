@@ -2,33 +2,23 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 
-from dialects.messages import ParamRequestRead, ParamValue
-from groundstation.vehicles.ardupilot_checks import PARAM_CHECKS, ArduPilotChecks
-from link.core import Peer, Received
+from tests.groundstation.vehicles.test_settings_check import new_check, value
 
-
-def new_check() -> ArduPilotChecks:
-    return ArduPilotChecks(255, 190, target=(1, 1))
-
-
-def value(name: str, number: float, system: int = 1) -> Received:
-    message = ParamValue(name.encode(), number, 9, 1, 65535)
-    return Received(message, system, 1, 0, Peer(0, "vehicle"), introduced=True)
+ALERT_WIDTH = 76
+"""Columns of the alert line at 80 columns."""
 
 
 @pytest.mark.parametrize(
     ("name", "good", "bad", "words"),
     [
-        ("RC_OVERRIDE_TIME", 0.5, 3.0, "drives on for 3 s"),
-        ("RC_OVERRIDE_TIME", 1.0, -1.0, "never stops"),
-        ("FS_GCS_ENABLE", 1.0, 0.0, "no failsafe"),
-        ("FS_THR_ENABLE", 1.0, 0.0, "never stops"),
-        ("MAV_GCS_SYSID", 255.0, 252.0, "obeys ground station 252 only"),
-        ("SYSID_MYGCS", 511.0, 1.0, "obeys ground station 1 only"),
+        ("RC_OVERRIDE_TIME", 0.5, 3.0, "drives on for 3 s when the link is lost; set it to 0.5"),
+        ("RC_OVERRIDE_TIME", 1.0, -1.0, "never stops when the link is lost; set it to 0.5"),
+        ("FS_GCS_ENABLE", 1.0, 0.0, "no failsafe when the ground station is lost; set it to 1"),
+        ("FS_THR_ENABLE", 1.0, 0.0, "without RC, never stops when the link is lost; set it to 1"),
+        ("MAV_GCS_SYSID", 255.0, 252.0, "obeys ground station 252 only and we are 255: use --system 252"),
+        ("SYSID_MYGCS", 511.0, 1.0, "obeys ground station 1 only and we are 255: use --system 1"),
     ],
 )
 def test_each_setting(name: str, good: float, bad: float, words: str) -> None:
@@ -37,6 +27,7 @@ def test_each_setting(name: str, good: float, bad: float, words: str) -> None:
     assert not check.warnings
     (warning,) = check.receive(value(name, bad), 0.0)
     assert words in warning
+    assert len(warning) <= ALERT_WIDTH
     assert check.warnings == (warning,)
     assert check.receive(value(name, bad), 0.0) == [], "reported once"
     check.receive(value(name, good), 0.0)
@@ -60,78 +51,3 @@ def test_what_a_lost_link_means(override: float | None, throttle: float | None, 
         if number is not None:
             check.receive(value(name, number), 0.0)
     assert check.without_link == words
-
-
-@pytest.mark.parametrize("number", [math.nan, math.inf])
-def test_no_number_is_no_setting(number: float) -> None:
-    check = new_check()
-    assert check.receive(value("MAV_GCS_SYSID", number), 0.0) == []
-    assert not check.warnings
-
-
-def test_an_unanswered_read_is_repeated_three_times() -> None:
-    check = new_check()
-    asked: list[bytes] = []
-    check.receive(value("FS_GCS_ENABLE", 1.0), 0.0)
-    for second in range(20):
-        for outgoing in check.tick(second * 0.5):
-            assert isinstance(outgoing.message, ParamRequestRead)
-            asked.append(outgoing.message._param_id_raw)
-    assert len(asked) == 3 * (len(PARAM_CHECKS) - 1)
-    assert "FS_GCS_ENABLE" not in [name.decode() for name in asked]
-
-
-def test_only_the_checked_parameters_of_this_vehicle_count() -> None:
-    check = new_check()
-    assert check.receive(value("FS_GCS_ENABLE", 0.0, system=2), 0.0) == []
-    for number in range(1000):
-        assert check.receive(value(f"OTHER_{number}", 0.0), 0.0) == []
-    assert not check.warnings
-    assert check._params.params == {}, "a flood of names must not grow a table"
-
-
-def requests(check: ArduPilotChecks, start: float, end: float) -> list[str]:
-    """Return the parameters that were requested from `start` to `end`."""
-    sent = [each.message for tick in range(int(2 * start), int(2 * end)) for each in check.tick(tick / 2)]
-    return [each.param_id for each in sent if isinstance(each, ParamRequestRead)]
-
-
-def test_parameters_that_were_not_answered_are_named() -> None:
-    check = new_check()
-    requests(check, 0.0, 3.0)
-    assert not check.warnings
-    assert check.pop_missing_warning() == []
-    check.receive(value("FS_GCS_ENABLE", 1.0), 3.0)
-    requests(check, 3.0, 4.0)
-    words = "could not read RC_OVERRIDE_TIME, FS_THR_ENABLE, MAV_GCS_SYSID: trying again"
-    assert check.warnings == (words,)
-    assert [check.pop_missing_warning() for _ in range(2)] == [[words], []], "logged once"
-    check.receive(value("SYSID_MYGCS", 255.0), 5.0)
-    check.receive(value("RC_OVERRIDE_TIME", 1.0), 5.0)
-    assert check.warnings == ("could not read FS_THR_ENABLE: trying again",)
-    check.receive(value("FS_THR_ENABLE", 1.0), 5.0)
-    assert not check.warnings
-
-
-def test_parameters_are_requested_until_they_are_known() -> None:
-    check = new_check()
-    assert set(requests(check, 0.0, 100.0)) == set(PARAM_CHECKS)
-    for name in ("RC_OVERRIDE_TIME", "FS_GCS_ENABLE", "SYSID_MYGCS"):
-        check.receive(value(name, 1.0), 100.0)
-    requests(check, 100.0, 104.0)
-    assert set(requests(check, 104.0, 200.0)) == {"FS_THR_ENABLE"}
-    check.receive(value("FS_THR_ENABLE", 1.0), 200.0)
-    requests(check, 200.0, 204.0)
-    assert requests(check, 204.0, 300.0) == []
-
-
-def test_a_restart_reads_everything_again() -> None:
-    check = new_check()
-    requests(check, 0.0, 1.0)
-    for name in PARAM_CHECKS:
-        check.receive(value(name, 0.0), 1.0)
-    assert check.warnings
-    check.restart()
-    assert not check.warnings
-    assert check.without_link is None
-    assert set(requests(check, 1.0, 2.0)) == set(PARAM_CHECKS)

@@ -48,6 +48,22 @@ def test_a_flood_of_system_ids_is_bounded() -> None:
     assert len(fleet.system_ids) == MAX_VEHICLES
 
 
+def test_vehicles_without_a_place_are_counted_while_they_are_heard_and_the_first_is_logged() -> None:
+    systems = range(1, MAX_VEHICLES + 1)
+    fleet, log = fleet_of(*systems)
+    assert fleet.not_shown == 0
+    for now in (1.0, 2.0, 3.0):
+        for system in (201, 202):
+            assert fleet.get_or_add(beat(system), now) is None
+        fleet.update(now)
+    assert fleet.not_shown == 2
+    assert texts(log)[MAX_VEHICLES:] == ["more than 16 vehicles: vehicle 201 and further ones are not shown"]
+    fleet.update(5.4)
+    assert fleet.not_shown == 2
+    fleet.update(5.6)
+    assert fleet.not_shown == 0
+
+
 def test_loss_and_return_are_logged_once_and_start_the_requests_again() -> None:
     fleet, log = fleet_of(1)
     contact = fleet.get(1)

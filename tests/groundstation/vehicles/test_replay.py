@@ -168,12 +168,23 @@ def test_every_text_is_shown_and_repeats_are_counted() -> None:
     assert all((one.text, one.severity) != (two.text, two.severity) for one, two in itertools.pairwise(shown))
 
 
+def test_its_pre_arm_state_is_that_of_sys_status() -> None:
+    seen = set()
+    for moment in replay().moments:
+        status, vehicle = moment.recorded.get("SYS_STATUS"), moment.snapshot.vehicle
+        if status is not None and vehicle is not None:
+            ready = bool(status.onboard_control_sensors_health & ardupilotmega.MAV_SYS_STATUS_PREARM_CHECK)
+            assert vehicle.prearm == ready
+            seen.add(ready)
+    assert True in seen
+
+
 def test_its_dangerous_settings_are_warned_of() -> None:
     vehicle = replay().moments[-1].snapshot.vehicle
     assert vehicle is not None
     assert set(vehicle.warnings) >= {
-        "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost",
-        "FS_GCS_ENABLE 0: no failsafe when the ground station is lost",
+        "RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost; set it to 0.5",
+        "FS_GCS_ENABLE 0: no failsafe when the ground station is lost; set it to 1",
     }
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.codec import decode
-from dialects.enums import Autopilot, SystemState
+from dialects.enums import Autopilot, Sensor, SystemState
 from groundstation.ipc import decode_from_station, encode
 from groundstation.snapshot import VehicleView
 from groundstation.station.station import Station
@@ -129,6 +129,37 @@ def test_drive_status() -> None:
 
 def test_emergency_stop_is_seen_by_status_or_limit() -> None:
     assert state(heartbeat(status=SystemState.EMERGENCY)).emergency_stop
+    for autopilot in (Autopilot.ARDUPILOT, Autopilot.PX4):  # a crash, a failsafe: not our lock of the motors
+        assert not state(heartbeat(autopilot=autopilot, status=SystemState.EMERGENCY)).emergency_stop
+
+
+def sys_status(*, present: int = Sensor.PREARM, health: int = 0) -> m.SysStatus:
+    return m.SysStatus(present, present, health, 0, 12000, 100, 80, 0, 0, 0, 0, 0, 0)
+
+
+def test_pre_arm_checks() -> None:
+    assert view(sys_status(present=0, health=Sensor.PREARM)).prearm is None
+    vehicle = state(sys_status())
+    vehicle.handle_text("PreArm: Accels inconsistent")
+    vehicle.handle_text("EKF3 active")
+    seen = vehicle.build_view(10.0)
+    assert (seen.prearm, seen.prearm_reason, vehicle.ready_at) == (False, "PreArm: Accels inconsistent", None)
+    for now in (20.0, 21.0):
+        vehicle.receive(received(sys_status(health=Sensor.PREARM)), now)
+    vehicle.handle_text("PreArm: late")
+    seen = vehicle.build_view(21.0)
+    assert (seen.prearm, seen.prearm_reason, vehicle.ready_at) == (True, "", 20.0)
+
+
+def test_a_restart_forgets_where_the_vehicle_was() -> None:
+    there = m.LocalPositionNed(1000, 50.0, 60.0, 0.0, 0.0, 0.0, 0.0)
+    vehicle = state(heartbeat(), there, m.HomePosition(0, 0, 0, 1.0, 2.0, 0.0, [1, 0, 0, 0], 0, 0, 0), sys_status())
+    before = vehicle.build_view(10.0)
+    assert (before.position, before.home, len(before.track)) == ((50.0, 60.0), (1.0, 2.0), 1)
+    vehicle.restart()
+    after = vehicle.build_view(10.0)
+    assert (after.position, after.home, after.track, after.prearm) == (None, None, (), None)
+    assert after.mode == before.mode
     assert state(heartbeat(), m.RoverDriveStatus(0, 0, 0, 0, [0] * 4, 64, 0, 0)).emergency_stop
     assert not state(heartbeat()).emergency_stop
 

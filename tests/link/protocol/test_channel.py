@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fastcrc.crc16 import mcrf4xx
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -146,6 +147,20 @@ def test_demands_never_go_back_within_a_numbering(order: list[int]) -> None:
             ahead = (found.sequence - newest.get(found.numbering, found.sequence - 1)) & 0xFF
             assert 0 < ahead < 128  # within one numbering
             newest[found.numbering] = found.sequence
+
+
+def test_systems_that_sign_are_reported_while_their_newest_frame_is_signed() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0, system=7), HERE, 0.0)
+    assert channel.report().signing == frozenset()
+    body = bytearray(heartbeat(1, system=7)[1:-2])
+    body[1] = 1  # incompatibility flag: signed
+    signed = b"\xfd" + bytes(body) + mcrf4xx(bytes(body) + b"\x32").to_bytes(2, "little") + bytes(13)
+    channel.receive(signed, HERE, 0.1)
+    channel.receive(heartbeat(0, system=8), THERE, 0.1)
+    assert channel.report().signing == {7}
+    channel.receive(heartbeat(2, system=7), HERE, 0.2)
+    assert channel.report().signing == frozenset()
 
 
 # ---- who is answered ----

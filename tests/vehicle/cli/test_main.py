@@ -129,7 +129,7 @@ def test_a_mistake_in_the_file_is_one_line_and_code_2(capsys: pytest.CaptureFixt
         ("--sim --motors simulated", "--sim has its own motors"),
         ("--motors simulated udpout:127.0.0.1:1 --home 1,2", "--home is for --sim only"),
         ("--motors simulated udpout:127.0.0.1:1 --sim-battery 0.5", "--sim-battery is for --sim only"),
-        ("--sim udpot:127.0.0.1:14550", "did you mean udpout:?"),
+        ("--sim udpot:127.0.0.1:14550", "did you mean udpout:127.0.0.1:14550?"),
         ("--sim udpout:127.0.0.1", "udpout:HOST:PORT"),
         ("--sim udpout:127.0.0.1:99999", "port '99999' is not a number from 1 to 65535"),
         ("--sim --system 0", "'0' is not a number from 1 to 255"),

@@ -75,7 +75,10 @@ GPIO = '[motors]\ndriver = "gpio"\n[[motors.bridges]]\n'
         ("[motors.safety]\n[motors.safety]", "[motors.safety] exists already, and again at line 2; move"),
         ("state = 'a'\nstate = 'b'\n", "the key is set already, at line 2, column 12; remove one of them"),
         ('endpoints = "x"', 'endpoints: must be a list in [brackets], not text in "quotes"'),
-        ('endpoints = ["udpin:1.2.3.4:5", "udpot:1:2"]', "endpoints[1]: endpoint 'udpot:1:2': did you mean udpout:?"),
+        (
+            'endpoints = ["udpin:1.2.3.4:5", "udpot:1:2"]',
+            "endpoints[1]: endpoint 'udpot:1:2': did you mean udpout:1:2?",
+        ),
         ("state = true", 'state: must be text in "quotes", not true or false'),
         ("log = 3", "log: must be a table, not a whole number"),
         ("[log]\nverbos = true", "log.verbos: unknown key; did you mean verbose?"),

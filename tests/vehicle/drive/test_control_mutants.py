@@ -6,9 +6,9 @@ import pytest
 
 from dialects.axes import Axes, build_manual_control
 from dialects.enums import Severity
-from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, RcChannelsOverride
+from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, RcChannelsOverride, RoverOperatorPresence
 from dialects.modes import Mode
-from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER
+from tests.vehicle.bench import AHEAD, BEAT, DRIVER, NEUTRAL, OTHER
 from tests.vehicle.conversations import conversation
 from tests.vehicle.safety.rig import BOOT, START, Rig
 
@@ -237,6 +237,25 @@ class TestOverride:
         assert override(rig, chan1=1700)
         assert rig.control.demand is not None
         assert rig.control.demand.throttle is None
+
+
+def test_a_clash_forgets_the_demand_and_the_stick_at_rest() -> None:
+    rig = Rig().controlled()
+    assert rig.control.neutral_seen
+    rig.control.hear(rig.received(build_manual_control(AHEAD, 1))._replace(clash=True), rig.now)
+    assert not rig.control.neutral_seen
+    assert rig.control.demand is None
+    assert not rig.stick(NEUTRAL)
+    rig.now += 0.8
+    assert rig.stick(NEUTRAL)
+
+
+def test_the_presence_of_another_program_is_not_that_of_the_driver() -> None:
+    rig = Rig().controlled()
+    rig.control.hear(rig.received(BEAT)._replace(numbering=2), rig.now)
+    message = RoverOperatorPresence(1, 1, 0, 0, 9, 1, 0, 1)
+    rig.control.handle_operator_presence(rig.received(message)._replace(numbering=2), message, rig.now)
+    assert not rig.control.presence.known
 
 
 def test_the_mode_is_not_its_business() -> None:

@@ -51,6 +51,18 @@ def test_when_it_may_be_succeeded(session: bool, demand_at: float, by_session: b
     assert silent.may_be_succeeded(10.01 + after, by_session=by_session, timeout=5.0)
 
 
+def test_a_driver_without_a_demand_is_not_missed_so_soon() -> None:
+    assert not Driver(GCS, None, 10.0).may_be_succeeded(14.0, by_session=False, timeout=5.0)
+
+
+def test_the_limits_are_inclusive() -> None:
+    streamed = Driver(GCS, None, SUCCESSION_TIME, demand_at=0.0)
+    assert streamed.may_be_succeeded(4.0, by_session=False, timeout=5.0)
+    present = Driver(GCS, None, 0.0)
+    present.hear(SUCCESSION_TIME, is_demand=False, repeated=True)
+    assert not present.is_copy
+
+
 def test_after_a_silence_it_says_something_new_before_it_drives() -> None:
     present = driver(FOREIGN)
     assert not present.is_copy

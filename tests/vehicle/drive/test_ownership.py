@@ -89,7 +89,8 @@ class TestQuestions:
         scene.ownership.take(GCS, scene.now)
         scene.prove(TWIN, PROOF._replace(age=2.04), good=False)
         assert scene.ownership.denial_reason(TWIN, scene.now) == "this link is 2.0 s late"
-        scene.hear(TWIN)
+        for _ in range(9):
+            scene.hear(TWIN)
         assert not scene.told(GCS)
 
     def test_only_the_configured_ids(self) -> None:
@@ -105,7 +106,9 @@ class TestQuestions:
         scene.prove(GCS)
         scene.ownership.take(GCS, scene.now)
         assert scene.ownership.setpoint_denial_reason(GCS, scene.now + 0.34) is None
-        late = scene.ownership.setpoint_denial_reason(GCS, scene.now + 0.36)
+        scene.prove(GCS, PROOF._replace(age=0.45))
+        assert scene.ownership.setpoint_denial_reason(GCS, scene.now) is None
+        late = scene.ownership.setpoint_denial_reason(GCS, scene.now + 0.01)
         assert late == "older than OPR_ECHO_MAX on arrival"
         assert scene.ownership.setpoint_denial_reason(OTHER, scene.now) == "GCS 255 is in control"
 
@@ -115,6 +118,27 @@ class TestQuestions:
         scene.hear(GCS, digest=77)
         scene.wait(1.0).hear(GCS, digest=77)
         assert scene.ownership.setpoint_denial_reason(GCS, scene.now) == "it repeats old frames"
+
+
+class TestUnprovenDemands:
+    def test_they_count_of_a_driver_without_sessions(self) -> None:
+        assert Scene().ownership.accepts_unproven_demand(100.0)
+        assert not Scene(None).ownership.accepts_unproven_demand(100.0)
+
+    def test_not_of_a_session(self) -> None:
+        scene = Scene(None)
+        scene.prove(GCS)
+        scene.ownership.take(GCS, scene.now)
+        assert not scene.ownership.accepts_unproven_demand(scene.now)
+
+    def test_not_while_it_repeats_old_frames_or_clashes(self) -> None:
+        scene = Scene()
+        assert scene.ownership.driver is not None
+        scene.ownership.driver.is_copy = True
+        assert not scene.ownership.accepts_unproven_demand(scene.now)
+        scene.ownership.driver.is_copy = False
+        scene.ownership.driver.barred_until = scene.now + 0.1
+        assert not scene.ownership.accepts_unproven_demand(scene.now)
 
 
 class TestTake:
@@ -190,6 +214,10 @@ class TestLiveness:
         scene = Scene()
         scene.hear(GCS)
         assert not scene.ownership.is_silent(scene.now + 0.69)
+        proven = Scene(None)
+        proven.prove(GCS)
+        proven.ownership.take(GCS, proven.now)
+        assert proven.ownership.is_silent(proven.now + 0.71)
         assert scene.ownership.is_silent(scene.now + 0.71)
 
 
@@ -250,6 +278,16 @@ class TestReports:
         assert sum(counts) == 2 * 2  # in two chunks each time
         assert not any(counts[:2])
         assert scene.said("Another program uses your ids 255/190: it may only stop") == 2
+
+    def test_a_minute_later_is_again(self) -> None:
+        scene = Scene()
+        scene.hear(TWIN, BEAT)
+        scene.ownership.report_other_session(TWIN, 100.0)
+        scene.told(GCS)
+        scene.ownership.report_other_session(TWIN, 159.0)
+        assert not scene.told(GCS)
+        scene.ownership.report_other_session(TWIN, 160.0)
+        assert scene.told(GCS)
 
     def test_not_of_a_few_frames_nor_of_heartbeats_or_copies(self) -> None:
         scene = Scene()

@@ -5,13 +5,28 @@ from __future__ import annotations
 import pytest
 
 from groundstation.input.keymap import KEYMAPS, Keymap
+from groundstation.ui.display_state import DisplayState
 from groundstation.ui.widgets.footer import FooterValue, KeyFooter
+from tests.groundstation.ui.examples import snapshot
+from tests.groundstation.ui.ptys import STANDARD
+
+STATES = [(False, ""), (True, ""), (False, "16/16"), (True, "16/16")]
+"""Armed, and which of several vehicles is selected."""
 
 
 @pytest.mark.parametrize("width", [80, 100, 140])
 @pytest.mark.parametrize("keymap", list(KEYMAPS))
 def test_the_footer_always_has_the_stops_and_the_way_out(width: int, keymap: str) -> None:
-    line = KeyFooter(FooterValue(Keymap(keymap, KEYMAPS[keymap]))).draw(width, 1)[0].text
-    assert len(line) == width
-    for words in ("SPACE Stop", "! E-STOP", "? Help", "^q Quit"):
-        assert words in line
+    for value in (FooterValue(Keymap(keymap, KEYMAPS[keymap]), armed, place) for armed, place in STATES):
+        line = KeyFooter(value).draw(width, 1)[0].text
+        assert len(line) == width
+        for words in ("SPACE Stop", "! E-STOP", "? Help", "^q Quit"):
+            assert words in line
+        assert ("n Vehicle 16/16" in line) == bool(value.place)
+
+
+@pytest.mark.parametrize(
+    ("systems", "place"), [((), ""), ((1,), ""), ((1, 7), "1/2"), ((0, 1, 7), "2/3"), ((2, 3), "")]
+)
+def test_the_place_among_several_vehicles(systems: tuple[int, ...], place: str) -> None:
+    assert FooterValue.from_state(DisplayState(snapshot(vehicles=systems), STANDARD)).place == place

@@ -20,8 +20,8 @@ def test_on_two_lines_nothing_important_is_left_out(width: int) -> None:
         assert words in lines
 
 
-def first_line(**changes: Any) -> str:
-    return StatusBar(StatusBarValue(snapshot(vehicle=vehicle(**changes)))).draw(80, 2)[0].text
+def first_line(width: int = 80, **changes: Any) -> str:
+    return StatusBar(StatusBarValue(snapshot(vehicle=vehicle(**changes)))).draw(width, 2)[0].text
 
 
 def test_a_disarmed_vehicle_in_emergency_stop_is_not_shown_as_armed() -> None:
@@ -42,6 +42,13 @@ def test_an_unanswered_emergency_stop_of_a_disarmed_vehicle_is_only_sent() -> No
     line = first_line(emergency_stop=True, armed=False, emergency_progress=EmergencyProgress.UNANSWERED)
     assert "DISARMED" in line
     assert "E-STOP SENT" in line
+
+
+def test_the_pre_arm_state_is_shown_while_disarmed() -> None:
+    assert "pre-arm failed" in first_line(armed=False, prearm=False, name="ArduPilot rover 1")
+    assert "pre-arm ok" in first_line(100, armed=False, prearm=True)
+    for changes in ({"armed": True, "prearm": False}, {"armed": False, "prearm": None}):
+        assert "pre-arm" not in first_line(100, **changes)
 
 
 def test_other_armed_vehicles_are_named() -> None:

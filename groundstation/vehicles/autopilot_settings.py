@@ -1,0 +1,25 @@
+"""What the station reads of a foreign vehicle's parameters: one AutopilotSettings for each autopilot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+ParamCheck = Callable[[float, int], str | None]
+"""Takes the value and our system id; returns a warning that names the remedy, or None."""
+
+
+@dataclass(frozen=True, slots=True)
+class AutopilotSettings:
+    """The parameters of one autopilot that decide what it does with our demands, and without us."""
+
+    checks: Mapping[str, ParamCheck]
+    """Parameter -> its check."""
+    without_link: Callable[[Mapping[str, float]], str | None]
+    """Takes the known values; returns what the vehicle does when it loses us, or None if that is not known."""
+    former_names: Mapping[str, str] = field(default_factory=dict)
+    """Parameter -> its name in older versions; a vehicle has one of them. Both are in `checks`."""
+    bytewise: bool = False
+    """Integers are stored in the bytes of the float (link/services/param/values.py)."""
+    frame: str = ""
+    """The parameter that selects the vehicle's axes (dialects.axes.axis_map)."""

@@ -1,0 +1,165 @@
+"""Settings of a PX4 rover, encoded as PX4 sends them: integers in the bytes of the float."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+from dialects.axes import AXIS_MAPS, NEUTRAL, PX4_FRAMES
+from dialects.enums import Autopilot
+from dialects.messages import ManualControl, ParamRequestRead, ParamValue
+from groundstation.intents import DriveKeyDown, DriveKeyUp, ReportKeyReleases
+from groundstation.vehicles.px4_checks import PX4
+from groundstation.vehicles.settings_check import SettingsCheck
+from link.core import Peer, Received
+from link.services.param.values import REAL32
+from tests.groundstation.cockpits import armed_cockpit
+from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
+
+ACKERMANN = 5
+"""CA_AIRFRAME"""
+INT32 = 6
+"""MAV_PARAM_TYPE_INT32"""
+ALERT_WIDTH = 76
+"""Columns of the alert line at 80 columns."""
+
+DEFAULTS: dict[str, float] = {
+    "COM_RC_IN_MODE": 3, "COM_RC_LOSS_T": 0.5, "NAV_RCL_ACT": 2, "COM_DL_LOSS_T": 10, "NAV_DLL_ACT": 0,
+    "CA_AIRFRAME": 6,
+}  # fmt: skip
+"""Of PX4 v1.16 with the airframe 50000, Generic Rover Differential."""
+
+
+def value(name: str, number: float) -> Received:
+    """Return a PARAM_VALUE of PX4: the bytes of an int32 in the place of the float."""
+    if name == "COM_RC_LOSS_T":
+        message = ParamValue(name.encode(), number, REAL32, 1000, 500)
+    else:
+        (coded,) = struct.unpack("<f", struct.pack("<i", int(number)))
+        message = ParamValue(name.encode(), coded, INT32, 1000, 500)
+    return Received(message, 1, 1, 0, Peer(0, "vehicle"), introduced=True)
+
+
+def check_with(**values: float) -> SettingsCheck:
+    check = SettingsCheck(PX4, 255, 190, target=(1, 1))
+    for name, number in values.items():
+        check.receive(value(name, number), 0.0)
+    return check
+
+
+class FakePx4(FakeVehicle):
+    """A PX4 rover with its parameters; it answers reads as PX4 does."""
+
+    def __init__(self, **changes: float) -> None:
+        super().__init__(autopilot=Autopilot.PX4, driver=None)
+        self.values = DEFAULTS | changes
+
+    def receive(self, received: Received, now: float) -> None:
+        """Answer reads; the rest as FakeVehicle."""
+        message = received.message
+        if isinstance(message, ParamRequestRead) and message.param_id in self.values:
+            answer = value(message.param_id, self.values[message.param_id]).message
+            self.send(answer)
+        super().receive(received, now)
+
+
+@pytest.mark.parametrize(
+    ("name", "good", "bad", "warning"),
+    [
+        ("COM_RC_LOSS_T", 0.5, 5.0, "COM_RC_LOSS_T 5: drives on for 5 s when the link is lost; set it to 0.5"),
+        ("NAV_RCL_ACT", 1, 0, "NAV_RCL_ACT 0: never stops when the link is lost; set it to 1 (hold)"),
+        ("NAV_RCL_ACT", 6, 2, "NAV_RCL_ACT 2: drives home when the link is lost; set it to 1 (hold)"),
+        ("NAV_RCL_ACT", 5, 3, "NAV_RCL_ACT 3: selects land mode when the link is lost; set it to 1 (hold)"),
+        ("NAV_DLL_ACT", 1, 0, "NAV_DLL_ACT 0: no failsafe when the GCS is lost; set it to 1 (hold)"),
+        ("NAV_DLL_ACT", 6, 2, "NAV_DLL_ACT 2: drives home when the GCS is lost; set it to 1 (hold)"),
+        ("COM_DL_LOSS_T", 10, 60, "COM_DL_LOSS_T 60: notices a lost ground station after 60 s; set it to 10"),
+        ("COM_RC_IN_MODE", 1, 0, "COM_RC_IN_MODE 0: obeys RC only, keys do not drive; set it to 1"),
+        ("COM_RC_IN_MODE", 2, 4, "COM_RC_IN_MODE 4: ignores manual control, keys do not drive; set it to 1"),
+        ("CA_AIRFRAME", 13, 0, "CA_AIRFRAME 0 is not a rover: test the steering slowly"),
+    ],
+)
+def test_each_setting(name: str, good: float, bad: float, warning: str) -> None:
+    assert check_with(**{name: good}).warnings == ()
+    assert check_with(**{name: bad}).warnings == (warning,)
+    assert len(warning) <= ALERT_WIDTH
+
+
+@pytest.mark.parametrize(
+    ("after", "action", "words"),
+    [
+        (0.5, 1, "by its settings it stops after 0.5 s"),
+        (5.0, 6, "by its settings it stops after 5 s"),
+        (0.5, 2, "by its settings it drives home after 0.5 s"),
+        (0.5, 0, "by its settings it never stops"),
+        (0.5, 3, None),
+        (0.5, None, None),
+        (None, 1, None),
+    ],
+)
+def test_what_a_lost_link_means(after: float | None, action: float | None, words: str | None) -> None:
+    known = {"COM_RC_LOSS_T": after, "NAV_RCL_ACT": action}
+    check = check_with(**{name: number for name, number in known.items() if number is not None})
+    assert check.without_link == words
+
+
+def test_a_rover_with_default_settings_is_read_and_warned_of() -> None:
+    cockpit = Cockpit(FakePx4())
+    cockpit.run(2.0)
+    assert [warning.split(":")[0] for warning in cockpit.view.warnings] == ["NAV_RCL_ACT 2", "NAV_DLL_ACT 0"]
+    assert cockpit.view.without_link == "by its settings it drives home after 0.5 s"
+
+
+def test_settings_that_cannot_be_read_are_named_and_asked_for_again() -> None:
+    vehicle = FakePx4(NAV_RCL_ACT=1, NAV_DLL_ACT=1)
+    del vehicle.values["COM_RC_LOSS_T"]
+    cockpit = Cockpit(vehicle)
+    cockpit.run(5.0)
+    assert list(cockpit.view.warnings) == ["could not read, trying again: COM_RC_LOSS_T"]
+    assert cockpit.view.without_link is None
+    vehicle.values["COM_RC_LOSS_T"] = 0.5
+    cockpit.run(15.0)
+    assert not cockpit.view.warnings
+
+
+def test_a_restart_reads_the_settings_again() -> None:
+    vehicle = FakePx4(NAV_RCL_ACT=1, NAV_DLL_ACT=1)
+    cockpit = Cockpit(vehicle)
+    cockpit.run(2.0)
+    assert not cockpit.view.warnings
+    cockpit.world.cut()
+    cockpit.run(4.0)
+    vehicle.values["COM_RC_LOSS_T"] = 35.0
+    cockpit.world.cut(False)
+    cockpit.run(4.0)
+    assert list(cockpit.view.warnings) == ["COM_RC_LOSS_T 35: drives on for 35 s when the link is lost; set it to 0.5"]
+
+
+@pytest.mark.parametrize("frame", [*PX4_FRAMES, 0])
+def test_the_frame_selects_the_axes(frame: int) -> None:
+    cockpit = Cockpit(FakePx4(CA_AIRFRAME=frame))
+    cockpit.run(2.0)
+    contact = cockpit.station.fleet.selected
+    assert contact is not None
+    assert contact.choose_axes(NEUTRAL) is PX4_FRAMES.get(frame, AXIS_MAPS[Autopilot.PX4])
+
+
+def test_a_frame_that_is_read_while_driving_turns_the_steering_only_after_a_neutral_demand() -> None:
+    vehicle = FakePx4(CA_AIRFRAME=ACKERMANN)
+    del vehicle.values["CA_AIRFRAME"]
+    cockpit = armed_cockpit(vehicle)
+    back_left = DriveKeyDown(key="m", throttle=-1, steering=1)
+    cockpit.do(ReportKeyReleases(), back_left)
+    cockpit.run(5.0)
+    vehicle.values["CA_AIRFRAME"] = ACKERMANN
+    cockpit.run(15.0)
+    assert "could not read" not in str(cockpit.view.warnings)
+    sent = {message.y for _, message in vehicle.all(ManualControl) if message.z < 500}
+    assert sent == {600}
+    cockpit.do(DriveKeyUp(key="m"))
+    cockpit.run(1.0)
+    released = cockpit.now
+    cockpit.do(back_left)
+    cockpit.run(1.0)
+    sent = {message.y for at, message in vehicle.all(ManualControl) if message.z < 500 and at > released}
+    assert sent == {-600}
