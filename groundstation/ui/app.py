@@ -70,8 +70,7 @@ class ConsoleApp(App[int]):
         driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
-        self._snapshot = Snapshot()
-        self._outage = client.outage
+        self._snapshot, self._outage = Snapshot(), client.outage
         self._pressed: dict[str, float] = {}
         self._key_hint = KeyHint(keymap)
         self._shown_at = 0.0
