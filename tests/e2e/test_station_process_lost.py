@@ -109,11 +109,13 @@ def test_the_screen_names_a_station_that_stands_still(bench: Bench) -> None:
     shows(bench.program, "station stopped for")
 
 
-def test_all_processes_of_the_terminal_killed_at_once(bench: Bench) -> None:
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_all_processes_of_the_terminal_killed_or_stopped_at_once(bench: Bench, number: signal.Signals) -> None:
     at = time.monotonic()
-    os.killpg(bench.program.process.pid, signal.SIGKILL)
+    os.killpg(bench.program.process.pid, number)
     bench.stops_soon(at)
-    assert_terminal_is_reset(bench)
+    if number is signal.SIGKILL:
+        assert_terminal_is_reset(bench)
 
 
 def test_a_screen_that_quits_resets_the_terminal_itself(bench: Bench) -> None:
