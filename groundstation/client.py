@@ -24,7 +24,7 @@ from groundstation.ipc import (
     encode,
 )
 from groundstation.processes import end_process, start_module
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import Snapshot, StationOutage
 from groundstation.views import View
 
 START_TIMEOUT = 15.0
@@ -35,6 +35,10 @@ CLOSE_TIMEOUT = 1.0
 
 MAX_PENDING = 256
 """Intents kept for a station that does not read. Only those that are `valid_when_late` are kept."""
+
+
+OUTAGE_TAG, TAG_BYTES = StationOutage.__name__.encode(), 32
+"""The tag of a StationOutage, and where it stands in a packet: snapshots in between are not even decoded."""
 
 
 class StationError(RuntimeError):
@@ -53,6 +57,8 @@ class StationClient:
         self._open = True
         self._newest = Snapshot()
         self._views: dict[type[View], View] = {}
+        self.outage = StationOutage()
+        """What the watchdog reports of a station process that has ended or does not respond."""
 
     @classmethod
     def start(
@@ -64,15 +70,19 @@ class StationClient:
         speed: float = 0.6,
         sitl: bool = False,
         log_file: Path | None = None,
+        terminal: str | None = None,
         meanwhile: Callable[[], object] = lambda: None,
     ) -> StationClient:
         """Start the station process and wait until its links are open. Raises StationError.
 
-        `meanwhile` is called first: the process takes 0.2 s to import its modules.
+        `terminal` is the path of the terminal that is reset if this process is killed. `meanwhile` is called first: the
+        process takes 0.2 s to import its modules.
         """
         options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
         if log_file is not None:
             options.append(f"--log-file={log_file}")
+        if terminal is not None:
+            options.append(f"--terminal={terminal}")
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             for half in (ours, theirs):
@@ -112,7 +122,10 @@ class StationClient:
         return self._pipe.fileno()
 
     def receive(self) -> Snapshot | None:
-        """Return the newest snapshot received, or None. Never blocks; `alive` is False once the station has exited."""
+        """Return the newest snapshot received, or None. Never blocks; `alive` is False once the station has exited.
+
+        The watchdog writes to the same pipe; its newest report becomes `outage`.
+        """
         snapshot: Snapshot | None = None
         while True:
             try:
@@ -128,6 +141,8 @@ class StationClient:
                 message = decode_from_station(packet)
                 if isinstance(message, View):
                     self._views[type(message)] = message
+                elif isinstance(message, StationOutage):
+                    self.outage = message
                 elif isinstance(message, Snapshot):
                     snapshot = message
         self._newest = snapshot or self._newest
@@ -139,9 +154,20 @@ class StationClient:
         return list(views.values())
 
     @property
+    def open(self) -> bool:
+        """Packets may still arrive: the station or its watchdog runs."""
+        return self._open
+
+    @property
     def left_armed(self) -> tuple[str, ...]:
-        """One line for each vehicle that the station armed and left armed, by its newest snapshot."""
-        return self._newest.left_armed
+        """One line for each vehicle that the station armed and left armed, by its newest snapshot.
+
+        After the station has ended too early, the last report of the watchdog comes first.
+        """
+        lines = self._newest.left_armed
+        if not self.outage.ended:
+            return lines
+        return (self.outage.text, *(f"last known before: {line}" for line in lines))
 
     @property
     def alive(self) -> bool:

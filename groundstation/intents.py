@@ -133,6 +133,22 @@ class RequestControl(Intent, frozen=True):
     """Request to be the ground station in control (MAV_CMD_REQUEST_OPERATOR_CONTROL)."""
 
 
+class ReleaseControl(Intent, frozen=True):
+    """Release control of the selected vehicle: neutral, then it is free for others."""
+
+    valid_when_late = True
+    all: bool = False
+    """Of every vehicle that we control."""
+
+
+class GiveControl(Intent, frozen=True):
+    """Give control to the ground station that asks for it; without such a request nothing happens."""
+
+
+class KeepControl(Intent, frozen=True):
+    """Refuse the request of another ground station for control."""
+
+
 class SelectVehicle(Intent, frozen=True):
     """Select the vehicle with this system id."""
 
@@ -235,6 +251,12 @@ _ROWS = (
                    ("2",)),
     OperatorAction("vehicle.control", "Take control", "Request control of the vehicle", "vehicle", RequestControl(),
                    ("g",)),
+    OperatorAction("vehicle.release", "Release control", "Stop, and release control of the vehicle", "vehicle",
+                   ReleaseControl(), ("G",)),
+    OperatorAction("vehicle.give", "Give control", "Give control to the ground station that asks for it", "vehicle",
+                   GiveControl(), ("Y",)),
+    OperatorAction("vehicle.keep", "Keep control", "Refuse the request of another ground station for control",
+                   "vehicle", KeepControl(), ("N",)),
     OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and select the next one", "vehicle",
                    SelectNextVehicle(), ("n",)),
     OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator(), ("f5",)),

@@ -7,7 +7,7 @@ import time
 import msgspec
 
 from groundstation.intents import LEASE_TIMEOUT, AnyIntent
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import Snapshot, StationOutage
 from groundstation.views import AnyView
 
 SOCKET_BUFFER = 1 << 20
@@ -40,7 +40,7 @@ class StationFailed(msgspec.Struct, frozen=True, tag=True):
     line: str
 
 
-FromStation = StationReady | StationFailed | Snapshot | AnyView
+FromStation = StationReady | StationFailed | Snapshot | StationOutage | AnyView
 
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(FromStation).decode

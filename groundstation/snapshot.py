@@ -40,6 +40,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     autopilot: int
     mode: str
     armed: bool
+    drivable: bool = True
+    """The mode is one in which demands drive, such as MANUAL."""
     status: int
     """MAV_STATE."""
     alive: bool
@@ -50,6 +52,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """System id of the ground station in control, 0 for none; None if the vehicle sends no CONTROL_STATUS."""
     in_control: bool = False
     """We are in control; without CONTROL_STATUS: the vehicle accepted arming or a control request from us."""
+    control_wait: float | None = None
+    """Seconds for which the station in control may still answer our request; None without a request."""
     emergency_stop: bool = False
     """The vehicle reports an emergency stop, or we have requested one."""
     emergency_progress: EmergencyProgress | None = None
@@ -101,6 +105,17 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """Why a foreign vehicle may ignore us, and its settings that would let it drive on."""
 
 
+class HandoverNotice(msgspec.Struct, frozen=True):
+    """Another ground station asks for control of a vehicle that we control."""
+
+    station: int
+    """Its system id."""
+    vehicle: str
+    """Name of the vehicle."""
+    left: float
+    """Seconds to answer; then control stays with us."""
+
+
 class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
     """The operator's session."""
 
@@ -123,6 +138,8 @@ class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
     gate_open: bool = False
     gate_reason: str = ""
     """Why keys do not drive now."""
+    ignored: str = ""
+    """Why the drive key that is held, or was until just now, does not count; it must be pressed again."""
     sending: bool = False
     """MANUAL_CONTROL is being sent."""
     rate: float = 0.0
@@ -198,6 +215,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """One line for each vehicle that this station armed and would leave armed if it ended now."""
     id_conflict: str | None = None
     """Another ground station that uses our system id, as a text for the driver."""
+    handover: HandoverNotice | None = None
+    """A request of another ground station that waits for the operator's answer."""
     operator: OperatorView = OperatorView()
     links: tuple[LinkView, ...] = ()
     texts: tuple[LogLine, ...] = ()
@@ -206,3 +225,12 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """Received from the selected vehicle, and sent."""
     simulator: str | None = None
     """State of the simulator that we started, e.g. "running", "ended with code 1: ..."; None without one."""
+
+
+class StationOutage(msgspec.Struct, frozen=True, tag=True):
+    """From the watchdog: the station process has ended or does not respond, and what follows from that."""
+
+    text: str = ""
+    """One line for the user; empty: the station responds again."""
+    ended: bool = False
+    """The process has ended, it does not only stand still."""

@@ -6,13 +6,11 @@ import argparse
 import asyncio
 import gc
 import logging
-import logging.handlers
 import secrets
 import signal
 import socket
 import time
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -36,6 +34,8 @@ from groundstation.station.crash_snapshot import crash_snapshot
 from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.lasting_alerts import LastingAlerts
 from groundstation.station.station import COMPONENT, Station
+from groundstation.station_options import log_to, station_parser
+from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, parse_endpoint
 from link.runner import Runner, open_links
 from link.runtime.event_loop import run_loop
@@ -55,19 +55,17 @@ END_WITHIN = 1.0
 
 QUIT = Quit()
 
-LOG_SIZE = 1 << 20
-LOG_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
-
 
 class StationProcess:
     """One station, its links, its pipe to the screen, and the simulator if it started one."""
 
-    def __init__(self, station: Station, links: Sequence[Link], pipe: socket.socket) -> None:
+    def __init__(self, station: Station, links: Sequence[Link], pipe: socket.socket, watchdog: WatchdogFeed) -> None:
         self._station = station
         self._links = links
         self._pipe = pipe
+        self._watchdog = watchdog
         self._core = CrashNeutral(station)
-        self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash)
+        self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash, sent=watchdog.record_sent)
         self._simulator = SimulatorControl()
         self._last_snapshot = Snapshot()
         self._addresses = LocalAddresses()
@@ -88,6 +86,7 @@ class StationProcess:
             show.cancel()
             loop.remove_reader(self._pipe)
             self._simulator.close()
+            self._watchdog.close()
         return 1 if self._broken else 0
 
     def start_simulator(self, now: float) -> None:
@@ -103,6 +102,8 @@ class StationProcess:
         while (packet := self._packet()) is not None:
             if not packet:  # the screen's process has exited, for whatever reason
                 asyncio.get_running_loop().remove_reader(self._pipe)
+                self._watchdog.set_flags(screen_is_gone=True)
+                self._report(now)
                 self._shut_down()
                 break
             self._handle_packet(packet, now)
@@ -149,7 +150,13 @@ class StationProcess:
             due = max(due + SNAPSHOT_PERIOD, loop.time())
             await asyncio.sleep(due - loop.time())
 
+    def _report(self, now: float) -> None:
+        """Tell the watchdog that the station runs."""
+        if not self._watchdog.report(self._station.report_to_watchdog(now), now):
+            self._log_warning(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
+
     def _send_snapshot(self, now: float) -> None:
+        self._report(now)
         self._watch_simulator(now)
         self._station.set_addresses(self._addresses.find(now))
         self._last_snapshot = self._station.snapshot(now, time.time())
@@ -189,6 +196,8 @@ class StationProcess:
 
     def _quit(self, intent: Quit, now: float) -> None:
         """Exit; a second request may only decide that vehicles are left armed."""
+        self._watchdog.set_flags(screen_has_quit=True)
+        self._report(now)
         if not self._ending:
             self._shut_down(intent)
         elif not self._broken:
@@ -234,29 +243,36 @@ class StationProcess:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a station for the screen at the other end of --fd. Returns 2 if it could not start, after sending why."""
-    options = _parser().parse_args(arguments)
+    options = station_parser().parse_args(arguments)
     for number in (signal.SIGINT, signal.SIGTSTP):  # the terminal's keys are for the screen's process
         signal.signal(number, signal.SIG_IGN)
     pipe = socket.socket(fileno=options.fd)
     pipe.setblocking(False)
+    watchdog = WatchdogFeed.start(pipe, options.terminal, (options.system, COMPONENT))  # first: it inherits no link
     endpoints = [*options.endpoints, *([f"udpin:127.0.0.1:{free_port()}"] if options.sitl else [])]
     try:
-        _log_to(options.log_file)
+        log_to(options.log_file)
         links = open_links(endpoints, system=options.system, component=COMPONENT)
         known = tuple(parse_endpoint(text).text for text in endpoints)
     except (EndpointError, LinkError, OSError) as error:
         pipe.send(encode(StationFailed(_one_line(error))))
         return 2
     pipe.send(encode(StationReady(known)))
-    return _run(options, known, links, pipe)
+    return _run(options, known, links, pipe, watchdog)
 
 
-def _run(options: argparse.Namespace, endpoints: tuple[str, ...], links: list[Link], pipe: socket.socket) -> int:
+def _run(
+    options: argparse.Namespace,
+    endpoints: tuple[str, ...],
+    links: list[Link],
+    pipe: socket.socket,
+    watchdog: WatchdogFeed,
+) -> int:
     started = time.monotonic()  # the loop's clock
     session = secrets.randbits(32)
     style = Style(options.style)
     station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
-    process = StationProcess(station, links, pipe)
+    process = StationProcess(station, links, pipe, watchdog)
     if options.sitl:
         process.start_simulator(started)
     gc.collect()
@@ -268,33 +284,10 @@ def _run(options: argparse.Namespace, endpoints: tuple[str, ...], links: list[Li
         return 1
 
 
-def _log_to(path: Path | None) -> None:
-    """Write the log of all libraries to the file, or nowhere."""
-    handler: logging.Handler = logging.NullHandler()
-    if path is not None:
-        handler = logging.handlers.RotatingFileHandler(path, maxBytes=LOG_SIZE, backupCount=1, encoding="utf-8")
-    logging.basicConfig(level=logging.INFO, handlers=[handler], format=LOG_FORMAT)
-    logging.captureWarnings(True)
-
-
 def _one_line(error: Exception) -> str:
     if isinstance(error, OSError) and error.strerror:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     return str(error)
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="groundstation.station_process", description="Started by `groundstation`, not by hand."
-    )
-    parser.add_argument("--fd", type=int, required=True, help="the station's end of the pipe")
-    parser.add_argument("--system", type=int, default=255)
-    parser.add_argument("--style", choices=list(Style), default=Style.HOLD)
-    parser.add_argument("--speed", type=float, default=0.6)
-    parser.add_argument("--sitl", action="store_true")
-    parser.add_argument("--log-file", type=Path)
-    parser.add_argument("endpoints", nargs="*")
-    return parser
 
 
 if __name__ == "__main__":

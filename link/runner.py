@@ -43,6 +43,18 @@ class SendListener(Protocol):
         """Take the sequence under which `message` was sent."""
 
 
+@runtime_checkable
+class SendGuard(Protocol):
+    """A core that can withdraw a message in the last moment, e.g. after the process was stopped and goes on."""
+
+    def may_send(self, message: Message, now: float) -> bool:
+        """Return whether `message` may still be sent."""
+
+
+SentCallback = Callable[[Link, Hashable, Message, int, float], None]
+"""Takes what was sent: link, address on it, message, packet sequence, time."""
+
+
 def open_links(
     endpoints: Sequence[str], *, system: int, component: int, wanted: frozenset[int] | None = None
 ) -> list[Link]:
@@ -86,14 +98,20 @@ class Runner:
         route: bool | None = None,
         broken: Callable[[Exception], None] | None = None,
         log_tap: LogTap | None = None,
+        sent: SentCallback | None = None,
     ) -> None:
-        """`log_tap` records what all links receive and what the core sends, even without any peer."""
+        """`log_tap` records what all links receive and what the core sends, even without any peer.
+
+        `sent` is called for each frame of the core.
+        """
         self._core = core
         self._broken = broken
         self._links = links
         self._period = period
         self._router = _router(links) if links and (len(links) > 1 if route is None else route) else None
         self._sent = core.handle_sent if isinstance(core, SendListener) else None
+        self._may_send = core.may_send if isinstance(core, SendGuard) else None
+        self._on_sent = sent
         self._keeper = core if isinstance(core, PlaceKeeper) else None
         self._ended: asyncio.Future[None] | None = None
         self._report_due = 0.0
@@ -228,9 +246,14 @@ class Runner:
         payload = encode_payload(outgoing.message)
         for link in self._links:
             for data, address, sequence in link.channel.send(outgoing, payload):
+                now = asyncio.get_running_loop().time()
+                if self._may_send and not self._may_send(outgoing.message, now):
+                    return
                 link.transport.send(data, address)
                 if self._sent:
-                    self._sent(outgoing.message, sequence, asyncio.get_running_loop().time())
+                    self._sent(outgoing.message, sequence, now)
+                if self._on_sent:
+                    self._on_sent(link, address, outgoing.message, sequence, now)
         if self._log_tap:
             self._log_tap.record_sent(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
 

@@ -98,6 +98,7 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         speed=options.speed,
         sitl=options.sitl,
         log_file=log_file,
+        terminal=_terminal_path(),
         meanwhile=_import_screen,
     )
     try:
@@ -146,6 +147,14 @@ def _check_terminal() -> None:
         raise UsageError(
             f"the terminal is {columns}x{rows}: make it at least {least_columns}x{least_rows}, better 80x24"
         )
+
+
+def _terminal_path() -> str | None:
+    """Return the path of the terminal; None where it has none, as in some containers."""
+    try:
+        return os.ttyname(sys.stdout.fileno())
+    except OSError:
+        return None
 
 
 def _log_file(requested: Path | None) -> Path | None:

@@ -46,20 +46,21 @@ class Sticks:
         self._latched = NEUTRAL
         """State of the styles latch (a direction) and step (a level)."""
 
-    def press(self, push: DriveKeyDown, now: float) -> None:
-        """Handle a drive key that went down or repeats."""
+    def press(self, push: DriveKeyDown, now: float) -> bool:
+        """Handle a drive key that went down or repeats. Returns False if it must be released first."""
         if push.repeat:
             self.reports_releases = True
         if not push.throttle and not push.steering:
-            return
+            return True
         if self._is_held_over(now) or self._is_blocked(push, now):
-            return
+            return False
         if self.style is Style.HOLD:
             self._hold(push, now)
         elif self.style is Style.STEP:
             self._step(push, now)
         elif not push.repeat:
             self._latched = Axes(float(push.throttle), float(push.steering))
+        return True
 
     def release(self, key: str) -> None:
         """Handle a drive key that went up."""

@@ -52,7 +52,8 @@ class CommandResults:
             self._refusals.pop(
                 outcome.target_system, None
             )  # no refusal: ArduPilot and PX4 take demands from any station
-            self._log.add(now, "ack", "this vehicle does not manage control, you drive", Severity.INFO)
+            whose = "you drive" if outcome.params[0] == 1 else "it gets no more demands from here"
+            self._log.add(now, "ack", f"this vehicle does not manage control, {whose}", Severity.INFO)
         elif outcome.number is None:
             self.add_refusal(outcome.target_system, f"{label}: no answer", now)
         else:

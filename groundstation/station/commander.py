@@ -68,6 +68,11 @@ class Commander:
         self._disarms[vehicle.system] = _Disarm(vehicle, now + DISARM_RETRY, now + DISARM_TIMEOUT)
         self._send(vehicle, now, Command.COMPONENT_ARM_DISARM, 0)
 
+    def release_control(self, vehicle: VehicleState, now: float) -> None:
+        """Release control: at once as far as we are concerned, and with a command for a vehicle that manages it."""
+        self._claims.remove(vehicle.system)
+        self.send(vehicle, "release control", Command.REQUEST_OPERATOR_CONTROL, 0, now=now)
+
     def set_mode(self, vehicle: VehicleState, name: str, now: float) -> None:
         """Change the mode to the one of this name (dialects.modes.Mode)."""
         try:
@@ -221,7 +226,7 @@ def _grants_control(outcome: CommandOutcome) -> bool:
     """
     if outcome.command == Command.COMPONENT_ARM_DISARM:
         return outcome.params[0] == 1 and outcome.result is Result.ACCEPTED
-    requested = outcome.command == Command.REQUEST_OPERATOR_CONTROL
+    requested = outcome.command == Command.REQUEST_OPERATOR_CONTROL and outcome.params[0] == 1
     return requested and outcome.result in (Result.ACCEPTED, Result.UNSUPPORTED)
 
 

@@ -11,13 +11,11 @@ from collections.abc import Sequence
 from dialects.axes import NEUTRAL, axis_map, build_manual_control
 from dialects.enums import Autopilot
 from dialects.messages import Heartbeat, ManualControl, Message
+from groundstation.station.driven import DEMAND_MEMORY
 from groundstation.station.station import Station
 from groundstation.vehicles.demand_stream import DRIVING_PERIOD, FINAL_NEUTRALS
 from groundstation.vehicles.fleet import is_vehicle
 from link.core import LinkReport, Outgoing, Received
-
-LATCH = 3.0
-"""s for which a vehicle may hold a demand (ArduPilot's RC_OVERRIDE_TIME); one without a demand for longer gets none."""
 
 
 class CrashNeutral:
@@ -36,7 +34,7 @@ class CrashNeutral:
     def activate(self, now: float) -> None:
         """Take over from the station: send the final neutrals, and do not call the station any more."""
         self._active = True
-        self._driven = {system: at for system, at in self._driven.items() if now - at <= LATCH}
+        self._driven = {system: at for system, at in self._driven.items() if now - at <= DEMAND_MEMORY}
         self._left, self._due = FINAL_NEUTRALS if self._driven else 0, now
         self.tick(now)
 
@@ -81,6 +79,10 @@ class CrashNeutral:
             self._driven[message.target] = now
         if not self._active:
             self._station.handle_sent(message, sequence, now)
+
+    def may_send(self, message: Message, now: float) -> bool:
+        """Return whether a message may still be sent; the station withdraws old demands."""
+        return self._active or self._station.may_send(message, now)
 
     def _neutral(self, system: int) -> ManualControl:
         return build_manual_control(NEUTRAL, system, axis_map(self._autopilots.get(system, Autopilot.GENERIC)))

@@ -8,6 +8,7 @@ from dialects.axes import NEUTRAL, Axes, build_manual_control
 from dialects.messages import ManualControl, Message, RoverOperatorPresence
 from dialects.modes import DRIVABLE_MODES
 from groundstation.station.commander import Commander
+from groundstation.station.driven import DEMAND_MEMORY, DrivenVehicle
 from groundstation.station.operator import OperatorSession
 from groundstation.vehicles.fleet import Contact, Fleet
 from link.core import Outgoing
@@ -59,11 +60,16 @@ class DrivingController:
         demands, self._demands = self._demands, {}
         return [Outgoing(message) for messages in demands.values() for message in messages]
 
+    def drop_demands(self) -> None:
+        """Drop the demands that were made and not sent: they are from before a freeze."""
+        self._demands.clear()
+
     def handle_sent(self, message: Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
         if isinstance(message, ManualControl):
             self._operator.demand_rate.add(now)
             target = message.target
+            self._record_demand(target, now)
         elif isinstance(message, RoverOperatorPresence):
             target = message.target_system
         else:
@@ -71,6 +77,19 @@ class DrivingController:
         contact = self._fleet.get(target)
         if contact is not None and any(message is changed for changed in self._changed):
             contact.state.latency.record_sent(sequence, self._changed_at)
+
+    def _record_demand(self, system: int, now: float) -> None:
+        contact = self._fleet.get(system)
+        if contact is not None:
+            contact.demanded_at = now
+
+    def driven_vehicles(self, now: float) -> tuple[DrivenVehicle, ...]:
+        """Return the vehicles that may still hold a demand of ours."""
+        return tuple(
+            DrivenVehicle.of(contact.state, self._operator.session)
+            for contact in self._fleet
+            if now - contact.demanded_at <= DEMAND_MEMORY
+        )
 
     def end(self) -> None:
         """Stop driving for good: neutral, then no more demands."""
@@ -109,12 +128,14 @@ class DrivingController:
             return "arming" if self._commander.is_arming(state.system) else "disarmed"
         if not self.is_in_control(contact):
             return f"GCS {state.driver} is in control" if state.driver else "not in control"
+        if contact.releasing:
+            return "releasing control"
         return None if state.mode in DRIVABLE_MODES else f"mode {state.mode}"
 
     def _may_stream(self, contact: Contact) -> bool:
         """Return whether demands go to this vehicle: only if armed and ours, so as not to fight another driver."""
         state = contact.state
-        if self._ending or not self._operator.live:
+        if self._ending or contact.releasing or not self._operator.live:
             return False
         if self._commander.is_arming(state.system):
             return state.driver in (None, self._system)

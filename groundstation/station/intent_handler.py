@@ -11,12 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from dialects.enums import Command, Severity
+from dialects.enums import Severity
 from dialects.modes import Mode
 from groundstation import intents as i
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
+from groundstation.station.handover import Handover
 from groundstation.station.operator import OperatorSession
 from groundstation.station.view_feed import ViewFeed
 from groundstation.vehicles.fleet import Fleet
@@ -49,6 +50,7 @@ class IntentHandler:
         commander: Commander,
         driving: DrivingController,
         departure: Departure,
+        handover: Handover,
         log: MessageLog,
         views: ViewFeed,
     ) -> None:
@@ -57,6 +59,7 @@ class IntentHandler:
         self._commander = commander
         self._driving = driving
         self._departure = departure
+        self._handover = handover
         self._log = log
         self._views = views
         self._emergency_at = -math.inf
@@ -75,16 +78,21 @@ class IntentHandler:
         self._driving.update(now)
 
     def _send_command(self, command: VehicleCommand, intent: i.AnyIntent, now: float) -> None:
-        selected = self._fleet.selected
-        if selected is None:
-            self._log.add(now, "station", "no vehicle yet", Severity.WARNING)
+        vehicle = self._selected_vehicle(now)
+        if vehicle is None:
             return
         if command.neutral:
             self._operator.sticks.block(now)
         if command.confirmed and (reason := self._unconfirmed_reason(intent, now)):
             self._log.add(now, "station", f"{command.confirmed} refused: {reason}", Severity.WARNING)
             return
-        command.send(self._commander, selected.state, intent, now)
+        command.send(self._commander, vehicle, intent, now)
+
+    def _selected_vehicle(self, now: float) -> VehicleState | None:
+        if self._fleet.selected is None:
+            self._log.add(now, "station", "no vehicle yet", Severity.WARNING)
+            return None
+        return self._fleet.selected.state
 
     def _unconfirmed_reason(self, intent: Any, now: float) -> str | None:
         """Return why an intent that needs a held key is refused: a screen that is frozen or hidden confirms nothing."""
@@ -144,6 +152,24 @@ class IntentHandler:
     def _watch(self, intent: i.Watch, now: float) -> None:
         self._views.watch(intent.requests)
 
+    def _request_control(self, intent: i.RequestControl, now: float) -> None:
+        if (vehicle := self._selected_vehicle(now)) is not None:
+            self._handover.request(vehicle, now)
+
+    def _release_control(self, intent: i.ReleaseControl, now: float) -> None:
+        self._operator.sticks.block(now)
+        if intent.all:
+            self._handover.release_all(now)
+        elif (vehicle := self._selected_vehicle(now)) is not None:
+            self._handover.release(vehicle, now)
+
+    def _give_control(self, intent: i.GiveControl, now: float) -> None:
+        self._operator.sticks.block(now)
+        self._handover.give(now)
+
+    def _keep_control(self, intent: i.KeepControl, now: float) -> None:
+        self._handover.keep(now)
+
     def _quit(self, intent: i.Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
@@ -154,11 +180,6 @@ def _set_mode(commander: Commander, vehicle: VehicleState, intent: i.SetMode, no
     commander.set_mode(vehicle, intent.mode, now)
 
 
-def _request_control(commander: Commander, vehicle: VehicleState, intent: i.RequestControl, now: float) -> None:
-    """Request control, and let the vehicle grant later requests of other ground stations without asking us."""
-    commander.send(vehicle, "request control", Command.REQUEST_OPERATOR_CONTROL, 1, 1, now=now)
-
-
 VEHICLE_COMMANDS: dict[type[i.Intent], VehicleCommand] = {
     i.Arm: VehicleCommand(lambda commander, vehicle, _, now: commander.arm(vehicle, now), confirmed="arming"),
     i.Disarm: VehicleCommand(lambda commander, vehicle, _, now: commander.disarm(vehicle, now)),
@@ -167,7 +188,6 @@ VEHICLE_COMMANDS: dict[type[i.Intent], VehicleCommand] = {
         confirmed="release of the emergency stop",
     ),
     i.SetMode: VehicleCommand(_set_mode, neutral=False),
-    i.RequestControl: VehicleCommand(_request_control, neutral=False),
 }
 """Intent -> command to the selected vehicle. Neutral comes first where the command stops the vehicle, and before
 arming, which must not start with a key held."""
@@ -185,6 +205,10 @@ HANDLERS: dict[type[i.Intent], Callable[[IntentHandler, Any, float], None]] = {
     i.SelectVehicle: IntentHandler._select,
     i.SelectNextVehicle: IntentHandler._select_next,
     i.Watch: IntentHandler._watch,
+    i.RequestControl: IntentHandler._request_control,
+    i.ReleaseControl: IntentHandler._release_control,
+    i.GiveControl: IntentHandler._give_control,
+    i.KeepControl: IntentHandler._keep_control,
     i.Quit: IntentHandler._quit,
 }
 """Intent -> method, for all that are not commands to a vehicle. StartSimulator is handled in station_process.py."""

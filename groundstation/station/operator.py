@@ -8,6 +8,7 @@ stops sending heartbeats.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from dialects.axes import NEUTRAL, Axes
 from dialects.enums import OperatorFlag as Flag
@@ -16,6 +17,7 @@ from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
 from groundstation.intents import LEASE_TIMEOUT, DriveKeyDown, SetKeyGate
 from groundstation.snapshot import OperatorView
+from groundstation.station.stall import StallMonitor
 from link.protocol.heartbeat import HeartbeatMonitor
 from link.protocol.rate import RateMeter
 
@@ -30,6 +32,24 @@ OLDEST_AGE = 0xFFFF
 """Largest last_input_age_ms: older, or no input yet."""
 
 
+IGNORED_SHOWN = 3.0
+"""s for which the reason is shown after the last event of a key that does not count."""
+
+
+@dataclass(slots=True)
+class _Ignored:
+    """Why a drive key does not count, and its newest event."""
+
+    reason: str = ""
+    at: float = -math.inf
+
+    def record(self, reason: str, now: float) -> None:
+        self.reason, self.at = reason, now
+
+    def shown(self, now: float) -> str:
+        return self.reason if now - self.at <= IGNORED_SHOWN else ""
+
+
 class OperatorSession:
     """One operator at one screen. `session` is a random number that distinguishes this session from others."""
 
@@ -37,14 +57,16 @@ class OperatorSession:
         self.sticks = Sticks(style, speed)
         self.demand_rate = RateMeter()
         """Demands sent."""
+        self.stall = StallMonitor()
+        self._ignored = _Ignored()
         self._sent_demand = NEUTRAL
         """The last demand sent to the selected vehicle."""
         self._input_count = 0
-        self._session = session
+        self.session = session
         self._lease = HeartbeatMonitor(LEASE_TIMEOUT)
         self._clock = 0
         self._live = False
-        self._unreported_lapse = False
+        self._unreported_lapse: str | None = None
         self._thawed_at = 0.0
         self._gate = SetKeyGate(open=False, reason="starting")
         self._driving_allowed = False
@@ -61,11 +83,11 @@ class OperatorSession:
         self._live = True
         self._lease.update(now)
 
-    def expire_lease(self, now: float) -> bool:
-        """Release all keys when the lease has run out. Returns True once each time that happens."""
+    def expire_lease(self, now: float) -> str | None:
+        """Release all keys when the lease has run out. Returns what happened, once each time."""
         self._check_lease(now)
-        lapsed, self._unreported_lapse = self._unreported_lapse, False
-        return lapsed
+        lapse, self._unreported_lapse = self._unreported_lapse, None
+        return lapse
 
     @property
     def live(self) -> bool:
@@ -96,10 +118,14 @@ class OperatorSession:
 
     def press(self, push: DriveKeyDown, now: float) -> None:
         """Handle a drive key. One pressed while the screen blocks driving must not drive later either."""
-        if self.blocked_reason(now) is None:
-            self.sticks.press(push, now)
-        else:
+        reason = self.blocked_reason(now)
+        if reason is not None:
             self.sticks.reject(push, now)
+            self._ignored.record(reason, now)
+        elif self.sticks.press(push, now):
+            self._ignored = _Ignored()
+        else:
+            self._ignored.record(self._ignored.shown(now) or "it was held before", now)
 
     def reset_demand(self, now: float) -> None:
         """Go neutral for another vehicle; the demand of the previous vehicle is not that of the new one."""
@@ -127,10 +153,19 @@ class OperatorSession:
         return changed
 
     def _check_lease(self, now: float) -> None:
-        """Release all keys when the lease has run out, whichever event of a thawed process comes first."""
-        if self._live and not self._lease.is_alive(now):
-            self._live, self._unreported_lapse = False, True
-            self.sticks.block(now)
+        """Release all keys when the lease has run out, whichever event of a thawed process comes first.
+
+        A station that stood still counts as one whose lease has run out, even if a renewal came just before.
+        """
+        stalled = self.stall.pop_stall(now)
+        if not self._live or (stalled is None and self._lease.is_alive(now)):
+            return
+        self._live = False
+        self.sticks.block(now)
+        if stalled is None:
+            self._unreported_lapse = f"display not responding for {self._lease.silence(now):.1f} s"
+        else:
+            self._unreported_lapse = f"station stopped for {stalled:.1f} s"
 
     # ---- what others see ----
 
@@ -146,7 +181,7 @@ class OperatorSession:
             target_component=target[1],
             time_boot_ms=self._next_clock(now),
             echo_time_boot_ms=echo or 0,
-            session_id=self._session,
+            session_id=self.session,
             input_count=self._input_count & 0xFFFFFFFF,
             last_input_age_ms=self._age_ms(now),
             flags=self._flags(now) | Flag.AXES,
@@ -176,6 +211,7 @@ class OperatorSession:
             steering_limit=sticks.steering_limit,
             gate_open=reason is None,
             gate_reason=reason or "",
+            ignored=self._ignored.shown(now),
             sending=sending,
             rate=self.demand_rate.rate(now),
         )

@@ -11,7 +11,9 @@ from groundstation.intents import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
+from groundstation.station.driven import DrivenVehicle
 from groundstation.station.driving import DrivingController
+from groundstation.station.handover import Handover
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
@@ -26,6 +28,8 @@ from groundstation.views import LogRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
+
+DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -55,8 +59,16 @@ class Station:
         self._commander = Commander(self.log, system, COMPONENT)
         self._driving = DrivingController(self.operator, self.fleet, self._commander, system)
         self._departure = Departure(self.fleet, self._commander, self._driving)
+        self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
         self._intents = IntentHandler(
-            self.operator, self.fleet, self._commander, self._driving, self._departure, self.log, self.views
+            self.operator,
+            self.fleet,
+            self._commander,
+            self._driving,
+            self._departure,
+            self._handover,
+            self.log,
+            self.views,
         )
         self._links = LinkStats()
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log)
@@ -84,6 +96,7 @@ class Station:
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
         self._queries.receive(contact, received, now)
+        self._handover.receive(contact, received, now)
         match received.message:
             case m.StatusText() as message:
                 self._handle_statustext(message, contact, now)
@@ -100,6 +113,7 @@ class Station:
         self.log.expire(now)
         self.fleet.update(now)
         self._commander.tick(now)
+        self._handover.tick(now)
         if self.operator.live:
             self._queries.tick(now)
         if self.operator.live and not self._driving.ending:
@@ -130,7 +144,17 @@ class Station:
         self._message_rates.count(message, now)
         self._driving.handle_sent(message, sequence, now)
 
+    def may_send(self, message: m.Message, now: float) -> bool:
+        """Return False for a demand that was made before the process stood still."""
+        return not isinstance(message, DEMANDS) or not self.operator.stall.is_stalled(now)
+
     # ---- the shell around the core ----
+
+    def report_to_watchdog(self, now: float) -> tuple[DrivenVehicle, ...]:
+        """Return the vehicles that the watchdog stops if no further call follows within STALL_TIMEOUT."""
+        self._expire_lease(now)
+        self.operator.stall.record_report(now)
+        return self._driving.driven_vehicles(now)
 
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
@@ -166,6 +190,7 @@ class Station:
             vehicles=self.fleet.system_ids,
             not_shown=self.fleet.not_shown,
             also_armed=self.fleet.also_armed,
+            handover=self._handover.notice(now),
             operator=self.operator.build_view(
                 self._driving.blocked_reason(now), bool(selected and selected.demand_stream.streaming), now
             ),
@@ -176,9 +201,16 @@ class Station:
         )
 
     def _expire_lease(self, now: float) -> None:
-        """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first."""
-        if self.operator.expire_lease(now):
-            self.log.add(now, "station", "screen not responding: neutral, control released", Severity.CRITICAL)
+        """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first.
+
+        Without an armed vehicle of ours it is not reported: a slow start would be.
+        """
+        lapse = self.operator.expire_lease(now)
+        if lapse is None:
+            return
+        self._driving.drop_demands()
+        if any(contact.ours and contact.state.armed for contact in self.fleet):
+            self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
 
     def _handle_statustext(self, message: m.StatusText, contact: Contact, now: float) -> None:
         system = contact.state.system
@@ -192,6 +224,7 @@ class Station:
         return state.build_view(
             now,
             in_control=self._driving.is_in_control(contact),
+            control_wait=self._handover.waits_for(contact, now),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
             without_link=contact.without_link,

@@ -47,8 +47,11 @@ def active_alerts(now: DisplayState) -> list[Alert]:
 
 
 def _station(now: DisplayState) -> Iterator[Alert]:
-    if not now.station_alive:
-        yield Alert(AlertLevel.DANGER, f"the station process has ended, nothing is sent: {now.key('app.quit')} quits")
+    quits = "" if now.station_alive else f"; {now.key('app.quit')} quits"
+    if now.outage:
+        yield Alert(AlertLevel.DANGER, f"{now.outage}{quits}")
+    elif not now.station_alive:
+        yield Alert(AlertLevel.DANGER, f"station process ended: nothing is sent{quits}")
 
 
 def _emergency(now: DisplayState) -> Iterator[Alert]:
@@ -89,6 +92,13 @@ def _hold(now: DisplayState) -> Iterator[Alert]:
         bar = "█" * full + "░" * (BAR - full)
         text = f"{now.hold.action.label}: hold {format_key(now.hold.key)} {bar} {now.hold.held:.1f} s"
         yield Alert(AlertLevel.QUESTION, text)
+
+
+def _handover(now: DisplayState) -> Iterator[Alert]:
+    notice = now.snapshot.handover
+    if notice is not None:
+        answers = f"{now.key('vehicle.give')} gives, {now.key('vehicle.keep')} keeps ({notice.left:.0f} s)"
+        yield Alert(AlertLevel.QUESTION, f"GCS {notice.station} requests control of {notice.vehicle}: {answers}")
 
 
 def _silence(now: DisplayState) -> Iterator[Alert]:
@@ -132,7 +142,7 @@ def _key(now: DisplayState) -> Iterator[Alert]:
 
 def _refusal(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
-    if vehicle is not None and vehicle.refusal:
+    if vehicle is not None and vehicle.refusal and vehicle.control_wait is None:
         yield Alert(AlertLevel.WARNING, vehicle.refusal)
 
 
@@ -173,7 +183,12 @@ def _driver(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
-        yield Alert(AlertLevel.WARNING, f"{who}: {now.key('vehicle.control')} requests control")
+        asks = f"{now.key('vehicle.control')} requests control"
+        if now.away is not None:
+            who = f"tmux was detached for {now.away:.0f} s, control was released"
+        if vehicle.control_wait is not None:
+            asks = f"control requested, {vehicle.control_wait:.0f} s to answer"
+        yield Alert(AlertLevel.WARNING, f"{who}: {asks}")
 
 
 def _operator(now: DisplayState) -> Iterator[Alert]:
@@ -184,6 +199,8 @@ def _operator(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, "keys do not drive: one is held from before; release it, then press again")
     elif not operator.gate_open and now.closure is None:
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {operator.gate_reason}")
+    elif operator.ignored:
+        yield Alert(AlertLevel.WARNING, f"key ignored ({operator.ignored}): release it, then press again")
     elif operator.style == "latch" and (operator.throttle or operator.steering):
         yield Alert(AlertLevel.WARNING, f"latched, the vehicle keeps driving: {now.key('drive.stop')} or SPACE stops")
 
@@ -204,8 +221,8 @@ def _vehicles(now: DisplayState) -> Iterator[Alert]:
 
 
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _silence, _emergency, _failsafe, _state, _key, _gate, _obeys, _operator, _driver, _refusal,
-    _id_conflict, _limits, _settings, _vehicles,
+    _station, _hold, _silence, _emergency, _failsafe, _handover, _state, _key, _gate, _obeys, _operator, _driver,
+    _refusal, _id_conflict, _limits, _settings, _vehicles,
 )  # fmt: skip
 """Most urgent first."""
 

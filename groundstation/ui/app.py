@@ -18,7 +18,16 @@ from textual.filter import LineFilter
 from textual.screen import Screen
 
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents import ACTIONS, AnyIntent, DriveKeyDown, OperatorAction, Quit, RenewLease, Watch
+from groundstation.intents import (
+    ACTIONS,
+    AnyIntent,
+    DriveKeyDown,
+    OperatorAction,
+    Quit,
+    ReleaseControl,
+    RenewLease,
+    Watch,
+)
 from groundstation.snapshot import Snapshot
 from groundstation.ui import garbage
 from groundstation.ui.ascii import AsciiFilter
@@ -39,6 +48,7 @@ from groundstation.ui.palette import ActionProvider
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.terminal import PING, ConsoleDriver, TerminalClosed
+from groundstation.ui.tmux import TmuxSession
 from groundstation.ui.tty_output import TerminalFile
 from groundstation.ui.tty_ping import PERIOD
 from groundstation.views import ViewRequest
@@ -78,12 +88,13 @@ class ConsoleApp(App[int]):
         driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
-        self._snapshot = Snapshot()
+        self._snapshot, self._outage = Snapshot(), client.outage
         self._pressed: dict[str, float] = {}
         self._key_hint = KeyHint(keymap)
         self._shown_at = 0.0
         self._leaving: GateClosure | None = None
         self._own_loop: asyncio.AbstractEventLoop | None = None
+        self._tmux = TmuxSession.from_environment()
         self._ascii = AsciiFilter(enabled=ascii_only)
         self._watched: tuple[ViewRequest, ...] = ()
         context = ScreenContext(keymap, self._send, self.perform_action, self._display_state, folder)
@@ -102,6 +113,7 @@ class ConsoleApp(App[int]):
         self._own_loop.add_reader(self._client.fileno(), self._readable)
         # In this loop and not in a thread: a UI that hangs must lose its lease.
         self.set_interval(TICK, self._tick)
+        self._tmux.start(self._own_loop)
         self.set_interval(PERIOD, self._ping)
         if self._terminal is not None:
             self.call_after_refresh(garbage.freeze)
@@ -109,6 +121,7 @@ class ConsoleApp(App[int]):
     def on_unmount(self) -> None:
         """Close the gate, which means neutral, before anything else ends."""
         self.gate.close("quitting")
+        self._tmux.stop()
         asyncio.get_running_loop().remove_reader(self._client.fileno())
 
     def end(self, code: int = 0) -> None:
@@ -158,10 +171,13 @@ class ConsoleApp(App[int]):
         self._watch()
         if snapshot is not None:
             self._handle_snapshot(snapshot)
-        if not self._client.alive:
+        if self._client.outage != self._outage:
+            self._outage = self._client.outage
+            self._tick()
+        if not self._client.open:
             asyncio.get_running_loop().remove_reader(self._client.fileno())
-            if self._leaving is DISARMING:
-                self.end()
+        if not self._client.alive and self._leaving is DISARMING:
+            self.end()
 
     def _watch(self) -> None:
         """Request the views that the screen on top needs."""
@@ -172,6 +188,7 @@ class ConsoleApp(App[int]):
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
         vehicle, operator = snapshot.vehicle, snapshot.operator
+        self._tmux.handle_control(vehicle is not None and vehicle.in_control, any_vehicle=bool(snapshot.left_armed))
         driving = bool(operator.throttle or operator.steering or operator.held)
         self.gate.update(armed=vehicle is not None and vehicle.armed, driving=driving)
         if self._clock() - self._shown_at >= MIN_FRAME_TIME:
@@ -193,6 +210,8 @@ class ConsoleApp(App[int]):
             closure=self.gate.closure,
             hold=self.gate.hold,
             station_alive=self._client.alive,
+            outage=self._outage.text,
+            away=self._tmux.away,
             pressed=frozenset(self._pressed),
             key_hint=self._key_hint.text(self._clock()),
             terminal_round_trip=self.gate.ping.round_trip,
@@ -212,6 +231,8 @@ class ConsoleApp(App[int]):
         self._client.send(RenewLease())
         self.gate.set_closure(self._gate_closure(now))
         self._watch()
+        if self._tmux.pop_release(now):
+            self._send(ReleaseControl(all=True))
         for key in [key for key, until in self._pressed.items() if now >= until]:
             del self._pressed[key]
         if now - self._shown_at >= TICK:
@@ -228,7 +249,9 @@ class ConsoleApp(App[int]):
         checks: tuple[tuple[bool, GateClosure], ...] = (
             (self._leaving is not None, self._leaving or STARTING),
             (not self._client.alive, GateClosure("the station has ended")),
+            (bool(self._outage.text), GateClosure("the station does not respond")),
             (other is not None, other or OTHER_SCREEN),
+            (self._tmux.detached, GateClosure("nobody is attached to tmux")),
             (not self.app_focus, GateClosure("this window does not have the focus")),
             (self.drive.too_small, GateClosure("the terminal is too small")),
             (self.gate.ping.is_silent(now), GateClosure("the terminal does not answer")),

@@ -54,6 +54,10 @@ class DisplayState:
     hold: HoldProgress | None = None
     """The action whose key is held to confirm it."""
     station_alive: bool = True
+    outage: str = ""
+    """What the watchdog reports of a station that has ended or does not respond; empty while it runs."""
+    away: float | None = None
+    """Seconds for which nobody was attached to tmux, so that control was released; None if it was not."""
     pressed: frozenset[str] = frozenset()
     """Keys that the UI saw go down, sooner than a snapshot can report them."""
     key_hint: str | None = None

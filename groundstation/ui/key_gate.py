@@ -21,7 +21,7 @@ from groundstation.intents import (
     Stop,
 )
 from groundstation.screens import SCREENS
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import Snapshot, StationOutage
 from groundstation.ui.keynames import is_character
 from groundstation.ui.tty_ping import TerminalPing
 from groundstation.views import View
@@ -48,6 +48,14 @@ class StationConnection(Protocol):
     @property
     def alive(self) -> bool:
         """The station process runs."""
+
+    @property
+    def open(self) -> bool:
+        """Something may still arrive: the station or its watchdog runs."""
+
+    @property
+    def outage(self) -> StationOutage:
+        """What the watchdog reports of a station that has ended or does not respond."""
 
 
 class GateLevel(Enum):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -40,6 +41,10 @@ class Contact:
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     ours: bool = False
     """This station has armed or driven the vehicle since the vehicle was last disarmed."""
+    releasing: bool = False
+    """Control is being released: the final neutrals go out, and no demand follows."""
+    demanded_at: float = -math.inf
+    """When the newest demand was sent to it."""
     lost_at: float | None = None
     """When the last message arrived, while the link is lost."""
     signs: bool = False

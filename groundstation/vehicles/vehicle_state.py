@@ -129,6 +129,7 @@ class VehicleState:
             autopilot=self.autopilot,
             mode=self.mode,
             armed=self.armed,
+            drivable=self.mode in DRIVABLE_MODES,
             status=self.status,
             alive=self.monitor.is_alive(now),
             silence=self.monitor.silence(now),

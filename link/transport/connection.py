@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable
 
 from link.transport.priority_queue import TransmitQueue
 from link.transport.stream_writer import StreamWriter
-from link.transport.transport import ReceiveCallback
+from link.transport.transport import Outlet, ReceiveCallback
 
 BULK = 65536
 """Bytes of telemetry that may wait for one connection; then the oldest is dropped."""
@@ -44,6 +44,11 @@ class Connection:
     def send(self, data: bytes) -> None:
         """Send one frame, now or soon."""
         self._writer.send(data)
+
+    @property
+    def outlet(self) -> Outlet:
+        """The connected socket."""
+        return Outlet(self._socket.fileno(), None)
 
     def close(self) -> None:
         """Send what the socket accepts at once, and end the connection."""

@@ -21,7 +21,7 @@ from link.transport.backoff import Backoff
 from link.transport.priority_queue import TransmitPacer, TransmitQueue
 from link.transport.serial_faults import ABSENT_ERRNOS, serial_error_text
 from link.transport.stream_writer import StreamWriter
-from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
+from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
 BITS_PER_BYTE = 10
 """8 data bits, one start and one stop bit."""
@@ -71,6 +71,10 @@ class SerialTransport:
         """Queue one frame; while the port is missing it is dropped, because it would be old later."""
         if self._writer:
             self._writer.send(data)
+
+    def outlet(self, address: Hashable) -> Outlet | None:
+        """Return the port, while it is open."""
+        return Outlet(self._port.fileno(), None) if self._port else None
 
     def close(self) -> None:
         """Pass the last frames to the driver and free the port."""

@@ -14,7 +14,7 @@ from link.runtime.worker import Worker
 from link.transport.address import bind_error_text, resolve
 from link.transport.backoff import Backoff
 from link.transport.connection import Connection
-from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
+from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
 MAX_CONNECTIONS = 16
 """Connections to one `tcpin`. A further one replaces the connection that has been silent longest, or is closed."""
@@ -57,6 +57,11 @@ class TcpServerTransport:
         connection = self._connections.get(address)
         if connection:
             connection.send(data)
+
+    def outlet(self, address: Hashable) -> Outlet | None:
+        """Return the connection of this address."""
+        connection = self._connections.get(address)
+        return connection.outlet if connection else None
 
     def close(self) -> None:
         """End all connections and free the port."""
@@ -133,6 +138,10 @@ class TcpClientTransport:
         """Send one frame; without a connection it is dropped, because it would be old later."""
         if self._connection:
             self._connection.send(data)
+
+    def outlet(self, address: Hashable) -> Outlet | None:
+        """Return the connection, while there is one."""
+        return self._connection.outlet if self._connection else None
 
     def close(self) -> None:
         """End the connection and stop connecting."""

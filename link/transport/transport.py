@@ -8,7 +8,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, NamedTuple, Protocol
 
 from link.endpoint import Endpoint
 from link.protocol.channel import Channel
@@ -25,6 +25,14 @@ A new connection is reported with empty bytes.
 """
 DisconnectCallback = Callable[[Hashable], None]
 """Takes the address of a connection that has ended."""
+
+
+class Outlet(NamedTuple):
+    """Where the bytes for one address leave, for another process that gets a copy of the descriptor."""
+
+    descriptor: int
+    destination: Any
+    """The address for sendto(); None where the descriptor leads to one other end: write() sends."""
 
 
 class Transport(Protocol):
@@ -51,6 +59,9 @@ class Transport(Protocol):
 
     def send(self, data: bytes, address: Hashable) -> None:
         """Send one frame, now or soon (a datagram may hold several). Neither blocks nor raises."""
+
+    def outlet(self, address: Hashable) -> Outlet | None:
+        """Return where the bytes for `address` leave now; None while they cannot."""
 
     def close(self) -> None:
         """Free the socket or port. Called once."""

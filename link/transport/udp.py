@@ -8,7 +8,7 @@ from collections.abc import Hashable
 
 from link.endpoint import Endpoint
 from link.transport.address import bind_error_text, resolve
-from link.transport.transport import DisconnectCallback, LinkError, ReceiveCallback
+from link.transport.transport import DisconnectCallback, LinkError, Outlet, ReceiveCallback
 
 BATCH = 64
 """Datagrams read in one turn of the event loop: a flood must not starve the control loop (about 1 ms)."""
@@ -55,6 +55,10 @@ class UdpTransport:
             self.problem = f"{self.endpoint.text}: {error.strerror}"
         else:
             self.problem = None
+
+    def outlet(self, address: Hashable) -> Outlet | None:
+        """Return the socket, with the destination unless it is fixed."""
+        return Outlet(self._socket.fileno(), None if self.fixed_address is not None else address)
 
     def close(self) -> None:
         """Stop listening and free the port."""

@@ -109,7 +109,7 @@ _TELEMETRY: dict[int, Callable[[FakeArduPilot, float], m.Message]] = {
     m.LocalPositionNed.id: lambda _, now: m.LocalPositionNed(boot_ms(now), 1.0, 2.0, 0.0, 0.0, 0.0, 0.0),
     m.GlobalPositionInt.id: lambda _, now: m.GlobalPositionInt(boot_ms(now), 1, 1, 0, 0, 0, 0, 0, 0),
     m.ServoOutputRaw.id: _servos,
-    m.VfrHud.id: lambda *_: m.VfrHud(0.0, 1.0, 0, 0, 0.0, 0.0),
+    m.VfrHud.id: lambda vehicle, _: m.VfrHud(0.0, 2.0 if vehicle.moves else 0.0, 0, 0, 0.0, 0.0),
     m.SysStatus.id: lambda *_: m.SysStatus(0, 0, 0, 0, 12000, 100, 80, 0, 0, 0, 0, 0, 0),
     m.GpsRawInt.id: lambda *_: m.GpsRawInt(0, 3, 0, 0, 0, 0, 0, 0, 0, 9),
     m.BatteryStatus.id: lambda *_: m.BatteryStatus(0, 0, 0, 0, [12000] + [65535] * 9, 100, 0, 0, 80),

@@ -134,7 +134,7 @@ class FakeVehicle:
                 self.locked = message.param1 == 0
                 self.armed = self.armed and not self.locked
             case Command.REQUEST_OPERATOR_CONTROL if self.driver is not None:
-                self.driver = source
+                self.driver = source if message.param1 == 1 else 0
 
 
 class Cockpit:

@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
@@ -116,3 +117,8 @@ def children(pid: int) -> list[int]:
     """Processes whose parent is `pid`."""
     with open(f"/proc/{pid}/task/{pid}/children", encoding="ascii") as listed:
         return [int(child) for child in listed.read().split()]
+
+
+def simulators(station: int) -> list[int]:
+    """Return the simulators that a station process has started; its other child is the watchdog."""
+    return [child for child in children(station) if b"\0vehicle\0" in Path(f"/proc/{child}/cmdline").read_bytes()]

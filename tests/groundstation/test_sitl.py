@@ -10,7 +10,7 @@ import pytest
 from groundstation.intents import RenewLease, StartSimulator
 from groundstation.sitl import SimulatorControl
 from link.endpoint import parse_endpoint
-from tests.groundstation.screen import Screen, children, running, until
+from tests.groundstation.screen import Screen, running, simulators, until
 
 pytestmark = pytest.mark.e2e
 
@@ -24,7 +24,7 @@ def test_sitl_starts_a_rover_on_a_free_port_and_ends_it_with_us() -> None:
     with Screen(sitl=True) as screen:
         sees_rover(screen)
         assert screen.snapshot.simulator == "running"
-        (simulator,) = children(screen.client.pid)
+        (simulator,) = simulators(screen.client.pid)
         assert screen.client.close() == 0
         until(lambda: not running(simulator))
 
@@ -38,13 +38,13 @@ def test_the_simulator_can_be_started_later() -> None:
         screen.client.send(StartSimulator())
         seen = screen.snapshot.number
         screen.see(lambda snapshot: snapshot.number > seen + 3)
-        assert len(children(screen.client.pid)) == 1
+        assert len(simulators(screen.client.pid)) == 1
 
 
 def test_the_simulator_dies_with_a_station_that_is_killed() -> None:
     with Screen(sitl=True) as screen:
         sees_rover(screen)
-        (simulator,) = children(screen.client.pid)
+        (simulator,) = simulators(screen.client.pid)
         os.kill(screen.client.pid, signal.SIGKILL)
         until(lambda: not running(simulator))
 
@@ -52,7 +52,7 @@ def test_the_simulator_dies_with_a_station_that_is_killed() -> None:
 def test_the_exit_of_the_simulator_is_reported() -> None:
     with Screen(sitl=True) as screen:
         sees_rover(screen)
-        os.kill(children(screen.client.pid)[0], signal.SIGKILL)
+        os.kill(simulators(screen.client.pid)[0], signal.SIGKILL)
         screen.see(lambda snapshot: str(snapshot.simulator).startswith("ended by SIGKILL"))
         assert any("simulator ended by SIGKILL" in line.text for line in screen.snapshot.texts)
 

@@ -15,7 +15,7 @@ from dialects import messages as m
 from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, Quit, SetKeyGate, Watch
 from groundstation.ipc import IntentBatch, encode
 from groundstation.snapshot import LogLine, Snapshot
-from groundstation.station_process import LOG_SIZE
+from groundstation.station_options import LOG_SIZE
 from groundstation.views import LogPage, LogRequest
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.screen import FORWARD, Screen, running, until

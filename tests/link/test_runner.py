@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import logging
 import socket
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -15,6 +15,7 @@ from dialects.messages import Heartbeat, ManualControl, Message
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.log_tap import LogTap
 from link.runner import Runner, open_links
+from link.transport.transport import Link
 from tests.link.frames import demand, heartbeat
 from tests.link.ports import Cable
 from tests.ports import free_port
@@ -231,6 +232,31 @@ async def test_a_message_that_cannot_be_encoded_is_logged_once(caplog: pytest.Lo
     assert len(logged) == 1
     assert "HEARTBEAT" in logged[0].message
     assert logged[0].exc_info is None  # one line, no traceback
+
+
+class Withdrawing(Recorder):
+    """A core that withdraws demands in the last moment."""
+
+    def may_send(self, message: Message, now: float) -> bool:
+        return not isinstance(message, ManualControl)
+
+
+async def test_a_withdrawn_message_is_not_sent_and_each_frame_that_is_sent_is_reported(ground: socket.socket) -> None:
+    runners: list[Runner] = []
+    core = Withdrawing(lambda core: len(core.ticks) > 3, runners)
+    core.outbox = [Outgoing(ManualControl(1, 600, 0, 0, 0, 0)), Outgoing(Heartbeat(6, 8, 0, 0, 4, 3))]
+    sent: list[tuple[str, Hashable, type[Message], int]] = []
+
+    def record(link: Link, address: Hashable, message: Message, sequence: int, now: float) -> None:
+        sent.append((link.endpoint.text, address, type(message), sequence))
+
+    endpoint = f"udpout:127.0.0.1:{ground.getsockname()[1]}"
+    links = open_links([endpoint], system=255, component=190)
+    runners.append(Runner(core, links, period=0.01, sent=record))
+    await runners[0].run()
+    assert ground.recv(300)[7] == Heartbeat.id
+    assert sent == [(endpoint, endpoint, Heartbeat, 1)]
+    assert [type(message) for message, _ in core.numbers] == [Heartbeat]
 
 
 async def test_frames_that_a_program_with_two_links_hands_back_are_no_other_system() -> None:

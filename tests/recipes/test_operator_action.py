@@ -56,6 +56,7 @@ def test_an_action_of_the_operator(tree: Tree) -> None:
     tree.insert_after(
         "groundstation/station/intent_handler.py", "VEHICLE_COMMANDS: dict[type[i.Intent], VehicleCommand] = {", HANDLER
     )
+    tree.replace("groundstation/station/intent_handler.py", "import Severity", "import Command, Severity")
     tree.check_recipe("an action of the operator")
     tree.run_script(PRESS_IT)
     tree.run_script(SEND_IT)

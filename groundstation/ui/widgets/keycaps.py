@@ -41,6 +41,8 @@ class KeycapsValue:
     throttle_limit: int = 100
     steering_limit: int = 100
     open: bool = False
+    ignored: bool = False
+    """The key that is held does not count."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> KeycapsValue:
@@ -55,6 +57,7 @@ class KeycapsValue:
             throttle_limit=round(100 * operator.throttle_limit),
             steering_limit=round(100 * operator.steering_limit),
             open=operator.gate_open,
+            ignored=bool(operator.ignored),
         )
 
 
@@ -80,7 +83,7 @@ class Keycaps(Instrument[KeycapsValue]):
         key = main_key(self.value.keymap, action)
         name = "·" if key is None else "␣" if key == "space" else format_key(key)
         if action in self.value.lit:
-            look = badge(DEEP_RED) if action == "drive.stop" else badge(YELLOW)
+            look = badge(DEEP_RED if action == "drive.stop" else AMBER if self.value.ignored else YELLOW)
         elif not self.value.open:
             look = style(MUTED, FAINT)
         else:

@@ -32,11 +32,14 @@ class StatusBarValue:
     """Keys drive on the screen on top."""
     drive_key: str = "?"
     """Key of the screen where they do."""
+    station_runs: bool = True
+    """The station process runs and responds."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> StatusBarValue:
         """Return the status bar of a display state."""
-        return cls(now.snapshot, now.keymap, now.terminal_round_trip, now.screen.drives, now.key("app.drive"))
+        runs = now.station_alive and not now.outage
+        return cls(now.snapshot, now.keymap, now.terminal_round_trip, now.screen.drives, now.key("app.drive"), runs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +75,10 @@ class StatusBar(Instrument[StatusBarValue]):
             return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
         parts = [(f" {vehicle.name} ", badge(BLUE)), mode_badge(vehicle)]
         stands = not value.drives and vehicle.in_control and vehicle.armed and vehicle.mode == "MANUAL"
-        away = (f"neutral · {value.drive_key} drives", style(AMBER, bold=True))
-        parts += [*arming_badges(vehicle), (" ", style()), away if stands and vehicle.alive else driver_part(vehicle)]
+        who = driver_part(vehicle, station_runs=value.station_runs)
+        if stands and vehicle.alive and value.station_runs:
+            who = (f"neutral · {value.drive_key} drives", style(AMBER, bold=True))
+        parts += [*arming_badges(vehicle), (" ", style()), who]
         if value.snapshot.also_armed:
             systems = ", ".join(map(str, value.snapshot.also_armed))
             parts.append((f" also armed: {systems}", style(AMBER, bold=True)))
@@ -108,17 +113,21 @@ def arming_badges(vehicle: VehicleView) -> list[Part]:
     return [state, (" E-STOP SENT ", badge(RED))] if vehicle.emergency_stop else [state]
 
 
-def driver_part(vehicle: VehicleView) -> Part:
-    """Return who moves the vehicle."""
+def driver_part(vehicle: VehicleView, *, station_runs: bool) -> Part:
+    """Return who moves the vehicle. `station_runs`: the station process runs and responds."""
+    if not station_runs:
+        return ("station lost", style(RED, bold=True))
     if not vehicle.alive:
         return (f"link lost for {vehicle.silence:.0f} s", style(RED, bold=True))
     if vehicle.obeys:
         return ("obeys another GCS", style(AMBER, bold=True))
+    if vehicle.in_control and vehicle.armed and vehicle.emergency_stop:
+        return ("", style())  # the keys do not drive, and the badge before it says why
     if vehicle.in_control:
-        return ("you drive" if vehicle.armed else "you are in control", style(GREEN, bold=True))
+        return ("you drive" if vehicle.armed and vehicle.drivable else "you are in control", style(GREEN, bold=True))
     if vehicle.driver:
         return (f"driven by {vehicle.driver}", style(AMBER, bold=True))
-    return ("no GCS in control", style(DIM))
+    return ("" if vehicle.driver is None else "no GCS in control", style(DIM))
 
 
 def _field(weight: int, name: str, text: str, colour: str = TEXT) -> StatusField:

@@ -79,7 +79,7 @@ class DrivingStrip(Instrument[StripValue]):
             yield [space, (self.value.status.snapshot.waiting or "", style(TEXT))]
             return
         yield [*arming_badges(vehicle), mode_badge(vehicle), (f" {vehicle.name} ", badge(BLUE))]
-        yield [space, driver_part(vehicle), space, *health_parts(vehicle)]
+        yield [space, driver_part(vehicle, station_runs=self.value.status.station_runs), space, *health_parts(vehicle)]
         demand = _demand(self.value.status.snapshot.operator)
         yield [space, (f"{speed_text(vehicle)} m/s", style(TEXT, bold=True)), ("  " + demand, style(DIM))]
         yield [space, *(bound_parts(caps) if caps.style == "hold" else style_parts(caps))]

@@ -18,7 +18,7 @@ from link.core import Peer, Received
 
 FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 REPEAT = DriveKeyDown(key="i", throttle=1, steering=0, repeat=True)
-LAPSE = "screen not responding: neutral, control released"
+LAPSE = "display not responding for"
 TICK = 0.025
 
 
@@ -64,9 +64,13 @@ class HeldKey:
     def throttle(self) -> float:
         return self.station.snapshot(self.now, self.now).operator.throttle
 
+    @property
+    def ignored(self) -> str:
+        return self.station.snapshot(self.now, self.now).operator.ignored
+
     def lapses(self) -> int:
         lines = self.station.snapshot(self.now, self.now).texts
-        return sum(line.count for line in lines if line.text == LAPSE)
+        return sum(line.count for line in lines if line.text.startswith(LAPSE))
 
 
 def _tick(held: HeldKey) -> None:
@@ -134,4 +138,41 @@ def test_renewing_an_expired_lease_releases_the_keys_and_is_reported_once() -> N
     session.renew_lease(104.6)
     assert session.sticks.held_keys(104.6) == ()
     assert session.blocked_reason(104.6) == "screen was frozen"
-    assert [session.expire_lease(104.6) for _ in range(3)] == [True, False, False]
+    lapses = [session.expire_lease(104.6) for _ in range(3)]
+    assert lapses == ["display not responding for 4.6 s", None, None]
+
+
+def test_a_key_that_is_held_over_a_lapse_is_named_as_long_as_it_is_held() -> None:
+    held = HeldKey(releases=True)
+    held.now += 0.5
+    for _ in range(200):
+        held.step(REPEAT)
+    assert held.ignored == "screen was frozen"
+    held.do(DriveKeyUp(key="i"))
+    for _ in range(80):
+        held.step()
+    assert held.ignored == "screen was frozen", "the eye takes a moment"
+    held.do(FORWARD)
+    assert held.ignored == ""
+
+
+def test_a_key_that_is_held_from_before_arming_is_named() -> None:
+    held = HeldKey(releases=True)
+    held.station.operator.sticks.block(held.now)
+    held.step(REPEAT)
+    assert held.ignored == "it was held before"
+    for _ in range(160):
+        held.step()
+    assert held.ignored == ""
+
+
+def test_a_slow_start_is_not_reported_and_a_lapse_with_an_armed_rover_is() -> None:
+    starting = Station(["memory"], now=100.0)
+    starting.handle_intent(RenewLease(), 100.0)
+    starting.tick(100.6)
+    assert starting.snapshot(100.6, 100.6).texts == ()
+    held = HeldKey(releases=True)
+    held.now += 0.5
+    held.station.tick(held.now)
+    lines = held.station.snapshot(held.now, held.now).texts
+    assert lines[-1].text == "display not responding for 0.5 s: neutral, release the keys"

@@ -10,7 +10,16 @@ from typing import Any, TypeVar
 import msgspec
 
 from groundstation.intents import AnyIntent, RenewLease, SetKeyGate
-from groundstation.snapshot import LinkView, LogLine, MessageRate, OperatorView, OutputView, Snapshot, VehicleView
+from groundstation.snapshot import (
+    LinkView,
+    LogLine,
+    MessageRate,
+    OperatorView,
+    OutputView,
+    Snapshot,
+    StationOutage,
+    VehicleView,
+)
 from groundstation.views import LogPage, View
 
 NOON = 1_700_000_000.0
@@ -25,6 +34,7 @@ class Recorder:
     def __init__(self) -> None:
         self.intents: list[AnyIntent] = []
         self.alive = True
+        self.outage = StationOutage()
         self._waiting: list[Snapshot] = []
         self._views: list[View] = []
         self._ours, self._theirs = socket.socketpair()
@@ -65,6 +75,11 @@ class Recorder:
         """Give the descriptors back."""
         self._ours.close()
         self._theirs.close()
+
+    @property
+    def open(self) -> bool:
+        """As long as it is alive."""
+        return self.alive
 
     @property
     def wishes(self) -> list[AnyIntent]:

@@ -9,6 +9,7 @@ import os
 import pty
 import signal
 import struct
+import subprocess
 import termios
 from collections.abc import AsyncIterator, Callable, Iterable
 from pathlib import Path
@@ -28,6 +29,18 @@ PATIENCE = 60.0
 """s that a test waits for what must come; it comes in milliseconds."""
 
 Value = TypeVar("Value")
+
+
+def attach_pty(command: list[str], folder: Path) -> tuple[subprocess.Popen[bytes], int]:
+    """Start a program on a pseudo-terminal of its own session; return it and the person's end."""
+    master, slave = pty.openpty()
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
+    environment = {**os.environ, "TERM": "xterm-256color"}
+    process = subprocess.Popen(
+        command, cwd=folder, env=environment, start_new_session=True, stdin=slave, stdout=slave, stderr=slave
+    )
+    os.close(slave)
+    return process, master
 
 
 class Terminal:

@@ -9,7 +9,7 @@ import pytest
 
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents import ACTIONS
-from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot
+from groundstation.snapshot import EmergencyProgress, HandoverNotice, LinkView, Snapshot
 from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts, hint
 from groundstation.ui.display_state import DisplayState, ScreenInfo
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD, GateClosure
@@ -18,7 +18,21 @@ from tests.groundstation.ui.ptys import STANDARD
 
 PROBLEM = LinkView(name="udp", problem="messages arrive with another dialect's checksum: HEARTBEAT")
 
+ASKED = HandoverNotice(254, "Rover 1", 7.6)
+OTHER = {"in_control": False, "driver": 254}
+
 CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
+    (snapshot(), {"outage": "station not responding: x"}, AlertLevel.DANGER, "station not responding: x"),
+    (snapshot(), {"outage": "y", "station_alive": False}, AlertLevel.DANGER, "y; ^q quits"),
+    (snapshot(handover=ASKED), {}, AlertLevel.QUESTION, "control of Rover 1: Y gives, N keeps (8 s)"),
+    (
+        snapshot(vehicle=vehicle(**OTHER, control_wait=6.0)),
+        {},
+        AlertLevel.WARNING,
+        "drives: control requested, 6 s",
+    ),
+    (snapshot(vehicle=vehicle(**OTHER)), {"away": 9.0}, AlertLevel.WARNING, "tmux was detached for 9 s, control was"),
+    (snapshot(operator=helm(ignored="a")), {}, AlertLevel.WARNING, "key ignored (a): release it, then press again"),
     (snapshot(vehicle=vehicle(status=5)), {}, AlertLevel.DANGER, "Rover 1 reports CRITICAL (a failsafe or fault)"),
     (snapshot(vehicle=vehicle(status=5, armed=False)), {}, AlertLevel.WARNING, "Rover 1 reports CRITICAL (a fail"),
     (snapshot(vehicle=vehicle(status=6)), {}, AlertLevel.DANGER, "Rover 1 reports EMERGENCY: see the log"),
@@ -119,7 +133,7 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         AlertLevel.QUESTION,
         "Arm: hold r ████░░░░░░ 0.4 s",
     ),
-    (snapshot(), {"station_alive": False}, AlertLevel.DANGER, "the station process has ended"),
+    (snapshot(), {"station_alive": False}, AlertLevel.DANGER, "station process ended"),
 ]
 
 

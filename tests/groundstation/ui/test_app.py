@@ -6,6 +6,7 @@ import pytest
 from textual import events
 
 from groundstation.intents import ACTIONS, Arm, Disarm, DriveKeyDown, EmergencyStop, Quit, RenewLease, SetKeyGate, Stop
+from groundstation.snapshot import StationOutage
 from groundstation.ui.key_parser import KeyRepeat
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import console, helps_pushed, type_in
@@ -101,8 +102,23 @@ async def test_quit_needs_no_question_and_works_everywhere(key: str, first: tupl
 async def test_a_dead_station_is_said() -> None:
     async with console() as screen:
         screen.station.alive = False
-        await until(lambda: "the station process has ended" in screen.text)
+        await until(lambda: "station process ended" in screen.text)
         assert screen.station.of(SetKeyGate)[-1].reason == "the station has ended"
+
+
+async def test_a_station_that_does_not_respond_closes_the_gate_until_it_does() -> None:
+    text = "station not responding: the watchdog sends neutral to Rover 1"
+    async with console(picture=snapshot()) as screen:
+        await until(lambda: screen.app.gate.closure is None)
+        screen.station.outage = StationOutage(text)
+        screen.station.offer(snapshot())
+        await until(lambda: text in screen.text and "station lost" in screen.text)
+        assert screen.station.of(SetKeyGate)[-1].reason == "the station does not respond"
+        assert Stop("the station does not respond") in screen.station.intents
+        screen.station.outage = StationOutage()
+        screen.station.offer(snapshot())
+        await until(lambda: text not in screen.text)
+        assert screen.station.of(SetKeyGate)[-1].open
 
 
 async def test_a_beat_after_the_screens_are_gone_is_no_fault() -> None:

@@ -26,7 +26,7 @@ def test_no_number_is_no_setting(number: float) -> None:
     check = new_check()
     assert check.receive(value("MAV_GCS_SYSID", number), 0.0) == []
     assert not check.warnings
-    assert not check.obeys
+    assert [check.obeys] == [None]
     check.receive(value("MAV_GCS_SYSID", 7.0), 0.0)
     assert check.receive(value("MAV_GCS_SYSID", number), 0.0) == []
     assert check.obeys == "obeys ground station 7 only and we are 255: use --system 7"
@@ -50,7 +50,7 @@ def test_only_the_checked_parameters_of_this_vehicle_count() -> None:
     for number in range(1000):
         assert check.receive(value(f"OTHER_{number}", 0.0), 0.0) == []
     assert not check.warnings
-    assert not check.obeys
+    assert [check.obeys] == [None]
     assert check._params.params == {}, "a flood of names must not grow a table"
 
 
@@ -64,7 +64,7 @@ def test_parameters_that_were_not_answered_are_named() -> None:
     check = new_check()
     requests(check, 0.0, 3.0)
     assert not check.warnings
-    assert not check.obeys
+    assert [check.obeys] == [None]
     assert check.pop_missing_warning() == []
     check.receive(value("FS_GCS_ENABLE", 1.0), 3.0)
     requests(check, 3.0, 4.0)
@@ -76,7 +76,7 @@ def test_parameters_that_were_not_answered_are_named() -> None:
     assert check.warnings == ("could not read, trying again: FS_THR_ENABLE",)
     check.receive(value("FS_THR_ENABLE", 1.0), 5.0)
     assert not check.warnings
-    assert not check.obeys
+    assert [check.obeys] == [None]
 
 
 def test_parameters_are_requested_until_they_are_known() -> None:
@@ -99,6 +99,6 @@ def test_a_restart_reads_everything_again() -> None:
     assert check.warnings
     check.restart()
     assert not check.warnings
-    assert not check.obeys
+    assert [check.obeys] == [None]
     assert check.without_link is None
     assert set(requests(check, 1.0, 2.0)) == set(ARDUPILOT.checks)

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
-from groundstation.ui.widgets.keycaps import lit_actions
+from groundstation.ui.widgets.keycaps import Keycaps, KeycapsValue, lit_actions
 from tests.groundstation.ui.ptys import STANDARD
 
 
 def test_an_arrow_lights_the_cap_of_its_direction() -> None:
     assert lit_actions(frozenset({"up"}), STANDARD) == lit_actions(frozenset({"i"}), STANDARD) == {"drive.forward"}
     assert lit_actions(frozenset({"r", "question_mark"}), STANDARD) == frozenset()
+
+
+def test_the_cap_of_a_key_that_does_not_count_has_another_colour() -> None:
+    first = [
+        Keycaps(KeycapsValue(STANDARD, frozenset({"drive.forward"}), open=True, ignored=ignored)).draw(60, 3)[0]
+        for ignored in (False, True)
+    ]
+    assert first[0].text == first[1].text
+    assert [segment.style for segment in first[0]] != [segment.style for segment in first[1]]

@@ -77,3 +77,30 @@ def test_a_vehicle_that_obeys_another_station_is_not_driven_by_us() -> None:
     line = first_line(obeys="obeys ground station 250 only")
     assert "you drive" not in line
     assert "obeys another GCS" in line
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, "you drive"),
+        ({"mode": "HOLD", "drivable": False}, "you are in control"),
+        ({"mode": "AUTO", "drivable": False}, "you are in control"),
+        ({"armed": False}, "you are in control"),
+        ({"emergency_stop": True}, ""),
+        ({"in_control": False, "driver": 254}, "driven by 254"),
+        ({"in_control": False, "driver": 0}, "no GCS in control"),
+        ({"in_control": False, "driver": None}, ""),
+        ({"alive": False, "silence": 4.0}, "link lost for 4 s"),
+    ],
+)
+def test_you_drive_is_shown_only_while_the_keys_drive(changes: dict[str, Any], words: str) -> None:
+    line = first_line(**changes)
+    assert words in line
+    assert ("you drive" in line) is (words == "you drive")
+    assert ("in control" in line) is ("in control" in words)
+
+
+def test_a_lost_station_drives_nothing() -> None:
+    line = StatusBar(StatusBarValue(snapshot(), STANDARD, station_runs=False)).draw(80, 2)[0].text
+    assert "station lost" in line
+    assert "you drive" not in line

@@ -1,0 +1,33 @@
+"""Detects that the station process stood still for so long that the watchdog may have sent neutral in its place.
+
+The station reports to the watchdog (groundstation/watchdog/) that it runs. Both measure the same silence on the same
+clock, and the station from the earlier moment: if the watchdog has acted, the station finds out before it sends.
+"""
+
+from __future__ import annotations
+
+STALL_TIMEOUT = 0.3
+"""s without a report of the station after which the watchdog sends neutral: three reports. As long as the lease of the
+screen, so that a busy machine causes no more stops than before."""
+
+
+class StallMonitor:
+    """Time since the last report to the watchdog. Without any report, as without a watchdog, nothing is a stall."""
+
+    def __init__(self) -> None:
+        self._reported_at: float | None = None
+
+    def record_report(self, now: float) -> None:
+        """Record that a report was sent."""
+        self._reported_at = now
+
+    def is_stalled(self, now: float) -> bool:
+        """Return whether the last report is older than STALL_TIMEOUT."""
+        return self._reported_at is not None and now - self._reported_at > STALL_TIMEOUT
+
+    def pop_stall(self, now: float) -> float | None:
+        """Return for how many s the process stood still, once each time; else None."""
+        if self._reported_at is None or not self.is_stalled(now):
+            return None
+        stalled_for, self._reported_at = now - self._reported_at, now
+        return stalled_for

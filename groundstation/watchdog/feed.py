@@ -1,0 +1,99 @@
+"""Reports to the watchdog what the station drives and where the demands leave, with the descriptors."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import logging
+import os
+import socket
+import time
+from collections.abc import Hashable, Sequence
+
+from dialects.messages import ManualControl, Message
+from groundstation.station.driven import DEMAND_MEMORY, DrivenVehicle
+from groundstation.watchdog.process import fork_watchdog
+from groundstation.watchdog.report import MAX_OUTLETS, Route, StationReport, encode_report
+from link.transport.transport import Link
+
+log = logging.getLogger(__name__)
+
+END_WITHIN = 0.3
+"""s for the watchdog to end after the station's last report: the ports must be free when the station has ended."""
+
+MAX_ADDRESSES = 256
+"""Addresses whose sequence is remembered; a link has 24 at a time."""
+
+GONE = (errno.EPIPE, errno.ECONNRESET, errno.ENOTCONN, errno.ECONNREFUSED)
+"""Errors that show that the watchdog's process has ended."""
+
+
+class WatchdogFeed:
+    """The watchdog of this process. `ids` are our system and component id."""
+
+    def __init__(self, process: int, sock: socket.socket, ids: tuple[int, int]) -> None:
+        self._process = process
+        self._socket = sock
+        self._ids = ids
+        self._sequences: dict[tuple[int, Hashable], int] = {}
+        """Link and address -> packet sequence of the newest frame."""
+        self._routes: dict[tuple[int, int, Hashable], tuple[Link, float]] = {}
+        """System, link and address -> the link, and when the newest demand went there."""
+        self._flags: dict[str, bool] = {}
+        self.alive = True
+
+    @classmethod
+    def start(cls, screen: socket.socket, terminal: str | None, ids: tuple[int, int]) -> WatchdogFeed:
+        """Start the watchdog. Raises OSError."""
+        return cls(*fork_watchdog(screen, terminal), ids)
+
+    def record_sent(self, link: Link, address: Hashable, message: Message, sequence: int, now: float) -> None:
+        """Record a frame that was sent, and with a demand the way to its vehicle."""
+        index = link.channel.index
+        if len(self._sequences) > MAX_ADDRESSES:
+            self._sequences.clear()
+        self._sequences[index, address] = sequence
+        if isinstance(message, ManualControl):
+            self._routes[message.target, index, address] = (link, now)
+
+    def set_flags(self, **flags: bool) -> None:
+        """Set fields that all further reports have."""
+        self._flags |= flags
+
+    def report(self, vehicles: Sequence[DrivenVehicle], now: float) -> bool:
+        """Report that the station runs. Returns False once, when the watchdog's process has ended."""
+        self._forget_old(now)
+        routes: list[Route] = []
+        descriptors: list[int] = []
+        for number, vehicle in enumerate(vehicles):
+            for (system, index, address), (link, _) in self._routes.items():
+                outlet = link.transport.outlet(address) if system == vehicle.system else None
+                if outlet is not None and outlet.descriptor >= 0 and len(routes) < MAX_OUTLETS:
+                    sequence = self._sequences.get((index, address), 0)
+                    routes.append(Route(number, outlet.destination, sequence))
+                    descriptors.append(outlet.descriptor)
+        report = StationReport(ids=self._ids, vehicles=tuple(vehicles), routes=tuple(routes), **self._flags)
+        return self._send(encode_report(report), descriptors)
+
+    def close(self) -> None:
+        """Tell the watchdog that the station ends in order, and wait for its end."""
+        self.set_flags(ending=True)
+        self.report((), 0.0)
+        self._socket.close()
+        deadline = time.monotonic() + END_WITHIN
+        with contextlib.suppress(ChildProcessError):
+            while os.waitpid(self._process, os.WNOHANG)[0] == 0 and time.monotonic() < deadline:
+                time.sleep(0.005)
+
+    def _forget_old(self, now: float) -> None:
+        for key in [key for key, (_, at) in self._routes.items() if now - at > DEMAND_MEMORY]:
+            del self._routes[key]
+
+    def _send(self, data: bytes, descriptors: Sequence[int]) -> bool:
+        was_alive = self.alive
+        try:
+            socket.send_fds(self._socket, [data], descriptors)
+        except OSError as error:  # among others: the watchdog stands still, and its queue is full
+            self.alive = self.alive and error.errno not in GONE
+            log.warning("no report to the watchdog: %s", error.strerror)
+        return self.alive or not was_alive

@@ -1,0 +1,43 @@
+"""What the station process tells the watchdog ten times a second. Each report is complete: the newest one counts."""
+
+from __future__ import annotations
+
+import msgspec
+
+from groundstation.station.driven import DrivenVehicle
+
+MAX_OUTLETS = 32
+"""Descriptors in one report; more than any station has links. The kernel allows 253."""
+
+MAX_REPORT = 1 << 16
+"""Bytes of the largest report."""
+
+
+class Route(msgspec.Struct, frozen=True):
+    """Where the demands to a vehicle leave. The descriptors of all routes travel with the report, in this order."""
+
+    vehicle: int
+    """Index in `vehicles` of the report."""
+    destination: tuple[str | int, ...] | None
+    """The address for sendto(); None for a connected descriptor."""
+    sequence: int
+    """Packet sequence of the newest frame that was sent there."""
+
+
+class StationReport(msgspec.Struct, frozen=True, kw_only=True):
+    """The station runs; this is what the watchdog needs if it does not any more."""
+
+    ids: tuple[int, int] = (255, 190)
+    """System and component id of the station."""
+    vehicles: tuple[DrivenVehicle, ...] = ()
+    routes: tuple[Route, ...] = ()
+    screen_has_quit: bool = False
+    """The screen ends in order, and leaves the terminal as it was."""
+    screen_is_gone: bool = False
+    """The screen's process has ended without that."""
+    ending: bool = False
+    """The station has sent its last neutral demands and ends."""
+
+
+encode_report = msgspec.msgpack.Encoder().encode
+decode_report = msgspec.msgpack.Decoder(StationReport).decode

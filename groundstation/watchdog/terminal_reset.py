@@ -1,0 +1,58 @@
+"""Resets the terminal after a screen process that was killed: back to the main screen, without key and mouse modes."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import termios
+from typing import Any
+
+RESET = (
+    b"\x1b[?2026l"  # show what is drawn
+    b"\x1b[?2004l\x1b[?2048l\x1b[?1004l"  # no bracketed paste, no reports of size and focus
+    b"\x1b[?1000;1006l\x1b[?1007h\x1b[?1007r"  # the mouse, as ui/mouse.py does it
+    b"\x1b[=0;1u\x1b[<u"  # kitty keyboard protocol off; it is kept for each screen, so before leaving this one
+    b"\x1b[?7h\x1b[?1049l\x1b[?25h\x1b[0m"  # wrap lines, main screen, cursor, no colours
+)
+"""Undoes what ui/terminal.py and Textual's LinuxDriver set."""
+
+LOCAL_FLAGS = 3
+"""Index in the list of termios.tcgetattr()."""
+
+
+class TerminalReset:
+    """One terminal by its path, as it is before the screen starts. Without a path, or one that is gone: nothing."""
+
+    def __init__(self, path: str | None) -> None:
+        self._path = path
+        self._before = None if path is None else _attributes(path)
+
+    def run(self) -> None:
+        """Reset the terminal; it may be gone."""
+        if self._path is None:
+            return
+        with contextlib.suppress(OSError, termios.error):
+            descriptor = os.open(self._path, os.O_RDWR | os.O_NONBLOCK | os.O_NOCTTY)
+            try:
+                os.write(descriptor, RESET)
+                self._restore_line(descriptor)
+            finally:
+                os.close(descriptor)
+
+    def _restore_line(self, descriptor: int) -> None:
+        """Restore echo and lines, unless a shell has taken the terminal: one that edits lines keeps ISIG."""
+        if self._before is not None and not termios.tcgetattr(descriptor)[LOCAL_FLAGS] & termios.ISIG:
+            termios.tcsetattr(descriptor, termios.TCSANOW, self._before)
+
+
+def _attributes(path: str) -> list[Any] | None:
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY)
+    except OSError:
+        return None
+    try:
+        return termios.tcgetattr(descriptor)
+    except termios.error:
+        return None
+    finally:
+        os.close(descriptor)

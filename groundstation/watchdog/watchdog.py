@@ -1,0 +1,181 @@
+"""Core of the watchdog: when to send neutral in the place of the station, to whom, until when, and what is known of it.
+
+It begins at once when the station's end of the socket is closed, or after STALL_TIMEOUT without a report. It ends when
+the station runs again, when every vehicle has reported that it stands, or after SEND_FOR. A report of the station ends
+it without a handshake: by then the station has found out that it stood still, and is neutral itself (stall.py).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import Enum, auto
+
+from dialects.enums import ModeFlag
+from dialects.messages import Heartbeat, Message, RoverDriveStatus, VfrHud
+from groundstation.snapshot import StationOutage
+from groundstation.station.driven import DrivenVehicle
+from groundstation.station.stall import STALL_TIMEOUT
+from groundstation.vehicles.demand_stream import DRIVING_PERIOD, NEUTRAL_PERIOD, SETTLE
+from groundstation.watchdog.neutral import NeutralFrames
+from groundstation.watchdog.report import StationReport
+
+SEND_FOR = 5.0
+"""s of neutral at most. A vehicle that is silent for longer has lost its link, and its own failsafe acts; and the port
+must be free when the operator starts the ground station again."""
+
+STANDING_SPEED, STANDING_FOR = 0.2, 0.5
+"""m/s below which, and s for which, a foreign vehicle counts as standing: GPS speed has noise."""
+
+WANTED = frozenset((Heartbeat.id, RoverDriveStatus.id, VfrHud.id))
+"""Ids of the messages that show whether a vehicle stands."""
+
+
+class Cause(Enum):
+    """Why the station does not send."""
+
+    ENDED = auto()
+    STALLED = auto()
+
+
+_STATION = {
+    Cause.ENDED: "station process ended",
+    Cause.STALLED: "station not responding",
+}
+
+
+@dataclass(slots=True)
+class _Target:
+    """A vehicle that gets neutral."""
+
+    vehicle: DrivenVehicle
+    sent: int = 0
+    """Frames that the kernel has accepted."""
+    error: str = ""
+    """Why the newest frame was not accepted."""
+    disarmed: bool = False
+    stands: bool = False
+    slow_since: float = math.inf
+
+    def handle(self, message: Message, now: float) -> None:
+        """Note what a message of the vehicle shows, after the first neutral was sent."""
+        match message:
+            case Heartbeat():
+                self.disarmed = not message.base_mode & ModeFlag.ARMED
+            case RoverDriveStatus():
+                self.stands = not any(message.output)
+            case VfrHud() if self.vehicle.session is None:
+                self.slow_since = min(self.slow_since, now) if message.groundspeed < STANDING_SPEED else math.inf
+                self.stands = now - self.slow_since >= STANDING_FOR
+
+    @property
+    def confirmed(self) -> bool:
+        """The newest messages of the vehicle show that it does not drive."""
+        return self.disarmed or self.stands
+
+    def describe(self, *, sending: bool) -> str:
+        """Return what is known, as a text for the driver."""
+        name = self.vehicle.name
+        if self.confirmed:
+            return f"{name} {'is disarmed' if self.disarmed else 'stands'}"
+        if not self.sent:
+            return f"neutral could NOT be sent to {name} ({self.error or 'no link'})"
+        if sending:
+            return f"the watchdog sends neutral to {name}"
+        return f"{name} may still move after {SEND_FOR:.0f} s of neutral"
+
+
+@dataclass(slots=True)
+class _Takeover:
+    """One time in which the watchdog sends."""
+
+    cause: Cause
+    since: float
+    targets: list[_Target]
+    frames: list[tuple[int, int, NeutralFrames]]
+    """Route, target, and what goes there."""
+    due: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.due = self.since
+
+    def is_sending(self, now: float) -> bool:
+        """Return whether there is a reason to go on."""
+        if not self.frames or now - self.since > SEND_FOR:
+            return False
+        return now - self.since < SETTLE or not all(target.confirmed for target in self.targets)
+
+
+class Watchdog:
+    """One station. Times are s of the clock that the station uses, too."""
+
+    def __init__(self) -> None:
+        self._report = StationReport()
+        self._heard_at = math.inf
+        """When the newest report came; before the first the station is still starting."""
+        self._ended = False
+        self._takeover: _Takeover | None = None
+
+    def handle_report(self, report: StationReport, now: float) -> None:
+        """Note that the station runs, and what it drives."""
+        self._report, self._heard_at = report, now
+        self._takeover = None
+
+    def handle_end(self, now: float) -> None:
+        """Note that the station's process has ended."""
+        self._ended = True
+        if self._takeover is not None:
+            self._takeover.cause = Cause.ENDED
+        elif self._heard_at < math.inf and not self._report.ending:
+            self._begin(Cause.ENDED, now)
+
+    def handle_message(self, system: int, message: Message, now: float) -> None:
+        """Note whether a vehicle stands. Called only once the station has ended: it reads the same sockets."""
+        for target in self._takeover.targets if self._takeover else ():
+            if target.vehicle.system == system and target.sent:
+                target.handle(message, now)
+
+    def tick(self, now: float) -> list[tuple[int, int, bytes]]:
+        """Return the frames to send now: route, target (for `record_sent`) and bytes."""
+        if self._takeover is None and not self._ended and now - self._heard_at > STALL_TIMEOUT:
+            self._begin(Cause.STALLED, now)
+        takeover = self._takeover
+        if takeover is None or now < takeover.due or not takeover.is_sending(now):
+            return []
+        takeover.due = now + (DRIVING_PERIOD if now - takeover.since < SETTLE else NEUTRAL_PERIOD)
+        return [(route, target, frames.next_frame(now)) for route, target, frames in takeover.frames]
+
+    def record_sent(self, target: int, error: str | None) -> None:
+        """Record whether the kernel has accepted a frame (None) or why not."""
+        if self._takeover is not None:
+            each = self._takeover.targets[target]
+            each.sent, each.error = each.sent + (error is None), error or each.error
+
+    def timeout(self, now: float) -> float | None:
+        """Return the s until the next `tick`; None: only an event of the station brings one."""
+        takeover = self._takeover
+        if takeover is not None:
+            return max(0.0, takeover.due - now) if takeover.is_sending(now) else None
+        return max(0.0, self._heard_at + STALL_TIMEOUT - now) + 0.001 if self._heard_at < math.inf else None
+
+    def finished(self, now: float) -> bool:
+        """Return whether the station has ended and nothing is left to send."""
+        return self._ended and (self._takeover is None or not self._takeover.is_sending(now))
+
+    def outage(self, now: float) -> StationOutage:
+        """Return what the screen shows; without a text while the station runs."""
+        takeover = self._takeover
+        if takeover is None:
+            return StationOutage()
+        sending = takeover.is_sending(now)
+        known = [target.describe(sending=sending) for target in takeover.targets] or ["nothing is sent"]
+        return StationOutage(f"{_STATION[takeover.cause]}: {', '.join(known)}", takeover.cause is Cause.ENDED)
+
+    def _begin(self, cause: Cause, now: float) -> None:
+        report = self._report
+        targets = [_Target(vehicle) for vehicle in report.vehicles]
+        frames = [
+            (index, route.vehicle, NeutralFrames(report.vehicles[route.vehicle], report.ids, route.sequence))
+            for index, route in enumerate(report.routes)
+        ]
+        self._takeover = _Takeover(cause, now, targets, frames)

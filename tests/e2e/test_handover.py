@@ -1,0 +1,78 @@
+"""Control handed over between two real station processes, by a real vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from groundstation.intents import (
+    AnyIntent,
+    DriveKeyUp,
+    GiveControl,
+    KeepControl,
+    ReportKeyReleases,
+    RequestControl,
+    SetMode,
+)
+from groundstation.snapshot import Snapshot
+from tests.e2e.programs import Vehicle
+from tests.groundstation.screen import FORWARD, Screen, until
+from tests.ports import free_port
+
+pytestmark = pytest.mark.e2e
+
+
+class Pair:
+    """Two stations on one rover; `driver` (255) drives it."""
+
+    def __init__(self, folder: Path, stack: ExitStack) -> None:
+        port = free_port()
+        self.vehicle = Vehicle(folder, f"udpin:127.0.0.1:{port}")
+        stack.callback(self.vehicle.end)
+        endpoint = f"udpout:127.0.0.1:{port}"
+        self.driver = stack.enter_context(Screen(endpoint, system=255))
+        self.other = stack.enter_context(Screen(endpoint, system=254))
+        self.other.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver is not None)
+        self.driver.hold_forward()
+        until(self.vehicle.turning)
+        self.other.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver == 255)
+        self.other.client.send(RequestControl())
+        self.driver.see(lambda seen: seen.handover is not None and seen.handover.station == 254)
+        self.other.see(lambda seen: seen.vehicle is not None and seen.vehicle.control_wait is not None)
+
+    def answer(self, intent: AnyIntent) -> None:
+        self.driver.client.send(intent)
+
+
+@pytest.fixture
+def pair(tmp_path: Path) -> Iterator[Pair]:
+    with ExitStack() as stack:
+        yield Pair(tmp_path, stack)
+
+
+def drives(screen: Screen) -> Snapshot:
+    return screen.see(lambda seen: seen.vehicle is not None and seen.vehicle.in_control)
+
+
+def test_given_control_stops_the_rover_and_the_other_station_drives(pair: Pair) -> None:
+    pair.answer(GiveControl())
+    drives(pair.other)
+    until(pair.vehicle.stands)
+    pair.driver.see(lambda seen: seen.vehicle is not None and seen.vehicle.driver == 254)
+    assert pair.driver.snapshot.handover is None
+    pair.other.client.send(ReportKeyReleases())
+    pair.other.insist(
+        lambda: pair.other.client.send(SetMode(mode="MANUAL")),
+        lambda seen: seen.vehicle is not None and seen.vehicle.mode == "MANUAL",
+    )
+    pair.other.insist(lambda: pair.other.client.send(DriveKeyUp(key="i"), FORWARD), lambda _: pair.vehicle.turning())
+
+
+def test_kept_control_drives_on(pair: Pair) -> None:
+    pair.answer(KeepControl())
+    pair.driver.see(lambda seen: seen.handover is None)
+    assert pair.vehicle.turning()
+    assert drives(pair.driver).vehicle is not None
