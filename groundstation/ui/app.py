@@ -6,7 +6,6 @@ import asyncio
 import signal
 import time
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -18,33 +17,19 @@ from textual.filter import LineFilter
 from textual.screen import Screen
 
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents import (
-    ACTIONS,
-    AnyIntent,
-    DriveKeyDown,
-    OperatorAction,
-    Quit,
-    ReleaseControl,
-    RenewLease,
-    Watch,
-)
+from groundstation.intents import AnyIntent, OperatorAction, Quit, ReleaseControl, RenewLease, Watch
 from groundstation.snapshot import Snapshot
 from groundstation.ui import garbage
 from groundstation.ui.ascii import AsciiFilter
 from groundstation.ui.colours import THEME
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.key_gate import (
-    OTHER_SCREEN,
-    STARTING,
-    GateClosure,
-    GateLevel,
-    KeyGate,
-    StationConnection,
-)
+from groundstation.ui.gate_checks import AppCondition, find_closure
+from groundstation.ui.key_gate import OTHER_SCREEN, GateClosure, GateLevel, KeyGate, StationConnection
 from groundstation.ui.key_hint import KeyHint
 from groundstation.ui.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.navigation import ScreenNavigator
-from groundstation.ui.palette import ActionProvider
+from groundstation.ui.palette import ActionProvider, action_commands
+from groundstation.ui.pressed_keys import PressedKeys
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.terminal import PING, ConsoleDriver, TerminalClosed
@@ -55,9 +40,6 @@ from groundstation.views import ViewRequest
 
 TICK = 0.1
 """s between renewals of the lease: a third of LEASE_TIMEOUT, what the station allows."""
-
-LIT = 0.15
-"""s for which a cap stays lit after a press; by then a snapshot (10 Hz) has reported which keys are held."""
 
 MIN_FRAME_TIME = 0.06
 """Least time between two drawings, s. Snapshots in between are skipped: only the newest counts."""
@@ -89,7 +71,7 @@ class ConsoleApp(App[int]):
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
         self._snapshot, self._outage = Snapshot(), client.outage
-        self._pressed: dict[str, float] = {}
+        self._pressed = PressedKeys()
         self._key_hint = KeyHint(keymap)
         self._shown_at = 0.0
         self._leaving: GateClosure | None = None
@@ -212,7 +194,7 @@ class ConsoleApp(App[int]):
             station_alive=self._client.alive,
             outage=self._outage.text,
             away=self._tmux.away,
-            pressed=frozenset(self._pressed),
+            pressed=self._pressed.names,
             key_hint=self._key_hint.text(self._clock()),
             terminal_round_trip=self.gate.ping.round_trip,
             ascii=self._ascii.enabled,
@@ -233,8 +215,7 @@ class ConsoleApp(App[int]):
         self._watch()
         if self._tmux.pop_release(now):
             self._send(ReleaseControl(all=True))
-        for key in [key for key, until in self._pressed.items() if now >= until]:
-            del self._pressed[key]
+        self._pressed.expire(now)
         if now - self._shown_at >= TICK:
             self._show()
 
@@ -244,20 +225,19 @@ class ConsoleApp(App[int]):
 
     def _gate_closure(self, now: float) -> GateClosure | None:
         """Return why keys must not drive now, as far as the UI knows; None when they may."""
-        other = self._navigator.closure()
-        stuck = self._terminal is not None and self._terminal.is_stuck(time.monotonic())
-        checks: tuple[tuple[bool, GateClosure], ...] = (
-            (self._leaving is not None, self._leaving or STARTING),
-            (not self._client.alive, GateClosure("the station has ended")),
-            (bool(self._outage.text), GateClosure("the station does not respond")),
-            (other is not None, other or OTHER_SCREEN),
-            (self._tmux.detached, GateClosure("nobody is attached to tmux")),
-            (not self.app_focus, GateClosure("this window does not have the focus")),
-            (self.drive.too_small, GateClosure("the terminal is too small")),
-            (self.gate.ping.is_silent(now), GateClosure("the terminal does not answer")),
-            (stuck, GateClosure("the terminal accepts no output")),
+        return find_closure(
+            AppCondition(
+                leaving=self._leaving,
+                station_alive=self._client.alive,
+                outage=self._outage.text,
+                other_screen=self._navigator.closure(),
+                detached=self._tmux.detached,
+                focus=self.app_focus,
+                too_small=self.drive.too_small,
+                terminal_silent=self.gate.ping.is_silent(now),
+                terminal_stuck=self._terminal is not None and self._terminal.is_stuck(time.monotonic()),
+            )
         )
-        return next((closure for holds, closure in checks if holds), None)
 
     # ---- keys ----
 
@@ -291,14 +271,14 @@ class ConsoleApp(App[int]):
 
     def on_key_up(self, event: KeyUp) -> None:
         """Switch the key cap off."""
-        self._pressed.pop(event.key, None)
-        self.drive.light_keycaps(frozenset(self._pressed))
+        self._pressed.release(event.key)
+        self.drive.light_keycaps(self._pressed.names)
 
     def _light(self, key: str) -> None:
-        self._pressed[key] = self._clock() + LIT
+        self._pressed.press(key, self._clock())
         if self.screen is self.drive:
             self._key_hint.press(key, self._clock())
-            self.drive.light_keycaps(frozenset(self._pressed))
+            self.drive.light_keycaps(self._pressed.names)
 
     # ---- actions ----
 
@@ -309,10 +289,8 @@ class ConsoleApp(App[int]):
             perform()
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """Return the palette's commands: all actions but those that mean holding a key, to drive or to confirm."""
-        for action in ACTIONS.values():
-            if not isinstance(action.intent, DriveKeyDown) and not action.confirm:
-                yield SystemCommand(action.label, action.help, partial(self.choose_action, action))
+        """Return the palette's commands."""
+        return action_commands(self.choose_action)
 
     def choose_action(self, action: OperatorAction) -> None:
         """Perform an action from the palette: no key has sent its intent."""

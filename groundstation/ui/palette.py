@@ -2,8 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from functools import partial
+
 from textual.app import SystemCommand
 from textual.command import DiscoveryHit, Hit, Hits, Provider
+
+from groundstation.intents import ACTIONS, DriveKeyDown, OperatorAction
+
+
+def action_commands(choose: Callable[[OperatorAction], None]) -> Iterator[SystemCommand]:
+    """Yield a command for every action but those that mean holding a key, to drive or to confirm."""
+    for action in ACTIONS.values():
+        if not isinstance(action.intent, DriveKeyDown) and not action.confirm:
+            yield SystemCommand(action.label, action.help, partial(choose, action))
 
 
 class ActionProvider(Provider):
