@@ -104,6 +104,9 @@ class LinkReport:
     """Share of the capacity that may be used now, 0..1; RADIO_STATUS of a telemetry radio reduces it."""
     dropped: int = 0
     """Outgoing frames dropped because the link had no room."""
+    frames_sent: int = 0
+    """Outgoing frames, forwarded and dropped ones included, like `bytes_sent`."""
+    bytes_sent: int = 0
     sources: dict[tuple[int, int], SourceCount] = field(default_factory=dict)
     audience: tuple[Peer, ...] = ()
     """Peers that get broadcast messages: those that sent a HEARTBEAT or connected, and the address that the user

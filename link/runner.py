@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable, Hashable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Protocol, runtime_checkable
 
@@ -188,7 +189,7 @@ class Runner:
     def _forward(self, deliveries: Sequence[Delivery]) -> None:
         for link, address, frames in deliveries:
             for frame in frames:
-                self._links[link].transport.send(frame, address)
+                self._links[link].send(frame, address)
 
     def _hand_over(self, messages: list[Received], now: float) -> None:
         for received in messages:
@@ -227,7 +228,8 @@ class Runner:
 
     @staticmethod
     def _report(link: Link, now: float) -> LinkReport:
-        return link.channel.report(link.transport.problem, now=now, dropped=link.transport.dropped)
+        report = link.channel.report(link.transport.problem, now=now, dropped=link.transport.dropped)
+        return replace(report, frames_sent=link.frames_sent, bytes_sent=link.bytes_sent)
 
     def _flush(self) -> None:
         for outgoing in self._core.messages_to_send():
@@ -249,7 +251,7 @@ class Runner:
                 now = asyncio.get_running_loop().time()
                 if self._may_send and not self._may_send(outgoing.message, now):
                     return
-                link.transport.send(data, address)
+                link.send(data, address)
                 if self._sent:
                     self._sent(outgoing.message, sequence, now)
                 if self._on_sent:

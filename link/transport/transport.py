@@ -73,6 +73,14 @@ class Link:
 
     transport: Transport
     channel: Channel
+    frames_sent: int = 0
+    bytes_sent: int = 0
+
+    def send(self, data: bytes, address: Hashable) -> None:
+        """Send one frame and count it."""
+        self.frames_sent += 1
+        self.bytes_sent += len(data)
+        self.transport.send(data, address)
 
     @property
     def endpoint(self) -> Endpoint:
