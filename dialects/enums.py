@@ -25,6 +25,21 @@ class VehicleType(IntEnum):
     SURFACE_BOAT = rover.MAV_TYPE_SURFACE_BOAT
 
 
+def type_name(number: int) -> str:
+    """Return any MAV_TYPE in words, e.g. "onboard controller"; "type 250" for one that the dialect does not know."""
+    return _words("MAV_TYPE", number) or f"type {number}"
+
+
+def state_name(number: int) -> str:
+    """Return a MAV_STATE in words, e.g. "standby"; "state 12" for one that the dialect does not know."""
+    return _words("MAV_STATE", number) or f"state {number}"
+
+
+def _words(enum: str, number: int) -> str:
+    entry = rover.enums[enum].get(number)
+    return "" if entry is None else str(entry.name).removeprefix(f"{enum}_").replace("_", " ").lower()
+
+
 class SystemState(IntEnum):
     """MAV_STATE: `system_status` of HEARTBEAT."""
 

@@ -37,6 +37,8 @@ SCREENS: tuple[ScreenRow, ...] = (
               "groundstation.ui.screens.drive:DriveScreen"),
     ScreenRow("log", "Log", "All alerts and messages, to scroll, filter and save", ("f6",), "6",
               "groundstation.ui.screens.log:LogScreen"),
+    ScreenRow("links", "Links", "Vehicles, links and who is in control: choose a vehicle", ("f7",), "7",
+              "groundstation.ui.screens.links:LinksScreen"),
     ScreenRow("help", "Help", "Keys and what they do", ("question_mark",), "",
               "groundstation.ui.screens.help:HelpScreen"),
 )  # fmt: skip

@@ -7,11 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from groundstation.snapshot import LinkView
-from link.core import LinkReport, SourceCount
+from groundstation.views import LinkRow
+from link.core import LinkReport, Peer, SourceCount
 from link.protocol.link_events import link_problem
 
 LOSS_WINDOW = 5.0
 """s over which the loss is counted: at the 27 messages/s of ArduPilot's defaults one lost frame is 0.7 %."""
+
+MAX_PEERS = 4
+"""Peers of a link that a row names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +43,20 @@ class LinkStats:
         """Build the links' part of the snapshot."""
         return tuple(_view(samples, round_trip) for _, samples in sorted(self._samples.items()))
 
+    def build_rows(self, round_trip: float | None, jitter: float | None, link: int | None) -> tuple[LinkRow, ...]:
+        """Build the rows of the Links screen; `link` carries the vehicle to which the round trip was measured."""
+        timed = (round_trip, jitter)
+        return tuple(
+            _row(samples, *(timed if index == link else (None, None)))
+            for index, samples in sorted(self._samples.items())
+        )
+
+    @property
+    def signing(self) -> tuple[int, ...]:
+        """System ids whose newest frame was signed, on any link."""
+        newest = (samples[-1].report for samples in self._samples.values())
+        return tuple(sorted({system for report in newest for system in report.signing}))
+
     def capacity(self, link: int) -> float | None:
         """Return how many bytes/s a link takes now; None if unknown."""
         samples = self._samples.get(link)
@@ -59,6 +77,53 @@ def _count(report: LinkReport, system: int | None) -> SourceCount:
 def _delta(samples: deque[_Sample], name: str) -> float:
     first, last = samples[0].report, samples[-1].report
     return float(getattr(last, name) - getattr(first, name))
+
+
+def _rate(samples: deque[_Sample], name: str) -> float:
+    seconds = samples[-1].time - samples[0].time
+    return max(0.0, _delta(samples, name) / seconds) if seconds else 0.0
+
+
+def _loss(samples: deque[_Sample]) -> float | None:
+    """Return the lost fraction of all frames; frames with unknown ids leave gaps in the numbers but did arrive."""
+    first, last = (_all_sources(sample.report) for sample in (samples[0], samples[-1]))
+    received, gaps = last.received - first.received, last.lost - first.lost
+    lost = max(0, gaps - int(_delta(samples, "unknown")))
+    return lost / (lost + received) if received > 0 and gaps >= 0 else None
+
+
+def _all_sources(report: LinkReport) -> SourceCount:
+    counts = report.sources.values()
+    return SourceCount(sum(count.received for count in counts), sum(count.lost for count in counts))
+
+
+def _row(samples: deque[_Sample], round_trip: float | None, jitter: float | None) -> LinkRow:
+    report = samples[-1].report
+    return LinkRow(
+        name=report.name,
+        peers=tuple(_address(peer) for peer in report.audience if peer.address != report.name)[:MAX_PEERS],
+        peer_count=report.peers,
+        frames_in=round(_rate(samples, "frames"), 1),
+        frames_out=round(_rate(samples, "frames_sent"), 1),
+        bytes_in=round(_rate(samples, "bytes_received")),
+        bytes_out=round(_rate(samples, "bytes_sent")),
+        loss=_loss(samples),
+        lost=max(0, _all_sources(report).lost - report.unknown),
+        crc_errors=report.crc_errors,
+        refused=report.refused_peers,
+        dropped=report.dropped,
+        round_trip=round_trip,
+        jitter=jitter,
+        capacity=report.capacity,
+        headroom=report.headroom,
+        problem=link_problem(report),
+    )
+
+
+def _address(peer: Peer) -> str:
+    """Return an address as text: "192.168.4.20:50211" for a socket's."""
+    address = peer.address
+    return f"{address[0]}:{address[1]}" if isinstance(address, tuple) else str(address)
 
 
 def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:

@@ -18,13 +18,14 @@ from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_stats import LinkStats
+from groundstation.station.link_views import LinkViews
 from groundstation.station.message_rates import MessageRates
 from groundstation.station.operator import OperatorSession
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
-from groundstation.views import LogRequest
+from groundstation.views import LogRequest, Program
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -51,8 +52,6 @@ class Station:
         self.log = MessageLog()
         self.operator = OperatorSession(style, speed, session)
         self.fleet = Fleet(self.log, system, COMPONENT)
-        self.views = ViewFeed({LogRequest: ViewSource(self.log.build_page, period=0.1)})
-        """Request -> its source."""
         self._endpoints = tuple(endpoints)
         self._system = system
         self._started = now
@@ -60,6 +59,21 @@ class Station:
         self._driving = DrivingController(self.operator, self.fleet, self._commander, system)
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
+        self._links = LinkStats()
+        self._timesync = TimesyncClient(system)
+        self._link_views = LinkViews(
+            self.fleet,
+            self._commander,
+            self._driving,
+            self._handover,
+            self._links,
+            self._timesync,
+            Program(system, COMPONENT, session),
+        )
+        self.views = ViewFeed(
+            {LogRequest: ViewSource(self.log.build_page, period=0.1), **self._link_views.sources},
+        )
+        """Request -> its source."""
         self._intents = IntentHandler(
             self.operator,
             self.fleet,
@@ -70,9 +84,7 @@ class Station:
             self.log,
             self.views,
         )
-        self._links = LinkStats()
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log)
-        self._timesync = TimesyncClient(system)
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
@@ -89,12 +101,14 @@ class Station:
         conflict = self._id_conflict.receive(received, now)
         if conflict is not None:
             self.log.add(now, "station", conflict, Severity.WARNING)
+        self._link_views.stations.receive(received, now)
         contact = self.fleet.get_or_add(received, now)
         if contact is None:
             return
         self._message_rates.count(received.message, now, system=received.system)
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
+        contact.details.receive(received, now)
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
         match received.message:

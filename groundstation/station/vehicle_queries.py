@@ -59,7 +59,7 @@ class VehicleQueries:
                 continue
             if outcome.command == Command.SET_MESSAGE_INTERVAL:
                 contact.stream_requests.handle_outcome(outcome)
-            else:
+            elif outcome.params[0] == m.RoverDriveInfo.id:
                 contact.dialect_probe.handle_outcome(outcome, now)
 
     def _query_dialect(self, contact: Contact, now: float) -> None:

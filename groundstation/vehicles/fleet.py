@@ -16,6 +16,7 @@ from groundstation.vehicles.outputs import ServoFunctions
 from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
 from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
+from groundstation.vehicles.vehicle_details import VehicleDetails
 from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
 from link.core import LinkReport, Received
 
@@ -35,6 +36,7 @@ class Contact:
     link: int
     """Index of the link on which the newest message of the vehicle arrived."""
     changes: StateChanges
+    details: VehicleDetails
     settings_check: SettingsCheck | None = None
     servo_functions: ServoFunctions | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
@@ -170,7 +172,13 @@ class Fleet:
         state = VehicleState(received.system, received.component)
         state.receive(received, now)
         target = (state.system, state.component)
-        contact = Contact(state, StreamRequests(target, now), received.peer.link, StateChanges(self._own_id[0]))
+        contact = Contact(
+            state,
+            StreamRequests(target, now),
+            received.peer.link,
+            StateChanges(self._own_id[0]),
+            VehicleDetails(state.component),
+        )
         self._contacts[received.system] = contact
         if state.autopilot in SETTINGS:
             contact.settings_check = SettingsCheck(SETTINGS[state.autopilot], *self._own_id, target=target)

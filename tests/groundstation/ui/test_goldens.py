@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,10 @@ from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents import ACTIONS
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.display_state import DisplayState
+from groundstation.views import ControlView, LinksView, VehiclesView, View
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import LOG_PAGE, helm, snapshot, vehicle, waiting, wheels
+from tests.groundstation.ui.link_examples import FLEET, OURS, VIEWS
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD
 
@@ -69,6 +72,10 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "strip_79x23": ((79, 23), STANDING, ()),
     "log_80x24": (SMALL, WARNED, ("f6",)),
     "log_140x45": (WIDE, WARNED, ("f6",)),
+    "links_80x24": (SMALL, FLEET, ("f7",)),
+    "links_140x45": (WIDE, FLEET, ("f7",)),
+    "links_panel_80x24": (SMALL, FLEET, ("f7", "tab")),
+    "links_empty_80x24": (SMALL, waiting(), ("f7",)),
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
@@ -76,8 +83,16 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
 
 FRAMES |= {
     f"ascii_{name}": FRAMES[name]
-    for name in ("drive_80x24", "drive_140x45", "waiting_80x24", "strip_40x10", "log_80x24", "log_140x45", "goto_80x24")
-}
+    for name in ("drive_80x24", "drive_140x45", "waiting_80x24", "strip_40x10", "log_80x24", "log_140x45", "goto_80x24",
+                 "links_80x24", "links_140x45")
+}  # fmt: skip
+
+
+def views_for(name: str) -> Sequence[View]:
+    """Return what the station sends to the screen of a frame."""
+    if "empty" in name:
+        return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
+    return VIEWS if "links" in name else (LOG_PAGE,)
 
 
 @pytest.mark.parametrize("name", FRAMES)
@@ -86,7 +101,8 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
     async with console(size, picture, ascii_only=name.startswith("ascii")) as screen:
         await screen.press(*keys)
         if keys:
-            screen.station.offer_view(LOG_PAGE)
+            for view in views_for(name):
+                screen.station.offer_view(view)
             await screen.show(picture)
             await screen.show(picture)  # the height of the alerts is known after the first one
         if "hold" in name:
@@ -115,7 +131,7 @@ def test_ascii_frames_are_ascii(name: str) -> None:
     assert (GOLDEN / f"{name}.txt").read_text("utf-8").isascii()
 
 
-@pytest.mark.parametrize("name", ["drive_80x24", "log_80x24", "log_140x45", "strip_60x15"])
+@pytest.mark.parametrize("name", ["drive_80x24", "log_80x24", "log_140x45", "links_80x24", "strip_60x15"])
 async def test_without_colours_the_text_is_the_same_and_everything_is_grey(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -123,7 +139,8 @@ async def test_without_colours_the_text_is_the_same_and_everything_is_grey(
     size, picture, keys = FRAMES[name]
     async with console(size, picture) as screen:
         await screen.press(*keys)
-        screen.station.offer_view(LOG_PAGE)
+        for view in views_for(name):
+            screen.station.offer_view(view)
         await screen.show(picture)
         await screen.show(picture)
         assert screen.text == (GOLDEN / f"{name}.txt").read_text("utf-8")

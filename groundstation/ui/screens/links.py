@@ -1,0 +1,203 @@
+"""Links screen: all vehicles, all links, and who is in control; chooses the vehicle that the keys drive."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+
+from textual import events
+from textual.widget import Widget
+
+from groundstation.intents import ACTIONS, SelectVehicle
+from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
+from groundstation.ui.key_parser import KeyRepeat
+from groundstation.ui.keynames import format_key
+from groundstation.ui.panels import PanelHeights, share_rows
+from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.widgets.control_panel import ControlPanel, ControlPanelValue
+from groundstation.ui.widgets.link_table import LinkTable, LinkTableValue
+from groundstation.ui.widgets.vehicle_table import VehicleTable, VehicleTableValue
+from groundstation.views import (
+    ControlRequest,
+    ControlView,
+    LinksRequest,
+    LinksView,
+    VehicleRow,
+    VehiclesRequest,
+    VehiclesView,
+    View,
+    ViewRequest,
+)
+
+CHROME_ROWS = 4
+"""Status line, tabs, hint and footer."""
+
+TYPING_TIME = 1.0
+"""s within which a further digit belongs to the same system id."""
+
+STEPS = {"up": -1, "down": 1, "pageup": -5, "pagedown": 5, "home": -1000, "end": 1000}
+"""Key -> rows by which it moves."""
+
+COMMANDS = ("vehicle.next", "vehicle.control", "vehicle.release", "vehicle.give", "vehicle.keep")
+"""Actions of the Drive screen whose keys work here too. None of them drives, and each is neutral first."""
+
+
+class LinksScreen(ConsoleScreen):
+    """Three panels; TAB chooses the one that has the arrows and the room."""
+
+    CSS_PATH = "links.tcss"
+    KEYS = (
+        ScreenKey("enter", "Choose", "Choose the vehicle under the cursor; the one before gets neutral first"),
+        ScreenKey("tab", "Panel", "Next panel: vehicles, links, control"),
+    )
+
+    def __init__(self, context: ScreenContext) -> None:
+        super().__init__(context)
+        self._vehicles = VehicleTable(VehicleTableValue(), id="vehicle-table")
+        self._links = LinkTable(LinkTableValue(), id="link-table")
+        self._control = ControlPanel(ControlPanelValue(), id="control-panel")
+        self._panels: tuple[Widget, ...] = (self._vehicles, self._links, self._control)
+        self._chosen = 0
+        self._cursor: int | None = None
+        """System id under the cursor; None: it follows the selected vehicle."""
+        self._typed, self._typed_at = "", 0.0
+
+    # ---- what all screens define ----
+
+    def compose_body(self) -> Iterable[Widget]:
+        """Lay out the panels below each other."""
+        for panel, title in zip(self._panels, ("vehicles", "links", "who is in control"), strict=True):
+            panel.border_title = title
+        return self._panels
+
+    def requests(self) -> tuple[ViewRequest, ...]:
+        """Return the requests for all three views."""
+        return VehiclesRequest(), LinksRequest(), ControlRequest()
+
+    def show_view(self, view: View) -> None:
+        """Keep a view for its panel."""
+        match view:
+            case VehiclesView():
+                self._show_vehicles(view)
+            case LinksView():
+                self._links.show(LinkTableValue(view, self._links.value.top))
+            case ControlView():
+                keys = (self._state.key("vehicle.control"), self._state.key("vehicle.release"))
+                self._control.show(ControlPanelValue(view, *keys, self._control.value.top))
+        self._lay_out()
+
+    def show_body(self, now: DisplayState) -> None:
+        """Show which vehicle is selected; the rest comes with the views."""
+        self._show_vehicles(self._vehicles.value.view)
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Share the rows of the new size."""
+        self._lay_out()
+
+    def describe(self) -> ScreenInfo:
+        """Return the keys of this screen with those of COMMANDS, as the key map has them."""
+        info = super().describe()
+        keys = [(self.context.keymap.get_keys(each), ACTIONS[each]) for each in COMMANDS[:3]]
+        extra = [ScreenKey(names[0], action.label, action.help) for names, action in keys if names]
+        return ScreenInfo(info.id, (*info.keys, *extra), info.hint, info.text)
+
+    @property
+    def hint(self) -> str:
+        """Return what ENTER would do, or how to move."""
+        chosen, under = self._selected_name(), self._vehicles.value.under_cursor
+        drive = format_key(next(iter(self.context.keymap.get_keys("app.drive")), "escape"))
+        if self._chosen:
+            return "↑ ↓ scrolls · TAB goes on to the next panel · ESC goes back to Drive"
+        if under is not None and under.system != self._vehicles.value.selected:
+            return f"ENTER chooses {under.name}; {chosen or 'the one before'} gets neutral first"
+        if len(self._rows) > 1:
+            return f"↑ ↓ or a system id moves, ENTER chooses · {drive} drives {chosen}"
+        return self.HINT
+
+    # ---- keys ----
+
+    def on_key(self, event: events.Key) -> None:
+        """Handle the keys of this screen; those of other screens go on to the app."""
+        action = self.context.keymap.get_action(event.key)
+        repeated = isinstance(event, KeyRepeat)
+        if event.key in STEPS:
+            self._step(STEPS[event.key])
+        elif event.key.isdecimal():
+            self._type(event.key)
+        elif event.key == "enter" and not repeated:
+            self._choose()
+        elif event.key == "tab" and not repeated:
+            self._chosen = (self._chosen + 1) % len(self._panels)
+        elif action is not None and action.id in COMMANDS and action.intent is not None and not repeated:
+            self._cursor = None if action.id == "vehicle.next" else self._cursor
+            self.context.send(action.intent)
+        else:
+            return
+        event.stop()
+        self.show_state(self._state)
+        self._lay_out()
+
+    def _step(self, rows: int) -> None:
+        if self._chosen:
+            self._scroll(rows)
+            return
+        systems = [each.system for each in self._rows]
+        if systems:
+            at = systems.index(self._vehicles.value.cursor) if self._vehicles.value.cursor in systems else 0
+            self._cursor = systems[max(0, min(len(systems) - 1, at + rows))]
+
+    def _scroll(self, rows: int) -> None:
+        """Scroll the links or the lines about control, as far as there is something to see."""
+        if self._panels[self._chosen] is self._links:
+            last = self._links.wanted(self._links.size.width) - self._links.size.height
+            top = max(0, min(last, self._links.value.top + rows))
+            self._links.show(LinkTableValue(self._links.value.view, top))
+            return
+        value = self._control.value
+        top = max(0, min(self._control.wanted - self._control.size.height, value.top + rows))
+        self._control.show(ControlPanelValue(value.view, value.request_key, value.release_key, top))
+
+    def _type(self, digit: str) -> None:
+        """Move to the vehicle whose system id is typed."""
+        now = time.monotonic()
+        self._typed = self._typed + digit if now - self._typed_at <= TYPING_TIME else digit
+        self._typed_at = now
+        if any(str(each.system) == self._typed for each in self._rows):
+            self._cursor = int(self._typed)
+
+    def _choose(self) -> None:
+        under = self._vehicles.value.under_cursor
+        if under is not None and not self._chosen and under.system != self._vehicles.value.selected:
+            self.context.send(SelectVehicle(system=under.system))
+
+    # ---- drawing ----
+
+    @property
+    def _rows(self) -> Sequence[VehicleRow]:
+        view = self._vehicles.value.view
+        return view.rows if view else ()
+
+    def _selected_name(self) -> str:
+        vehicle = self._state.snapshot.vehicle
+        return vehicle.name if vehicle else ""
+
+    def _show_vehicles(self, view: VehiclesView | None) -> None:
+        snapshot = self._state.snapshot
+        selected = snapshot.vehicle.system if snapshot.vehicle else None
+        known = {each.system for each in view.rows} if view else set()
+        if self._cursor not in known or self._cursor == selected:
+            self._cursor = None
+        cursor = selected if self._cursor is None else self._cursor
+        self._vehicles.show(VehicleTableValue(view, selected, cursor, snapshot.waiting or ""))
+        more = f" of {len(known) + view.not_shown}" if view and view.not_shown else ""
+        self._vehicles.border_subtitle = f"{len(known)}{more} heard" if view and known else ""
+
+    def _lay_out(self) -> None:
+        """Share the rows: all panels as they need it, else the chosen one gets the room."""
+        width = max(1, self.size.width - 2)
+        wanted = (self._vehicles.wanted, self._links.wanted(width), self._control.wanted)
+        heights = share_rows(PanelHeights(wanted, least=(4, 3, 3)), self._chosen, self.size.height - CHROME_ROWS)
+        for number, (panel, height) in enumerate(zip(self._panels, heights, strict=True)):
+            panel.set_class(number == self._chosen, "-chosen")
+            panel.display = height > 0
+            panel.styles.height = height

@@ -1,0 +1,122 @@
+"""Details of one vehicle that only the Links screen shows: components, place on earth, firmware, who is in control."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from dialects import messages as m
+from dialects.enums import type_name
+from groundstation.vehicles.track import METRES_PER_DEGREE
+from groundstation.views import ComponentRow
+from link.core import Received
+
+MAX_COMPONENTS = 16
+"""Component ids kept for a vehicle; a flood of invented ones must not grow a table."""
+
+COMPONENT_TIMEOUT = 10.0
+"""s without a HEARTBEAT after which a component is not listed any more."""
+
+MAX_LATITUDE, MAX_LONGITUDE = 90.0, 180.0
+
+
+class Place(NamedTuple):
+    """A place on earth, degrees (WGS 84)."""
+
+    latitude: float
+    longitude: float
+
+
+class Way(NamedTuple):
+    """The straight way from one place to another."""
+
+    distance: float
+    """m"""
+    bearing: float
+    """Degrees clockwise from north, 0..360."""
+
+
+class ControlReport(NamedTuple):
+    """The newest ROVER_CONTROL, and when it arrived."""
+
+    message: m.RoverControl
+    at: float
+
+
+class VehicleDetails:
+    """Collects the details from the messages of one system. `component` is the one that the station talks to."""
+
+    def __init__(self, component: int) -> None:
+        self.place: Place | None = None
+        self.home: Place | None = None
+        self.firmware = ""
+        """Version of AUTOPILOT_VERSION, e.g. "4.6.1"; empty until it has arrived."""
+        self.control_status: m.ControlStatus | None = None
+        self.control_status_at = -math.inf
+        self.control: ControlReport | None = None
+        self._component = component
+        self._components: dict[int, tuple[str, float]] = {}
+        """Component id -> its kind in words, and when its HEARTBEAT arrived."""
+
+    def receive(self, received: Received, now: float) -> None:
+        """Handle a message of the system."""
+        message = received.message
+        if isinstance(message, m.Heartbeat) and received.component != self._component:
+            self._add_component(received.component, message.type, now)
+        method = _HANDLERS.get(type(message))
+        if method is not None and received.component == self._component:
+            method(self, message, now)
+
+    def components(self, now: float) -> tuple[ComponentRow, ...]:
+        """Return the further components that are heard, by id."""
+        heard = ((number, kind) for number, (kind, at) in self._components.items() if now - at <= COMPONENT_TIMEOUT)
+        return tuple(ComponentRow(number, kind) for number, kind in sorted(heard))
+
+    def _add_component(self, component: int, kind: int, now: float) -> None:
+        if component in self._components or len(self._components) < MAX_COMPONENTS:
+            self._components[component] = (type_name(kind), now)
+
+    def _global_position(self, message: m.GlobalPositionInt, now: float) -> None:
+        self.place = to_place(message.lat, message.lon) or self.place
+
+    def _home(self, message: m.HomePosition, now: float) -> None:
+        self.home = to_place(message.latitude, message.longitude) or self.home
+
+    def _version(self, message: m.AutopilotVersion, now: float) -> None:
+        number = message.flight_sw_version
+        self.firmware = f"{number >> 24}.{number >> 16 & 0xFF}.{number >> 8 & 0xFF}" if number else ""
+
+    def _control_status(self, message: m.ControlStatus, now: float) -> None:
+        self.control_status, self.control_status_at = message, now
+
+    def _rover_control(self, message: m.RoverControl, now: float) -> None:
+        self.control = ControlReport(message, now)
+
+
+_HANDLERS: Mapping[type[m.Message], Callable[[VehicleDetails, Any, float], None]] = {
+    m.GlobalPositionInt: VehicleDetails._global_position,
+    m.HomePosition: VehicleDetails._home,
+    m.AutopilotVersion: VehicleDetails._version,
+    m.ControlStatus: VehicleDetails._control_status,
+    m.RoverControl: VehicleDetails._rover_control,
+}
+"""Message -> the method that handles it."""
+
+
+def to_place(latitude: int, longitude: int) -> Place | None:
+    """Return a place from degrees times 10^7; None for 0, 0, which means no fix yet, and for what is not on earth."""
+    place = Place(latitude / 1e7, longitude / 1e7)
+    if place == (0.0, 0.0) or abs(place.latitude) > MAX_LATITUDE or abs(place.longitude) > MAX_LONGITUDE:
+        return None
+    return place
+
+
+def find_way(start: Place | None, end: Place | None) -> Way | None:
+    """Return the way between two places that are some km apart at most; None if one is not known."""
+    if start is None or end is None:
+        return None
+    north = (end.latitude - start.latitude) * METRES_PER_DEGREE
+    turned = (end.longitude - start.longitude + 180.0) % 360.0 - 180.0  # across 180 degrees the short way
+    east = turned * METRES_PER_DEGREE * math.cos(math.radians(start.latitude))
+    return Way(math.hypot(north, east), math.degrees(math.atan2(east, north)) % 360.0)
