@@ -1,0 +1,312 @@
+"""The Links screen: choosing a vehicle, panels, keys of the action table."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from groundstation.intents import (
+    ACTIONS,
+    Arm,
+    Disarm,
+    DriveKeyDown,
+    EmergencyStop,
+    GiveControl,
+    Intent,
+    KeepControl,
+    OperatorAction,
+    ReleaseControl,
+    RequestControl,
+    SelectNextVehicle,
+    SelectVehicle,
+    SetKeyGate,
+    SetMode,
+    Stop,
+    Watch,
+)
+from groundstation.snapshot import HandoverNotice, Snapshot
+from groundstation.ui.key_gate import OTHER_SCREEN
+from groundstation.ui.screens.links import LinksScreen
+from groundstation.views import (
+    ControlRequest,
+    ControlView,
+    LinkRow,
+    LinksRequest,
+    LinksView,
+    Program,
+    VehiclesRequest,
+    View,
+)
+from tests.groundstation.ui.examples import snapshot, vehicle
+from tests.groundstation.ui.link_examples import CONTROL, FLEET, LINKS, OURS, SIX, VIEWS, fleet, many
+from tests.groundstation.ui.pilots import Console, console
+from tests.groundstation.ui.ptys import until
+
+STOPS: dict[str, set[type[Intent]]] = {"drive.stop": {Stop}, "stop.emergency": {EmergencyStop, Stop}}
+"""Action -> which stops its keys send."""
+
+VEHICLE_INTENTS = (Arm, Disarm, SetMode, RequestControl, ReleaseControl, SelectVehicle, SelectNextVehicle)
+
+
+async def open_links(screen: Console, picture: Snapshot = FLEET, views: tuple[View, ...] = VIEWS) -> LinksScreen:
+    await screen.press("f7")
+    await until(lambda: screen.station.of(Watch))
+    await offer(screen, picture, *views)
+    top = screen.app.screen
+    assert isinstance(top, LinksScreen)
+    return top
+
+
+async def offer(screen: Console, picture: Snapshot, *views: View) -> None:
+    for view in views:
+        screen.station.offer_view(view)
+    await screen.show(picture)
+
+
+def row_of(screen: Console, name: str) -> str:
+    return next(line for line in screen.text.splitlines() if line.startswith("│") and f" {name} " in line)
+
+
+# ---- views ----
+
+
+async def test_it_requests_its_views_only_while_it_is_open() -> None:
+    async with console() as screen:
+        assert screen.station.of(Watch) == []
+        await open_links(screen)
+        assert screen.station.of(Watch) == [Watch((VehiclesRequest(), LinksRequest(), ControlRequest()))]
+        await screen.press("escape")
+        await until(lambda: screen.station.of(Watch)[-1] == Watch(()))
+
+
+async def test_until_the_views_arrive_it_waits_for_the_station() -> None:
+    async with console() as screen:
+        await screen.press("f7")
+        await until(lambda: screen.text.count("waiting for the station") == 3)
+        await offer(screen, FLEET, *VIEWS)
+        await until(lambda: "waiting for the station" not in screen.text)
+
+
+# ---- choosing ----
+
+
+async def test_enter_chooses_the_vehicle_under_the_cursor() -> None:
+    async with console(picture=FLEET) as screen:
+        await open_links(screen)
+        assert row_of(screen, "Rover 1").startswith("│›●")
+        await screen.press("down", "down")
+        await until(lambda: row_of(screen, "Rover 3").startswith("│› "))
+        await until(lambda: "ENTER chooses Rover 3; Rover 1 gets neutral first" in screen.text)
+        assert not screen.station.of(SelectVehicle)
+        await screen.press("enter")
+        assert screen.station.of(SelectVehicle) == [SelectVehicle(system=3)]
+        await screen.show(msgspec.structs.replace(FLEET, vehicle=vehicle(system=3, name="Rover 3")))
+        await until(lambda: row_of(screen, "Rover 3").startswith("│›●"))
+        assert row_of(screen, "Rover 1").startswith("│  ")
+        await until(lambda: "F1 drives Rover 3" in screen.text)
+
+
+async def test_enter_on_the_selected_vehicle_sends_nothing() -> None:
+    async with console(picture=FLEET) as screen:
+        await open_links(screen)
+        await screen.press("down", "up", "enter")
+        assert not screen.station.of(SelectVehicle)
+
+
+@pytest.mark.parametrize(
+    ("keys", "system"),
+    [
+        (("7",), 7), (("5",), 1), (("1", "6"), 16), (("1", "9"), 1), (("end",), 16), (("end", "home", "down"), 2),
+        (("pagedown",), 6), (("up",), 1),
+    ],
+)  # fmt: skip
+async def test_digits_are_a_system_id_and_keys_move(keys: tuple[str, ...], system: int) -> None:
+    views = (many(4) if keys == ("5",) else many(16, 4), LINKS, CONTROL)
+    async with console(picture=fleet(20)) as screen:
+        await open_links(screen, fleet(20), views)
+        await screen.press(*keys)
+        await until(lambda: row_of(screen, f"Rover {system}").startswith("│›"))
+
+
+async def test_more_vehicles_than_rows_keep_the_cursor_in_sight_and_count_the_rest() -> None:
+    async with console(picture=fleet(20)) as screen:
+        await open_links(screen, fleet(20), (many(16, 4), LINKS, CONTROL))
+        assert "16 of 20 heard" in screen.text
+        assert "4 more heard, not shown" in screen.text
+        assert "Rover 16" not in screen.text
+        for system in range(2, 17):
+            await screen.press("down")
+            await until(lambda system=system: f"›    {system:>2} Rover {system} ".replace("›   ", "›  ") in screen.text)
+
+
+async def test_a_vehicle_that_is_gone_leaves_the_cursor_on_the_selected_one() -> None:
+    async with console(picture=FLEET) as screen:
+        await open_links(screen)
+        await screen.press("end")
+        await until(lambda: row_of(screen, "Rover 9").startswith("│›"))
+        await offer(screen, FLEET, many(2))
+        await until(lambda: row_of(screen, "Rover 1").startswith("│›●"))
+
+
+async def test_details_of_the_vehicle_under_the_cursor() -> None:
+    async with console(picture=FLEET) as screen:
+        await open_links(screen)
+        assert "firmware 0.1.0 · active · in control: this one · 100 camera · 154 gimbal" in screen.text
+        await screen.press("2")
+        await until(lambda: "2 firmware 4.6.1 · critical · in control: not told" in screen.text)
+
+
+async def test_a_name_from_the_link_brings_no_control_characters() -> None:
+    async with console(picture=FLEET) as screen:
+        bad = msgspec.structs.replace(SIX.rows[0], name="Rover\x1b[2J1", mode="A\nB")
+        await open_links(screen, views=(msgspec.structs.replace(SIX, rows=(bad,)), LINKS, CONTROL))
+        await until(lambda: "Rover�[2J1" in screen.text and "A�B" in screen.text)
+
+
+# ---- panels ----
+
+
+async def test_tab_gives_each_panel_the_room_in_turn() -> None:
+    async with console(picture=FLEET) as screen:
+        await open_links(screen)
+        assert "/dev/ttyACM0 has gone" not in screen.text
+        await screen.press("tab")
+        await until(lambda: "/dev/ttyACM0 has gone; it is opened again when it is plugged in" in screen.text)
+        assert "68% of 5.8 kB/s each way, the radio allows 80%" in screen.text
+        assert "↑ ↓ scrolls" in screen.text
+        await screen.press("tab")
+        await until(lambda: "also heard  250/190 0.6 s ago · 245/191 0.2 s ago" in screen.text)
+        await screen.press("tab")
+        await until(lambda: "Rover 9" in screen.text)
+
+
+async def test_enter_chooses_nothing_while_another_panel_has_the_arrows() -> None:
+    async with console(picture=FLEET) as screen:
+        await open_links(screen)
+        await screen.press("down", "tab", "enter")
+        assert not screen.station.of(SelectVehicle)
+
+
+async def test_many_links_scroll() -> None:
+    links = LinksView(tuple(LinkRow(name=f"udpin:0.0.0.0:{14550 + number}") for number in range(12)))
+    async with console(picture=FLEET) as screen:
+        await open_links(screen, views=(SIX, links, CONTROL))
+        await screen.press("tab", "end")
+        await until(lambda: "0.0.0.0:14561" in screen.text and "0.0.0.0:14550" not in screen.text)
+        await screen.press("home")
+        await until(lambda: "0.0.0.0:14550" in screen.text and "0.0.0.0:14561" not in screen.text)
+
+
+@pytest.mark.parametrize("size", [(40, 10), (60, 15), (79, 23), (120, 30), (200, 60)])
+async def test_every_size_shows_vehicles_armed_or_not(size: tuple[int, int]) -> None:
+    async with console(size, FLEET) as screen:
+        await open_links(screen)
+        for number in range(4):
+            lines = screen.text.splitlines()
+            assert len(lines) <= size[1]
+            assert max(map(len, lines)) <= size[0]
+            if number in (0, 3):
+                assert "Rover 1" in screen.text
+                assert size[0] == 40 or "ARMED" in row_of(screen, "Rover 1")
+            await screen.press("tab")
+
+
+# ---- control ----
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, "this one, 255/190, session 1a2b3c4d · G releases it"),
+        ({"driver": 0, "program": None, "in_control": False}, "no ground station · g requests control"),
+        ({"driver": 250, "program": None, "in_control": False}, "ground station 250 · g asks for it"),
+        (
+            {"driver": 250, "program": Program(250, 190, 7), "in_control": False},
+            "ground station 250/190, session 00000007 · g asks for it",
+        ),
+        ({"driver": None, "program": None, "in_control": False}, "this vehicle does not tell · g requests it"),
+        ({"driver": None, "program": None}, "this vehicle does not tell · it accepts our commands"),
+        ({"program": Program(255, 190, 7)}, "another program with our id: 255/190, session 00000007"),
+        ({"program": Program(255, 191, 7)}, "another program with our id: 255/191"),
+        ({"program": None}, "this one, 255 · G releases it"),
+        ({"age": 12.0}, "reported 12 s ago"),
+        ({"clash": True}, "two programs send with the ids of the driver: its demands do not count"),
+        ({"silent": True}, "the driver is silent"),
+        ({"takeover": True}, "granted without asking the driver"),
+        ({"waits": 7.0}, "the driver may answer for 7 s"),
+        ({"signs": True, "signing": (1,)}, "the vehicle signs; this station cannot sign"),
+        ({"signing": (7, 9)}, "not this vehicle; systems that sign: 7, 9"),
+        ({}, "off: nobody signs"),
+    ],
+)
+async def test_who_is_in_control(changes: dict[str, object], words: str) -> None:
+    view = msgspec.structs.replace(CONTROL, **changes)
+    async with console((140, 45), FLEET) as screen:
+        await open_links(screen, views=(SIX, LINKS, view))
+        assert words in screen.text
+
+
+async def test_without_a_vehicle_it_says_what_the_station_waits_for() -> None:
+    picture = snapshot(vehicle=None, waiting="waiting for a vehicle on udpin:127.0.0.1:14550")
+    views = (many(0), LinksView((LinkRow(name="udpin:127.0.0.1:14550"),)), ControlView(vehicle="", ours=OURS))
+    async with console((140, 45), picture) as screen:
+        await open_links(screen, picture, views)
+        assert "waiting for a vehicle on udpin:127.0.0.1:14550" in screen.text
+        assert "nobody yet" in screen.text
+        assert "no vehicle yet" in screen.text
+        await screen.press("down", "enter", "7", "tab", "down", "tab", "up")
+        assert not screen.station.of(SelectVehicle)
+
+
+# ---- keys ----
+
+
+@pytest.mark.parametrize(
+    ("key", "intent"),
+    [
+        ("n", SelectNextVehicle()), ("g", RequestControl()), ("G", ReleaseControl()), ("Y", GiveControl()),
+        ("N", KeepControl()),
+    ],
+)  # fmt: skip
+async def test_the_keys_of_control_work_here(key: str, intent: Intent) -> None:
+    async with console(picture=FLEET) as screen:
+        await open_links(screen)
+        await screen.press(key)
+        assert screen.station.of(type(intent)) == [intent]
+
+
+async def test_a_request_of_another_station_stands_in_sight() -> None:
+    picture = msgspec.structs.replace(FLEET, handover=HandoverNotice(250, "Rover 1", 7.0))
+    async with console(picture=picture) as screen:
+        await open_links(screen, picture)
+        await until(lambda: "GCS 250 requests control of Rover 1: Y gives, N keeps (7 s)" in screen.text)
+
+
+HERE = [action for action in ACTIONS.values() if action.group != "app"]  # the others open screens, or quit
+
+
+@pytest.mark.parametrize("action", HERE, ids=lambda action: action.id)
+async def test_of_all_actions_only_stops_and_those_of_control_reach_the_station(action: OperatorAction) -> None:
+    """Keys that drive reach it while its gate is closed: it must know that they are held."""
+    async with console(picture=FLEET) as screen:
+        await open_links(screen)
+        assert screen.app.gate.closure == OTHER_SCREEN
+        assert screen.station.of(SetKeyGate)[-1].open is False
+        for key in screen.app.gate.keymap.get_keys(action.id):
+            before = len(screen.station.intents)
+            await screen.press(key)
+            sent = [type(each) for each in screen.station.intents[before:] if isinstance(each, VEHICLE_INTENTS)]
+            allowed = action.id in ("vehicle.next", "vehicle.control", "vehicle.release")
+            assert len(sent) == int(allowed), key
+            assert screen.station.of(SetKeyGate)[-1].open is False
+            stops = {type(each) for each in screen.station.intents[before:]} & {Stop, EmergencyStop}
+            assert stops == STOPS.get(action.id, set()), key
+
+
+async def test_drive_keys_move_the_cursor_and_drive_nothing() -> None:
+    async with console(picture=FLEET) as screen:
+        await open_links(screen)
+        await screen.press("i", "down")
+        assert screen.station.of(DriveKeyDown)
+        assert screen.station.of(SetKeyGate)[-1].open is False
+        await until(lambda: row_of(screen, "ArduPilot rover 2").startswith("│›"))

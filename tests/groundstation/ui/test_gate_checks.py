@@ -1,0 +1,49 @@
+"""Why keys must not drive, as far as the app knows: each reason, and which one comes first."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import pytest
+
+from groundstation.ui.gate_checks import AppCondition, find_closure
+from groundstation.ui.key_gate import OTHER_SCREEN, GateClosure
+
+FINE = AppCondition(
+    leaving=None, station_alive=True, outage="", other_screen=None, detached=False, focus=True, too_small=False,
+    terminal_silent=False, terminal_stuck=False,
+)  # fmt: skip
+QUITTING = GateClosure("quitting")
+WRONG: dict[str, tuple[object, str]] = {
+    "leaving": (QUITTING, "quitting"),
+    "station_alive": (False, "the station has ended"),
+    "outage": ("the station does not respond for 1 s", "the station does not respond"),
+    "other_screen": (OTHER_SCREEN, "another screen is open"),
+    "detached": (True, "nobody is attached to tmux"),
+    "focus": (False, "this window does not have the focus"),
+    "too_small": (True, "the terminal is too small"),
+    "terminal_silent": (True, "the terminal does not answer"),
+    "terminal_stuck": (True, "the terminal accepts no output"),
+}
+
+
+def test_keys_drive_when_nothing_is_wrong() -> None:
+    assert find_closure(FINE) is None
+    assert set(WRONG) == {field.name for field in fields(AppCondition)}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_each_condition_alone_keeps_keys_from_driving(name: str) -> None:
+    value, reason = WRONG[name]
+    closure = find_closure(replace(FINE, **{name: value}))  # type: ignore[arg-type]
+    assert closure is not None
+    assert closure.reason == reason
+
+
+def test_the_first_in_the_table_is_the_one_that_is_shown() -> None:
+    for later in range(1, len(WRONG)):
+        first, second = list(WRONG)[later - 1 : later + 1]
+        both = replace(FINE, **{first: WRONG[first][0], second: WRONG[second][0]})  # type: ignore[arg-type]
+        closure = find_closure(both)
+        assert closure is not None
+        assert closure.reason == WRONG[first][1]
