@@ -199,6 +199,20 @@ async def test_a_message_that_cannot_be_encoded_is_logged_and_the_rest_goes_out(
     assert "MANUAL_CONTROL" in caplog.text
 
 
+async def test_each_link_counts_what_it_sends_and_forwards(ground: socket.socket) -> None:
+    port = free_port()
+
+    def speak() -> None:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+            other.sendto(heartbeat(0, system=254), ("127.0.0.1", port))
+
+    endpoints = [f"udpin:127.0.0.1:{port}", f"udpout:127.0.0.1:{ground.getsockname()[1]}"]
+    core = await run(endpoints, lambda core: len(core.reports) >= 2, first=speak)
+    first, second = core.reports[-1]
+    assert (first.frames_sent, first.bytes_sent) == (0, 0)
+    assert (second.frames_sent, second.bytes_sent) == (1, len(heartbeat(0, system=254)))
+
+
 @pytest.mark.parametrize("route", [None, False], ids=["by default", "not where it is switched off"])
 async def test_ground_stations_on_two_links_hear_each_other(ground: socket.socket, route: bool | None) -> None:
     port = free_port()

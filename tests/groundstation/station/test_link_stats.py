@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from groundstation.station.link_stats import LinkStats
-from link.core import LinkReport, SourceCount
+from link.core import LinkReport, Peer, SourceCount
 
 
 def report(received: int, lost: int = 0, **changes: Any) -> LinkReport:
@@ -87,3 +87,39 @@ def test_a_radio_that_is_full_makes_less_of_the_capacity() -> None:
     stats = LinkStats()
     stats.update([LinkReport("serial:/dev/ttyUSB0:57600", 0, capacity=5760.0, headroom=0.5)], None, 100.0)
     assert (stats.capacity(0), stats.capacity(1)) == (2880.0, None)
+
+
+def test_a_row_counts_all_senders_and_both_directions() -> None:
+    stats = LinkStats()
+    for second in range(20):
+        sent = {"frames_sent": 10 * second, "bytes_sent": 400 * second}
+        stats.update([report(30 * second, 10 * second, capacity=5760.0, **sent)], 1, float(second))
+    (row,) = stats.build_rows(0.02, 0.001, 0)
+    assert (row.frames_in, row.frames_out, row.bytes_in, row.bytes_out) == (30.0, 10.0, 600.0, 400.0)
+    assert row.loss == pytest.approx(10 / 30_040)
+    assert row.lost == 190
+    assert (row.round_trip, row.jitter) == (0.02, 0.001)
+    assert row.share == pytest.approx(600 / 5760)
+
+
+def test_the_round_trip_is_that_of_the_link_of_the_selected_vehicle() -> None:
+    stats = LinkStats()
+    stats.update([report(1), report(1, index=1)], 1, 0.0)
+    assert [row.round_trip for row in stats.build_rows(0.02, None, 1)] == [None, 0.02]
+    assert [row.round_trip for row in stats.build_rows(0.02, None, None)] == [None, None]
+
+
+def test_a_row_names_the_first_peers_and_not_the_endpoint_itself() -> None:
+    stats = LinkStats()
+    name = "udpin:127.0.0.1:14550"
+    peers = [Peer(0, name), *(Peer(0, ("10.0.0.1", 5000 + number)) for number in range(9))]
+    stats.update([report(1, audience=tuple(peers), peers=9, refused_peers=2, dropped=3, crc_errors=4)], 1, 0.0)
+    (row,) = stats.build_rows(None, None, None)
+    assert row.peers == ("10.0.0.1:5000", "10.0.0.1:5001", "10.0.0.1:5002", "10.0.0.1:5003")
+    assert (row.peer_count, row.refused, row.dropped, row.crc_errors) == (9, 2, 3, 4)
+
+
+def test_systems_that_sign_on_any_link() -> None:
+    stats = LinkStats()
+    stats.update([report(1, signing=frozenset({7, 1})), report(1, index=1, signing=frozenset({3}))], 1, 0.0)
+    assert stats.signing == (1, 3, 7)

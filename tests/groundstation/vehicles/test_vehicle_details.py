@@ -1,0 +1,82 @@
+"""Details of one vehicle: places on earth, firmware, components. The bounds of its tables."""
+
+from __future__ import annotations
+
+import pytest
+
+from dialects import messages as m
+from groundstation.vehicles.vehicle_details import MAX_COMPONENTS, Place, VehicleDetails, find_way, to_place
+from link.core import Peer, Received
+
+PEER = Peer(0, "far")
+
+
+def receive(details: VehicleDetails, message: m.Message, component: int = 1, now: float = 0.0) -> None:
+    details.receive(Received(message, 1, component, 0, PEER, introduced=True), now)
+
+
+@pytest.mark.parametrize(
+    ("end", "distance", "bearing"),
+    [
+        (Place(10.001, 20.0), 111.3, 0.0),
+        (Place(10.0, 20.001), 109.6, 90.0),
+        (Place(9.999, 20.0), 111.3, 180.0),
+        (Place(10.0, 19.999), 109.6, 270.0),
+        (Place(10.0, 20.0), 0.0, 0.0),
+    ],
+)
+def test_ways(end: Place, distance: float, bearing: float) -> None:
+    way = find_way(Place(10.0, 20.0), end)
+    assert way is not None
+    assert (way.distance, way.bearing) == (pytest.approx(distance, abs=0.1), pytest.approx(bearing, abs=0.1))
+
+
+def test_across_the_date_line_the_way_is_short() -> None:
+    way = find_way(Place(0.0, 179.9995), Place(0.0, -179.9995))
+    assert way is not None
+    assert (way.distance, way.bearing) == (pytest.approx(111.3, abs=0.1), 90.0)
+
+
+def test_without_both_places_there_is_no_way() -> None:
+    assert find_way(None, Place(1.0, 1.0)) is None
+    assert find_way(Place(1.0, 1.0), None) is None
+
+
+@pytest.mark.parametrize(("latitude", "longitude"), [(0, 0), (900_000_001, 0), (1, 1_800_000_001), (-(2**31), 5)])
+def test_what_is_not_on_earth_is_no_place(latitude: int, longitude: int) -> None:
+    assert to_place(latitude, longitude) is None
+
+
+def test_a_lost_fix_keeps_the_last_place() -> None:
+    details = VehicleDetails(1)
+    receive(details, m.GlobalPositionInt(0, 100_000_000, 200_000_000, 0, 0, 0, 0, 0, 0))
+    receive(details, m.GlobalPositionInt(0, 0, 0, 0, 0, 0, 0, 0, 0))
+    assert details.place == Place(10.0, 20.0)
+
+
+def test_another_component_is_listed_and_says_nothing_for_the_vehicle() -> None:
+    details = VehicleDetails(1)
+    receive(details, m.GlobalPositionInt(0, 100_000_000, 200_000_000, 0, 0, 0, 0, 0, 0), component=191)
+    receive(details, m.RoverControl(1, 250, 190, 0), component=191)
+    receive(details, m.Heartbeat(18, 8, 0, 0, 4, 3), component=191)
+    receive(details, m.Heartbeat(250, 8, 0, 0, 4, 3), component=192)
+    receive(details, m.Heartbeat(10, 0, 0, 0, 4, 3), component=1)
+    assert (details.place, details.control) == (None, None)
+    assert [(each.component, each.kind) for each in details.components(1.0)] == [
+        (191, "onboard controller"), (192, "type 250"),
+    ]  # fmt: skip
+    assert details.components(11.0) == ()
+
+
+def test_a_flood_of_components_does_not_grow_the_table() -> None:
+    details = VehicleDetails(1)
+    for component in range(2, 250):
+        receive(details, m.Heartbeat(30, 8, 0, 0, 4, 3), component=component)
+    assert len(details.components(0.0)) == MAX_COMPONENTS
+
+
+@pytest.mark.parametrize(("number", "text"), [(0, ""), (0x04060100, "4.6.1"), (0x010F04FF, "1.15.4")])
+def test_firmware(number: int, text: str) -> None:
+    details = VehicleDetails(1)
+    receive(details, m.AutopilotVersion(0, number, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, 0))
+    assert details.firmware == text
