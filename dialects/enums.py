@@ -25,19 +25,24 @@ class VehicleType(IntEnum):
     SURFACE_BOAT = rover.MAV_TYPE_SURFACE_BOAT
 
 
+def _entries(enum: str) -> dict[int, str]:
+    """Return the entries of an enum as words: the build leaves the constants in the module, but not the tables."""
+    prefix = f"{enum}_"
+    found = ((name.removeprefix(prefix), number) for name, number in vars(rover).items() if name.startswith(prefix))
+    return {number: name.replace("_", " ").lower() for name, number in found if name != "ENUM_END"}
+
+
+_TYPES, _STATES = _entries("MAV_TYPE"), _entries("MAV_STATE")
+
+
 def type_name(number: int) -> str:
     """Return any MAV_TYPE in words, e.g. "onboard controller"; "type 250" for one that the dialect does not know."""
-    return _words("MAV_TYPE", number) or f"type {number}"
+    return _TYPES.get(number, f"type {number}")
 
 
 def state_name(number: int) -> str:
     """Return a MAV_STATE in words, e.g. "standby"; "state 12" for one that the dialect does not know."""
-    return _words("MAV_STATE", number) or f"state {number}"
-
-
-def _words(enum: str, number: int) -> str:
-    entry = rover.enums[enum].get(number)
-    return "" if entry is None else str(entry.name).removeprefix(f"{enum}_").replace("_", " ").lower()
+    return _STATES.get(number, f"state {number}")
 
 
 class SystemState(IntEnum):

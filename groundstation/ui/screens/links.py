@@ -81,6 +81,7 @@ class LinksScreen(ConsoleScreen):
                 self._show_vehicles(view)
             case LinksView():
                 self._links.show(LinkTableValue(view, self._links.value.top))
+                self._links.border_subtitle = describe_links(view)
             case ControlView():
                 keys = (self._state.key("vehicle.control"), self._state.key("vehicle.release"))
                 self._control.show(ControlPanelValue(view, *keys, self._control.value.top))
@@ -206,3 +207,10 @@ class LinksScreen(ConsoleScreen):
             panel.set_class(number == self._chosen, "-chosen")
             panel.display = height > 0
             panel.styles.height = height
+
+
+def describe_links(view: LinksView) -> str:
+    """Return how many links there are, and how many have a problem: where the rows are few, it may be out of sight."""
+    count, bad = len(view.rows), sum(each.problem is not None for each in view.rows)
+    links = f"{count} link{'' if count == 1 else 's'}"
+    return f"{links}, {bad} with a problem" if bad else links if count else ""

@@ -199,11 +199,11 @@ def test_distance_and_bearing_are_from_the_selected_vehicle_and_its_own_from_hom
     place(two, 2, -35.0, 149.001)
     two.vehicles[1].send(m.HomePosition(round(-35.001e7), round(149e7), 0, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0))
     first, second = two.newest(VehiclesView).rows
-    assert (first.distance, first.bearing) == (pytest.approx(111.3, abs=0.1), 0)
-    assert (second.distance, second.bearing) == (pytest.approx(91.2, abs=0.1), 90)
+    assert (first.distance, first.bearing) == pytest.approx((111.3, 0), abs=0.1)
+    assert (second.distance, second.bearing) == pytest.approx((91.2, 90), abs=0.1)
     two.station.handle_intent(SelectVehicle(system=2), two.now)
     first, second = two.newest(VehiclesView).rows
-    assert (first.distance, first.bearing) == (pytest.approx(91.2, abs=0.1), 270)
+    assert (first.distance, first.bearing) == pytest.approx((91.2, 270), abs=0.1)
     assert (second.distance, second.has_position) == (None, True), "its home is not known"
 
 
