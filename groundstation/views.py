@@ -109,8 +109,9 @@ class LinkRow(msgspec.Struct, frozen=True, kw_only=True):
     """Bytes received per second."""
     bytes_out: float = 0.0
     loss: float | None = None
-    """Lost fraction of all frames sent to us over the last 5 s; None if none arrived."""
+    """Lost fraction of the frames of vehicles; None if none arrived."""
     lost: int = 0
+    """Frames of vehicles that were lost."""
     crc_errors: int = 0
     refused: int = 0
     """Peers refused because there was no place."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from groundstation.snapshot import LinkView
@@ -43,11 +43,17 @@ class LinkStats:
         """Build the links' part of the snapshot."""
         return tuple(_view(samples, round_trip) for _, samples in sorted(self._samples.items()))
 
-    def build_rows(self, round_trip: float | None, jitter: float | None, link: int | None) -> tuple[LinkRow, ...]:
-        """Build the rows of the Links screen; `link` carries the vehicle to which the round trip was measured."""
+    def build_rows(
+        self, round_trip: float | None, jitter: float | None, link: int | None, vehicles: Collection[int]
+    ) -> tuple[LinkRow, ...]:
+        """Build the rows of the Links screen; `link` carries the vehicle to which the round trip was measured.
+
+        Losses are those of `vehicles`: of another ground station the vehicles forward only what is for us, too, so
+        that its numbers have gaps without any loss.
+        """
         timed = (round_trip, jitter)
         return tuple(
-            _row(samples, *(timed if index == link else (None, None)))
+            _row(samples, vehicles, *(timed if index == link else (None, None)))
             for index, samples in sorted(self._samples.items())
         )
 
@@ -70,8 +76,7 @@ class LinkStats:
 
 
 def _count(report: LinkReport, system: int | None) -> SourceCount:
-    counts = [count for (source, _), count in report.sources.items() if source == system]
-    return SourceCount(sum(count.received for count in counts), sum(count.lost for count in counts))
+    return _sum(report, () if system is None else (system,))
 
 
 def _delta(samples: deque[_Sample], name: str) -> float:
@@ -84,20 +89,20 @@ def _rate(samples: deque[_Sample], name: str) -> float:
     return max(0.0, _delta(samples, name) / seconds) if seconds else 0.0
 
 
-def _loss(samples: deque[_Sample]) -> float | None:
-    """Return the lost fraction of all frames; frames with unknown ids leave gaps in the numbers but did arrive."""
-    first, last = (_all_sources(sample.report) for sample in (samples[0], samples[-1]))
+def _loss(samples: deque[_Sample], systems: Collection[int]) -> float | None:
+    """Return the lost fraction of the frames of these systems; frames with unknown ids leave gaps in the numbers but did arrive."""
+    first, last = (_sum(sample.report, systems) for sample in (samples[0], samples[-1]))
     received, gaps = last.received - first.received, last.lost - first.lost
     lost = max(0, gaps - int(_delta(samples, "unknown")))
     return lost / (lost + received) if received > 0 and gaps >= 0 else None
 
 
-def _all_sources(report: LinkReport) -> SourceCount:
-    counts = report.sources.values()
+def _sum(report: LinkReport, systems: Collection[int]) -> SourceCount:
+    counts = [count for (source, _), count in report.sources.items() if source in systems]
     return SourceCount(sum(count.received for count in counts), sum(count.lost for count in counts))
 
 
-def _row(samples: deque[_Sample], round_trip: float | None, jitter: float | None) -> LinkRow:
+def _row(samples: deque[_Sample], vehicles: Collection[int], round_trip: float | None, jitter: float | None) -> LinkRow:
     report = samples[-1].report
     return LinkRow(
         name=report.name,
@@ -107,8 +112,8 @@ def _row(samples: deque[_Sample], round_trip: float | None, jitter: float | None
         frames_out=round(_rate(samples, "frames_sent"), 1),
         bytes_in=round(_rate(samples, "bytes_received")),
         bytes_out=round(_rate(samples, "bytes_sent")),
-        loss=_loss(samples),
-        lost=max(0, _all_sources(report).lost - report.unknown),
+        loss=_loss(samples, vehicles),
+        lost=max(0, _sum(report, vehicles).lost - report.unknown),
         crc_errors=report.crc_errors,
         refused=report.refused_peers,
         dropped=report.dropped,

@@ -122,7 +122,8 @@ class LinkViews:
     def _build_links(self, request: LinksRequest, now: float, wall: float) -> LinksView:
         selected = self._fleet.selected
         link = None if selected is None else selected.link
-        return LinksView(self._links.build_rows(self._timesync.round_trip, self._timesync.jitter, link))
+        round_trip, jitter = self._timesync.round_trip, self._timesync.jitter
+        return LinksView(self._links.build_rows(round_trip, jitter, link, self._fleet.system_ids))
 
     # ---- control ----
 

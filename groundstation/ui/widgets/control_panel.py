@@ -57,14 +57,14 @@ class ControlPanel(Instrument[ControlPanelValue]):
     def _who(self, view: ControlView) -> list[Part]:
         request, release = self.value.request_key, self.value.release_key
         if view.driver is None:
-            told = "this vehicle does not tell"
             ours = (
                 f"it accepts our commands · {release} releases control" if view.in_control else f"{request} requests it"
             )
-            return [(told, style(AMBER)), (f" · {ours}", style(DIM))]
+            return [("this vehicle does not tell", style(AMBER)), (f" · {ours}", style(DIM))]
         if not view.driver:
             return [("no ground station", style(TEXT)), (f" · {request} requests control", style(DIM))]
-        driver = view.program or Program(view.driver, 0)
+        told = view.program  # of the second before, where the other message has arrived and this one has not
+        driver = told if told is not None and told.system == view.driver else Program(view.driver, 0)
         if view.driver == view.ours.system:
             return _own(view, driver, release)
         return [(f"ground station {_name(driver)}", style(AMBER, bold=True)), (f" · {request} asks for it", style(DIM))]

@@ -89,14 +89,14 @@ def test_a_radio_that_is_full_makes_less_of_the_capacity() -> None:
     assert (stats.capacity(0), stats.capacity(1)) == (2880.0, None)
 
 
-def test_a_row_counts_all_senders_and_both_directions() -> None:
+def test_a_row_has_the_losses_of_vehicles_and_both_directions() -> None:
     stats = LinkStats()
     for second in range(20):
         sent = {"frames_sent": 10 * second, "bytes_sent": 400 * second}
         stats.update([report(30 * second, 10 * second, capacity=5760.0, **sent)], 1, float(second))
-    (row,) = stats.build_rows(0.02, 0.001, 0)
+    (row,) = stats.build_rows(0.02, 0.001, 0, (1, 2))
     assert (row.frames_in, row.frames_out, row.bytes_in, row.bytes_out) == (30.0, 10.0, 600.0, 400.0)
-    assert row.loss == pytest.approx(10 / 30_040)
+    assert row.loss == pytest.approx(0.25)
     assert row.lost == 190
     assert (row.round_trip, row.jitter) == (0.02, 0.001)
     assert row.share == pytest.approx(600 / 5760)
@@ -105,8 +105,8 @@ def test_a_row_counts_all_senders_and_both_directions() -> None:
 def test_the_round_trip_is_that_of_the_link_of_the_selected_vehicle() -> None:
     stats = LinkStats()
     stats.update([report(1), report(1, index=1)], 1, 0.0)
-    assert [row.round_trip for row in stats.build_rows(0.02, None, 1)] == [None, 0.02]
-    assert [row.round_trip for row in stats.build_rows(0.02, None, None)] == [None, None]
+    assert [row.round_trip for row in stats.build_rows(0.02, None, 1, (1,))] == [None, 0.02]
+    assert [row.round_trip for row in stats.build_rows(0.02, None, None, (1,))] == [None, None]
 
 
 def test_a_row_names_the_first_peers_and_not_the_endpoint_itself() -> None:
@@ -114,7 +114,7 @@ def test_a_row_names_the_first_peers_and_not_the_endpoint_itself() -> None:
     name = "udpin:127.0.0.1:14550"
     peers = [Peer(0, name), *(Peer(0, ("10.0.0.1", 5000 + number)) for number in range(9))]
     stats.update([report(1, audience=tuple(peers), peers=9, refused_peers=2, dropped=3, crc_errors=4)], 1, 0.0)
-    (row,) = stats.build_rows(None, None, None)
+    (row,) = stats.build_rows(None, None, None, ())
     assert row.peers == ("10.0.0.1:5000", "10.0.0.1:5001", "10.0.0.1:5002", "10.0.0.1:5003")
     assert (row.peer_count, row.refused, row.dropped, row.crc_errors) == (9, 2, 3, 4)
 
@@ -123,3 +123,12 @@ def test_systems_that_sign_on_any_link() -> None:
     stats = LinkStats()
     stats.update([report(1, signing=frozenset({7, 1})), report(1, index=1, signing=frozenset({3}))], 1, 0.0)
     assert stats.signing == (1, 3, 7)
+
+
+def test_gaps_of_a_ground_station_whose_frames_are_forwarded_are_no_loss() -> None:
+    stats = LinkStats()
+    for second in range(20):
+        sources = {(1, 1): SourceCount(30 * second, 0), (250, 190): SourceCount(second, 20 * second)}
+        stats.update([LinkReport("udpin:127.0.0.1:14550", sources=sources)], 1, float(second))
+    (row,) = stats.build_rows(None, None, None, (1,))
+    assert (row.loss, row.lost) == (0.0, 0)
