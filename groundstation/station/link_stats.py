@@ -90,7 +90,10 @@ def _rate(samples: deque[_Sample], name: str) -> float:
 
 
 def _loss(samples: deque[_Sample], systems: Collection[int]) -> float | None:
-    """Return the lost fraction of the frames of these systems; frames with unknown ids leave gaps in the numbers but did arrive."""
+    """Return the lost fraction of the frames of these systems.
+
+    Frames with unknown ids leave gaps in the numbers, but did arrive.
+    """
     first, last = (_sum(sample.report, systems) for sample in (samples[0], samples[-1]))
     received, gaps = last.received - first.received, last.lost - first.lost
     lost = max(0, gaps - int(_delta(samples, "unknown")))
@@ -126,14 +129,15 @@ def _row(samples: deque[_Sample], vehicles: Collection[int], round_trip: float |
 
 
 def _address(peer: Peer) -> str:
-    """Return an address as text: "192.168.4.20:50211" for a socket's."""
-    address = peer.address
-    return f"{address[0]}:{address[1]}" if isinstance(address, tuple) else str(address)
+    """Return an address as text, for a socket's e.g. "192.168.4.20:50211" or "[::1]:50211"."""
+    if not isinstance(peer.address, tuple):
+        return str(peer.address)
+    host, port = peer.address[:2]
+    return f"[{host}]:{port}" if ":" in str(host) else f"{host}:{port}"
 
 
 def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
     newest, oldest = samples[-1], samples[0]
-    seconds = newest.time - oldest.time
     received = newest.vehicle.received - oldest.vehicle.received
     # Frames with unknown message ids (a quarter of ArduPilot's) do arrive, but leave gaps in the sequence numbers.
     unknown = newest.report.unknown - oldest.report.unknown
@@ -144,8 +148,8 @@ def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
         name=newest.report.name,
         loss=lost / (lost + received) if received > 0 and gaps >= 0 else None,
         round_trip=round_trip if carries_vehicle else None,
-        rate=max(0.0, _delta(samples, "frames") / seconds) if seconds else 0.0,
-        bytes_per_second=max(0.0, _delta(samples, "bytes_received") / seconds) if seconds else 0.0,
+        rate=_rate(samples, "frames"),
+        bytes_per_second=_rate(samples, "bytes_received"),
         frames=newest.report.frames,
         bytes_received=newest.report.bytes_received,
         crc_errors=newest.report.crc_errors,

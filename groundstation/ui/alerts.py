@@ -94,11 +94,18 @@ def _hold(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.QUESTION, text)
 
 
-def _handover(now: DisplayState) -> Iterator[Alert]:
+def handover_text(now: DisplayState) -> str:
+    """Return the request of another ground station with the keys that answer it; "" without one."""
     notice = now.snapshot.handover
-    if notice is not None:
-        answers = f"{now.key('vehicle.give')} gives, {now.key('vehicle.keep')} keeps ({notice.left:.0f} s)"
-        yield Alert(AlertLevel.QUESTION, f"GCS {notice.station} requests control of {notice.vehicle}: {answers}")
+    if notice is None:
+        return ""
+    answers = f"{now.key('vehicle.give')} gives, {now.key('vehicle.keep')} keeps ({notice.left:.0f} s)"
+    return f"GCS {notice.station} requests control of {notice.vehicle}: {answers}"
+
+
+def _handover(now: DisplayState) -> Iterator[Alert]:
+    if text := handover_text(now):
+        yield Alert(AlertLevel.QUESTION, text)
 
 
 def _silence(now: DisplayState) -> Iterator[Alert]:

@@ -9,6 +9,7 @@ from textual import events
 from textual.widget import Widget
 
 from groundstation.intents import ACTIONS, SelectVehicle
+from groundstation.ui.alerts import handover_text
 from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.keynames import format_key
@@ -105,11 +106,8 @@ class LinksScreen(ConsoleScreen):
     @property
     def hint(self) -> str:
         """Return what ENTER would do, or how to move; first of all a request that waits for an answer."""
-        notice = self._state.snapshot.handover
-        if notice is not None:
-            give, keep = self._state.key("vehicle.give"), self._state.key("vehicle.keep")
-            asks = f"GCS {notice.station} requests control of {notice.vehicle}"
-            return f"{asks}: {give} gives, {keep} keeps ({notice.left:.0f} s)"
+        if asks := handover_text(self._state):
+            return asks
         chosen, under = self._selected_name(), self._vehicles.value.under_cursor
         drive = format_key(next(iter(self.context.keymap.get_keys("app.drive")), "escape"))
         if self._chosen:

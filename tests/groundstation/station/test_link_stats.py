@@ -112,10 +112,10 @@ def test_the_round_trip_is_that_of_the_link_of_the_selected_vehicle() -> None:
 def test_a_row_names_the_first_peers_and_not_the_endpoint_itself() -> None:
     stats = LinkStats()
     name = "udpin:127.0.0.1:14550"
-    peers = [Peer(0, name), *(Peer(0, ("10.0.0.1", 5000 + number)) for number in range(9))]
+    peers = [Peer(0, name), Peer(0, ("::1", 5, 0, 0)), *(Peer(0, ("10.0.0.1", 5000 + number)) for number in range(9))]
     stats.update([report(1, audience=tuple(peers), peers=9, refused_peers=2, dropped=3, crc_errors=4)], 1, 0.0)
     (row,) = stats.build_rows(None, None, None, ())
-    assert row.peers == ("10.0.0.1:5000", "10.0.0.1:5001", "10.0.0.1:5002", "10.0.0.1:5003")
+    assert row.peers == ("[::1]:5", "10.0.0.1:5000", "10.0.0.1:5001", "10.0.0.1:5002")
     assert (row.peer_count, row.refused, row.dropped, row.crc_errors) == (9, 2, 3, 4)
 
 
