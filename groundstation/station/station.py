@@ -57,7 +57,7 @@ class Station:
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
-        self._driving = DrivingController(self.operator, self.fleet, self._commander, system)
+        self._driving = DrivingController(self.operator, self.fleet, self._commander, (system, COMPONENT))
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
         self._intents = IntentHandler(
@@ -224,6 +224,7 @@ class Station:
         return state.build_view(
             now,
             in_control=self._driving.is_in_control(contact),
+            twin=self._driving.is_driven_by_twin(contact),
             control_wait=self._handover.waits_for(contact, now),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
