@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from dialects.axes import Axes, AxisMap, axis_map
 from dialects.enums import Autopilot, Severity, VehicleType
 from dialects.messages import Heartbeat, Message
+from dialects.modes import Mode
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
 from groundstation.vehicles.message_log import STATE, MessageLog
@@ -64,8 +65,16 @@ class Contact:
         They change only with a neutral demand: a frame that is read late must not turn the steering while driving.
         """
         if self.axes is None or demand.neutral:
-            self.axes = axis_map(self.state.autopilot, self.settings_check.frame if self.settings_check else None)
+            self.axes = axis_map(
+                self.state.autopilot, self.settings_check.frame if self.settings_check else self._drive
+            )
         return self.axes
+
+    @property
+    def _drive(self) -> int | None:
+        """The drive type of our own vehicle, where it decides on the axes: in ACRO the steering is a turn rate."""
+        info = self.state.drive_info
+        return None if info is None or self.state.mode == Mode.ACRO.name else int(info.drive_type)
 
     @property
     def without_link(self) -> str | None:
