@@ -112,6 +112,11 @@ class DrivingController:
         accepted = self._commander.is_claimed(state.system)
         return state.control.is_program(self._ids, self._operator.session, accepted=accepted)
 
+    @property
+    def drives_any(self) -> bool:
+        """We control an armed vehicle."""
+        return any(contact.state.armed and self.is_in_control(contact) for contact in self._fleet)
+
     def is_driven_by_twin(self, contact: Contact) -> bool:
         """Return whether another program with our system id controls this vehicle."""
         return contact.state.driver == self._system and not self.is_in_control(contact)

@@ -118,7 +118,7 @@ class Station:
             self._queries.tick(now)
         if self.operator.live and not self._driving.ending:
             self._timesync.tick(now)
-            self._outbox += self._heartbeat.tick(now)
+            self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
         self._driving.update(now)
         self._departure.tick(now)
 
