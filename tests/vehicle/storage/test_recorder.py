@@ -21,7 +21,8 @@ from dialects.enums import Command
 from link.core import Peer, Received
 from link.protocol.frame import Frame, payload_of
 from link.protocol.framer import Framer
-from link.services.ftp.client import FtpClient, FtpOutcome
+from link.services.ftp.client import FtpClient
+from link.services.ftp.job import FtpOutcome
 from link.tlog.tlog import Record, read_records
 from tests.ports import free_port
 from tests.vehicle.ground import Ground, drive, running
