@@ -307,3 +307,17 @@ def result_name(result: int) -> str:
     """Return the name of a `MAV_RESULT` in lower case, e.g. "denied"; "result 99" for an unknown one."""
     entry = rover.enums["MAV_RESULT"].get(result)
     return entry.name.removeprefix("MAV_RESULT_").replace("_", " ").lower() if entry else f"result {result}"
+
+
+_PARAM_ERROR_TEXTS: dict[int, str] = {
+    ParamErrorCode.DOES_NOT_EXIST: "no such parameter",
+    ParamErrorCode.VALUE_OUT_OF_RANGE: "the value is out of range",
+    ParamErrorCode.PERMISSION_DENIED: "permission denied",
+    ParamErrorCode.READ_ONLY: "it is read-only",
+    ParamErrorCode.TYPE_MISMATCH: "the value does not fit its type",
+}
+
+
+def param_error_text(error: int) -> str:
+    """Return what a `MAV_PARAM_ERROR` means; "parameter error 99" for an unknown one."""
+    return _PARAM_ERROR_TEXTS.get(error, f"parameter error {error}")

@@ -39,6 +39,8 @@ class ParamListing:
         """Why the list ended incomplete."""
         self.received: set[int] = set()
         """Indexes that have arrived."""
+        self._filling = False
+        """The end of the list has been waited for: gaps are requested."""
         self._reset(0.0)
 
     @property
@@ -91,7 +93,6 @@ class ParamListing:
         self._tries = self._lists = self._changes = 0
         self._due = now
         self._filling = False
-        """The end of the list has been waited for: gaps are requested."""
         self._requested: set[int] = set()
         """Gaps of the last request that have not arrived."""
         self._asked: Counter[int] = Counter()

@@ -14,14 +14,14 @@ NAME_SIZE = 16
 """Bytes of `param_id`."""
 
 _FORMATS: dict[int, tuple[str, int, int]] = {
-    1: ("<I", 0, 0xFF),
-    2: ("<i", -0x80, 0x7F),
-    3: ("<I", 0, 0xFFFF),
-    4: ("<i", -0x8000, 0x7FFF),
+    1: ("<Bxxx", 0, 0xFF),
+    2: ("<bxxx", -0x80, 0x7F),
+    3: ("<Hxx", 0, 0xFFFF),
+    4: ("<hxx", -0x8000, 0x7FFF),
     5: ("<I", 0, 0xFFFF_FFFF),
     6: ("<i", -0x8000_0000, 0x7FFF_FFFF),
 }
-"""MAV_PARAM_TYPE of an integer -> its four bytes, smallest, largest."""
+"""MAV_PARAM_TYPE of an integer -> its place in the four bytes (the first ones), smallest, largest."""
 _FLOAT = struct.Struct("<f")
 _ESCAPED = re.compile(r"\\x([0-9a-f]{2})")
 
@@ -89,7 +89,7 @@ def shortest_float32(value: float) -> float:
         packed = _FLOAT.pack(value)
     except OverflowError:  # beyond every float32
         return value
-    for digits in range(6, 9):
+    for digits in range(6, 10):  # nine digits tell all float32 apart
         short = float(f"{value:.{digits}g}")
         if _FLOAT.pack(short) == packed:
             return short
@@ -106,4 +106,12 @@ def is_float32(value: float) -> bool:
 
 def same_float32(one: float, other: float) -> bool:
     """Return whether both are the same float32."""
-    return shortest_float32(one) == shortest_float32(other)
+    try:
+        return bool(_FLOAT.unpack(_FLOAT.pack(one)) == _FLOAT.unpack(_FLOAT.pack(other)))
+    except OverflowError:  # beyond every float32
+        return one == other
+
+
+def value_text(value: float) -> str:
+    """Return a value for people and files: whole numbers exactly, others with up to nine digits."""
+    return f"{value:.0f}" if math.isfinite(value) and value == int(value) and abs(value) < 1e15 else f"{value:.9g}"

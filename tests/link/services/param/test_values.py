@@ -15,6 +15,7 @@ from link.services.param.values import (
     is_bytewise,
     name_from_wire,
     name_to_wire,
+    same_float32,
     shortest_float32,
     to_wire,
     value_fault,
@@ -33,6 +34,13 @@ def test_whole_numbers_survive_both_ways_of_sending_them(kind: int, bytewise: bo
 @given(st.floats(width=32, allow_nan=False))
 def test_the_shortest_number_is_the_same_float32(value: float) -> None:
     assert through_float32(shortest_float32(value)) == value
+
+
+@pytest.mark.parametrize("typed", [1.17549435e-38, 0.123456791, 16777217.9, -0.0])
+def test_a_typed_number_is_the_same_as_its_echo(typed: float) -> None:
+    assert same_float32(typed, through_float32(typed))
+    assert same_float32(typed, shortest_float32(through_float32(typed)))
+    assert not same_float32(typed, typed * 1.001 + 1e-39)
 
 
 def through_float32(value: float) -> float:

@@ -1,0 +1,13 @@
+"""The verbs of `groundstation`, for --help. groundstation/verbs/table.py has what they do."""
+
+from __future__ import annotations
+
+VERB_HELP = {
+    "param": "get, set, save, load or diff parameters of a vehicle",
+}
+"""Verb -> what it does."""
+
+
+def verb_help() -> str:
+    """Return the verbs as lines for --help."""
+    return "\n".join(f"  groundstation {name:<9} {text}" for name, text in VERB_HELP.items())
