@@ -182,10 +182,10 @@ def _read(path: str) -> ParamFile:
 
 
 def _print(param: Param, output: Output) -> None:
-    differs = param.default is not None and not same_float32(param.value, param.default)
-    output.line(
-        f"{param.name:<16} {value_text(param.value)}" + (f"  # default {value_text(param.default)}" if differs else "")
-    )
+    default = "" if param.default is None else f"  # default {value_text(param.default)}"
+    if param.default is not None and same_float32(param.value, param.default):
+        default = ""
+    output.line(f"{param.name:<16} {value_text(param.value)}{default}")
     output.record(
         param_id=param.name, param_value=param.value, param_type=param_type_name(param.kind), default=param.default
     )

@@ -75,10 +75,10 @@ def test_mavproxy_and_we_write_the_same(values: dict[str, tuple[float, int]], tm
         for name, (value, _) in values.items()
         if same_float32(float(f"{shortest_float32(value):f}"), value)
     }
-    theirs = mavparm.MAVParmDict()
+    theirs = mavparm.MAVParmDict()  # type: ignore[no-untyped-call]
     theirs.update(ours)
     path = tmp_path / "theirs.parm"
-    theirs.save(str(path))
+    theirs.save(str(path))  # type: ignore[no-untyped-call]
     assert path.read_text() == format_params(
         [Param(name, value, REAL32, None) for name, value in ours.items()], ParamForm.MAVPROXY
     )

@@ -37,7 +37,7 @@ PEER = Peer(0, "vehicle")
 class Reader(Ground):
     """A ground station that fetches files and logs."""
 
-    def fetch(self, ask: Callable[[FtpClient], None]) -> FtpOutcome:
+    def fetch(self, ask: Callable[[FtpClient], object]) -> FtpOutcome:
         """What our own FTP client brings."""
         client = FtpClient(255, 190, target_system=1)
         outcomes: list[FtpOutcome] = []

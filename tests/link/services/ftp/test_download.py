@@ -37,9 +37,8 @@ def fetch(server: Watched, loss: float = 0.0, **how: Any) -> FtpOutcome:
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(server, client, loss=loss, seed=2)
     client.download("/logs/1.bin", pair.now, **how)
-    outcomes: list[FtpOutcome] = []
-    pair.run_until(lambda: outcomes.extend(client.outcomes()) or outcomes, 60.0)
-    [outcome] = outcomes
+    pair.run_until(lambda: not client.busy, 60.0)
+    [outcome] = client.outcomes()
     return outcome
 
 

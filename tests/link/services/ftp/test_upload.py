@@ -21,9 +21,8 @@ def send(server: Any, path: str, data: bytes, loss: float = 0.0, seed: int = 0) 
     client = FtpClient(255, 190, target_system=1)
     pair = Pair(server, client, loss=loss, seed=seed)
     client.upload(path, data, pair.now)
-    outcomes: list[FtpOutcome] = []
-    pair.run_until(lambda: outcomes.extend(client.outcomes()) or outcomes, 120.0)
-    [outcome] = outcomes
+    pair.run_until(lambda: not client.busy, 120.0)
+    [outcome] = client.outcomes()
     assert outcome.job is FtpOperation.UPLOAD
     return outcome
 

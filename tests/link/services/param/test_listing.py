@@ -151,6 +151,7 @@ def test_names_of_sixteen_bytes_that_are_not_ascii_stay_apart_and_can_be_set() -
     client.messages_to_send()
     client.set("\\xff\\xfd" * 8, 7.0, 0.2)
     [outgoing] = client.messages_to_send()
+    assert isinstance(outgoing.message, m.ParamSet)
     assert outgoing.message._param_id_raw == other
     client.receive(from_vehicle(m.ParamValue(other, 7.0, REAL32, 2, 1)), 0.3)
     assert [outcome.done for outcome in client.outcomes()] == [True]
