@@ -295,6 +295,19 @@ class MissionResult(IntEnum):
     CANCELLED = rover.MAV_MISSION_OPERATION_CANCELLED
 
 
+_MISSION_RESULT_NAMES: dict[int, str] = {
+    **{result: result.name for result in MissionResult},
+    MissionResult.INVALID_X: "INVALID_PARAM5_X",
+    MissionResult.INVALID_Y: "INVALID_PARAM6_Y",
+    MissionResult.CANCELLED: "OPERATION_CANCELLED",
+}
+
+
+def mission_result_name(result: int) -> str:
+    """Return the name of a `MAV_MISSION_RESULT` without its prefix; "result 99" for an unknown one."""
+    return _MISSION_RESULT_NAMES.get(result, f"result {result}")
+
+
 def command_name(command: int) -> str:
     """Return the name of a `MAV_CMD` without its prefix; "command 65535" for an unknown one."""
     if command in Command._value2member_map_:  # also those that pymavlink's common.xml lacks

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 VERB_HELP = {
     "param": "get, set, save, load or diff parameters of a vehicle",
+    "mission": "show, get, put or clear the mission",
+    "fence": "show, get, put or clear the fence",
+    "rally": "show, get, put or clear the rally points",
 }
 """Verb -> what it does."""
 

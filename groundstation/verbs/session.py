@@ -6,7 +6,6 @@ import asyncio
 from collections.abc import Awaitable, Callable, Sequence
 
 from dialects import messages as m
-from dialects.enums import Command, Result
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.vehicles.fleet import is_vehicle
 from groundstation.vehicles.message_log import MessageLog
@@ -16,7 +15,6 @@ from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from link.core import LinkReport, Outgoing, Received
 from link.runner import Runner, open_links
-from link.services.command.client import CommandClient
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -41,7 +39,6 @@ class VerbCore:
         self._wanted = wanted
         self._log = MessageLog()
         self._heartbeat = HeartbeatSender(0.0)
-        self._commands = CommandClient(system, COMPONENT)
         self._outbox: list[Outgoing] = []
         self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
@@ -61,18 +58,13 @@ class VerbCore:
             text = self._log.handle_statustext(message, received.system, now)
             if text is not None:
                 self.services.handle_text(text, message.severity, now)
-        self._commands.receive(received, now)
         self.services.receive(received, now)
         self._look()
 
     def tick(self, now: float) -> None:
         """Send heartbeats, repeat what is overdue."""
         self._outbox += self._heartbeat.tick(now)
-        if self.state is not None and self.services is not None:
-            self._commands.tick(now)
-            if any(outcome.result is not Result.ACCEPTED for outcome in self._commands.outcomes()):
-                self.services.identity.handle_refusal()
-            self._request_message(self.state, self.services, now)
+        if self.services is not None:
             self.services.tick(now)
         self._look()
 
@@ -82,7 +74,6 @@ class VerbCore:
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
         outbox, self._outbox = self._outbox, []
-        outbox += self._commands.messages_to_send()
         return outbox + (self.services.messages_to_send() if self.services else [])
 
     def add_look(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
@@ -94,20 +85,6 @@ class VerbCore:
     def _attach(self, received: Received) -> None:
         self.state = VehicleState(received.system, received.component)
         self.services = VehicleServices(self._system, COMPONENT, (received.system, received.component))
-
-    def _request_message(self, state: VehicleState, services: VehicleServices, now: float) -> None:
-        if self._commands.is_waiting(Command.REQUEST_MESSAGE, state.system):
-            return
-        request = services.due_message(now)
-        if request is not None:
-            self._commands.send(
-                Command.REQUEST_MESSAGE,
-                request.message,
-                request.index,
-                target_system=state.system,
-                target_component=state.component,
-                now=now,
-            )
 
     def _look(self) -> None:
         for condition, found in self._looks:

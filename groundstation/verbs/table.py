@@ -11,8 +11,9 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import param
+from groundstation.verbs import param, plan
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
 from link.services.param.values import is_float32
@@ -48,6 +49,18 @@ _YES = ("--yes", {"action": "store_true", "help": "overwrite the file"})
 _FORMAT = ("--format", {"choices": [form.value for form in ParamForm], "default": ParamForm.MAVPROXY.value,
                         "help": "MAVProxy (default), QGroundControl or Mission Planner"})  # fmt: skip
 
+
+def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
+    name = kind.name.lower()
+    return {
+        "show": VerbAction(f"print the {name}", plan.show(kind)),
+        "get": VerbAction(f"download the {name} into a file: .plan, or .waypoints for a mission", plan.get(kind),
+                          (_FILE, _YES)),
+        "put": VerbAction(f"upload the {name} of a file", plan.put(kind), (_FILE,)),
+        "clear": VerbAction(f"clear the {name} on the vehicle", plan.clear(kind)),
+    }  # fmt: skip
+
+
 VERBS: dict[str, dict[str, VerbAction]] = {
     "param": {
         "get": VerbAction("print parameters", param.get, (_PATTERNS,)),
@@ -66,5 +79,6 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         ),
         "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,)),
     },
+    **{verb: _plan_actions(kind) for verb, kind in plan.KINDS},
 }  # fmt: skip
 """Verb -> its actions."""

@@ -75,6 +75,7 @@ class ForeignVehicle:
         self._socket.bind(("127.0.0.1", 0))
         self._socket.settimeout(0.02)
         self._peer: tuple[str, int] | None = None
+        self._sender = (255, 190)
         self._running = True
         self._thread = threading.Thread(target=self._run, daemon=True)
 
@@ -133,6 +134,7 @@ class ForeignVehicle:
         self.send(mav.MAVLink_statustext_message(severity, text.encode()))
 
     def _answer(self, message: Any) -> None:
+        self._sender = message.get_srcSystem(), message.get_srcComponent()
         answer = _ANSWERS.get(message.get_type())
         if answer is not None and message.get_msgId() not in self.silent and message.target_system in (0, 1):
             answer(self, message)
@@ -143,7 +145,7 @@ class ForeignVehicle:
         result, text = self.acks.get(message.command, (0, ""))
         if text:
             self.say(text)
-        self.send(mav.MAVLink_command_ack_message(message.command, result, 0, 0, 255, 190))
+        self.send(mav.MAVLink_command_ack_message(message.command, result, 0, 0, *self._sender))
         if message.command == 512 and result == 0:
             self._requested(int(message.param1), int(message.param2))
 
@@ -221,7 +223,7 @@ class ForeignVehicle:
     def _ftp(self, message: Any) -> None:
         if self.files is not None:
             for payload in self.files.answer(bytes(message.payload)):
-                self.send(mav.MAVLink_file_transfer_protocol_message(0, message.get_srcSystem(), 190, payload))
+                self.send(mav.MAVLink_file_transfer_protocol_message(0, *self._sender, payload))
 
     # ---- missions ----
 
@@ -240,7 +242,7 @@ class ForeignVehicle:
             if self.autopilot == ARDUPILOT
             else mav.MAVLink_mission_request_int_message
         )
-        self.send(request(255, 190, len(self.missions.upload), self.missions.kind))
+        self.send(request(*self._sender, len(self.missions.upload), self.missions.kind))
 
     def _mission_item(self, message: Any) -> None:
         missions = self.missions
@@ -258,17 +260,17 @@ class ForeignVehicle:
             self._mission_ack(0)
 
     def _mission_ack(self, result: int) -> None:
-        self.send(mav.MAVLink_mission_ack_message(255, 190, result, self.missions.kind))
+        self.send(mav.MAVLink_mission_ack_message(*self._sender, result, self.missions.kind))
 
     def _mission_list(self, message: Any) -> None:
         items = self.missions.items[message.mission_type]
-        self.send(mav.MAVLink_mission_count_message(255, 190, len(items), message.mission_type))
+        self.send(mav.MAVLink_mission_count_message(*self._sender, len(items), message.mission_type))
 
     def _mission_request(self, message: Any) -> None:
         items = self.missions.items[message.mission_type]
         if message.seq < len(items):
             item = items[message.seq]
-            item.target_system, item.target_component = 255, 190
+            item.target_system, item.target_component = self._sender
             self.send(item)
 
     def _mission_clear(self, message: Any) -> None:
