@@ -65,6 +65,11 @@ class FileRequests:
         """Return the outcome of a request that has ended, once."""
         return self._results.pop(number, None)
 
+    @property
+    def beginning(self) -> bytes:
+        """What arrived of the download under way without a gap from the start."""
+        return self._client.beginning
+
     # ---- for other requests ----
 
     def start_download(self, path: str, handler: OutcomeHandler, now: float, *, patience: int = TRIES) -> int:

@@ -1,4 +1,4 @@
-"""The MAVLink services of one vehicle, as the ground station uses them: parameters, plans, files, commands.
+"""The MAVLink services of one vehicle, as the ground station uses them: parameters, plans, files, logs, commands.
 
 Each request has a number and ends in `book`. Nothing is sent before the first request.
 """
@@ -9,12 +9,14 @@ from dialects.enums import Autopilot, Command, Result
 from groundstation.vehicles.command_requests import CommandRequests
 from groundstation.vehicles.file_requests import FileRequests
 from groundstation.vehicles.identity import VehicleIdentity
+from groundstation.vehicles.log_requests import LogRequests
 from groundstation.vehicles.param_requests import ParamRequests
 from groundstation.vehicles.plan_requests import PlanRequests
 from groundstation.vehicles.requests import RequestBook
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient
 from link.services.ftp.client import FtpClient
+from link.services.log.client import LogClient
 from link.services.mission.client import MissionClient
 from link.services.param.client import ParamClient
 
@@ -31,9 +33,10 @@ class VehicleServices:
         self.commands = CommandRequests(CommandClient(system, component), self.book, target)
         self.files = FileRequests(FtpClient(system, component, target_system=to, target_component=at), self.book)
         self.plans = PlanRequests(MissionClient(system, component, target_system=to, target_component=at), self.book)
+        self.logs = LogRequests(LogClient(system, component, target_system=to, target_component=at), self.book)
         params = ParamClient(system, component, target_system=to, target_component=at)
         self.params = ParamRequests(params, self.files, self.identity, self.book, lambda: self.autopilot)
-        self._services = (self.commands, self.files, self.plans, self.params)
+        self._services = (self.commands, self.files, self.logs, self.plans, self.params)
         self._used = False
 
     def receive(self, received: Received, now: float) -> None:

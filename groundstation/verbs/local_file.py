@@ -10,21 +10,27 @@ from pathlib import Path
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 
 MAX_SIZE = 16 * 1024 * 1024
-"""Bytes of a file that is read as text: more is no parameter file and no plan."""
+"""Bytes of a file that is read: more is no parameter file and no plan, and takes hours to upload."""
 
 
 def read_text(path: str) -> str:
     """Return the text of a file. Raises VerbError."""
     try:
-        with Path(path).open("rb") as file:
-            data = file.read(MAX_SIZE + 1)
-        if len(data) > MAX_SIZE:
-            raise VerbError(ExitCode.USAGE, f"{path}: more than {MAX_SIZE} bytes")
-        return data.decode("utf-8")
-    except OSError as error:
-        raise VerbError(ExitCode.USAGE, f"{path}: {error.strerror}") from error
+        return read_bytes(path).decode("utf-8")
     except UnicodeDecodeError:
         raise VerbError(ExitCode.USAGE, f"{path}: this is not a text file") from None
+
+
+def read_bytes(path: str) -> bytes:
+    """Return the content of a file. Raises VerbError."""
+    try:
+        with Path(path).open("rb") as file:
+            data = file.read(MAX_SIZE + 1)
+    except OSError as error:
+        raise VerbError(ExitCode.USAGE, f"{path}: {error.strerror}") from error
+    if len(data) > MAX_SIZE:
+        raise VerbError(ExitCode.USAGE, f"{path}: more than {MAX_SIZE} bytes")
+    return data
 
 
 def check_new_file(path: str, *, overwrite: bool) -> None:

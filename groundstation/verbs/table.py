@@ -13,7 +13,7 @@ from typing import Any
 
 from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import param, plan
+from groundstation.verbs import ftp, log, param, plan
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
 from link.services.param.values import is_float32
@@ -45,6 +45,7 @@ def number(text: str) -> float:
 
 _PATTERNS = ("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"})
 _FILE = ("file", {"metavar": "FILE"})
+_REMOTE = ("remote", {"metavar": "REMOTE", "help": "path on the vehicle, e.g. /logs/00000001.tlog"})
 _YES = ("--yes", {"action": "store_true", "help": "overwrite the file"})
 _FORMAT = ("--format", {"choices": [form.value for form in ParamForm], "default": ParamForm.MAVPROXY.value,
                         "help": "MAVProxy (default), QGroundControl or Mission Planner"})  # fmt: skip
@@ -80,5 +81,20 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,)),
     },
     **{verb: _plan_actions(kind) for verb, kind in plan.KINDS},
+    "ftp": {
+        "ls": VerbAction("list a folder", ftp.ls, (("path", {"nargs": "?", "default": "/", "metavar": "FOLDER"}),)),
+        "get": VerbAction("download a file, resume, and compare its checksum", ftp.get,
+                          (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"}), _YES)),
+        "put": VerbAction("upload a file and compare its checksum", ftp.put, (("local", {"metavar": "FILE"}), _REMOTE)),
+        "rm": VerbAction("remove a file", ftp.rm, (_REMOTE,)),
+        "crc": VerbAction("print the checksum of a file, or compare it with a file here", ftp.crc,
+                          (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"}))),
+    },
+    "log": {
+        "list": VerbAction("print the logs on the vehicle", log.list_logs),
+        "get": VerbAction("download a log, or resume", log.get,
+                          (("log", {"metavar": "ID", "help": "number of the log, or latest"}),
+                           ("file", {"nargs": "?", "metavar": "FILE"}), _YES)),
+    },
 }  # fmt: skip
 """Verb -> its actions."""

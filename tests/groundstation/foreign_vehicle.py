@@ -67,6 +67,7 @@ class ForeignVehicle:
         self.acks: dict[int, tuple[int, str]] = {}
         """Command -> MAV_RESULT, and STATUSTEXT before it."""
         self.received: list[Any] = []
+        self._arrived = threading.Condition()
         self._dice = random.Random(3)
         self._link = mav.MAVLink(None, srcSystem=1, srcComponent=1)
         self._link.robust_parsing = True
@@ -99,6 +100,11 @@ class ForeignVehicle:
         """Return the received messages of this name."""
         return [message for message in list(self.received) if message.get_type() == name]
 
+    def wait_for(self, name: str, count: int, within: float = 30.0) -> None:
+        """Wait until `count` messages of this name have arrived."""
+        with self._arrived:
+            assert self._arrived.wait_for(lambda: len(self.of(name)) >= count, within), f"no {count} {name}"
+
     # ---- the loop ----
 
     def _run(self) -> None:
@@ -110,7 +116,9 @@ class ForeignVehicle:
             except TimeoutError:
                 messages = []
             for message in messages:
-                self.received.append(message)
+                with self._arrived:
+                    self.received.append(message)
+                    self._arrived.notify_all()
                 self._answer(message)
             if self._peer and time.monotonic() >= beat:
                 beat = time.monotonic() + 1.0

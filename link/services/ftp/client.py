@@ -87,6 +87,11 @@ class FtpClient:
         return self._current[2].progress if self._current else (0, None)
 
     @property
+    def beginning(self) -> bytes:
+        """What arrived of the download under way without a gap from the start."""
+        return self._current[2].beginning if self._current and isinstance(self._current[2], Download) else b""
+
+    @property
     def number(self) -> int | None:
         """Number of the job under way."""
         return self._current[0] if self._current else None

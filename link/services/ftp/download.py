@@ -67,6 +67,11 @@ class Download:
             return len(self.have), None
         return self._file.received.bytes, self._file.end
 
+    @property
+    def beginning(self) -> bytes:
+        """What arrived without a gap from the start."""
+        return self.have if self._phase is _Phase.OPEN else self._file.beginning
+
     def begin(self, now: float) -> None:
         """Open the file."""
         self._exchange.begin(self.line.packet(FtpOpcode.OPEN, self.raw), now)
@@ -212,13 +217,8 @@ class Download:
 
     def _fail_by(self, reply: FtpPacket) -> None:
         self._fail("")
-        self.outcome = replace(failure(FtpOperation.DOWNLOAD, self.path, reply, 0), data=self._beginning())
+        self.outcome = replace(failure(FtpOperation.DOWNLOAD, self.path, reply, 0), data=self.beginning)
 
     def _fail(self, problem: str) -> None:
         self.abandon()
-        self.outcome = FtpOutcome(FtpOperation.DOWNLOAD, self.path, False, self._beginning(), problem=problem)
-
-    def _beginning(self) -> bytes:
-        """Return what arrived without a gap from the start."""
-        gap = next(self._file.received.gaps(self._file.end), None)
-        return self._file.data[: self._file.end if gap is None else gap[0]]
+        self.outcome = FtpOutcome(FtpOperation.DOWNLOAD, self.path, False, self.beginning, problem=problem)
