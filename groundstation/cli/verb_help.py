@@ -7,6 +7,8 @@ VERB_HELP = {
     "mission": "show, get, put or clear the mission",
     "fence": "show, get, put or clear the fence",
     "rally": "show, get, put or clear the rally points",
+    "modes": "print the modes of the vehicle",
+    "mode": "change the mode",
     "ftp": "ls, get, put, rm or crc files on the vehicle",
     "log": "list or get the logs on the vehicle",
 }

@@ -17,7 +17,7 @@ class CommandRequests:
     def __init__(self, client: CommandClient, book: RequestBook, target: tuple[int, int]) -> None:
         self._client = client
         self._book = book
-        self._target = target
+        self.target = target
         self._numbers: dict[int, int] = {}
         """Command -> the request under way."""
         self._queries: list[CommandOutcome] = []
@@ -39,7 +39,7 @@ class CommandRequests:
 
     def is_waiting(self, command: Command | int) -> bool:
         """Return whether a command of this kind still waits for its COMMAND_ACK."""
-        return self._client.is_waiting(int(command), self._target[0])
+        return self._client.is_waiting(int(command), self.target[0])
 
     def pop_queries(self) -> list[CommandOutcome]:
         """Return how the queries ended since the last call."""
@@ -63,7 +63,7 @@ class CommandRequests:
         """Repeat what is overdue, report progress."""
         self._client.tick(now)
         for command, number in self._numbers.items():
-            progress = self._client.progress(command, self._target[0])
+            progress = self._client.progress(command, self.target[0])
             if progress is not None:
                 self._book.advance(number, progress, 100)
         self._handle_outcomes(now)
@@ -73,7 +73,7 @@ class CommandRequests:
         return self._client.messages_to_send()
 
     def _transmit(self, command: int, params: tuple[float, ...], now: float) -> None:
-        system, component = self._target
+        system, component = self.target
         self._client.send(command, *params, target_system=system, target_component=component, now=now)
 
     def _handle_outcomes(self, now: float) -> None:

@@ -5,11 +5,12 @@ Each request has a number and ends in `book`. Nothing is sent before the first r
 
 from __future__ import annotations
 
-from dialects.enums import Autopilot, Command, Result
+from dialects.enums import Autopilot, Command, Result, VehicleType
 from groundstation.vehicles.command_requests import CommandRequests
 from groundstation.vehicles.file_requests import FileRequests
 from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.log_requests import LogRequests
+from groundstation.vehicles.mode_requests import ModeRequests
 from groundstation.vehicles.param_requests import ParamRequests
 from groundstation.vehicles.plan_requests import PlanRequests
 from groundstation.vehicles.requests import RequestBook
@@ -28,9 +29,12 @@ class VehicleServices:
         to, at = target
         self.autopilot: int = Autopilot.GENERIC
         """MAV_AUTOPILOT of its HEARTBEAT."""
+        self.kind: int = VehicleType.GROUND_ROVER
+        """MAV_TYPE of its HEARTBEAT."""
         self.book = RequestBook()
         self.identity = VehicleIdentity(at)
         self.commands = CommandRequests(CommandClient(system, component), self.book, target)
+        self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
         self.files = FileRequests(FtpClient(system, component, target_system=to, target_component=at), self.book)
         self.plans = PlanRequests(MissionClient(system, component, target_system=to, target_component=at), self.book)
         self.logs = LogRequests(LogClient(system, component, target_system=to, target_component=at), self.book)
@@ -42,9 +46,10 @@ class VehicleServices:
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle."""
         self.identity.receive(received)
+        self.modes.receive(received, now)
         for service in self._services:
             service.receive(received, now)
-        self._take_queries()
+        self._take_queries(now)
 
     def handle_text(self, text: str, severity: int, now: float) -> None:
         """Take a whole STATUSTEXT of the vehicle."""
@@ -58,7 +63,8 @@ class VehicleServices:
         self._used = self._used or bool(self.book.running)
         for service in self._services:
             service.tick(now)
-        self._take_queries()
+        self._take_queries(now)
+        self.modes.tick(now)
         if self._used and may_query:
             self._query_identity(now)
         self.book.tick(now)
@@ -74,6 +80,9 @@ class VehicleServices:
         if request is not None:
             self.commands.query(Command.REQUEST_MESSAGE, (request.message, request.index), now)
 
-    def _take_queries(self) -> None:
-        if any(outcome.result is not Result.ACCEPTED for outcome in self.commands.pop_queries()):
-            self.identity.handle_refusal()
+    def _take_queries(self, now: float) -> None:
+        for outcome in self.commands.pop_queries():
+            if outcome.command == Command.DO_SET_MODE:
+                self.modes.handle_outcome(outcome, now)
+            elif outcome.result is not Result.ACCEPTED:
+                self.identity.handle_refusal()

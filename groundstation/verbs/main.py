@@ -14,7 +14,7 @@ from groundstation.formats.errors import FileFormatError
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession, run_session
-from groundstation.verbs.table import VERBS, VerbAction
+from groundstation.verbs.table import ONLY, VERBS, VerbAction
 from link.endpoint import EndpointError
 from link.runtime import stdio
 from link.runtime.command_line import CommandLineParser
@@ -39,7 +39,7 @@ def run(arguments: Sequence[str]) -> int:
     """Run the verb that `arguments` start with; return the exit code."""
     parser = build_parser(arguments[0])
     options = parser.parse_args(parser.reject_empty(arguments[1:]))
-    output = Output(f"{arguments[0]} {options.action}", as_json=options.json, quiet=options.quiet)
+    output = Output(f"{arguments[0]} {options.action}".strip(), as_json=options.json, quiet=options.quiet)
     logging.basicConfig(handlers=[logging.NullHandler()])  # what is worth knowing is printed
     try:
         code = run_loop(_run(VERBS[arguments[0]][options.action], options, output))
@@ -73,14 +73,21 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output) 
 def build_parser(verb: str) -> CommandLineParser:
     """Return the parser for the arguments behind a verb."""
     parser = CommandLineParser(prog=f"groundstation {verb}", epilog=EPILOG, formatter_class=_HELP)
+    if ONLY in VERBS[verb]:
+        _add_arguments(parser, VERBS[verb][ONLY])
+        parser.set_defaults(action=ONLY)
+        return parser
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=CommandLineParser)
     for name, action in VERBS[verb].items():
-        summary = f"{action.help[0].upper()}{action.help[1:]}."
-        sub = actions.add_parser(name, help=action.help, description=summary, epilog=EPILOG, formatter_class=_HELP)
-        for argument, settings in action.arguments:
-            sub.add_argument(argument, **settings)
-        _add_common(sub)
+        _add_arguments(actions.add_parser(name, help=action.help, epilog=EPILOG, formatter_class=_HELP), action)
     return parser
+
+
+def _add_arguments(parser: argparse.ArgumentParser, action: VerbAction) -> None:
+    parser.description = f"{action.help[0].upper()}{action.help[1:]}."
+    for argument, settings in action.arguments:
+        parser.add_argument(argument, **settings)
+    _add_common(parser)
 
 
 _HELP = argparse.RawDescriptionHelpFormatter

@@ -53,7 +53,7 @@ class VerbCore:
         if self.state is None or self.services is None or received.system != self.state.system:
             return
         self.state.receive(received, now)
-        self.services.autopilot = self.state.autopilot
+        self.services.autopilot, self.services.kind = self.state.autopilot, self.state.kind
         if isinstance(message, m.StatusText):
             text = self._log.handle_statustext(message, received.system, now)
             if text is not None:

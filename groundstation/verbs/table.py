@@ -13,7 +13,7 @@ from typing import Any
 
 from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import ftp, log, param, plan
+from groundstation.verbs import ftp, log, mode, param, plan
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
 from link.services.param.values import is_float32
@@ -51,6 +51,10 @@ _FORMAT = ("--format", {"choices": [form.value for form in ParamForm], "default"
                         "help": "MAVProxy (default), QGroundControl or Mission Planner"})  # fmt: skip
 
 
+ONLY = ""
+"""Name of the action of a verb that has only one, and takes no name for it."""
+
+
 def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
     name = kind.name.lower()
     return {
@@ -81,6 +85,9 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,)),
     },
     **{verb: _plan_actions(kind) for verb, kind in plan.KINDS},
+    "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes)},
+    "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
+                              (("name", {"metavar": "MODE"}),))},
     "ftp": {
         "ls": VerbAction("list a folder", ftp.ls, (("path", {"nargs": "?", "default": "/", "metavar": "FOLDER"}),)),
         "get": VerbAction("download a file, resume, and compare its checksum", ftp.get,

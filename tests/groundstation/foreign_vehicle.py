@@ -64,6 +64,10 @@ class ForeignVehicle:
         self.logs: list[bytes] = []
         self.modes: list[tuple[str, int, int]] = []
         """Name, custom_mode and properties of AVAILABLE_MODES."""
+        self.mode = 0
+        """custom_mode of its HEARTBEAT."""
+        self.obeys = True
+        """Takes the modes that it accepts."""
         self.acks: dict[int, tuple[int, str]] = {}
         """Command -> MAV_RESULT, and STATUSTEXT before it."""
         self.received: list[Any] = []
@@ -122,7 +126,7 @@ class ForeignVehicle:
                 self._answer(message)
             if self._peer and time.monotonic() >= beat:
                 beat = time.monotonic() + 1.0
-                self.send(mav.MAVLink_heartbeat_message(10, self.autopilot, 81, 0, 3, 3), certain=True)
+                self.send(mav.MAVLink_heartbeat_message(10, self.autopilot, 81, self.mode, 3, 3), certain=True)
 
     def send(self, message: Any, *, certain: bool = False) -> None:
         """Send a message of pymavlink."""
@@ -154,6 +158,9 @@ class ForeignVehicle:
         if text:
             self.say(text)
         self.send(mav.MAVLink_command_ack_message(message.command, result, 0, 0, *self._sender))
+        if message.command == 176 and result == 0 and self.obeys:
+            main, sub = int(message.param2), int(message.param3)
+            self.mode = sub << 24 | main << 16 if self.autopilot == PX4 else main
         if message.command == 512 and result == 0:
             self._requested(int(message.param1), int(message.param2))
 
