@@ -153,6 +153,14 @@ class OperatorFlag(IntFlag):
     AXES = rover.ROVER_OPERATOR_FLAGS_AXES
 
 
+class ControlFlag(IntFlag):
+    """ROVER_CONTROL_FLAGS of ROVER_CONTROL."""
+
+    TAKEOVER_ALLOWED = rover.ROVER_CONTROL_FLAGS_TAKEOVER_ALLOWED
+    CLASH = rover.ROVER_CONTROL_FLAGS_CLASH
+    SILENT = rover.ROVER_CONTROL_FLAGS_SILENT
+
+
 class DriveLimit(IntFlag):
     """ROVER_DRIVE_LIMITS: why the motor outputs differ from the demand."""
 

@@ -97,6 +97,7 @@ RoverDriveStatus = rover.MAVLink_rover_drive_status_message
 RoverFailsafeStatus = rover.MAVLink_rover_failsafe_status_message
 RoverLinkStatus = rover.MAVLink_rover_link_status_message
 RoverDriveInfo = rover.MAVLink_rover_drive_info_message
+RoverControl = rover.MAVLink_rover_control_message
 
 MESSAGES: dict[int, type[Message]] = rover.mavlink_map
 """Every message of the dialect by id."""

@@ -25,6 +25,7 @@ from groundstation.ipc import (
 )
 from groundstation.processes import end_process, start_module
 from groundstation.snapshot import Snapshot
+from groundstation.views import View
 
 START_TIMEOUT = 15.0
 """s for the station to open its links: Python's start on a slow Pi (3 s) and a host name to resolve (10 s)."""
@@ -51,6 +52,7 @@ class StationClient:
         self._pending: deque[AnyIntent] = deque(maxlen=MAX_PENDING)
         self._open = True
         self._newest = Snapshot()
+        self._views: dict[type[View], View] = {}
 
     @classmethod
     def start(
@@ -106,7 +108,7 @@ class StationClient:
 
     def receive(self) -> Snapshot | None:
         """Return the newest snapshot received, or None. Never blocks; `alive` is False once the station has exited."""
-        newest: bytes | None = None
+        snapshot: Snapshot | None = None
         while True:
             try:
                 packet = self._pipe.recv(MAX_PACKET)
@@ -117,10 +119,19 @@ class StationClient:
             if not packet:
                 self._open = False
                 break
-            newest = packet
-        snapshot = _snapshot(newest) if newest else None
+            with contextlib.suppress(msgspec.DecodeError):
+                message = decode_from_station(packet)
+                if isinstance(message, View):
+                    self._views[type(message)] = message
+                elif isinstance(message, Snapshot):
+                    snapshot = message
         self._newest = snapshot or self._newest
         return snapshot
+
+    def pop_views(self) -> list[View]:
+        """Return the newest view of each kind that `receive` has read since the last call."""
+        views, self._views = self._views, {}
+        return list(views.values())
 
     @property
     def left_armed(self) -> tuple[str, ...]:
@@ -169,11 +180,3 @@ def _hello(pipe: socket.socket) -> StationReady:
     if not isinstance(first, StationReady):
         raise StationError("the station process has a different version")
     return first
-
-
-def _snapshot(packet: bytes) -> Snapshot | None:
-    with contextlib.suppress(msgspec.DecodeError):
-        message = decode_from_station(packet)
-        if isinstance(message, Snapshot):
-            return message
-    return None

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias, Union
 import msgspec
 
 from groundstation.screens import SCREENS
+from groundstation.views import AnyRequest
 
 LEASE_TIMEOUT = 0.3
 """s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz, and longer than its longest
@@ -146,6 +147,14 @@ class StartSimulator(Intent, frozen=True):
     """Start a simulated rover as a child of the station process and let it connect to us."""
 
 
+class Watch(Intent, frozen=True):
+    """Send these views from now on, and no others: what the screen on top needs beside the snapshot."""
+
+    is_input = False
+    valid_when_late = True
+    requests: tuple[AnyRequest, ...] = ()
+
+
 class Quit(Intent, frozen=True):
     """Send neutral several times and exit."""
 
@@ -203,7 +212,8 @@ _ROWS = (
     # driven forward, as a car does with its wheels held. A chord of two keys does not: left always turns the nose left.
     _drive("backward_left", "Back left", "Back up to the left, as a car does", -1, 1, "m"),
     _drive("backward_right", "Back right", "Back up to the right, as a car does", -1, -1, "full_stop"),
-    OperatorAction("drive.stop", "Stop", "Neutral at once; ends latched driving", "stop", Stop(), ("k", "space")),
+    OperatorAction("drive.stop", "Stop", "Neutral at once; ends latched driving", "stop", Stop(),
+                   ("k", "space", "ctrl+k")),
     OperatorAction("stop.emergency", "EMERGENCY STOP", "Motors off and locked, from every screen", "stop",
                    EmergencyStop(), ("exclamation_mark", "f9")),
     OperatorAction("stop.clear", "Clear e-stop", "Release the emergency stop; arming is a separate step", "stop",
@@ -229,6 +239,11 @@ _ROWS = (
                    SelectNextVehicle(), ("n",)),
     OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator(), ("f5",)),
     *(OperatorAction(screen.action, screen.title, screen.help, "app", keys=screen.keys) for screen in SCREENS),
+    OperatorAction("app.goto", "Go to", "Menu of the screens; then the digit of one", "app", keys=("ctrl+g",)),
+    OperatorAction("app.next_screen", "Next screen", "Screen to the right in the tab bar", "app",
+                   keys=("right_square_bracket",)),
+    OperatorAction("app.previous_screen", "Previous screen", "Screen to the left in the tab bar", "app",
+                   keys=("left_square_bracket",)),
     OperatorAction("app.quit", "Quit", "Stop the vehicle and quit", "app", keys=("ctrl+q", "ctrl+c")),
 )  # fmt: skip
 

@@ -8,6 +8,7 @@ import msgspec
 
 from groundstation.intents import LEASE_TIMEOUT, AnyIntent
 from groundstation.snapshot import Snapshot
+from groundstation.views import AnyView
 
 SOCKET_BUFFER = 1 << 20
 """Bytes requested each way, so that a snapshot (< 60 kB) or a second of keys fits; the kernel may grant less."""
@@ -39,7 +40,7 @@ class StationFailed(msgspec.Struct, frozen=True, tag=True):
     line: str
 
 
-FromStation = StationReady | StationFailed | Snapshot
+FromStation = StationReady | StationFailed | Snapshot | AnyView
 
 encode = msgspec.msgpack.Encoder().encode
 decode_from_station = msgspec.msgpack.Decoder(FromStation).decode

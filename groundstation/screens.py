@@ -15,6 +15,8 @@ class ScreenRow:
     help: str
     keys: tuple[str, ...]
     """Default keys that open it, in every key map."""
+    digit: str
+    """Its key in the go-to menu. Screens without one ("") are not in the tab bar."""
     target: str
     """"module:Class" of a ConsoleScreen. Loaded when first opened: the program starts sooner, and this table stays free
     of Textual."""
@@ -24,11 +26,24 @@ class ScreenRow:
         """Id of the action that opens it."""
         return f"app.{self.id}"
 
+    @property
+    def in_tabs(self) -> bool:
+        """The tab bar and the go-to menu list it."""
+        return bool(self.digit)
+
 
 SCREENS: tuple[ScreenRow, ...] = (
-    ScreenRow("drive", "Drive", "Drive screen, the only one where keys drive", ("f1",),
+    ScreenRow("drive", "Drive", "Drive screen, the only one where keys drive", ("f1",), "1",
               "groundstation.ui.screens.drive:DriveScreen"),
-    ScreenRow("help", "Help", "Keys and what they do", ("question_mark",),
+    ScreenRow("log", "Log", "All alerts and messages, to scroll, filter and save", ("f6",), "6",
+              "groundstation.ui.screens.log:LogScreen"),
+    ScreenRow("help", "Help", "Keys and what they do", ("question_mark",), "",
               "groundstation.ui.screens.help:HelpScreen"),
 )  # fmt: skip
-"""In the order of the help screen. The first one is at the bottom of the screen stack: Escape leads back to it."""
+"""In the order of the tab bar and of the help screen. The first one is at the bottom of the screen stack: Escape leads
+back to it."""
+
+
+def find_screen(target: str) -> ScreenRow | None:
+    """Return the row of a class, "module:Class"."""
+    return next((row for row in SCREENS if row.target == target), None)

@@ -22,6 +22,15 @@ class EmergencyProgress(Enum):
     """Acknowledged. Whether the motors are off is for the HEARTBEAT to report."""
 
 
+class OutputView(msgspec.Struct, frozen=True, kw_only=True):
+    """One motor output."""
+
+    name: str
+    """What it drives, e.g. "left wheel", "steering servo"; its number where that is not known, e.g. "servo 1"."""
+    value: float
+    """-1..1"""
+
+
 class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """The selected vehicle."""
 
@@ -65,8 +74,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     gps_satellites: int | None = None
     demand: tuple[float, float] | None = None
     """Throttle and steering that the vehicle reports as obeyed, -1..1."""
-    outputs: tuple[float, ...] = ()
-    """Output of each motor, -1..1."""
+    outputs: tuple[OutputView, ...] = ()
+    """Motor outputs that are known."""
     limits: tuple[str, ...] = ()
     """Why outputs differ from the demand: "slew", "neutral first" ..."""
     command_age: float | None = None
@@ -81,6 +90,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """What the vehicle does when it loses us, e.g. "it stops by itself"; None: not known."""
     refusal: str | None = None
     """The last refusal and its reason, e.g. "arm denied: PreArm: battery low". Cleared by the next acceptance."""
+    obeys: str | None = None
+    """A foreign vehicle obeys another ground station only, by its settings: which one, and what to do."""
     warnings: tuple[str, ...] = ()
     """Settings of a foreign vehicle that would let it drive on."""
 
@@ -97,6 +108,8 @@ class OperatorView(msgspec.Struct, frozen=True, kw_only=True):
     0 if releases are reported, inf if driving goes on until the next key (latch, step)."""
     held: tuple[str, ...] = ()
     """Drive keys that count as held."""
+    held_over: bool = False
+    """A drive key that repeats from before keys drove is ignored: it must be released first."""
     throttle: float = 0.0
     """Demand that is being sent, -1..1."""
     steering: float = 0.0
@@ -134,10 +147,12 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True):
     severity: int
     """MAV_SEVERITY."""
     label: str
-    """"vehicle", "ack" or "station"."""
+    """"vehicle", "ack", "state" or "station"."""
     text: str
     count: int = 1
     """How often the line occurred in a row."""
+    number: int = 0
+    """Counts the lines of a session from 1. A line that occurs again keeps its number."""
 
 
 class MessageRate(msgspec.Struct, frozen=True, kw_only=True):
@@ -168,7 +183,7 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     operator: OperatorView = OperatorView()
     links: tuple[LinkView, ...] = ()
     texts: tuple[LogLine, ...] = ()
-    """The newest 200, oldest first."""
+    """The newest lines of the log, oldest first, without changes of state, which the screen shows anyway."""
     messages: tuple[MessageRate, ...] = ()
     simulator: str | None = None
     """State of the simulator that we started, e.g. "running", "ended with code 1: ..."; None without one."""

@@ -33,6 +33,7 @@ from groundstation.sitl import SimulatorControl, free_port
 from groundstation.snapshot import LogLine, OperatorView, Snapshot
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
+from groundstation.station.lasting_alerts import LastingAlerts
 from groundstation.station.station import COMPONENT, Station
 from groundstation.vehicles.message_log import MAX_LENGTH
 from link.endpoint import EndpointError, parse_endpoint
@@ -68,6 +69,7 @@ class StationProcess:
         self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash)
         self._simulator = SimulatorControl()
         self._last_snapshot = Snapshot()
+        self._lasting_alerts = LastingAlerts()
         self._broken = self._ending = False
 
     async def run(self) -> int:
@@ -103,6 +105,7 @@ class StationProcess:
                 break
             self._handle_packet(packet, now)
         self._runner.flush()
+        self._send_views(now)
 
     def _packet(self) -> bytes | None:
         try:
@@ -147,16 +150,25 @@ class StationProcess:
     def _send_snapshot(self, now: float) -> None:
         self._watch_simulator(now)
         self._last_snapshot = self._station.snapshot(now, time.time())
+        for text in self._lasting_alerts.new_in(self._last_snapshot):
+            log.warning(text)
         self._send(self._last_snapshot)
+        self._send_views(now)
 
-    def _send(self, message: msgspec.Struct) -> None:
-        """Send now or drop: a screen that does not read gets a newer snapshot later."""
+    def _send_views(self, now: float) -> None:
+        self._station.views.send_due(self._send, now, time.time())
+
+    def _send(self, message: msgspec.Struct) -> bool:
+        """Send now or drop: a screen that does not read gets a newer snapshot later. Return whether it was sent."""
         try:
             self._pipe.send(encode(message))
         except BlockingIOError:
             log.debug("the screen does not read")
         except OSError:
             log.debug("the screen has exited")  # _read_pipe sees the end of the pipe
+        else:
+            return True
+        return False
 
     def _watch_simulator(self, now: float) -> None:
         exited = self._simulator.pop_exit()

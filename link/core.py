@@ -42,6 +42,12 @@ class Received(NamedTuple):
     named: bool = False
     """The user gave this peer's address, as in `udpout`, or the peer has connected to us: replies reach no third
     party."""
+    numbering: int = 0
+    """Which run of packet numbers of this sender at this peer (link/protocol/sequence.py); 0: not known."""
+    clash: bool = False
+    """Another program counts in the same run, with the same ids and at the same peer."""
+    digest: int = 0
+    """Equal for frames that are equal byte for byte; 0: not known."""
 
     @property
     def may_ask(self) -> bool:

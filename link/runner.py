@@ -26,6 +26,15 @@ REPORT_PERIOD = 1.0
 
 
 @runtime_checkable
+class PlaceKeeper(Protocol):
+    """A core that is controlled by one peer, for which each link keeps places."""
+
+    @property
+    def reserved_ids(self) -> tuple[int, int] | None:
+        """System and component id of the ground station in control, or None."""
+
+
+@runtime_checkable
 class SendListener(Protocol):
     """A core that needs the packet sequence of the messages it sent."""
 
@@ -82,6 +91,7 @@ class Runner:
         self._period = period
         self._router = _router(links) if links and (len(links) > 1 if route is None else route) else None
         self._sent = core.handle_sent if isinstance(core, SendListener) else None
+        self._keeper = core if isinstance(core, PlaceKeeper) else None
         self._ended: asyncio.Future[None] | None = None
         self._report_due = 0.0
         self._events = LinkEvents()
@@ -185,6 +195,8 @@ class Runner:
     def _observe(self, now: float) -> None:
         for link in self._links:
             link.channel.expire_peers(now)
+            if self._keeper is not None:
+                link.channel.reserve(self._keeper.reserved_ids)
         reports = [self._report(link, now) for link in self._links]
         for report in reports:
             if event := self._events.update(report):

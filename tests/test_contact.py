@@ -6,7 +6,7 @@ import pytest
 
 from dialects.messages import ManualControl, RoverDriveStatus, RoverOperatorPresence
 from groundstation.snapshot import VehicleView
-from link.protocol.channel import PEER_SILENCE
+from link.protocol.peer_table import PEER_SILENCE
 from tests.test_stops import Drive
 from tests.world import Host
 from vehicle.control_loop import ControlLoop

@@ -59,6 +59,7 @@ class Drive:
             now=start,
         )
         self.held: str | None = None
+        self.repeat = REPEAT
         self.screen_lives = True
         self.moved: list[tuple[float, float]] = []
         self._key_due = self._lease_due = 0.0
@@ -89,7 +90,7 @@ class Drive:
             self._lease_due = now + 0.1
             self.station.handle_intent(i.RenewLease(), now)
         if self.screen_lives and self.held and now >= self._key_due:
-            self._key_due = now + REPEAT
+            self._key_due = now + self.repeat
             self.station.handle_intent(i.DriveKeyDown(self.held, 1, 0), now)
         self.moved.append((now, self.power))
 
@@ -154,6 +155,30 @@ def test_closed_gate(style: str) -> None:
     drive.get_going()
     drive.tell(i.SetKeyGate(False, "help is open"))
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.5)
+
+
+@pytest.mark.parametrize("style", ["hold", "latch"])
+@pytest.mark.parametrize(("away", "gap"), [(0.05, 0.04), (0.5, 0.04), (3.0, 0.04), (0.05, 0.7), (0.5, 0.7), (3.0, 0.7)])
+def test_a_key_held_over_another_screen_never_drives(style: str, away: float, gap: float) -> None:
+    """Without reported releases. A gap of 0.7 s between repeats is a slow keyboard, or a line that stalls."""
+    drive = Drive(style=style)
+    drive.get_going()
+    drive.tell(i.SetKeyGate(False, "another screen is open"))
+    drive.repeat = gap
+    drive.run(away)
+    drive.tell(i.SetKeyGate(True))
+    drive.until(lambda: drive.power == 0.0, within=NEUTRAL_WITHIN)
+    drive.moved.clear()
+    drive.run(5.0)
+    assert drive.held
+    assert max(power for _, power in drive.moved) == 0.0
+    assert drive.station.snapshot(drive.world.now, 0).operator.held_over
+    drive.held = None
+    drive.run(0.76)
+    drive.tell(i.SetMode("MANUAL"))  # 1.5 s without a demand are HOLD
+    drive.run(0.5)
+    drive.held = "i"
+    drive.until(lambda: drive.power > 0.1)
 
 
 @pytest.mark.parametrize("style", ["hold", "latch"])

@@ -85,7 +85,7 @@ class Rover:
         self._actuator_test = self._dispatcher.actuator_test
         self._routes = {row.message: row for row in self._dispatcher.messages}
         self._observers = (
-            self._control.update_liveness,
+            self._control.hear,
             self._actuator_test.update_liveness,
             self._telemetry.observe,
         )
@@ -100,6 +100,12 @@ class Rover:
     def state(self) -> SafetyState:
         """Safety state, for the daemon's log and for tests."""
         return self._safety.state
+
+    @property
+    def reserved_ids(self) -> tuple[int, int] | None:
+        """Ids of the ground station in control: it gets a place on each link even if all are taken."""
+        driver = self._control.ownership.driver
+        return driver.conversation.ids if driver else None
 
     @property
     def messages(self) -> InboundTable:
@@ -212,7 +218,7 @@ class Rover:
             control=self._control,
             navigator=self._navigator,
             statustext=self._texts,
-            access=CommandAccess(self._control, self._texts),
+            access=CommandAccess(self._control.ownership, self._texts),
             mixer=self._drive.mixer,
             pacer=self._bandwidth.pacer,
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import errno
+import os
 import shutil
 import sys
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ from pathlib import Path
 
 from platformdirs import user_log_path
 
+from groundstation.cli.terminal import needs_ascii
 from groundstation.cli.unknown_options import describe_unknown
 from groundstation.cli.verb_help import VERB_HELP, verb_help
 from groundstation.client import StationClient, StationError
@@ -41,6 +43,7 @@ examples:
 
 first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
 one press of `r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
+Keys drive on the Drive screen only. F6 lists all alerts and messages, Ctrl-G goes to the other screens, Escape back.
 
 verbs, which open no screen (groundstation VERB --help):
 {verb_help()}
@@ -55,6 +58,8 @@ key map file (--keys my.toml): replaces the keys of the actions it names
 
 status line: loss: lost frames; rtt: round trip to the vehicle; sent: demands per second;
 cmd: age of the demand that the motors obey; key→motor: latency; tty: round trip to the terminal
+
+size: 80x24 and more; below that a strip with what a driver must see; below 40x10 keys neither drive nor arm.
 
 key release: terminals with the kitty keyboard protocol report it, and driving ends with the key.
 In others, and inside tmux, driving ends when the key has stopped repeating; the screen shows the time.
@@ -105,9 +110,10 @@ def _run(options: argparse.Namespace) -> int:
         log_file=log_file,
     )
     try:
-        from groundstation.ui.app import run  # takes half a second, so only after the arguments are checked
+        from groundstation.ui.run import run  # takes half a second, so only after the arguments are checked
 
-        return run(client, keymap=keymap, log_file=log_file)
+        ascii_only = needs_ascii() if options.ascii is None else options.ascii
+        return run(client, keymap=keymap, log_file=log_file, ascii_only=ascii_only)
     finally:
         client.close()
         report_armed(client.left_armed)
@@ -127,6 +133,10 @@ def _check_endpoint(text: str) -> None:
 
 
 def _check_terminal() -> None:
+    if os.environ.get("TERM") == "dumb":
+        raise UsageError(
+            "TERM=dumb cannot place text on the screen: run groundstation in a terminal such as xterm or tmux"
+        )
     for name, stream in (("input", sys.stdin), ("output", sys.stdout)):
         if stream is None or not stream.isatty():
             raise UsageError(
@@ -194,6 +204,8 @@ def _parser() -> tuple[CommandLineParser, list[str]]:
             help="limit of the sticks, 0.1 to 1 (default: 0.6)"),
         add("--system", type=_system_id, default=255, metavar="ID", help="our MAVLink system id (default: 255)"),
         add("--log-file", type=Path, metavar="FILE", help=f"default: {user_log_path('mavhelm') / 'groundstation.log'}"),
+        add("--ascii", action=argparse.BooleanOptionalAction, default=None,
+            help="draw with ASCII characters only (default: where the locale is not UTF-8, and with TERM=linux)"),
         add("--version", action="version", version=f"%(prog)s {version('mavhelm')}"),
     )  # fmt: skip
     return parser, [name for action in actions for name in action.option_strings]

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from dialects.axes import NEUTRAL, Axes
-from groundstation.input.key_repeat import REPEAT_GAP, KeyTrace, RepeatWindows
+from groundstation.input.key_repeat import PRESS_WINDOW, REPEAT_GAP, KeyTrace, RepeatWindows
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
 from groundstation.intents import DriveKeyDown, ScaleLimits
 
@@ -39,6 +39,10 @@ class Sticks:
         self._traces: dict[str, KeyTrace] = {}
         self._blocked_until: dict[str, float] = {}
         """Keys held when driving was blocked -> until when their events still belong to that old press."""
+        self._waits_for_quiet = False
+        """Drive keys do not count until none was seen for `_quiet`: see require_quiet."""
+        self._seen_at = -math.inf
+        """When the newest drive key was seen, also one that did not count."""
         self._latched = NEUTRAL
         """State of the styles latch (a direction) and step (a level)."""
 
@@ -48,7 +52,7 @@ class Sticks:
             self.reports_releases = True
         if not push.throttle and not push.steering:
             return
-        if self._is_blocked(push, now):
+        if self._is_held_over(now) or self._is_blocked(push, now):
             return
         if self.style is Style.HOLD:
             self._hold(push, now)
@@ -79,8 +83,20 @@ class Sticks:
             self._blocked_until[key] = now + window
         self.stop()
 
+    def require_quiet(self) -> None:
+        """Ignore drive keys until none was seen for a while: without reported releases a repeat looks like a press.
+
+        Called when the key gate closes, e.g. for another screen: a key that was pressed there may still repeat here.
+        """
+        self._waits_for_quiet = True
+
+    def held_over(self, now: float) -> bool:
+        """Return whether drive keys are ignored because one repeats from before the key gate opened."""
+        return self._waits_for_quiet and not self.reports_releases and now - self._seen_at < self._quiet
+
     def reject(self, push: DriveKeyDown, now: float) -> None:
         """Ignore a press while driving is not allowed: it must not drive later either."""
+        self._seen_at = now
         self._blocked_until[push.key] = now + (
             self._windows.repeat_window if push.key in self._blocked_until else self._windows.press_window
         )
@@ -184,6 +200,15 @@ class Sticks:
             _stepped(self._latched.throttle, push.throttle, self.throttle_limit),
             _stepped(self._latched.steering, push.steering, self.steering_limit),
         )
+
+    @property
+    def _quiet(self) -> float:
+        """Time without drive keys that shows that none is held, s: longer than the delay before the first repeat."""
+        return max(PRESS_WINDOW, self._windows.press_window)
+
+    def _is_held_over(self, now: float) -> bool:
+        self._waits_for_quiet, self._seen_at = self.held_over(now), now
+        return self._waits_for_quiet
 
     def _is_blocked(self, push: DriveKeyDown, now: float) -> bool:
         until = self._blocked_until.pop(push.key, None)

@@ -18,6 +18,7 @@ from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
 from groundstation.station.operator import OperatorSession
+from groundstation.station.view_feed import ViewFeed
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.vehicle_state import VehicleState
@@ -49,6 +50,7 @@ class IntentHandler:
         driving: DrivingController,
         departure: Departure,
         log: MessageLog,
+        views: ViewFeed,
     ) -> None:
         self._operator = operator
         self._fleet = fleet
@@ -56,6 +58,7 @@ class IntentHandler:
         self._driving = driving
         self._departure = departure
         self._log = log
+        self._views = views
         self._emergency_at = -math.inf
 
     def handle(self, intent: i.AnyIntent, now: float) -> None:
@@ -138,6 +141,9 @@ class IntentHandler:
         self._operator.reset_demand(now)
         self._fleet.select_next(now)
 
+    def _watch(self, intent: i.Watch, now: float) -> None:
+        self._views.watch(intent.requests)
+
     def _quit(self, intent: i.Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
@@ -178,6 +184,7 @@ HANDLERS: dict[type[i.Intent], Callable[[IntentHandler, Any, float], None]] = {
     i.RenewLease: IntentHandler._renew_lease,
     i.SelectVehicle: IntentHandler._select,
     i.SelectNextVehicle: IntentHandler._select_next,
+    i.Watch: IntentHandler._watch,
     i.Quit: IntentHandler._quit,
 }
 """Intent -> method, for all that are not commands to a vehicle. StartSimulator is handled in station_process.py."""

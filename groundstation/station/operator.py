@@ -77,6 +77,7 @@ class OperatorSession:
         self._gate = gate
         if not gate.open:
             self.sticks.block(now)
+            self.sticks.require_quiet()
 
     def blocked_reason(self, now: float) -> str | None:
         """Return why the screen keeps keys from driving; None when it does not."""
@@ -168,6 +169,7 @@ class OperatorSession:
             reports_releases=sticks.reports_releases,
             stop_bound=sticks.stop_bound,
             held=sticks.held_keys(now),
+            held_over=reason is None and sticks.held_over(now),
             throttle=self._sent_demand.throttle,
             steering=self._sent_demand.steering,
             throttle_limit=sticks.throttle_limit,

@@ -19,8 +19,10 @@ from groundstation.station.link_stats import LinkStats
 from groundstation.station.message_rates import MessageRates
 from groundstation.station.operator import OperatorSession
 from groundstation.station.vehicle_queries import VehicleQueries
+from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
+from groundstation.views import LogRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -45,6 +47,8 @@ class Station:
         self.log = MessageLog()
         self.operator = OperatorSession(style, speed, session)
         self.fleet = Fleet(self.log, system, COMPONENT)
+        self.views = ViewFeed({LogRequest: ViewSource(self.log.build_page, period=0.1)})
+        """Request -> its source."""
         self._endpoints = tuple(endpoints)
         self._system = system
         self._started = now
@@ -52,7 +56,7 @@ class Station:
         self._driving = DrivingController(self.operator, self.fleet, self._commander, system)
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._intents = IntentHandler(
-            self.operator, self.fleet, self._commander, self._driving, self._departure, self.log
+            self.operator, self.fleet, self._commander, self._driving, self._departure, self.log, self.views
         )
         self._links = LinkStats()
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log)
@@ -181,6 +185,7 @@ class Station:
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
             without_link=contact.without_link,
             refusal=commander.last_refusal(state.system),
+            obeys=contact.settings_check.obeys if contact.settings_check else None,
             warnings=contact.settings_check.warnings if contact.settings_check else (),
         )
 

@@ -30,6 +30,9 @@ class VehicleQueries:
         own = received.component == contact.state.component  # another component has a clock of its own
         if own and contact.stream_requests.handle_message(received.message, now):
             contact.check_settings_again()
+        if contact.servo_functions is not None:
+            contact.servo_functions.receive(received, now)
+            contact.state.servo_names = contact.servo_functions.names
         if contact.settings_check is not None:
             self._log_warnings(contact, contact.settings_check.receive(received, now), now)
 
@@ -40,6 +43,7 @@ class VehicleQueries:
             if contact.lost_at is None:
                 self._query_dialect(contact, now)
                 self._query_settings(contact, now)
+                self._query_outputs(contact, now)
                 self._request_telemetry(contact, now)
 
     def messages_to_send(self) -> list[Outgoing]:
@@ -67,6 +71,10 @@ class VehicleQueries:
         if contact.settings_check is not None:
             self._outbox += contact.settings_check.tick(now)
             self._log_warnings(contact, contact.settings_check.pop_missing_warning(), now)
+
+    def _query_outputs(self, contact: Contact, now: float) -> None:
+        if contact.servo_functions is not None:
+            self._outbox += contact.servo_functions.tick(now)
 
     def _log_warnings(self, contact: Contact, warnings: list[str], now: float) -> None:
         for warning in warnings:

@@ -1,4 +1,4 @@
-"""Alert rules: what is wrong, else what to do next, most urgent first."""
+"""Alert rules: what is wrong, most urgent first; and the hint: what to do next."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from enum import Enum, auto
 from groundstation.intents import HOLD_TIME
 from groundstation.snapshot import EmergencyProgress, VehicleView
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.keynames import format_key
 
 MAX_SILENCE = 99.0
@@ -21,8 +22,6 @@ BAR = 10
 class AlertLevel(Enum):
     """Urgency of an alert."""
 
-    HINT = auto()
-    """What to do next."""
     WARNING = auto()
     """Something keeps the vehicle from driving."""
     DANGER = auto()
@@ -43,7 +42,7 @@ Rule = Callable[[DisplayState], Iterator[Alert]]
 
 
 def active_alerts(now: DisplayState) -> list[Alert]:
-    """Return every alert that applies now, most urgent first; never empty."""
+    """Return every alert that applies now, most urgent first."""
     return [alert for rule in RULES for alert in rule(now)]
 
 
@@ -110,7 +109,7 @@ def _failsafe(now: DisplayState) -> Iterator[Alert]:
 
 
 def _gate(now: DisplayState) -> Iterator[Alert]:
-    if now.closure is not None:
+    if now.closure is not None and now.closure not in (OTHER_SCREEN, TEXT_FIELD):
         yield Alert(AlertLevel.WARNING, f"keys do not drive: {now.closure.reason}")
 
 
@@ -133,8 +132,13 @@ def _limits(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and vehicle.armed:
         for limit in vehicle.limits:
-            if limit in LIMITS:
+            if limit in LIMITS and (limit != "neutral first" or _driven_by_keys(vehicle)):
                 yield Alert(AlertLevel.WARNING, LIMITS[limit])
+
+
+def _driven_by_keys(vehicle: VehicleView) -> bool:
+    """Return whether our keys are what moves the vehicle: elsewhere their release changes nothing."""
+    return vehicle.in_control and vehicle.mode == "MANUAL"
 
 
 def _id_conflict(now: DisplayState) -> Iterator[Alert]:
@@ -142,11 +146,29 @@ def _id_conflict(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, now.snapshot.id_conflict)
 
 
+def _obeys(now: DisplayState) -> Iterator[Alert]:
+    vehicle = now.snapshot.vehicle
+    if vehicle is not None and vehicle.obeys:
+        yield Alert(AlertLevel.WARNING, vehicle.obeys)
+
+
 def _driver(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
         yield Alert(AlertLevel.WARNING, f"{who}: {now.key('vehicle.control')} asks for control")
+
+
+def _operator(now: DisplayState) -> Iterator[Alert]:
+    vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
+    if vehicle is None or not vehicle.armed or not _driven_by_keys(vehicle):
+        return
+    if operator.held_over:
+        yield Alert(AlertLevel.WARNING, "keys do not drive: one is held from before; release it, then press again")
+    elif not operator.gate_open and now.closure is None:
+        yield Alert(AlertLevel.WARNING, f"keys do not drive: {operator.gate_reason}")
+    elif operator.style == "latch" and (operator.throttle or operator.steering):
+        yield Alert(AlertLevel.WARNING, f"latched, the vehicle keeps driving: {now.key('drive.stop')} or SPACE stops")
 
 
 def _settings(now: DisplayState) -> Iterator[Alert]:
@@ -157,30 +179,28 @@ def _settings(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, warning)
 
 
-def _hint(now: DisplayState) -> Iterator[Alert]:
-    vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
-    if vehicle is None:
-        yield Alert(
-            AlertLevel.HINT, f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves"
-        )
-    elif not vehicle.armed:
-        yield Alert(AlertLevel.HINT, f"disarmed: hold {now.key('vehicle.arm')} to arm {vehicle.name}")
-    elif vehicle.mode != "MANUAL":
-        yield Alert(
-            AlertLevel.HINT, f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
-        )
-    elif not operator.gate_open and now.closure is None:
-        yield Alert(AlertLevel.WARNING, f"keys do not drive: {operator.gate_reason}")
-    elif operator.style == "latch" and (operator.throttle or operator.steering):
-        yield Alert(AlertLevel.WARNING, f"latched, the vehicle keeps driving: {now.key('drive.stop')} or SPACE stops")
-    else:
-        verb = "hold" if operator.style == "hold" else "press"
-        stops = f"SPACE stops, {now.key('stop.emergency')} cuts the motors"
-        yield Alert(AlertLevel.HINT, f"{verb} {now.key('drive.forward')} to drive · {stops}")
-
-
 RULES: tuple[Rule, ...] = (
-    _station, _hold, _silence, _emergency, _failsafe, _gate, _refusal, _id_conflict, _limits, _driver, _settings,
-    _hint,
+    _station, _hold, _silence, _emergency, _failsafe, _gate, _obeys, _operator, _driver, _refusal, _id_conflict,
+    _limits, _settings,
 )  # fmt: skip
 """Most urgent first."""
+
+
+def hint(now: DisplayState) -> str:
+    """Return what to do next. It has a line of its own, which no alert hides."""
+    if not now.screen.drives:
+        return now.screen.hint
+    vehicle, operator = now.snapshot.vehicle, now.snapshot.operator
+    if vehicle is None:
+        return f"no vehicle yet · {now.key('app.help')} shows the keys, {now.key('app.quit')} leaves"
+    if not vehicle.armed:
+        return f"disarmed: hold {now.key('vehicle.arm')} to arm {vehicle.name}"
+    stops = f"SPACE stops, {now.key('stop.emergency')} cuts the motors"
+    if vehicle.obeys:
+        return stops
+    if not vehicle.in_control:
+        return f"{now.key('vehicle.control')} asks for control · {stops}"
+    if vehicle.mode != "MANUAL":
+        return f"{vehicle.mode}: {now.key('vehicle.manual')} changes to MANUAL, where the keys drive"
+    verb = "hold" if operator.style == "hold" else "press"
+    return f"{verb} {now.key('drive.forward')} to drive · {stops}"

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-import gc
 import signal
-import sys
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
@@ -16,24 +14,33 @@ from textual import events
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
+from textual.filter import LineFilter
 from textual.screen import Screen
 
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents import ACTIONS, AnyIntent, DriveKeyDown, OperatorAction, Quit, RenewLease
-from groundstation.screens import SCREENS
+from groundstation.intents import ACTIONS, AnyIntent, DriveKeyDown, OperatorAction, Quit, RenewLease, Watch
 from groundstation.snapshot import Snapshot
+from groundstation.ui import garbage
+from groundstation.ui.ascii import AsciiFilter
 from groundstation.ui.colours import THEME
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.exit import exit_on_signals
-from groundstation.ui.key_gate import STARTING, GateClosure, GateLevel, KeyGate, StationConnection
+from groundstation.ui.key_gate import (
+    OTHER_SCREEN,
+    STARTING,
+    GateClosure,
+    GateLevel,
+    KeyGate,
+    StationConnection,
+)
 from groundstation.ui.key_parser import KeyRepeat, KeyUp
 from groundstation.ui.navigation import ScreenNavigator
 from groundstation.ui.palette import ActionProvider
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.terminal import PING, ConsoleDriver, TerminalClosed
-from groundstation.ui.tty_output import TerminalFile, redirect_output
+from groundstation.ui.tty_output import TerminalFile
 from groundstation.ui.tty_ping import PERIOD
+from groundstation.views import ViewRequest
 
 TICK = 0.1
 """s between renewals of the lease: a third of LEASE_TIMEOUT, what the station allows."""
@@ -62,6 +69,8 @@ class ConsoleApp(App[int]):
         keymap: Keymap,
         *,
         terminal: TerminalFile | None = None,
+        folder: Path = Path(),
+        ascii_only: bool = False,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.gate = KeyGate(client, keymap, clock)
@@ -73,11 +82,12 @@ class ConsoleApp(App[int]):
         self._shown_at = 0.0
         self._leaving: GateClosure | None = None
         self._own_loop: asyncio.AbstractEventLoop | None = None
-        context = ScreenContext(keymap, self._send, self.perform_action)
+        self._ascii = AsciiFilter(enabled=ascii_only)
+        self._watched: tuple[ViewRequest, ...] = ()
+        context = ScreenContext(keymap, self._send, self.perform_action, self._display_state, folder)
         self.drive = DriveScreen(context)
         self._navigator = ScreenNavigator(self, context)
-        self._actions: dict[str, Callable[[], None]] = {"app.quit": self.request_quit}
-        self._actions |= {row.action: partial(self._navigator.open, row) for row in SCREENS}
+        self._actions = {"app.quit": self.request_quit, **self._navigator.actions}
 
     # ---- start and end ----
 
@@ -92,7 +102,7 @@ class ConsoleApp(App[int]):
         self.set_interval(TICK, self._tick)
         self.set_interval(PERIOD, self._ping)
         if self._terminal is not None:
-            self.call_after_refresh(_freeze)
+            self.call_after_refresh(garbage.freeze)
 
     def on_unmount(self) -> None:
         """Close the gate, which means neutral, before anything else ends."""
@@ -122,13 +132,14 @@ class ConsoleApp(App[int]):
         self._own_loop.call_soon_threadsafe(self.end, code)
 
     def on_terminal_closed(self, event: TerminalClosed) -> None:
-        """End as after a hang-up: there is no input and no output any more."""
+        """End as after a hang-up."""
         self.end(128 + signal.SIGHUP)
 
     def push_screen(self, screen: Any, *arguments: Any, **options: Any) -> Any:
         """Close the gate, which means neutral, before another screen is even made; then push it."""
         if screen is not self.drive:
-            self.gate.set_closure(GateClosure("another screen is open", GateLevel.STOPS))
+            self.gate.set_closure(OTHER_SCREEN)
+            self.gate.screen_opened()
         return super().push_screen(screen, *arguments, **options)
 
     # ---- the station ----
@@ -139,12 +150,22 @@ class ConsoleApp(App[int]):
     def _readable(self) -> None:
         """Take the newest snapshot; several may wait."""
         snapshot = self._client.receive()
+        for view in self._client.pop_views():
+            if isinstance(self.screen, ConsoleScreen):
+                self.screen.show_view(view)
+        self._watch()
         if snapshot is not None:
             self._handle_snapshot(snapshot)
         if not self._client.alive:
             asyncio.get_running_loop().remove_reader(self._client.fileno())
             if self._leaving is DISARMING:
                 self.end()
+
+    def _watch(self) -> None:
+        """Request the views that the screen on top needs."""
+        if (requests := self._navigator.requests()) != self._watched:
+            self._watched = requests
+            self._send(Watch(requests))
 
     def _handle_snapshot(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
@@ -172,16 +193,22 @@ class ConsoleApp(App[int]):
             station_alive=self._client.alive,
             pressed=frozenset(self._pressed),
             terminal_round_trip=self.gate.ping.round_trip,
+            ascii=self._ascii.enabled,
         )
+
+    def get_line_filters(self) -> Sequence[LineFilter]:
+        """Return the filters of all that is drawn."""
+        return [*super().get_line_filters(), *([self._ascii] if self._ascii.enabled else [])]
 
     # ---- timers ----
 
     def _tick(self) -> None:
-        if not self.screen_stack:
-            return  # the app has removed its screens, and timers live a little longer
+        if not self.screen_stack:  # the app has removed its screens, and timers live a little longer
+            return
         now = self._clock()
         self._client.send(RenewLease())
         self.gate.set_closure(self._gate_closure(now))
+        self._watch()
         for key in [key for key, until in self._pressed.items() if now >= until]:
             del self._pressed[key]
         if now - self._shown_at >= TICK:
@@ -193,11 +220,12 @@ class ConsoleApp(App[int]):
 
     def _gate_closure(self, now: float) -> GateClosure | None:
         """Return why keys must not drive now, as far as the UI knows; None when they may."""
+        other = self._navigator.closure()
         stuck = self._terminal is not None and self._terminal.is_stuck(time.monotonic())
         checks: tuple[tuple[bool, GateClosure], ...] = (
             (self._leaving is not None, self._leaving or STARTING),
             (not self._client.alive, GateClosure("the station has ended")),
-            (self.screen is not self.drive, GateClosure("another screen is open", GateLevel.STOPS)),
+            (other is not None, other or OTHER_SCREEN),
             (not self.app_focus, GateClosure("this window does not have the focus")),
             (self.drive.too_small, GateClosure("the terminal is too small")),
             (self.gate.ping.is_silent(now), GateClosure("the terminal does not answer")),
@@ -265,25 +293,3 @@ class ConsoleApp(App[int]):
             self.perform_action(action)
         else:
             self._send(action.intent)
-
-
-def run(client: StationConnection, *, keymap: Keymap, log_file: Path | None = None) -> int:
-    """Run the UI to its end. Return 0 after a quit, 128 + n after signal n, 1 after an internal error."""
-    with redirect_output(log_file) as terminal:
-        app = ConsoleApp(client, keymap, terminal=terminal)
-        with exit_on_signals(app.end_threadsafe, terminal):
-            # No mouse events for widgets: mouse.py captures the mouse and discards its reports.
-            code = app.run(mouse=False)
-    if code is None:
-        sys.stderr.write(
-            f"groundstation: internal error: {log_file or 'run with --log-file: the log'} has the details\n"
-        )
-        return 1
-    return code
-
-
-def _freeze() -> None:
-    """Exempt the objects that exist now from garbage collection: a pass over them took 28-61 ms."""
-    gc.collect()
-    gc.freeze()
-    gc.set_threshold(50_000, 20, 20)

@@ -12,6 +12,38 @@ from groundstation.ui.keynames import format_key, main_key
 
 
 @dataclass(frozen=True, slots=True)
+class ScreenKey:
+    """A key of one screen, beside the actions that work everywhere."""
+
+    key: str
+    """Textual's name."""
+    label: str
+    """One or two words for the footer."""
+    help: str
+
+
+@dataclass(frozen=True, slots=True)
+class ScreenInfo:
+    """What the parts that all screens have must know of the one they are on."""
+
+    id: str = "drive"
+    """Id of its row in SCREENS."""
+    keys: tuple[ScreenKey, ...] = ()
+    hint: str = ""
+    """What to do next on this screen; the Drive screen has rules for it (alerts.py)."""
+    text: bool = False
+    """A text field of the screen has the keys."""
+
+    @property
+    def drives(self) -> bool:
+        """Keys may drive on this screen."""
+        return self.id == "drive"
+
+
+DRIVE_INFO = ScreenInfo()
+
+
+@dataclass(frozen=True, slots=True)
 class DisplayState:
     """Input of the alert rules, of every instrument and of every screen."""
 
@@ -26,6 +58,9 @@ class DisplayState:
     """Keys that the UI saw go down, sooner than a snapshot can report them."""
     terminal_round_trip: float | None = None
     """Seconds from a ping of the terminal to its answer."""
+    screen: ScreenInfo = DRIVE_INFO
+    ascii: bool = False
+    """The terminal shows ASCII characters only."""
 
     def key(self, action: str) -> str:
         """Return the main key of an action as it is printed, "?" where it has none."""

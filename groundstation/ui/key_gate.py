@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -19,8 +20,11 @@ from groundstation.intents import (
     SetKeyGate,
     Stop,
 )
+from groundstation.screens import SCREENS
 from groundstation.snapshot import Snapshot
+from groundstation.ui.keynames import is_character
 from groundstation.ui.tty_ping import TerminalPing
+from groundstation.views import View
 
 
 class StationConnection(Protocol):
@@ -34,6 +38,9 @@ class StationConnection(Protocol):
 
     def receive(self) -> Snapshot | None:
         """Return the newest snapshot that waits."""
+
+    def pop_views(self) -> list[View]:
+        """Return the views that came with it."""
 
     def fileno(self) -> int:
         """Return a descriptor that is readable when a snapshot waits."""
@@ -51,7 +58,9 @@ class GateLevel(Enum):
     COMMANDS = auto()
     """Commands (disarm, mode) but no drive keys: the Drive screen is shown, but its driver may be absent."""
     STOPS = auto()
-    """Only stops: keys are text for what is on top."""
+    """Only stops: the other keys are those of the screen or menu on top."""
+    TEXT = auto()
+    """Only stops that are no text: a text field has the keys, and SPACE is a letter there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +72,18 @@ class GateClosure:
 
 
 STARTING = GateClosure("starting")
+OTHER_SCREEN = GateClosure("another screen is open", GateLevel.STOPS)
+TEXT_FIELD = GateClosure("a text field has the keys", GateLevel.TEXT)
+
+OPENING_TIMEOUT = 1.0
+"""s within which the event loop opens the screen whose key the input thread has seen. Until then the gate stays closed:
+the next key may be meant for that screen."""
+
+OPENING = frozenset({"app.goto", "app.next_screen", "app.previous_screen", *(row.action for row in SCREENS[1:])})
+"""Actions that open a screen or menu on top of Drive."""
+
+PALETTE_KEY = "ctrl+p"
+"""Opens Textual's command palette, which is a text field."""
 
 
 class KeyGate:
@@ -82,6 +103,7 @@ class KeyGate:
         self._exact = False
         self._armed = False
         self._driving = True
+        self._opening_until = -math.inf
         self._hold = HoldToConfirm(keymap)
         self.ping = TerminalPing()
 
@@ -100,7 +122,11 @@ class KeyGate:
             read = self._hold.handle_read(
                 self._drop_stray_repeats(batch), armed=self._armed, allowed=self._closure is None, now=self._clock()
             )
-            intents = self.keymap.build_intents(read.passing, armed=self._armed, driving=self._driving)
+            if self._opens_screen(batch):
+                self._opening_until = self._clock() + OPENING_TIMEOUT
+                self._set_closure(OTHER_SCREEN)
+            counting = [press for press in read.passing if self._counts(press)]
+            intents = self.keymap.build_intents(counting, armed=self._armed, driving=self._driving)
             passing = [intent for intent in intents if self._passes(intent)]
             if read.confirmed is not None:
                 passing.append(read.confirmed)
@@ -132,16 +158,26 @@ class KeyGate:
     def set_closure(self, closure: GateClosure | None) -> None:
         """Open (None) or close. Closing means neutral at once, and a key held meanwhile does not count afterwards."""
         with self._lock:
-            if closure == self._closure:
-                return
-            self._closure = closure
-            if closure is None:
-                self._client.send(SetKeyGate(open=True))
-                return
-            self._down.clear()
-            self._hold.cancel()
-            # The gate first: it makes the station record which keys are held, and the stop clears them.
-            self._client.send(SetKeyGate(open=False, reason=closure.reason), Stop(closure.reason))
+            commands = closure is None or closure.level is GateLevel.COMMANDS
+            opening = commands and self._clock() < self._opening_until
+            self._set_closure(OTHER_SCREEN if opening else closure)
+
+    def screen_opened(self) -> None:
+        """Note that a screen is on top of Drive: from now on the event loop knows whether keys drive."""
+        with self._lock:
+            self._opening_until = -math.inf
+
+    def _set_closure(self, closure: GateClosure | None) -> None:
+        if closure == self._closure:
+            return
+        self._closure = closure
+        if closure is None:
+            self._client.send(SetKeyGate(open=True))
+            return
+        self._down.clear()
+        self._hold.cancel()
+        # The gate first: it makes the station record which keys are held, and the stop clears them.
+        self._client.send(SetKeyGate(open=False, reason=closure.reason), Stop(closure.reason))
 
     def handle_pong(self) -> None:
         """Note the answer to a ping."""
@@ -159,6 +195,24 @@ class KeyGate:
                 continue
             live.append(press)
         return live
+
+    def _opens_screen(self, batch: Sequence[KeyEvent]) -> bool:
+        """Return whether a key of this read opens a screen on top of Drive: then none of them is a command."""
+        if self._closure is not None and self._closure.level is not GateLevel.COMMANDS:
+            return False
+        pressed = [press.key for press in batch if not press.release]
+        actions = (self.keymap.get_action(key) for key in pressed)
+        return PALETTE_KEY in pressed or any(action is not None and action.id in OPENING for action in actions)
+
+    def _counts(self, press: KeyEvent) -> bool:
+        """Return whether a key means anything to the station: on other screens only drive and stop keys do."""
+        level = GateLevel.OPEN if self._closure is None else self._closure.level
+        if level in (GateLevel.OPEN, GateLevel.COMMANDS):
+            return True
+        action = self.keymap.get_action(press.key)
+        if action is None or not isinstance(action.intent, (DriveKeyDown, Stop, EmergencyStop)):
+            return False
+        return not (level is GateLevel.TEXT and isinstance(action.intent, Stop) and is_character(press.key))
 
     def _passes(self, intent: AnyIntent) -> bool:
         """Return whether to send it. Drive keys always pass: the station must know them to ignore them later, too."""

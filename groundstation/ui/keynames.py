@@ -29,3 +29,8 @@ def main_key(keymap: Keymap, action_id: str) -> str | None:
     place = [key for key in keys if key in _PLACES]
     short = [key for key in keys if len(format_key(key)) == 1 and key.isascii()]
     return next(iter((*place, *short, *keys)), None)
+
+
+def is_character(key: str) -> bool:
+    """Return whether a key types a character into a text field."""
+    return len(key) == 1 or key in PUNCTUATION.values()

@@ -64,6 +64,10 @@ FORMER_NAMES = {"MAV_GCS_SYSID": "SYSID_MYGCS"}
 """Parameter -> its name up to ArduPilot 4.6; a vehicle has one of them."""
 
 
+_OBEYED = tuple(name for pair in FORMER_NAMES.items() for name in pair)
+"""Parameters with the ground station that the vehicle obeys."""
+
+
 class ArduPilotChecks:
     """Reads the parameters of one vehicle and keeps the warnings. `system` and `component` are our ids.
 
@@ -102,8 +106,13 @@ class ArduPilotChecks:
     @property
     def warnings(self) -> tuple[str, ...]:
         """One line for each dangerous parameter, and one that names those that could not be read."""
-        found = tuple(warning for warning in self._found.values() if warning)
-        return (*found, *self._missing_warning())
+        found = (warning for name, warning in self._found.items() if name not in _OBEYED)
+        return (*filter(None, found), *self._missing_warning())
+
+    @property
+    def obeys(self) -> str | None:
+        """Warning that the vehicle obeys another ground station only; None: it obeys us, or not known."""
+        return next(filter(None, map(self._found.get, _OBEYED)), None)
 
     def pop_missing_warning(self) -> list[str]:
         """Return the warning that names the parameters that could not be read, once after each (re)start."""

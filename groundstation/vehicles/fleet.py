@@ -10,7 +10,9 @@ from dialects.messages import Heartbeat, Message
 from groundstation.vehicles.ardupilot_checks import ArduPilotChecks
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
-from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.message_log import STATE, MessageLog
+from groundstation.vehicles.outputs import ServoFunctions
+from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
 from groundstation.vehicles.vehicle_state import VehicleState
 from link.core import Received
@@ -27,7 +29,9 @@ class Contact:
     stream_requests: StreamRequests
     link: int
     """Index of the link on which the newest message of the vehicle arrived."""
+    changes: StateChanges
     settings_check: ArduPilotChecks | None = None
+    servo_functions: ServoFunctions | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     ours: bool = False
@@ -63,6 +67,8 @@ class Contact:
         """Read the settings again: after a restart they may be others."""
         if self.settings_check is not None:
             self.settings_check.restart()
+        if self.servo_functions is not None:
+            self.servo_functions.restart()
 
 
 class Fleet:
@@ -125,18 +131,22 @@ class Fleet:
         state = VehicleState(received.system, received.component)
         state.receive(received, now)
         target = (state.system, state.component)
-        contact = Contact(state, StreamRequests(target, now), received.peer.link)
+        contact = Contact(state, StreamRequests(target, now), received.peer.link, StateChanges(self._own_id[0]))
         self._contacts[received.system] = contact
         if ArduPilotChecks.applies_to(state.autopilot):
             contact.settings_check = ArduPilotChecks(*self._own_id, target=target)
+        if ServoFunctions.applies_to(state.autopilot):
+            contact.servo_functions = ServoFunctions(*self._own_id, target=target)
         self._selected = self._selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact
 
     def update(self, now: float) -> None:
-        """Notice which vehicles are lost and which are back."""
+        """Notice which vehicles are lost and which are back, and what has changed."""
         for contact in self._contacts.values():
             monitor, name = contact.state.monitor, contact.state.name
+            for change in contact.changes.update(contact.state):
+                self._log.add(now, STATE, f"{name}: {change}", Severity.NOTICE)
             if contact.lost_at is None and not monitor.is_alive(now):
                 contact.lose(now)
                 self._log.add(now, "station", f"{name}: link lost for {monitor.timeout:g} s", Severity.CRITICAL)

@@ -1,17 +1,28 @@
-"""Message log: STATUSTEXT of vehicles, results of commands, events of the station. Bounded; repeats are counted."""
+"""Message log: STATUSTEXT, results of commands, changes of state, events of the station. Repeats are counted."""
 
 from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from itertools import islice, takewhile
 
 from dialects.enums import Severity
 from dialects.messages import StatusText, decode_text, printable
 from groundstation.snapshot import LogLine
+from groundstation.views import LogPage, LogRequest
 
-MAX_LINES = 200
+MAX_LINES = 2000
 MAX_LENGTH = 160
-"""Characters kept of a text: three full STATUSTEXT chunks, and 200 lines of it fit into a snapshot."""
+"""Characters kept of a text: three full STATUSTEXT chunks."""
+
+NEWEST = 16
+"""Lines in each snapshot: what the log panel of the Drive screen can show."""
+
+PAGE = 250
+"""Lines in one view of the log. With the longest texts, 4 bytes a character, they take 175 kB: less than a packet."""
+
+STATE = "state"
+"""Label of changes of mode, arming and control."""
 
 CHUNK = 50
 """Bytes of text in one STATUSTEXT (common.xml)."""
@@ -29,6 +40,9 @@ class _Line:
     severity: int
     label: str
     text: str
+    number: int
+    state: int
+    """State of the log after the line was added or counted again."""
     count: int = 1
 
 
@@ -56,16 +70,20 @@ class MessageLog:
     def __init__(self) -> None:
         self._lines: deque[_Line] = deque(maxlen=MAX_LINES)
         self._chunks: dict[tuple[int, int], _Chunks] = {}
+        self._number = 0
+        self._state = 0
 
     def add(self, now: float, label: str, text: str, severity: int = Severity.INFO) -> None:
         """Add a line, or count it if it repeats the last line."""
         text = printable(text)[:MAX_LENGTH]
+        self._state += 1
         last = self._lines[-1] if self._lines else None
         if last is not None and (last.label, last.severity, last.text) == (label, severity, text):
             last.count += 1
-            last.time = now
+            last.time, last.state = now, self._state
         else:
-            self._lines.append(_Line(now, severity, label, text))
+            self._number += 1
+            self._lines.append(_Line(now, severity, label, text, self._number, self._state))
 
     def handle_statustext(self, message: StatusText, system: int, now: float) -> str | None:
         """Handle a STATUSTEXT. Returns the text when all its chunks have arrived."""
@@ -95,14 +113,29 @@ class MessageLog:
                 self.add(now, "vehicle", chunks.text + " ...", chunks.severity)
 
     def build_lines(self, now: float, wall: float) -> tuple[LogLine, ...]:
-        """Return all lines, oldest first; `now` and `wall` are the same moment on both clocks."""
-        return tuple(
-            LogLine(
-                time=wall - (now - line.time),
-                severity=line.severity,
-                label=line.label,
-                text=line.text,
-                count=line.count,
-            )
-            for line in self._lines
-        )
+        """Return the NEWEST lines, oldest first; `now` and `wall` are the same moment on both clocks.
+
+        Changes of state are left out: the screen shows the state itself, and they would push warnings out.
+        """
+        lines = (line for line in reversed(self._lines) if line.label != STATE)
+        newest = [_build_line(line, now, wall) for line in islice(lines, NEWEST)]
+        return tuple(reversed(newest))
+
+    def build_page(self, request: LogRequest, now: float, wall: float) -> LogPage | None:
+        """Return the lines that were added or counted again since `request.after`, oldest first; None without any."""
+        changed = takewhile(lambda line: line.state > request.after, reversed(self._lines))
+        lines = list(reversed(list(changed)))[:PAGE]
+        if not lines:
+            return None
+        return LogPage(tuple(_build_line(line, now, wall) for line in lines), lines[-1].state)
+
+
+def _build_line(line: _Line, now: float, wall: float) -> LogLine:
+    return LogLine(
+        time=wall - (now - line.time),
+        severity=line.severity,
+        label=line.label,
+        text=line.text,
+        count=line.count,
+        number=line.number,
+    )

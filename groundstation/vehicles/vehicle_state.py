@@ -6,14 +6,15 @@ To handle another message, add a method and a row in _HANDLERS.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from dialects import messages as m
 from dialects.enums import Autopilot, DriveLimit, Failsafe, ModeFlag, SystemState, VehicleType
 from dialects.modes import DRIVABLE_MODES, STANDING_MODES, mode_name
-from groundstation.snapshot import VehicleView
+from groundstation.snapshot import OutputView, VehicleView
 from groundstation.vehicles.latency import LatencyMeter
+from groundstation.vehicles.outputs import drive_names
 from groundstation.vehicles.track import LocalFrame, Track
 from link.core import Received
 from link.protocol.heartbeat import HeartbeatMonitor
@@ -26,10 +27,11 @@ FRESH_TIMEOUT = 1.5
 
 UNKNOWN_U16 = 0xFFFF
 
+NO_PULSE = (0, UNKNOWN_U16)
+"""SERVO_OUTPUT_RAW of an output that is off or not known; else 1000 to 2000 us."""
+
 _AUTOPILOTS: dict[int, str] = {Autopilot.ARDUPILOT: "ArduPilot ", Autopilot.PX4: "PX4 "}
 _KINDS: dict[int, str] = {VehicleType.GROUND_ROVER: "rover", VehicleType.SURFACE_BOAT: "boat"}
-_MOTOR_CHANNELS: dict[int, tuple[str, ...]] = {Autopilot.ARDUPILOT: ("servo1_raw", "servo3_raw")}
-"""Steering and throttle of ArduRover's default outputs, for vehicles that send nothing better."""
 
 
 class VehicleState:
@@ -56,7 +58,9 @@ class VehicleState:
         self._track = Track()
         self._velocity: tuple[float, float] | None = None
         self._ground_speed: float | None = None
-        self._motors: tuple[float, ...] = ()
+        self._servos: m.ServoOutputRaw | None = None
+        self.servo_names: Mapping[int, str] = {}
+        """Servo outputs that drive the vehicle, by number, and what each is."""
         self._values: dict[str, Any] = {}
         """Fields of VehicleView that are a reading without further logic."""
 
@@ -113,7 +117,7 @@ class VehicleState:
             track=self._track.points,
             speed=self._speed(),
             demand=_demand(drive),
-            outputs=_outputs(drive, self.drive_info) if drive else self._motors,
+            outputs=self._outputs(drive),
             limits=flag_words(DriveLimit, drive.limits) if drive else (),
             command_age=drive.demand_age_ms / 1000 if drive and drive.demand_age_ms != UNKNOWN_U16 else None,
             latency=self.latency.latest,
@@ -183,11 +187,25 @@ class VehicleState:
             cells = [cell / 1000 for cell in message.voltages if cell != UNKNOWN_U16]
             self._battery(sum(cells) if cells else None, message.current_battery, message.battery_remaining)
 
-    def _servos(self, message: m.ServoOutputRaw, now: float) -> None:
-        channels = _MOTOR_CHANNELS.get(self.autopilot, ())
-        self._motors = tuple(_pulse(getattr(message, channel)) for channel in channels)
+    def _servo_output(self, message: m.ServoOutputRaw, now: float) -> None:
+        self._servos = message
 
     # ---- readings ----
+
+    def _outputs(self, drive: m.RoverDriveStatus | None) -> tuple[OutputView, ...]:
+        if drive is not None:
+            count = min(4, self.drive_info.motor_count) if self.drive_info else 2
+            names = drive_names(self.drive_info, count)
+            return tuple(
+                OutputView(name=name, value=_within(value / 10_000))
+                for name, value in zip(names, drive.output, strict=False)
+            )
+        pulses = {channel: getattr(self._servos, f"servo{channel}_raw", 0) for channel in self.servo_names}
+        return tuple(
+            OutputView(name=name, value=_within((pulses[channel] - 1500) / 500))
+            for channel, name in self.servo_names.items()
+            if pulses[channel] not in NO_PULSE
+        )
 
     def _read(self, **values: float) -> None:
         self._values.update({name: value for name, value in values.items() if math.isfinite(value)})
@@ -228,16 +246,6 @@ def _demand(drive: m.RoverDriveStatus | None) -> tuple[float, float] | None:
     return (_within(drive.demand_throttle / 10_000), _within(drive.demand_steering / 10_000)) if drive else None
 
 
-def _outputs(drive: m.RoverDriveStatus, info: m.RoverDriveInfo | None) -> tuple[float, ...]:
-    count = min(4, info.motor_count) if info else 2
-    return tuple(_within(value / 10_000) for value in drive.output[:count])
-
-
-def _pulse(microseconds: int) -> float:
-    """Convert 1000..2000 us to -1..1. An unused (0) or unknown output is 0."""
-    return _within((microseconds - 1500) / 500) if microseconds not in (0, UNKNOWN_U16) else 0.0
-
-
 def _within(value: float) -> float:
     return max(-1.0, min(1.0, value))
 
@@ -260,6 +268,6 @@ _HANDLERS: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
     m.GpsRawInt: VehicleState._gps,
     m.SysStatus: VehicleState._system,
     m.BatteryStatus: VehicleState._battery_status,
-    m.ServoOutputRaw: VehicleState._servos,
+    m.ServoOutputRaw: VehicleState._servo_output,
 }
 """Message -> the method that handles it."""

@@ -9,26 +9,20 @@ all places are taken, and can be answered.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator
-from itertools import count
 
 from dialects import codec
-from dialects.messages import MESSAGES, Heartbeat, RadioStatus
+from dialects.messages import MESSAGES, Heartbeat, Message, RadioStatus
 from dialects.traits import ACKED, COMMANDS, DEMANDS, is_stop
-from link.core import LinkReport, Outgoing, Peer, Received
+from link.core import LinkReport, Outgoing, Received
 from link.protocol.flow_control import FlowControl
 from link.protocol.frame import Frame, FramerCounts, noise_hint, payload_of
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
 from link.protocol.peer import PeerState, count_sources
+from link.protocol.peer_table import PeerTable
 from link.protocol.sequence import NEW, FrameOrder
 from link.protocol.stops import find_stops
 
-MAX_PEERS = 24
-"""Sixteen ground stations on one port, and room for half of them to restart: a restarted program has a new port, and
-its old place is not free before PEER_SILENCE. More cost little: their tables are bounded, and what the vehicle streams
-to all peers of a link has one budget (vehicle/telemetry/telemetry.py)."""
-PEER_SILENCE = 10.0
-"""s without a frame after which a peer gives up its place; twice the longest usual heartbeat timeout."""
 MISMATCH_AFTER = 3
 """Complete frames with a foreign checksum that prove another dialect; a single one may be an accident."""
 
@@ -67,16 +61,12 @@ class Channel:
         self._stream = stream
         self._wanted = wanted
         self._new_peer_framer = Framer(stream=False)
-        self._peers: dict[Hashable, PeerState] = {}
-        self._transient: PeerState | None = None
-        """The newest sender of a stop for whom there was no place, so that the stop can be acknowledged."""
-        self._conversations = count()
-        self._past_counts = FramerCounts()
+        self._peers = PeerTable(index, stream=stream)
         self._bytes_received = 0
-        self._duplicates = self._late = self._rate_limited = self._refused_peers = 0
+        self._duplicates = self._late = self._rate_limited = 0
         self._own_id = False
         if target is not None:
-            self._peers[target] = self._new_peer(target, 0.0, fixed=True)
+            self._peers.add_fixed(target)
 
     # ---- receiving ----
 
@@ -89,9 +79,8 @@ class Channel:
         frames = self._new_peer_framer.feed(data, now)
         if not frames and not self._stream:
             return []
-        state = self._admit(address, now)
+        state = self._peers.admit(address, frames, now)
         if state is None:
-            self._refused_peers += 1
             return self._accept_stops(frames, address, now)
         return self._accept(state, state.framer.feed(data, now) if self._stream else frames, now)
 
@@ -100,70 +89,48 @@ class Channel:
         if not self._stream:
             return []
         found: list[Received] = []
-        for state in list(self._peers.values()):
+        for state in self._peers:
             found += self._accept(state, state.framer.expire(now), now)
         return found
-
-    def _admit(self, address: Hashable, now: float) -> PeerState | None:
-        """Make room for a new address: a free place, or that of a silent peer or one without HEARTBEAT."""
-        if len(self._peers) >= MAX_PEERS:
-            leaving = min(
-                (each for each in self._peers.values() if not each.fixed and self._is_evictable(each, now)),
-                key=lambda each: each.last_seen,
-                default=None,
-            )
-            if leaving is None:
-                return None
-            self._forget(leaving)
-        state = self._peers[address] = self._new_peer(address, now)
-        state.connected = state.silent = self._stream
-        return state
-
-    def _is_evictable(self, state: PeerState, now: float) -> bool:
-        return not state.systems or now - state.last_seen > PEER_SILENCE
-
-    def _new_peer(self, address: Hashable, now: float, *, fixed: bool = False) -> PeerState:
-        return PeerState(self._new_conversation(address), Framer(stream=self._stream), now, fixed, silent=fixed)
-
-    def _new_conversation(self, address: Hashable) -> Peer:
-        """Return the peer of a new conversation."""
-        return Peer(self.index, address, next(self._conversations))
 
     def handle_disconnect(self, address: Hashable) -> None:
         """Handle the end of the connection to `address`.
 
         A partial frame is lost, and the next peer there must send its HEARTBEAT.
         """
-        state = self._peers.get(address)
-        if state is None:
-            return
-        self._forget(state)
-        if state.fixed:
-            successor = self._peers[address] = self._new_peer(address, state.last_seen, fixed=True)
-            successor.sequence = state.sequence
+        self._peers.end_connection(address)
 
-    def _forget(self, state: PeerState) -> None:
-        del self._peers[state.peer.address]
-        self._past_counts.add(state.framer.counts)
+    def reserve(self, ids: tuple[int, int] | None) -> None:
+        """Keep places for the system and component id of the ground station in control; None: for nobody."""
+        self._peers.reserved_ids = ids
 
     def _accept(self, state: PeerState, frames: list[Frame], now: float) -> list[Received]:
         accepted: list[Received] = []
         if self.log_tap is not None and frames:
             self.log_tap.record_received(frames, now)
         for frame in frames:
-            number, system, component, sequence, _ = frame
+            number, system, component, sequence, raw = frame
             sender = (system, component)
             if not system or sender == self.ids:  # component 0 is valid: pymavlink sends it by default
                 self._own_id |= sender == self.ids
                 continue
             state.last_seen, state.silent = now, False
+            digest = hash(raw)
             source = state.sources.get(sender)
-            order = source.accept(sequence, number) if source else state.add_source(frame)
-            if order is not NEW and self._is_old(order, number):
+            if source is None:
+                source = state.add_source(frame, digest, now)
+            elif (order := source.accept(sequence, number, digest, now)) is not NEW and self._is_old(order, frame):
                 continue
-            received = self._decode(state, frame, now)
-            if received is not None:
-                accepted.append(received)
+            message = self._decode(state, frame, now)
+            if message is None:
+                continue
+            numbering, clash = (source.numbering.index, source.clash) if source else (0, False)
+            known = system in state.systems
+            accepted.append(
+                Received(
+                    message, system, component, sequence, state.peer, known, state.is_expected, numbering, clash, digest
+                )
+            )
         return accepted
 
     def _accept_stops(self, frames: list[Frame], address: Hashable, now: float) -> list[Received]:
@@ -173,9 +140,8 @@ class Channel:
             _, system, component, sequence, _ = frame
             if self.log_tap is not None:
                 self.log_tap.record_received([frame], now)
-            if self._transient is None or self._transient.peer.address != address:
-                self._transient = self._new_peer(address, now)
-            accepted.append(Received(message, system, component, sequence, self._transient.peer, introduced=False))
+            peer = self._peers.admit_transient(address, now).peer
+            accepted.append(Received(message, system, component, sequence, peer, introduced=False))
         return accepted
 
     def _handle_radio_status(self, raw: bytes, now: float) -> None:
@@ -183,16 +149,20 @@ class Channel:
         if isinstance(status, RadioStatus):
             self._flow.handle_radio_status(status.txbuf, now)
 
-    def _is_old(self, order: FrameOrder, number: int) -> bool:
-        """Count a repeated or overtaken frame; return whether to drop it. ACKED messages are never too old."""
+    def _is_old(self, order: FrameOrder, frame: Frame) -> bool:
+        """Count a repeated or overtaken frame; return whether to drop it.
+
+        ACKED messages are never too late, and a stop is never a repeat: a simple script gives each frame the number 0.
+        """
+        number, _, _, _, raw = frame
         if order is FrameOrder.DUPLICATE:
             self._duplicates += 1
-            return True
+            return number not in COMMANDS or not is_stop(codec.decode(number, payload_of(raw)))
         self._late += 1
         return number not in ACKED
 
-    def _decode(self, state: PeerState, frame: Frame, now: float) -> Received | None:
-        number, system, component, sequence, raw = frame
+    def _decode(self, state: PeerState, frame: Frame, now: float) -> Message | None:
+        number, system, _, _, raw = frame
         if number == _RADIO_STATUS:
             self._handle_radio_status(raw, now)
         if self._wanted is not None and number not in self._wanted:
@@ -208,7 +178,7 @@ class Channel:
             return None
         if number == Heartbeat.id:
             state.systems.add(system)
-        return Received(message, system, component, sequence, state.peer, system in state.systems, state.is_expected)
+        return message
 
     # ---- sending ----
 
@@ -230,49 +200,31 @@ class Channel:
     def _recipients(self, outgoing: Outgoing) -> list[PeerState]:
         message, peer, among = outgoing
         if peer is not None:
-            return self._known((peer,))
+            return self._peers.known((peer,))
         if among is not None:
-            return self._known(among)
+            return self._peers.known(among)
         target = getattr(message, "target_system", getattr(message, "target", 0))
-        return [state for state in self._peers.values() if state.accepts_target(target)]
-
-    def _known(self, peers: tuple[Peer, ...]) -> list[PeerState]:
-        """Return those of `peers` on this link whose conversation is still the same."""
-        found: list[PeerState] = []
-        for peer in peers:
-            if peer.link == self.index:
-                places = (self._peers.get(peer.address), self._transient)
-                found += [state for state in places if state is not None and state.peer == peer]
-        return found
+        return [state for state in self._peers if state.accepts_target(target)]
 
     # ---- reporting ----
 
     def expire_peers(self, now: float) -> None:
-        """Drop peers that have been silent for PEER_SILENCE.
-
-        The peer that the user named and connections stay, and begin a new conversation.
-        """
-        for state in list(self._peers.values()):
-            if state.silent or now - state.last_seen <= PEER_SILENCE:
-                continue
-            if state.is_expected:
-                state.peer, state.silent = self._new_conversation(state.peer.address), True
-            else:
-                self._forget(state)
+        """Drop peers that have been silent for PEER_SILENCE."""
+        self._peers.expire(now)
 
     def report(self, down: str | None = None, *, now: float = 0.0, dropped: int = 0) -> LinkReport:
         """Return the counters of this channel. `down` and `dropped` come from the transport."""
         counts = FramerCounts()
         for each in (
-            self._past_counts,
+            self._peers.past_counts,
             self._new_peer_framer.counts,
-            *(state.framer.counts for state in self._peers.values()),
+            *(state.framer.counts for state in self._peers),
         ):
             counts.add(each)
         return LinkReport(
             name=self.name,
             index=self.index,
-            peers=sum(1 for state in self._peers.values() if state.systems),
+            peers=sum(1 for state in self._peers if state.systems),
             frames=counts.frames,
             bytes_received=self._bytes_received,
             crc_errors=counts.crc_errors,
@@ -281,7 +233,7 @@ class Channel:
             duplicates=self._duplicates,
             late=self._late,
             rate_limited=self._rate_limited,
-            refused_peers=self._refused_peers,
+            refused_peers=self._peers.refused,
             dialect_mismatch=tuple(
                 sorted(MESSAGES[each].msgname for each, times in counts.mismatches.items() if times >= MISMATCH_AFTER)
             ),
@@ -290,8 +242,8 @@ class Channel:
             capacity=self._capacity,
             headroom=self._flow.headroom(now) if self._capacity is not None else 1.0,
             dropped=dropped,
-            sources=count_sources(self._peers.values()),
-            audience=tuple(state.peer for state in self._peers.values() if state.accepts_target(0)),
+            sources=count_sources(self._peers),
+            audience=tuple(state.peer for state in self._peers if state.accepts_target(0)),
         )
 
     def _noise_problem(self, counts: FramerCounts) -> str | None:

@@ -9,7 +9,7 @@ from link.core import Peer, SourceCount
 from link.protocol.frame import Frame
 from link.protocol.framer import Framer
 from link.protocol.rate import TokenBucket
-from link.protocol.sequence import FrameOrder, SequenceTracker
+from link.protocol.sequence import SequenceTracker
 
 MAX_SOURCES = 64
 """Systems and components tracked behind one peer."""
@@ -51,12 +51,13 @@ class PeerState:
             return self.is_expected
         return target == 0 or target in self.systems
 
-    def add_source(self, frame: Frame) -> FrameOrder:
+    def add_source(self, frame: Frame, digest: int, now: float) -> SequenceTracker | None:
         """Track a new source from its first frame; with too many sources no numbers are kept."""
-        if len(self.sources) < MAX_SOURCES:
-            message_id, system, component, sequence, _ = frame
-            self.sources[system, component] = SequenceTracker(sequence, message_id)
-        return FrameOrder.NEW
+        if len(self.sources) >= MAX_SOURCES:
+            return None
+        message_id, system, component, sequence, _ = frame
+        source = self.sources[system, component] = SequenceTracker(sequence, message_id, digest, now)
+        return source
 
 
 def count_sources(states: Iterable[PeerState]) -> dict[tuple[int, int], SourceCount]:

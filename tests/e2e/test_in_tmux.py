@@ -129,6 +129,24 @@ def test_the_first_drive(tmux: Callable[..., Tmux], columns: int, lines: int) ->
     assert "Traceback" not in ended
 
 
+def test_a_key_held_over_the_log_screen_does_not_drive(tmux: Callable[..., Tmux]) -> None:
+    terminal = tmux(80, 24, "--sitl")
+    terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
+    terminal.hold_until("r", lambda screen: "hold i to drive" in screen, PATIENCE)
+    terminal.until(speed_shown, PATIENCE, holding="i")
+    terminal.press("F6")
+    log = terminal.until(lambda screen: "live, newest below" in screen, PATIENCE, holding="i")
+    assert "neutral · F1 drives" in log
+    assert "arm accepted" in log
+    terminal.press("F1")
+    terminal.until(lambda screen: "one is held from before" in screen, PATIENCE, holding="i")
+    for _ in range(20):
+        terminal.until(lambda screen: not speed_shown(screen), PATIENCE, holding="i")
+    select.select([], [], [], LET_GO)
+    terminal.press("1")
+    terminal.until(speed_shown, PATIENCE, holding="i")
+
+
 def test_waiting_offers_the_simulator(tmux: Callable[..., Tmux]) -> None:
     port = free_port()
     terminal = tmux(80, 24, f"udpin:127.0.0.1:{port}")

@@ -62,11 +62,11 @@ class Listener:
                 data = self.socket.recv(2048)
             except (BlockingIOError, ConnectionRefusedError):
                 return
-            for message_id, _, _, sequence, _ in self._framer.feed(data, now):
+            for message_id, _, _, sequence, raw in self._framer.feed(data, now):
                 if self.source is None:
-                    self.source = SequenceTracker(sequence, message_id)
+                    self.source = SequenceTracker(sequence, message_id, hash(raw), now)
                 else:
-                    self.source.accept(sequence, message_id)
+                    self.source.accept(sequence, message_id, hash(raw), now)
                 self.heard[message_id] = self.heard.get(message_id, 0) + 1
 
 

@@ -70,6 +70,23 @@ def test_a_stop_key_in_a_burst_wins(rig: Build, burst: str) -> None:
     assert_stood(world, pressed, NEUTRAL_WITHIN)
 
 
+@pytest.mark.parametrize("opener", ["\x1b[17~", "\x07"], ids=["log", "go-to menu"])
+def test_a_key_held_over_another_screen_does_not_drive_there_nor_when_drive_is_back(rig: Build, opener: str) -> None:
+    """F6 and the go-to menu, while the key repeats all the time, as from a second keyboard."""
+    world = rig()
+    world.drive()
+    pressed = time.monotonic()
+    world.station.type("i" + opener)
+    world.station.hold("i", world.vehicle.stands)
+    assert_stood(world, pressed, NEUTRAL_WITHIN)
+    back = time.monotonic()
+    world.station.type("i\x1bOP")  # F1
+    world.station.hold("i", lambda: b"held from before" in world.station.screen)
+    world.station.hold("i", lambda: time.monotonic() > back + 3.0)
+    assert not world.vehicle.moved_since(back)
+    drive_on(world.station, world.vehicle)
+
+
 def test_terminal_closed(rig: Build) -> None:
     world = rig()
     world.drive()

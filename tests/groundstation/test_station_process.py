@@ -12,9 +12,11 @@ from pathlib import Path
 import pytest
 
 from dialects import messages as m
-from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, Quit, SetKeyGate
+from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, Quit, SetKeyGate, Watch
 from groundstation.ipc import IntentBatch, encode
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import LogLine, Snapshot
+from groundstation.views import LogPage, LogRequest
+from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.screen import FORWARD, Screen, running, until
 from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.ports import free_port
@@ -48,6 +50,23 @@ def test_a_held_key_drives_and_its_release_is_neutral_at_once() -> None:
         until(lambda: len(neutral(vehicle, released)) > 5)
         assert neutral(vehicle, released)[0] - released < 0.3 + waits.total()
         assert not moving(vehicle, neutral(vehicle, released)[0])
+
+
+def test_the_log_is_sent_while_it_is_watched_and_lasting_alerts_are_in_the_log_file_once(tmp_path: Path) -> None:
+    file = tmp_path / "station.log"
+    with Screen(log_file=file) as screen, UdpVehicle(screen.endpoint, FakeArduPilot()):
+        warned = screen.see(lambda seen: seen.vehicle is not None and len(seen.vehicle.warnings) > 0)
+        screen.see(lambda seen: seen.number > warned.number + 10)
+        assert screen.client.pop_views() == []
+        screen.client.send(Watch((LogRequest(),)))
+        lines: list[LogLine] = []
+        for _ in range(100):
+            screen.see(lambda seen: True)
+            lines += [line for view in screen.client.pop_views() if isinstance(view, LogPage) for line in view.lines]
+            if lines:
+                break
+        assert "ArduPilot rover 1 found" in [line.text for line in lines]
+    assert file.read_text().count("RC_OVERRIDE_TIME 3: drives on for 3 s when the link is lost") == 1
 
 
 @pytest.mark.usefixtures("patient")

@@ -15,8 +15,8 @@ from tests.groundstation.fake_vehicle import FakeVehicle
 class UdpVehicle:
     """Answers in a thread from `with` on; `core` records messages with time.monotonic()."""
 
-    def __init__(self, endpoint: str) -> None:
-        self.core = FakeVehicle()
+    def __init__(self, endpoint: str, core: FakeVehicle | None = None) -> None:
+        self.core = core or FakeVehicle()
         host, port = endpoint.removeprefix("udpin:").split(":")
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.connect((host, int(port)))

@@ -75,7 +75,7 @@ class Vehicle:
             system=1,
             component=1,
             pacer=BulkPacer(lambda peer: self.rate),
-            allowed=lambda received: self.allowed,
+            allowed=lambda received, now: self.allowed,
         )
 
     def send(self, packet: FtpPacket, now: float = 0.0, **who: Any) -> list[FtpPacket]:

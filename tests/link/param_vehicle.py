@@ -58,7 +58,7 @@ class Vehicle:
             system=1,
             component=1,
             pacer=BulkPacer(lambda peer: self.rate),
-            allowed=lambda received: self.allowed,
+            allowed=lambda received, now: self.allowed,
             armed=lambda: self.armed,
             changed=lambda received, name, value: self.changed.append((name, value)),
             refused=lambda received, text, now: self.said.append(text),

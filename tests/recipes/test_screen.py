@@ -12,7 +12,9 @@ TOY = '''"""Toy screen."""
 
 from __future__ import annotations
 
-from textual.app import ComposeResult
+from collections.abc import Iterable
+
+from textual.widget import Widget
 from textual.widgets import Static
 
 from groundstation.ui.screens.screen import ConsoleScreen
@@ -21,12 +23,12 @@ from groundstation.ui.screens.screen import ConsoleScreen
 class ToyScreen(ConsoleScreen):
     """One line of text."""
 
-    def compose(self) -> ComposeResult:
+    def compose_body(self) -> Iterable[Widget]:
         """Lay out the line."""
         yield Static("nothing but a toy")
 '''
 
-ROW = '    ScreenRow("toy", "Toy", "The toy screen", ("f8",), "groundstation.ui.screens.toy:ToyScreen"),'
+ROW = '    ScreenRow("toy", "Toy", "The toy screen", ("f8",), "8", "groundstation.ui.screens.toy:ToyScreen"),'
 
 OPEN_IT = """
 import asyncio
@@ -37,11 +39,14 @@ async def main():
     async with console(size=(140, 45)) as screen:
         await screen.press("f8")
         await until(lambda: "nothing but a toy" in screen.text)
+        await until(lambda: "F8 Toy" in screen.text and "neutral · F1 drives" in screen.text)
         assert screen.app.gate.closure is not None
         await screen.press("escape")
         await until(lambda: "nothing but a toy" not in screen.text)
         await screen.press("question_mark")
         await until(lambda: "The toy screen" in screen.text)
+        await screen.press("escape", "ctrl+g", "8")
+        await until(lambda: "nothing but a toy" in screen.text)
 
 asyncio.run(main())
 """

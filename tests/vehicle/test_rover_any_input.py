@@ -49,7 +49,7 @@ class Witness:
     """Until when a motor test may turn a wheel."""
 
     def demand(self, axes: Axes, system: int) -> None:
-        if system != self.bench.rover._control.owner:
+        if system != self.bench.rover._control.ownership.owner:
             return
         self._lapse()
         self.last_demand = self.bench.now
@@ -61,8 +61,8 @@ class Witness:
         """The invariant, after every step."""
         rover, now = self.bench.rover, self.bench.now
         self._lapse()
-        if rover._control.owner != self.owner:
-            self.owner, self.neutral_seen, self.last_demand = rover._control.owner, False, -math.inf
+        if rover._control.ownership.owner != self.owner:
+            self.owner, self.neutral_seen, self.last_demand = rover._control.ownership.owner, False, -math.inf
         if rover.state is not states.SafetyState.ARMED:
             self._disarmed()
             return

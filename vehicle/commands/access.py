@@ -6,10 +6,11 @@ import math
 from enum import Enum
 
 from dialects.enums import Result, Severity, command_name
+from link.core import Received
 from link.services.command.jobs import CommandJob
 from link.services.command.request import CommandRequest
 from link.services.command.server import CommandReply
-from vehicle.drive.control import Control
+from vehicle.drive.ownership import Ownership
 from vehicle.navigation.geo import Home
 from vehicle.statustext import StatusTextQueue
 
@@ -43,8 +44,8 @@ class Access(Enum):
 class CommandAccess:
     """Checks the sender of a command and reports denials to the driver."""
 
-    def __init__(self, control: Control, texts: StatusTextQueue) -> None:
-        self._control = control
+    def __init__(self, ownership: Ownership, texts: StatusTextQueue) -> None:
+        self._ownership = ownership
         self._texts = texts
 
     def deny(self, access: Access, request: CommandRequest, now: float) -> Result | None:
@@ -53,12 +54,15 @@ class CommandAccess:
             return None if request.may_ask else Result.TEMPORARILY_REJECTED
         if access is Access.INTRODUCED and request.introduced:
             return None
-        reason = self.denial_reason(request.system, request.introduced)
-        return self.reject(request, reason, now) if reason else None
+        reason = self.denial_reason(request, now)
+        if reason is None:
+            return None
+        denied = self.reject(request, reason, now)
+        return Result.TEMPORARILY_REJECTED if self._ownership.is_barred(request, now) else denied
 
-    def denial_reason(self, system: int, introduced: bool) -> str | None:
+    def denial_reason(self, sender: Received | CommandRequest, now: float) -> str | None:
         """Return why a sender may not command the vehicle, or None."""
-        return self._control.denial_reason(system) if introduced else "no HEARTBEAT received"
+        return self._ownership.denial_reason(sender, now) if sender.introduced else "no HEARTBEAT received"
 
     def reject(self, request: CommandRequest, reason: str, now: float) -> Result:
         """Send the reason as STATUSTEXT and return FAILED: the command may work later."""

@@ -19,6 +19,7 @@ from link.services.command.request import PROGRESS_TIMEOUT, CommandRequest
 from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
+from vehicle.drive.conversation import Conversation
 from vehicle.drive.gate import MOTOR_TEST_TIME_MAX, MotorTest
 from vehicle.drive.mixer import clamp
 from vehicle.safety.states import SafetyState
@@ -86,9 +87,9 @@ class ActuatorTest:
         )  # fmt: skip
 
     def update_liveness(self, received: Received, now: float) -> None:
-        """Note a frame of the sender of the test, from the peer that sent the command."""
+        """Note a frame of the conversation that sent the command."""
         run = self._run
-        if run and received.system == run.request.system and received.peer == run.request.peer:
+        if run and Conversation.of(received) == Conversation.of(run.request):
             run.last_heard = now
 
     def current_test(self, now: float, *, late: bool) -> MotorTest | None:

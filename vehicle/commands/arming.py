@@ -18,7 +18,7 @@ from vehicle.commands.access import Access
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
 from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
-from vehicle.drive.operator_session import Source
+from vehicle.drive.conversation import Conversation
 from vehicle.modes import describe_mode, parse_mode, standard_mode
 from vehicle.replies import Asker
 
@@ -36,10 +36,11 @@ class ArmingCommands:
     def __init__(self, context: Context) -> None:
         self._safety = context.safety
         self._control = context.control
+        self._ownership = context.control.ownership
         self._texts = context.statustext
         self._access = context.access
-        self._forwarded: tuple[int, float] = (0, -math.inf)
-        """System id of the newest REQUEST_OPERATOR_CONTROL that was forwarded, and when."""
+        self._forwarded: tuple[Conversation | None, float] = (None, -math.inf)
+        """Who sent the newest REQUEST_OPERATOR_CONTROL that was forwarded, and when."""
 
     def commands(self) -> CommandTable:
         """Return the rows of the commands handled here."""
@@ -76,7 +77,7 @@ class ArmingCommands:
         if message.target_system != self._control.system:
             return
         asked = (message.base_mode, message.custom_mode)
-        denial = None if _holds((*asked, 0.0)) else self._access.denial_reason(received.system, received.introduced)
+        denial = None if _holds((*asked, 0.0)) else self._access.denial_reason(received, now)
         if denial:
             self._texts.reply(received, Severity.WARNING, f"GCS {received.system}: SET_MODE refused: {denial}", now)
         else:
@@ -90,8 +91,7 @@ class ArmingCommands:
             self._safety.disarm(f"by GCS {request.system}", now)
             self._safety.end_motor_test()
             return Result.ACCEPTED
-        source = Source(request.system, request.component, request.peer)
-        problems = self._safety.arm(request.system, now, force=force in FORCE_VALUES, source=source)
+        problems = self._safety.arm(Conversation.of(request), now, force=force in FORCE_VALUES)
         self._report_problems(problems, request, now)
         return Result.FAILED if problems else Result.ACCEPTED
 
@@ -158,30 +158,38 @@ class ArmingCommands:
             return Result.DENIED
         if action == 0:
             return self._release_control(request, now)
-        denial = self._control.takeover_denial_reason(request.system, now)
+        denial = self._ownership.takeover_denial_reason(request, now)
         if denial is None:
-            self._control.set_owner(request.system, now, Source(request.system, request.component, request.peer))
-            self._control.allow_takeover(bool(takeover))
+            self._control.take(Conversation.of(request), now)
+            self._ownership.takeover_allowed = bool(takeover)
             return Result.ACCEPTED
         forwarded = self._forward(request, now)
         return CommandReply(self._refuse("control", request, denial, now), forwarded)
 
     def _release_control(self, request: CommandRequest, now: float) -> Result:
-        if self._control.owner not in (0, request.system):
+        if self._ownership.driver is None:
+            return Result.ACCEPTED
+        if not self._ownership.is_driver(request, now):
             return Result.FAILED
-        if self._control.owner:
-            self._control.release("gave it up", now)
-            self._safety.choose_mode(Mode.HOLD, now)
+        self._control.release("gave it up", now)
+        self._safety.choose_mode(Mode.HOLD, now)
         return Result.ACCEPTED
 
     def _forward(self, request: CommandRequest, now: float) -> tuple[Outgoing, ...]:
-        """Forward the request: the owner may release control, or allow the takeover (development.xml, 32100)."""
-        system, at = self._forwarded
-        if not self._control.owner or (system == request.system and now - at < FORWARD_INTERVAL):
+        """Forward the request to the driver alone: it may release control, or allow the takeover.
+
+        (development.xml, 32100)
+        """
+        asker, at = self._forwarded
+        driver = self._ownership.driver
+        conversation = Conversation.of(request)
+        if driver is None or (asker == conversation and now - at < FORWARD_INTERVAL):
             return ()
-        self._forwarded = (request.system, now)
+        self._forwarded = (conversation, now)
         params = (*map(value_or_default, request.params[:3]), float(request.system), 0.0, 0.0, 0.0)
-        return (Outgoing(m.CommandLong(self._control.owner, 0, request.command, 0, *params)),)
+        system, component = driver.conversation.ids
+        command = m.CommandLong(system, component, request.command, 0, *params)
+        return (Outgoing(command, driver.conversation.peer),)
 
     def _refuse(self, what: str, request: CommandRequest, why: str, now: float,
                 severity: Severity = Severity.WARNING) -> Result:  # fmt: skip

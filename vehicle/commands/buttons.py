@@ -16,6 +16,7 @@ from dialects.messages import ManualControl
 from dialects.modes import Mode
 from link.core import Received
 from vehicle.commands.context import Context
+from vehicle.drive.conversation import Conversation
 from vehicle.params import BUTTONS
 from vehicle.safety.state_machine import Safety
 
@@ -28,26 +29,26 @@ class ButtonFunction:
     """One value of BTNn_FUNCTION."""
 
     label: str
-    run: Callable[[Safety, int, float], str | list[str] | None]
-    """Called with the system id of the station and the time. Returns why it was denied, or None."""
+    run: Callable[[Safety, Conversation, float], str | list[str] | None]
+    """Called with the ground station and the time. Returns why it was denied, or None."""
     stops: bool = False
     """Open to anyone."""
 
 
-def _chosen(mode: Mode) -> Callable[[Safety, int, float], str | None]:
-    return lambda safety, system, now: safety.choose_mode(mode, now)
+def _chosen(mode: Mode) -> Callable[[Safety, Conversation, float], str | None]:
+    return lambda safety, asker, now: safety.choose_mode(mode, now)
 
 
-def _disarm(safety: Safety, system: int, now: float) -> None:
-    safety.disarm(f"by a button of GCS {system}", now)
+def _disarm(safety: Safety, asker: Conversation, now: float) -> None:
+    safety.disarm(f"by a button of GCS {asker.system}", now)
     safety.end_motor_test()
 
 
 FUNCTIONS: dict[int, ButtonFunction] = {
-    1: ButtonFunction("arm", lambda safety, system, now: safety.arm(system, now)),
+    1: ButtonFunction("arm", lambda safety, asker, now: safety.arm(asker, now)),
     2: ButtonFunction("disarm", _disarm, stops=True),
     3: ButtonFunction(
-        "emergency stop", lambda safety, system, now: safety.emergency_stop(f"GCS {system}", now), stops=True
+        "emergency stop", lambda safety, asker, now: safety.emergency_stop(f"GCS {asker.system}", now), stops=True
     ),
     4: ButtonFunction("HOLD", _chosen(Mode.HOLD), stops=True),
     5: ButtonFunction("MANUAL", _chosen(Mode.MANUAL)),
@@ -65,16 +66,17 @@ class Buttons:
         self._safety = context.safety
         self._control = context.control
         self._texts = context.statustext
-        self._held: dict[int, tuple[int, float]] = {}
-        """System id -> its newest `buttons`, and when they came."""
+        self._held: dict[Conversation, tuple[int, float]] = {}
+        """Ground station -> its newest `buttons`, and when they came."""
 
     def handle_manual_control(self, received: Received, message: ManualControl, now: float) -> None:
         """Run the function of what is newly pressed; a stop comes before the others."""
         if message.target != self._control.system or not received.introduced:
             return
-        before, at = self._held.pop(received.system, (0, -math.inf))
+        conversation = Conversation.of(received)
+        before, at = self._held.pop(conversation, (0, -math.inf))
         known = now - at <= self._params["MAN_TIMEOUT"]
-        self._held[received.system] = (message.buttons, now)
+        self._held[conversation] = (message.buttons, now)
         if len(self._held) > STATIONS_MAX:
             del self._held[next(iter(self._held))]
         pressed = message.buttons & ~before if known else 0
@@ -86,8 +88,8 @@ class Buttons:
         numbers = (int(self._params[f"BTN{bit}_FUNCTION"]) for bit in range(BUTTONS) if pressed >> bit & 1)
         wanted = [FUNCTIONS[number] for number in numbers if number in FUNCTIONS]
         for function in sorted(wanted, key=lambda each: not each.stops)[:1]:
-            denial = None if function.stops else self._control.denial_reason(system)
-            refusal = denial or function.run(self._safety, system, now) or []
+            denial = None if function.stops else self._control.ownership.denial_reason(received, now)
+            refusal = denial or function.run(self._safety, Conversation.of(received), now) or []
             if isinstance(refusal, str):
                 refusal = [f"GCS {system}: button for {function.label} refused: {refusal}"]
             else:

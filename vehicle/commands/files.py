@@ -38,7 +38,7 @@ class FileServices:
             system=system,
             component=component,
             pacer=pacer,
-            allowed=lambda received: context.control.denial_reason(received.system) is None,
+            allowed=lambda received, now: context.control.ownership.denial_reason(received, now) is None,
         )
         self._log = LogServer(
             logbook.recording.folder,

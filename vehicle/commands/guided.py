@@ -99,7 +99,7 @@ class GuidedCommands:
         """Put a setpoint in force. A rejection is reported once."""
         if message.target_system not in (0, self._control.system) or message.target_component not in (0, COMPONENT):
             return
-        target = self._rejection(received) or self._check_age(message, now)
+        target = self._rejection(received, now) or self._check_age(message, now)
         if target is None:  # overtaken by a newer one
             return
         if isinstance(target, SetpointRejection):
@@ -112,11 +112,9 @@ class GuidedCommands:
         self._safety.confirm_autonomy()
         self._navigator.step(self._safety, now)
 
-    def _rejection(self, received: Received) -> SetpointRejection | None:
-        if self._control.owner != received.system:
-            return SetpointRejection(
-                self._control.denial_reason(received.system) or "no GCS is in control, arm to take it"
-            )
+    def _rejection(self, received: Received, now: float) -> SetpointRejection | None:
+        if denial := self._control.ownership.setpoint_denial_reason(received, now):
+            return SetpointRejection(denial)
         if self._safety.mode is not Mode.GUIDED:
             return SetpointRejection(f"mode is {self._safety.mode.name}, not GUIDED")
         if not self._safety.armed:

@@ -128,7 +128,7 @@ class MissionService:
 
     def authorize_write(self, received: Received, kind: MissionType, now: float) -> MissionResult:
         """Accept a change from the driver only, and of no plan that is in use."""
-        denial = self._control.denial_reason(received.system) or self._in_use(kind)
+        denial = self._control.ownership.denial_reason(received, now) or self._in_use(kind)
         if denial is None:
             return MissionResult.ACCEPTED
         text = f"GCS {received.system}: {kind.name.lower()} not changed: {denial}"
@@ -171,7 +171,7 @@ class MissionService:
 
     def set_current_item(self, sequence: int, received: Received, now: float) -> None:
         """Handle MISSION_SET_CURRENT."""
-        denial = self._control.denial_reason(received.system)
+        denial = self._control.ownership.denial_reason(received, now)
         if denial is None and not self._selected(sequence, anew=False):
             denial = f"there is no item {sequence}"
         if denial:

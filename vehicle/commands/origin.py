@@ -58,7 +58,7 @@ class OriginCommands:
         if global_to_local(*point, self._navigator.estimate) is None:
             denial: str | None = "invalid position, or the position is not known"
         else:
-            denial = self._control.denial_reason(received.system) or self._rejection(*point)
+            denial = self._control.ownership.denial_reason(received, now) or self._rejection(*point)
         if denial:
             text = f"GCS {received.system}: SET_GPS_GLOBAL_ORIGIN refused: {denial}"
             self._texts.reply(received, Severity.WARNING, text, now)

@@ -43,7 +43,7 @@ class ParamService:
             system=system,
             component=component,
             pacer=context.pacer,
-            allowed=lambda received: context.control.denial_reason(received.system) is None,
+            allowed=lambda received, now: context.control.ownership.denial_reason(received, now) is None,
             armed=lambda: context.safety.armed,
             changed=self._handle_change,
             refused=lambda received, text, now: context.statustext.reply(received, Severity.WARNING, text, now),

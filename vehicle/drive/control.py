@@ -1,4 +1,4 @@
-"""Which ground station is in control, its demand and the age of it, and the neutral-first interlock.
+"""The demand of the ground station in control, its age, and the neutral-first interlock.
 
 Neutral first: after arming, a mode change, a failsafe, a lost demand, a change of control or an emergency stop, a
 demand counts only once the ground station in control has sent a neutral one. A stick that was held all the while, or a
@@ -11,21 +11,21 @@ from dialects import axes
 from dialects.enums import DriveType, Severity
 from dialects.messages import INVALID_AXIS, ManualControl, RcChannelsOverride, RoverOperatorPresence
 from link.core import Received
+from vehicle.drive.conversation import Conversation
 from vehicle.drive.demand import Demand, RcOverride, from_manual_control
 from vehicle.drive.mixer import MIXERS
 from vehicle.drive.operator_presence import OperatorPresence
-from vehicle.drive.operator_session import DemandOrder, DrivingSession, Proof, RecentProofs, Source, parse_proof
+from vehicle.drive.operator_session import DemandOrder, DrivingSession, Proof, parse_proof
+from vehicle.drive.ownership import Ownership
 from vehicle.params import Params
 from vehicle.statustext import StatusTextQueue
 
 
 class Control:
-    """The ground station in control ("owner", by system id; 0 if there is none) and its demand."""
+    """The demand of the driver (`ownership`: who that is), and its age."""
 
     def __init__(self, params: Params, texts: StatusTextQueue, *, system: int, boot: float) -> None:
-        self.owner = 0
-        self.takeover_allowed = False
-        """Other ground stations may take control without the consent of the owner."""
+        self.ownership = Ownership(params, texts, boot)
         self.demand: Demand | None = None
         """The newest demand since the owner took control or chose a mode, of any age."""
         self.neutral_seen = False
@@ -33,86 +33,51 @@ class Control:
         """Number of demands from ground stations that are not in control."""
         self.presence = OperatorPresence()
         self.override = RcOverride()
-        self.session: DrivingSession | None = None
-        """The session of the owner; None for a ground station whose demands carry no proof of their age."""
-        self._proofs = RecentProofs()
         self._succeeded = False
         self._params = params
         self._sideways = MIXERS[DriveType(int(params["DRIVE_TYPE"]))].sideways
         self._texts = texts
         self.system = system
         self._boot = boot
-        self._last_heard = boot
 
     # Ownership
 
-    def set_owner(self, system: int, now: float, source: Source | None = None) -> None:
-        """Give control to `system`; to the session that `source`, the sender of the request, has proven.
-
-        Without a proof in the last second it counts as a ground station without sessions, until it takes control again:
-        a proof that comes later may be that of another program with the same system id.
-        """
-        self._last_heard = now
-        if system == self.owner:
-            self.session = self.session or self._proofs.session_of(source, now)
-            return
-        self.owner = system
-        self.session = self._proofs.session_of(source, now)
-        self.takeover_allowed = False
-        self.presence = OperatorPresence()
-        self.reset()
-        self._texts.reset_once("demand")
-        self._texts.send_event(Severity.NOTICE, f"GCS {system} is in control", now)
+    def take(self, conversation: Conversation, now: float) -> None:
+        """Give control to a conversation; of another driver nothing is left."""
+        if self.ownership.take(conversation, now):
+            self.presence = OperatorPresence()
+            self.reset()
 
     def release(self, why: str, now: float) -> None:
         """Release control; `why` completes the STATUSTEXT."""
-        self._texts.send_event(Severity.NOTICE, f"No GCS is in control: GCS {self.owner} {why}", now)
-        self._texts.reset_once("demand")
-        self.owner = 0
-        self.session = None
+        self.ownership.release(why, now)
         self.reset()
 
-    def allow_takeover(self, allowed: bool) -> None:
-        """Let others take control without asking the owner, or not."""
-        self.takeover_allowed = allowed
+    def hear(self, received: Received, now: float) -> None:
+        """Note a message of anybody, before it is handled."""
+        if not received.introduced:
+            return
+        if self.ownership.hear(received, now):
+            self._begin_succession()
+        driver = self.ownership.driver
+        if driver is not None and driver.is_barred(now):
+            self.reset()
 
-    def takeover_denial_reason(self, system: int, now: float) -> str | None:
-        """Return why `system` may not take control, or None if it may."""
-        reason = self.denial_reason(system)
-        if self._fixed_other(system) or not (self.takeover_allowed or self.is_owner_lost(now)):
-            return reason
-        return None
+    def pop_succession(self) -> bool:
+        """Return True once after another program has taken over without having been granted control."""
+        succeeded, self._succeeded = self._succeeded, False
+        return succeeded
 
-    def denial_reason(self, system: int) -> str | None:
-        """Return why `system` may not command, or None if it is in control or no station is."""
-        if self._fixed_other(system):
-            return f"only GCS {self._params['MAV_GCS_SYSID']:g} may control (MAV_GCS_SYSID)"
-        return None if self.owner in (0, system) else f"GCS {self.owner} is in control"
-
-    def _fixed_other(self, system: int) -> bool:
-        return self._params["MAV_GCS_SYSID"] not in (0, system)
-
-    def update_liveness(self, received: Received, now: float) -> None:
-        """Note a message of the owner as a sign of life: heartbeats alone gave false alarms on lossy links.
-
-        Of a session only proofs count (`_handle_proof`): any program may send heartbeats with its system id.
-        """
-        if received.introduced and received.system == self.owner and self.session is None:
-            self._last_heard = now
-
-    def silence_duration(self, now: float) -> float:
-        """Return the s since the last message of the owner, or since there was one."""
-        return now - self._last_heard
-
-    def is_owner_lost(self, now: float) -> bool:
-        """Return True if the owner has sent nothing for FS_GCS_TIMEOUT."""
-        return self.silence_duration(now) > self._params["FS_GCS_TIMEOUT"]
+    def _begin_succession(self) -> None:
+        self.presence = OperatorPresence()
+        self.reset()
+        self._succeeded = True
 
     # Demand
 
     def handle_manual_control(self, received: Received, message: ManualControl, now: float) -> bool:
         """Handle a MANUAL_CONTROL; return True if it is the demand now."""
-        if not self._accepts(received, message.target, now) or not self._accepts_without_proof(now):
+        if not self._accepts(received, message.target, now):
             return False
         if self.demand and self.demand.sequence == received.sequence:
             return False  # a replay of the same packet
@@ -125,7 +90,7 @@ class Control:
 
     def handle_rc_override(self, received: Received, message: RcChannelsOverride, now: float) -> bool:
         """Handle an RC_CHANNELS_OVERRIDE; return True if it is the demand now."""
-        if not self._accepts(received, message.target_system, now) or not self._accepts_without_proof(now):
+        if not self._accepts(received, message.target_system, now):
             return False
         used = self.override.update(message, now)
         if self.override.has_invalid_value:
@@ -139,36 +104,49 @@ class Control:
         """Handle a ROVER_OPERATOR_PRESENCE; return True if it is the demand now. An ignored one is not reported."""
         if message.target_system != self.system or not received.introduced:
             return False
+        ownership, conversation = self.ownership, Conversation.of(received)
         proof = parse_proof(message, now - self._boot)
         good = proof is not None and proof.age <= self._params["OPR_ECHO_MAX"]
-        if proof is not None and good:
-            self._proofs.add(Source.of(received), proof, now)
-        if received.system != self.owner:
+        if proof is not None:
+            ownership.add_proof(conversation, proof, now, good=good)
+        if not ownership.has_driver_ids(received):
             return False
-        if self.session is not None:
+        if proof is not None and good and not self._is_of_driver(conversation, proof):
+            self._handle_other_session(conversation, proof, message, now)
+        if ownership.session is not None:
             return proof is not None and self._handle_proof(received, message, proof, now, good=good)
-        if self.presence.handle(message, now - self._boot, now):
+        if ownership.is_driver(received, now) and self.presence.handle(message, now - self._boot, now):
             self.require_neutral()
         return False
 
-    def pop_succession(self) -> bool:
-        """Return True once after another session has taken over without having been granted control."""
-        succeeded, self._succeeded = self._succeeded, False
-        return succeeded
+    def _is_of_driver(self, conversation: Conversation, proof: Proof) -> bool:
+        """Return whether a proof with the driver's ids is the driver's."""
+        driver = self.ownership.driver
+        if driver is None or driver.session is None:
+            return driver is not None and driver.conversation == conversation
+        return driver.session.id == proof.session
+
+    def _handle_other_session(
+        self, conversation: Conversation, proof: Proof, message: RoverOperatorPresence, now: float
+    ) -> None:
+        """Let another session with the driver's ids take over by a demand, if the driver is silent; else report it."""
+        if message.x == message.r == INVALID_AXIS:
+            return
+        if self.ownership.succeed(conversation, DrivingSession.begin(conversation, proof, now), now):
+            self._begin_succession()
+        else:
+            self.ownership.report_other_session(conversation, now)
 
     def _handle_proof(
         self, received: Received, message: RoverOperatorPresence, proof: Proof, now: float, *, good: bool
     ) -> bool:
-        """Handle a proof with the owner's system id while a session is in control."""
-        demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
-        session = self.session
+        """Handle a proof with the driver's ids while a session is in control."""
+        session = self.ownership.session
         if session is None or proof.session != session.id:
-            session = self._succeed(proof, now) if good and demand else None
-        if session is None:
             return False
         if good:
-            session.proven_at = self._last_heard = now
             self.presence.handle(message, now - self._boot, now)
+        demand = from_manual_control(message, received.system, received.sequence, now, sideways=self._sideways)
         if demand is None or session.order(proof) is not DemandOrder.NEWEST:
             return False
         if good:
@@ -178,37 +156,6 @@ class Control:
         if used:
             session.clock = proof.clock
         return used
-
-    def _succeed(self, proof: Proof, now: float) -> DrivingSession | None:
-        """Return another session with the owner's system id as successor if the owner's is silent; else report it."""
-        if self.session is not None and not self.session.may_be_succeeded(now):
-            text = f"Another program uses system id {self.owner}: it cannot drive"
-            self._texts.send_once("demand session", Severity.WARNING, text, now)  # one: session ids are free to invent
-            return None
-        successor = DrivingSession(proof.session, now)
-        self._replace_session(successor, now)
-        return successor
-
-    def _accepts_without_proof(self, now: float) -> bool:
-        """Return whether a demand without a proof counts: not while the owner's session lives.
-
-        A ground station without sessions may follow one with its system id that is lost.
-        """
-        if self.session is None:
-            return True
-        if not self.is_owner_lost(now):
-            return False
-        self._replace_session(None, now)
-        return True
-
-    def _replace_session(self, session: DrivingSession | None, now: float) -> None:
-        self.session = session
-        self.presence = OperatorPresence()
-        self.reset()
-        self._last_heard = now
-        self._succeeded = True
-        text = f"GCS {self.owner} drives from another program now: release the keys first"
-        self._texts.send(Severity.NOTICE, text, now)
 
     def demand_age(self, now: float) -> float | None:
         """Return the s since the demand arrived; None without one."""
@@ -269,15 +216,25 @@ class Control:
         return False
 
     def _accepts(self, received: Received, target: int, now: float) -> bool:
+        """Return whether a demand without a proof counts: of a driver without sessions, and of no other.
+
+        While it is barred, or repeats old frames, it moves nothing either.
+        """
+        driver = self.ownership.driver
         if target != self.system or not received.introduced:
             return False
-        if received.system == self.owner:
-            return True
+        if driver is None or not self.ownership.is_driver(received, now):
+            self._reject_demand(received, now)
+            return False
+        return driver.session is None and not (driver.is_copy or driver.is_barred(now))
+
+    def _reject_demand(self, received: Received, now: float) -> None:
+        """Report the demand of a ground station that is not in control, once."""
         self.not_in_control_count += 1
-        reason = f"GCS {self.owner} is in control" if self.owner else "no GCS is in control, arm to take it"
+        reason = self.ownership.denial_reason(received, now) or "no GCS is in control, arm to take it"
+        key = f"demand {received.system}/{received.component} {received.peer}"
         text = f"Demand from GCS {received.system} ignored: {reason}"
-        self._texts.reply_once(f"demand {received.system}", received, Severity.WARNING, text, now)
-        return False
+        self._texts.reply_once(key, received, Severity.WARNING, text, now)
 
     def _report_invalid(self, received: Received, problem: str, now: float) -> None:
         """Report an invalid message once: a wrong joystick program sends it all the time."""

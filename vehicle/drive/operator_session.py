@@ -8,37 +8,22 @@ late frame of a second link and a frame of another program with the same system 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import NamedTuple
 
 from dialects.enums import OperatorFlag
 from dialects.messages import RoverOperatorPresence, boot_ms
-from link.core import Peer, Received
+from vehicle.drive.conversation import Conversation
 
-SUCCESSION_TIME = 0.7
-"""s without a proof of the driver's session after which another session with its system id takes over. Longer than
-OPR_ECHO_MAX and one interval at 5 Hz, so that two idle programs do not take turns at 10 % loss; below 1 s, so that a
-restarted ground station drives again within 1 s."""
 PROOF_VALID = 1.0
-"""s for which a proof names the session of the sender who then takes control."""
-SOURCES_MAX = 16
+"""s for which a good proof names the session of its sender: when it takes control, and when it sends a command."""
+SENDERS_MAX = 16
 """Senders whose newest proof is remembered."""
+LINKS_MAX = 8
+"""Conversations of one session that are remembered."""
 
 _WRAP = 2**32
-
-
-class Source(NamedTuple):
-    """The sender of a message: system, component, and the peer that it arrived from."""
-
-    system: int
-    component: int
-    peer: Peer
-
-    @classmethod
-    def of(cls, received: Received) -> Source:
-        """Return the sender of a message."""
-        return cls(received.system, received.component, received.peer)
 
 
 class Proof(NamedTuple):
@@ -74,15 +59,29 @@ def echo_age(echo: int, since_boot: float) -> float:
     return ((boot_ms(since_boot) - echo) % _WRAP) / 1000 if echo else math.inf
 
 
+class SessionLink(NamedTuple):
+    """A conversation of the driver's session."""
+
+    proven_at: float
+    """When its newest good proof arrived; -infinity if it has brought late ones only."""
+    age: float
+    """s: age of the newest proof on arrival, good or not."""
+
+
 @dataclass(slots=True)
 class DrivingSession:
     """The session of the ground station in control."""
 
     id: int
-    proven_at: float
-    """When its newest good proof arrived."""
     clock: int | None = None
     """`time_boot_ms` of its newest demand; None before the first."""
+    links: dict[Conversation, SessionLink] = field(default_factory=dict)
+    """The conversations that have brought proofs of this session: over several links, or from another address."""
+
+    @classmethod
+    def begin(cls, conversation: Conversation, proof: Proof, at: float) -> DrivingSession:
+        """Return the session of a good proof that arrived at `at`."""
+        return cls(proof.session, links={conversation: SessionLink(at, proof.age)})
 
     def order(self, proof: Proof) -> DemandOrder:
         """Compare a proof with the newest one so far. Clocks wrap after 49 days."""
@@ -90,27 +89,43 @@ class DrivingSession:
             return DemandOrder.NEWEST
         return DemandOrder.NOT_NEWER
 
-    def may_be_succeeded(self, now: float) -> bool:
-        """Return True if another session with the same system id may take over."""
-        return now - self.proven_at > SUCCESSION_TIME
+    def add_proof(self, conversation: Conversation, proof: Proof, now: float, *, good: bool) -> None:
+        """Note a proof of this session; of too many conversations the one that was proven longest ago is forgotten."""
+        before = self.links.pop(conversation, None)
+        proven_at = now if good else before.proven_at if before else -math.inf
+        self.links[conversation] = SessionLink(proven_at, proof.age)
+        if len(self.links) > LINKS_MAX:
+            del self.links[min(self.links, key=lambda each: self.links[each].proven_at)]
+
+    def is_proven(self, conversation: Conversation, now: float) -> bool:
+        """Return whether a conversation has brought a good proof within PROOF_VALID."""
+        return conversation in self.links and now - self.links[conversation].proven_at <= PROOF_VALID
+
+    def setpoint_age(self, conversation: Conversation, now: float) -> float:
+        """Return the s since the vehicle time that is proven for a conversation, a bound of the age of its setpoints.
+
+        Infinite without a good proof.
+        """
+        link = self.links.get(conversation)
+        return math.inf if link is None else now - link.proven_at + link.age
 
 
 class RecentProofs:
     """The newest good proof of each sender, for the moment in which one takes control."""
 
     def __init__(self) -> None:
-        self._newest: dict[Source, tuple[int, float]] = {}
+        self._newest: dict[Conversation, tuple[Proof, float]] = {}
 
-    def add(self, source: Source, proof: Proof, now: float) -> None:
+    def add(self, conversation: Conversation, proof: Proof, now: float) -> None:
         """Remember a good proof; of too many senders the one that was added first is forgotten."""
-        self._newest.pop(source, None)
-        self._newest[source] = (proof.session, now)
-        if len(self._newest) > SOURCES_MAX:
+        self._newest.pop(conversation, None)
+        self._newest[conversation] = (proof, now)
+        if len(self._newest) > SENDERS_MAX:
             del self._newest[next(iter(self._newest))]
 
-    def session_of(self, source: Source | None, now: float) -> DrivingSession | None:
-        """Return the session that this sender has proven within PROOF_VALID, or None."""
-        if source is None:
+    def session_of(self, conversation: Conversation, now: float) -> DrivingSession | None:
+        """Return the session that a sender has proven within PROOF_VALID, or None."""
+        if conversation not in self._newest:
             return None
-        session, at = self._newest.get(source, (0, -math.inf))
-        return DrivingSession(session, at) if now - at <= PROOF_VALID else None
+        proof, at = self._newest[conversation]
+        return DrivingSession.begin(conversation, proof, at) if now - at <= PROOF_VALID else None

@@ -103,9 +103,9 @@ def _manual_control_lost(inputs: FailsafeInputs, now: float) -> float | None:
 def _gcs_lost(inputs: FailsafeInputs, now: float) -> float | None:
     enabled = inputs.params["FS_GCS_ENABLE"]
     continues = enabled == CONTINUE_MISSION and inputs.mission_running
-    if not enabled or continues or not inputs.control.is_owner_lost(now):
+    if not enabled or continues or not inputs.control.ownership.is_lost(now):
         return None
-    return now - inputs.control.silence_duration(now) + inputs.params["FS_GCS_TIMEOUT"]
+    return now - inputs.control.ownership.silence_duration(now) + inputs.params["FS_GCS_TIMEOUT"]
 
 
 def _operator_inactive(inputs: FailsafeInputs, now: float) -> float | None:

@@ -10,7 +10,7 @@ from typing import Protocol
 from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
 from vehicle.drive.control import Control
-from vehicle.drive.operator_session import Source
+from vehicle.drive.conversation import Conversation
 from vehicle.modes import MODES, initial_mode
 from vehicle.params import Params
 from vehicle.safety.arming import ArmingFacts, find_problems
@@ -65,6 +65,7 @@ class Safety:
         self.computer = PiMonitor(params, texts)
         self._params = params
         self._control = control
+        self._ownership = control.ownership
         self._texts = texts
         self._readiness = readiness
         self.armed_at = now
@@ -105,24 +106,21 @@ class Safety:
         )
         return find_problems(facts, force=force)
 
-    def arm(self, system: int, now: float, *, force: bool = False, source: Source | None = None) -> list[str]:
-        """Arm and give control to `system`, whose request came from `source`.
-
-        Return what prevents arming, for its reply; empty if armed.
-        """
-        if self.armed and self._control.owner == system:
+    def arm(self, asker: Conversation, now: float, *, force: bool = False) -> list[str]:
+        """Arm and give control to `asker`. Return what prevents arming, for the reply; empty if armed."""
+        if self.armed and self._ownership.is_driver(asker, now):
             return []
-        refusals = self._arm_refusals(system, now, force=force)
+        refusals = self._arm_refusals(asker, now, force=force)
         if refusals:
             return refusals
-        self._control.set_owner(system, now, source)
+        self._control.take(asker, now)
         self._control.reset()
         self._handle_event(SafetyEvent.ARM)
         self._start_generation(confirmed=False)
         self.armed_at = now
         self.loop_overrun = False
         self.failsafes.acknowledge()
-        self._texts.send_event(Severity.NOTICE, f"Armed by GCS {system}, mode {self.mode.name}", now)
+        self._texts.send_event(Severity.NOTICE, f"Armed by GCS {asker.system}, mode {self.mode.name}", now)
         if MODES[self.mode].autonomous and self.mode is not Mode.GUIDED:
             self._texts.send_event(Severity.NOTICE, f"Choose {self.mode.name} again to start", now)
         self._texts.send_list(Severity.WARNING, list_changed_safety_params(self._params), now)
@@ -224,7 +222,7 @@ class Safety:
 
     def free_lost_owner(self, now: float) -> None:
         """Release control if the ground station in control has timed out (FS_GCS_TIMEOUT)."""
-        if self._control.owner and self._control.is_owner_lost(now):
+        if self._ownership.driver and self._ownership.is_lost(now):
             self._control.release("timed out", now)
 
     def boot_done(self) -> None:
@@ -236,10 +234,10 @@ class Safety:
         """Enter OFF, for good."""
         self._handle_event(SafetyEvent.SHUTDOWN)
 
-    def _arm_refusals(self, system: int, now: float, *, force: bool) -> list[str]:
+    def _arm_refusals(self, asker: Conversation, now: float, *, force: bool) -> list[str]:
         if self.armed:  # control of an armed vehicle is taken by a request, not by arming again
-            return [f"armed already by GCS {self._control.owner}"]
-        refusal = self._control.takeover_denial_reason(system, now)
+            return [f"armed already by GCS {self._ownership.owner}"]
+        refusal = self._ownership.takeover_denial_reason(asker, now)
         return [refusal] if refusal else self.prearm_problems(now, force=force)
 
     def _start_generation(self, *, confirmed: bool) -> None:

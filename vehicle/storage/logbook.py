@@ -135,7 +135,9 @@ class Logbook:
 
     def handle_log_erase(self, received: Received, now: float) -> None:
         """Handle LOG_ERASE: remove all logs, for the ground station in control and while disarmed."""
-        denial = self._control.denial_reason(received.system) or ("disarm first" if self._safety.armed else None)
+        denial = self._control.ownership.denial_reason(received, now) or (
+            "disarm first" if self._safety.armed else None
+        )
         if not received.introduced:
             denial = "its HEARTBEAT is missing"
         if denial is not None:

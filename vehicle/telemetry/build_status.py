@@ -14,8 +14,6 @@ from vehicle.telemetry.view import TelemetryView
 
 VERSION = (0, 1, 0)
 """Version of this program, for AUTOPILOT_VERSION."""
-TAKEOVER_ALLOWED, SYSTEM_MANAGER = 2, 1
-"""GCS_CONTROL_STATUS_FLAGS."""
 X_AXIS, R_AXIS = 0, 3
 """ROVER_AXIS of throttle and steering, as in the specification (dialects/axes.py, Autopilot.GENERIC)."""
 NOT_USER_SELECTABLE, AUTO_MODE = 2, 4
@@ -122,12 +120,6 @@ def current_mode(view: TelemetryView) -> m.Message:
 
 def _mode(view: TelemetryView) -> Mode:
     return Mode.INITIALISING if view.safety.state is states.SafetyState.BOOT else view.safety.mode
-
-
-def control_status(view: TelemetryView) -> m.Message:
-    """Build CONTROL_STATUS: the ground station in control."""
-    flags = SYSTEM_MANAGER | (TAKEOVER_ALLOWED if view.control.takeover_allowed else 0)
-    return m.ControlStatus(flags=flags, gcs_main=view.control.owner, gcs_secondary=[0] * 10)
 
 
 def system_time(view: TelemetryView) -> m.Message:

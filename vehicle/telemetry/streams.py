@@ -13,7 +13,7 @@ from enum import IntEnum
 from dialects import messages as m
 from dialects.enums import Command, DataStream
 from link.services.pacing import MAVLINK2_OVERHEAD
-from vehicle.telemetry import build_computer, build_motion, build_navigation, build_pose, build_status
+from vehicle.telemetry import build_computer, build_control, build_motion, build_navigation, build_pose, build_status
 from vehicle.telemetry.scaling import parse_message_id
 from vehicle.telemetry.view import TelemetryView
 
@@ -69,8 +69,9 @@ STREAMS: tuple[Stream, ...] = (
                                 view.control.neutral_seen, view.safety.armed)),
     Stream(m.RoverFailsafeStatus, ROVER, 1, build_status.failsafe_status,
            change_key=lambda view: (view.safety.failsafes.active, view.safety.latched)),
-    Stream(m.ControlStatus, NEWER, 1, build_status.control_status,
-           change_key=lambda view: (view.control.owner, view.control.takeover_allowed)),
+    Stream(m.ControlStatus, NEWER, 1, build_control.control_status,
+           change_key=lambda view: (view.control.ownership.owner, view.control.ownership.takeover_allowed)),
+    Stream(m.RoverControl, ROVER, 1, build_control.rover_control, change_key=build_control.control_key),
     Stream(m.CurrentMode, NEWER, 0.5, build_status.current_mode,
            change_key=lambda view: (view.safety.mode, view.safety.intended)),
     Stream(m.MissionCurrent, COMMON, 1, build_navigation.mission_current, DataStream.EXTENDED_STATUS,

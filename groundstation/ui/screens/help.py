@@ -11,9 +11,10 @@ from textual.content import Content
 from textual.widgets import Static
 
 from groundstation.intents import ACTIONS
-from groundstation.screens import SCREENS
+from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.colours import BLUE, DIM, RED, YELLOW
 from groundstation.ui.keynames import format_key
+from groundstation.ui.navigation import load_screen
 from groundstation.ui.screens.screen import ConsoleScreen
 
 TITLES = {
@@ -36,6 +37,8 @@ STATUS_LINE = (
 _NOTES = (
     "Any key without a drive action stops the vehicle while it is driven. The emergency stop works on every screen.",
     "Keys drive only on the Drive screen and while this window has the focus; leaving either stops the vehicle.",
+    "Back on Drive, without key releases: a drive key counts once none was pressed or repeated for 0.75 s.",
+    "In a text field SPACE and k are text: ^k stops there, and ! is the emergency stop as everywhere.",
     "The limits are the largest demand that a key sends: speed and turn, in percent of the full range.",
     "Mouse reports are captured, so that the wheel cannot drive as arrow keys: Shift and drag selects text.",
 )
@@ -47,6 +50,7 @@ class HelpScreen(ConsoleScreen):
     """Two columns of text; any key that does not scroll goes back, the key of another screen opens it."""
 
     AUTO_FOCUS = "#page"
+    ROWS = ()
     CSS_PATH = "help.tcss"
 
     def compose(self) -> ComposeResult:
@@ -74,6 +78,8 @@ class HelpScreen(ConsoleScreen):
                     yield f"  {_key_list(keys, confirm=action.confirm):<14}", RED if group == "stop" else YELLOW
                     yield f"{action.help}\n", ""
             yield "\n", ""
+        for row in SCREENS:
+            yield from _screen_keys(row)
         yield "Status line\n", f"bold {BLUE}"
         for name, meaning in STATUS_LINE:
             yield f"  {name:<14}", YELLOW
@@ -84,6 +90,18 @@ class HelpScreen(ConsoleScreen):
 
 
 _OTHER_SCREENS = frozenset(row.action for row in SCREENS if not row.target.endswith(f":{HelpScreen.__name__}"))
+
+
+def _screen_keys(row: ScreenRow) -> Iterator[tuple[str, str]]:
+    """Yield the keys that a screen has beside the actions."""
+    keys = load_screen(row).KEYS
+    if not keys:
+        return
+    yield f"{row.title} screen\n", f"bold {BLUE}"
+    for key in keys:
+        yield f"  {format_key(key.key):<14}", YELLOW
+        yield f"{key.help}\n", ""
+    yield "\n", ""
 
 
 def _key_list(keys: tuple[str, ...], *, confirm: bool) -> str:

@@ -1,33 +1,58 @@
-"""Alert line: the most urgent alert, and the number of further ones."""
+"""Alert line: the most urgent alert, and the number of further ones with the key that lists them. Hint line."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.alerts import Alert, AlertLevel
+from groundstation.ui.alerts import Alert, AlertLevel, active_alerts
 from groundstation.ui.colours import AMBER, DEEP_RED, PANEL, TEXT, WARNING, YELLOW, badge, style
-from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
+from groundstation.ui.display_state import DisplayState
+from groundstation.ui.widgets.instrument import Instrument, strip
 
-_LOOKS = {
-    AlertLevel.HINT: style(TEXT, PANEL),
+LOOKS: dict[AlertLevel, Style] = {
     AlertLevel.WARNING: style(AMBER, WARNING, bold=True),
     AlertLevel.DANGER: badge(DEEP_RED),
     AlertLevel.QUESTION: badge(YELLOW),
 }
-_MARKS = {AlertLevel.HINT: "›", AlertLevel.WARNING: "!", AlertLevel.DANGER: "■", AlertLevel.QUESTION: "?"}
+MARKS = {AlertLevel.WARNING: "!", AlertLevel.DANGER: "■", AlertLevel.QUESTION: "?"}
 
 
-class AlertLine(Instrument[tuple[Alert, ...]]):
-    """One line over the full width."""
+@dataclass(frozen=True, slots=True)
+class AlertValue:
+    """The alerts that hold now, most urgent first."""
+
+    alerts: tuple[Alert, ...] = ()
+    list_key: str = "?"
+    """Key of the screen that lists them."""
+
+    @classmethod
+    def from_state(cls, now: DisplayState) -> AlertValue:
+        """Return the alerts of a display state."""
+        return cls(tuple(active_alerts(now)), now.key("app.log"))
+
+
+class AlertLine(Instrument[AlertValue]):
+    """One line over the full width; blank without an alert."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Draw the first alert in its colour; further hints are not counted."""
-        if not self.value:
+        """Draw the first alert in its colour. The key stands there also where one alert alone does not fit."""
+        if not self.value.alerts:
             return []
-        first = self.value[0]
-        others = sum(alert.level is not AlertLevel.HINT for alert in self.value[1:])
-        look = _LOOKS[first.level]
-        left: list[Part] = [(f" {_MARKS[first.level]} {first.text}", look)]
-        right: list[Part] = [(f" +{others} " if others else "", look)]
-        gap = max(1, width - length(left) - length(right))
-        return [strip(*left, (" " * gap, look), *right).crop(0, width)]
+        first, *others = self.value.alerts
+        look = LOOKS[first.level]
+        text = f" {MARKS[first.level]} {first.text}"
+        more = f" +{len(others)}" if others else "" if len(text) <= width else " …"
+        right = f"{more} {self.value.list_key} " if more else ""
+        return [strip((text.ljust(width)[: max(0, width - len(right))] + right, look)).crop(0, width)]
+
+
+class HintLine(Instrument[str]):
+    """What to do next: one line over the full width."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """Draw the hint, cut at the right edge."""
+        look = style(TEXT, PANEL)
+        return [strip((f" › {self.value}".ljust(width), look)).crop(0, width)]

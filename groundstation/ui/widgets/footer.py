@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from textual.strip import Strip
@@ -9,8 +10,8 @@ from textual.strip import Strip
 from groundstation.input.keymap import Keymap
 from groundstation.intents import ACTIONS
 from groundstation.ui.colours import DIM, PANEL, RED, TEXT, YELLOW, style
-from groundstation.ui.display_state import DisplayState
-from groundstation.ui.keynames import format_key, main_key
+from groundstation.ui.display_state import DRIVE_INFO, DisplayState, ScreenInfo
+from groundstation.ui.keynames import format_key, is_character, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 FOOTER_ITEMS: tuple[tuple[str | None, tuple[str, ...]], ...] = (
@@ -34,12 +35,13 @@ class FooterValue:
 
     keymap: Keymap
     armed: bool = False
+    screen: ScreenInfo = DRIVE_INFO
 
     @classmethod
     def from_state(cls, now: DisplayState) -> FooterValue:
         """Return the footer of a display state."""
         vehicle = now.snapshot.vehicle
-        return cls(now.keymap, vehicle is not None and vehicle.armed)
+        return cls(now.keymap, vehicle is not None and vehicle.armed, now.screen)
 
 
 class KeyFooter(Instrument[FooterValue]):
@@ -49,12 +51,32 @@ class KeyFooter(Instrument[FooterValue]):
         """Draw keys in yellow, stop keys in red."""
         parts: list[Part] = []
         tail = [("│ ", style(DIM, PANEL)), ("^p", style(YELLOW, PANEL, bold=True)), (" Commands ", style(TEXT, PANEL))]
-        for label, ids in FOOTER_ITEMS:
-            item = self._item(label, ids)
+        for item in self._items():
             if item and length(parts) + length(item) + length(tail) <= width:
                 parts += item
         gap = max(0, width - length(parts) - length(tail))
         return [strip(*parts, (" " * gap, style(TEXT, PANEL)), *tail).crop(0, width)]
+
+    def _items(self) -> Iterator[list[Part]]:
+        screen = self.value.screen
+        if screen.drives:
+            yield from (self._item(label, ids) for label, ids in FOOTER_ITEMS)
+            return
+        yield _parts(self._stop_key(), "Stop", RED)
+        yield self._item("E-STOP", ("stop.emergency",))
+        if screen.text:
+            yield _parts("ENTER", "Keep", YELLOW)
+            yield _parts("ESC", "Clear", YELLOW)
+            return
+        for each in screen.keys:
+            yield _parts(format_key(each.key), each.label, YELLOW)
+        yield _parts("ESC", "Drive", YELLOW)
+
+    def _stop_key(self) -> str:
+        """Return a stop key that works now: a text field takes the keys that are characters."""
+        keys = self.value.keymap.get_keys("drive.stop")
+        usable = [key for key in keys if not (self.value.screen.text and is_character(key))]
+        return format_key("space" if "space" in usable else usable[0]) if usable else "?"
 
     def _item(self, label: str | None, ids: tuple[str, ...]) -> list[Part]:
         keys = [self._key(action_id) for action_id in ids]
@@ -62,13 +84,13 @@ class KeyFooter(Instrument[FooterValue]):
             return []
         action = ACTIONS[ids[0]]
         text = label or ("Disarm" if self.value.armed and action.when_armed is not None else action.label)
-        colour = RED if action.group == "stop" else YELLOW
-        return [
-            (f" {' '.join(filter(None, keys))}", style(colour, PANEL, bold=True)),
-            (f" {text} ", style(TEXT, PANEL)),
-        ]
+        return _parts(" ".join(filter(None, keys)), text, RED if action.group == "stop" else YELLOW)
 
     def _key(self, action_id: str) -> str | None:
         keymap = self.value.keymap
         key = "space" if "space" in keymap.get_keys(action_id) else main_key(keymap, action_id)
         return None if key is None else format_key(key)
+
+
+def _parts(keys: str, label: str, colour: str) -> list[Part]:
+    return [(f" {keys}", style(colour, PANEL, bold=True)), (f" {label} ", style(TEXT, PANEL))]

@@ -60,7 +60,7 @@ class Horizon(Instrument[HorizonValue | None]):
         cells: list[Part] = []
         for column in range(width):
             eighths = round(8 * ground_fraction(attitude, column - (width - 1) / 2, row, height))
-            cells.append((" ", style(on=GROUND)) if eighths == 8 else (_BLOCKS[eighths], style(GROUND, SKY)))
+            cells.append((_BLOCKS[eighths], style(GROUND, SKY)))
         if row == height // 2:
             on = GROUND if ground_fraction(attitude, 0.0, row, height) > 0.5 else SKY
             cells[(width - 1) // 2] = ("●", style(YELLOW, on, bold=True))

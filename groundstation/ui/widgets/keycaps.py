@@ -90,25 +90,26 @@ class Keycaps(Instrument[KeycapsValue]):
     def _texts(self) -> tuple[list[Part], list[Part], list[Part]]:
         value = self.value
         return (
-            self._style(),
-            self._bound(),
+            style_parts(value),
+            bound_parts(value),
             [
                 ("limits: speed ", style(DIM)), (f"{value.throttle_limit}%", style(TEXT)),
                 (" turn ", style(DIM)), (f"{value.steering_limit}%", style(TEXT)),
             ],
         )  # fmt: skip
 
-    def _style(self) -> list[Part]:
-        """Return the drive style and the key that changes it."""
-        keys = self.value.keymap.get_keys("drive.style")
-        label = STYLES.get(self.value.style, (self.value.style, style(TEXT)))
-        return [(f"{format_key(keys[0])} ", style(DIM)), label] if keys else [label]
 
-    def _bound(self) -> list[Part]:
-        """Return what ends a drive, and how soon: without key releases only a timer can."""
-        value = self.value
-        if not math.isfinite(value.stop_bound):
-            return [("only a key stops it", style(AMBER))]
-        if value.reports_releases:
-            return [("stops when you let go", style(DIM))]
-        return [("timer: stops within ", style(DIM)), (f"{value.stop_bound:.2f} s", style(TEXT))]
+def style_parts(value: KeycapsValue) -> list[Part]:
+    """Return the drive style and the key that changes it."""
+    keys = value.keymap.get_keys("drive.style")
+    label = STYLES.get(value.style, (value.style, style(TEXT)))
+    return [(f"{format_key(keys[0])} ", style(DIM)), label] if keys else [label]
+
+
+def bound_parts(value: KeycapsValue) -> list[Part]:
+    """Return what ends a drive, and how soon: without key releases only a timer can."""
+    if not math.isfinite(value.stop_bound):
+        return [("only a key stops it", style(AMBER))]
+    if value.reports_releases:
+        return [("stops when you let go", style(DIM))]
+    return [("timer: stops within ", style(DIM)), (f"{value.stop_bound:.2f} s", style(TEXT))]

@@ -6,23 +6,37 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
+from groundstation.input.keymap import Keymap
 from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot, VehicleView
 from groundstation.ui.colours import AMBER, BLUE, DEEP_RED, DIM, FAINT, GREEN, RED, TEXT, YELLOW, badge, style
+from groundstation.ui.display_state import DisplayState
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, length, strip
+from groundstation.ui.widgets.tabs import WIDE, goto_parts
 
 STALE_COMMAND, OLD_COMMAND = 0.45, 0.2
 """Age of a demand, s: from 0.45 on the vehicle no longer obeys (its MAN_TIMEOUT); 0.2 is four frames at 20 Hz."""
 
-_BARS = "▂▄▆█"
+_BARS, _NO_BAR = "▂▄▆█", "▁"
 _MODES = {"MANUAL": GREEN, "HOLD": AMBER}
 
 
 @dataclass(frozen=True, slots=True)
 class StatusBarValue:
-    """The snapshot, and what is not in it: the round trip to the terminal, s."""
+    """The snapshot, and what is not in it."""
 
     snapshot: Snapshot
+    keymap: Keymap
     terminal: float | None = None
+    """Round trip to the terminal, s."""
+    drives: bool = True
+    """Keys drive on the screen on top."""
+    drive_key: str = "?"
+    """Key of the screen where they do."""
+
+    @classmethod
+    def from_state(cls, now: DisplayState) -> StatusBarValue:
+        """Return the status bar of a display state."""
+        return cls(now.snapshot, now.keymap, now.terminal_round_trip, now.screen.drives, now.key("app.drive"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,14 +53,31 @@ class StatusBar(Instrument[StatusBarValue]):
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the badges left, the rest right; on two lines the link readings go below."""
         snapshot = self.value.snapshot
-        badges, health = _badges(snapshot), _health(snapshot.vehicle)
+        badges, health = self._badges(), _health(snapshot.vehicle)
         fields = [*_links(snapshot), *_command(snapshot), *_terminal(self.value.terminal)]
         if height > 1:
+            goto = goto_parts(self.value.keymap)
+            if sum(length(each.parts) for each in fields) + length(goto) > width:
+                goto = goto[:1]  # the key alone
             return [
                 _spread(badges, _fitting(health, width - length(badges)), width),
-                _spread(_fitting(fields, width), [], width),
+                _spread(_fitting(fields, width - length(goto)), goto, width),
             ]
-        return [_spread(badges, _fitting([*fields, *health], width - length(badges) - 1), width)]
+        readings = [*(fields if width >= WIDE else fields[:1]), *health]
+        return [_spread(badges, _fitting(readings, width - length(badges) - 1), width)]
+
+    def _badges(self) -> list[Part]:
+        value, vehicle = self.value, self.value.snapshot.vehicle
+        if vehicle is None:
+            return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
+        parts = [(f" {vehicle.name} ", badge(BLUE)), mode_badge(vehicle)]
+        stands = not value.drives and vehicle.in_control and vehicle.armed and vehicle.mode == "MANUAL"
+        away = (f"neutral · {value.drive_key} drives", style(AMBER, bold=True))
+        parts += [*arming_badges(vehicle), (" ", style()), away if stands and vehicle.alive else driver_part(vehicle)]
+        if value.snapshot.also_armed:
+            systems = ", ".join(map(str, value.snapshot.also_armed))
+            parts.append((f" also armed: {systems}", style(AMBER, bold=True)))
+        return parts
 
 
 def _fitting(fields: list[StatusField], room: int) -> list[Part]:
@@ -63,19 +94,12 @@ def _spread(left: list[Part], right: list[Part], width: int) -> Strip:
     return strip(*left, (" " * gap, style()), *right).crop(0, width)
 
 
-def _badges(snapshot: Snapshot) -> list[Part]:
-    vehicle = snapshot.vehicle
-    if vehicle is None:
-        return [(" mavhelm ", badge(BLUE)), (" no vehicle", style(DIM))]
-    parts = [(f" {vehicle.name} ", badge(BLUE)), (f" {vehicle.mode} ", badge(_MODES.get(vehicle.mode, YELLOW)))]
-    parts += [*_arming(vehicle), (" ", style()), _driver(vehicle)]
-    if snapshot.also_armed:
-        systems = ", ".join(map(str, snapshot.also_armed))
-        parts.append((f" also armed: {systems}", style(AMBER, bold=True)))
-    return parts
+def mode_badge(vehicle: VehicleView) -> Part:
+    """Return the badge of the mode."""
+    return (f" {vehicle.mode} ", badge(_MODES.get(vehicle.mode, YELLOW)))
 
 
-def _arming(vehicle: VehicleView) -> list[Part]:
+def arming_badges(vehicle: VehicleView) -> list[Part]:
     """Return the badges of arming: ARMED as long as the vehicle reports that, whatever was requested."""
     confirmed = vehicle.emergency_progress in (None, EmergencyProgress.ACCEPTED)
     if vehicle.emergency_stop and confirmed and not vehicle.armed:
@@ -84,9 +108,12 @@ def _arming(vehicle: VehicleView) -> list[Part]:
     return [state, (" E-STOP SENT ", badge(RED))] if vehicle.emergency_stop else [state]
 
 
-def _driver(vehicle: VehicleView) -> Part:
+def driver_part(vehicle: VehicleView) -> Part:
+    """Return who moves the vehicle."""
     if not vehicle.alive:
         return (f"link lost for {vehicle.silence:.0f} s", style(RED, bold=True))
+    if vehicle.obeys:
+        return ("obeys another GCS", style(AMBER, bold=True))
     if vehicle.in_control:
         return ("you drive" if vehicle.armed else "you are in control", style(GREEN, bold=True))
     if vehicle.driver:
@@ -106,7 +133,7 @@ def _links(snapshot: Snapshot) -> list[StatusField]:
     loss, trip = finite_or_none(link.loss), finite_or_none(link.round_trip)
     bars, colour = _quality(link, alive)
     strength = StatusField(
-        1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_BARS[bars:]} ", style(FAINT)))
+        1, ((" link ", style(DIM)), (_BARS[:bars], style(colour)), (f"{_NO_BAR * (4 - bars)} ", style(FAINT)))
     )
     return [
         strength,
@@ -155,3 +182,8 @@ def _health(vehicle: VehicleView | None) -> list[StatusField]:
         rest = "" if left is None else f" {100 * left:.0f}%"
         fields.append(_field(1, "batt", f"{volts:.1f} V{rest}", colour))
     return fields
+
+
+def health_parts(vehicle: VehicleView) -> list[Part]:
+    """Return GPS and battery."""
+    return [part for field in _health(vehicle) for part in field.parts]

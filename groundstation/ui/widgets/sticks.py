@@ -13,11 +13,9 @@ from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN,
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 
 LABEL, FIGURES = 9, 6
-"""Cells left and right of a bar."""
+"""Cells left (at least) and right of a bar."""
 
 _PARTIAL = " ▏▎▍▌▋▊▉"
-
-_OUTPUT_NAMES = {1: ("motor",), 2: ("left", "right")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,15 +29,14 @@ class Bar:
 
 
 def build_bars(snapshot: Snapshot) -> tuple[Bar, ...]:
-    """Return throttle and steering as sent, then the motors."""
+    """Return throttle and steering as sent, then the outputs that are known."""
     operator, vehicle = snapshot.operator, snapshot.vehicle
     obeyed = vehicle.demand if vehicle is not None and vehicle.demand is not None else (None, None)
     outputs = vehicle.outputs if vehicle is not None else ()
-    names = _OUTPUT_NAMES.get(len(outputs)) or tuple(f"motor {number + 1}" for number in range(len(outputs)))
     return (
         Bar("throttle", AMBER, _percent(operator.throttle), _percent(obeyed[0])),
         Bar("steering", BLUE, _percent(operator.steering), _percent(obeyed[1])),
-        *(Bar(name, GREEN, _percent(value)) for name, value in zip(names, outputs, strict=True)),
+        *(Bar(output.name, GREEN, _percent(output.value)) for output in outputs),
     )
 
 
@@ -53,17 +50,17 @@ def bar_cells(bar: Bar, width: int) -> Iterator[Part]:
     half = (width - 1) // 2
     filled = abs(bar.percent or 0) / 100 * half
     whole, eighths = int(filled), int(filled % 1 * 8)
-    on, trough = style(bar.colour, bar.colour), style(FAINT, PANEL)
+    on, trough = style(bar.colour, PANEL), style(FAINT, PANEL)
     rest = half - whole - (1 if eighths else 0)
     if (bar.percent or 0) < 0:
         # No block characters grow from the right: the complementary block with swapped colours looks the same.
         part = _PARTIAL[8 - eighths] if eighths else ""
-        left = [("░" * rest, trough), (part, style(PANEL, bar.colour)), (" " * whole, on)]
+        left = [("░" * rest, trough), (part, style(PANEL, bar.colour)), ("█" * whole, on)]
         right = [("░" * half, trough)]
     else:
         part = _PARTIAL[eighths] if eighths else ""
         left = [("░" * half, trough)]
-        right = [(" " * whole, on), (part, style(bar.colour, PANEL)), ("░" * rest, trough)]
+        right = [("█" * whole, on), (part, on), ("░" * rest, trough)]
     parts = [*left, ("│", style(DIM, PANEL)), *right]
     yield from parts if bar.obeyed is None else _marked(parts, half + round(bar.obeyed / 100 * half))
 
@@ -74,7 +71,8 @@ def _marked(parts: list[Part], at: int) -> Iterator[Part]:
     for text, look in parts:
         if start <= at < start + len(text):
             yield text[: at - start], look
-            ground = look.bgcolor.name if look.bgcolor is not None else BACKGROUND
+            under = look.color if text[at - start] == "█" else look.bgcolor
+            ground = under.name if under is not None else BACKGROUND
             yield "┃", style(WHITE, ground, bold=True)
             yield text[at - start + 1 :], look
         else:
@@ -87,13 +85,15 @@ class StickBars(Instrument[tuple[Bar, ...]]):
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw as many as fit, the demand first."""
-        return [self._line(bar, width) for bar in self.value[:height]]
+        shown = self.value[:height]
+        label = max(LABEL, *(len(bar.label) + 1 for bar in shown)) if shown else LABEL
+        return [self._line(bar, label, width) for bar in shown]
 
-    def _line(self, bar: Bar, width: int) -> Strip:
+    def _line(self, bar: Bar, label: int, width: int) -> Strip:
         figures = "--" if bar.percent is None else f"{bar.percent:+d}%"
         look: Style = style(TEXT if bar.percent else DIM)
         return strip(
-            (f"{bar.label:<{LABEL}}", style(DIM)),
-            *bar_cells(bar, width - LABEL - FIGURES),
+            (f"{bar.label:<{label}}", style(DIM)),
+            *bar_cells(bar, width - label - FIGURES),
             (f"{figures:>{FIGURES}}", look),
         )

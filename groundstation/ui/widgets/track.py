@@ -31,16 +31,18 @@ class TrackValue:
     heading: float | None = None
     home: Point | None = None
     track: tuple[Point, ...] = ()
+    ascii: bool = False
+    """Draw the vehicle as one character: its outline needs braille."""
 
     @classmethod
-    def from_vehicle(cls, vehicle: VehicleView | None) -> TrackValue:
+    def from_vehicle(cls, vehicle: VehicleView | None, *, ascii: bool = False) -> TrackValue:  # noqa: A002
         """Return the map of a vehicle, rounded to what a dot can show."""
         if vehicle is None or vehicle.position is None or not all(map(math.isfinite, vehicle.position)):
             return cls()
         north, east = vehicle.position
         heading = finite_or_none(vehicle.heading)
         rounded = None if heading is None else round(heading, 1)
-        return cls((round(north, 2), round(east, 2)), rounded, vehicle.home, vehicle.track)
+        return cls((round(north, 2), round(east, 2)), rounded, vehicle.home, vehicle.track, ascii)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +112,7 @@ class TrackMap(Instrument[TrackValue]):
         if value.home is not None:
             x, y = view.to_canvas(value.home, canvas)
             canvas.write(int(x) >> 1, int(y) >> 2, "⌂", style(AMBER, bold=True))
-        _draw_vehicle(canvas, view.to_canvas(value.position, canvas), value.heading)
+        _draw_vehicle(canvas, view.to_canvas(value.position, canvas), value.heading, ascii=value.ascii)
         _draw_labels(canvas, view, value)
         return canvas.strips()
 
@@ -127,10 +129,11 @@ def _draw_rings(canvas: Canvas, view: MapView, home: Point) -> None:
         canvas.write((int(x + radius) >> 1) + 1, int(y) >> 2, _metres(view.ring * number), style(DIM))
 
 
-def _draw_vehicle(canvas: Canvas, at: Point, heading: float | None) -> None:
+def _draw_vehicle(canvas: Canvas, at: Point, heading: float | None, *, ascii: bool) -> None:  # noqa: A002
     x, y = at
-    if heading is None:
-        canvas.write(int(x) >> 1, int(y) >> 2, "●", style(YELLOW))
+    if heading is None or ascii:
+        mark = "●" if heading is None else "^>v<"[round(heading / (math.pi / 2)) % 4]
+        canvas.write(int(x) >> 1, int(y) >> 2, mark, style(YELLOW, bold=True))
         return
     along, aside = math.sin(heading), math.cos(heading)
     corners = [(9.0, 0.0), (-4.5, 4.0), (-2.0, 0.0), (-4.5, -4.0)]  # dots ahead, dots to the right

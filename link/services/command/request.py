@@ -36,6 +36,8 @@ class CommandRequest:
     peer: Peer
     introduced: bool
     may_ask: bool
+    numbering: int = field(default=0, compare=False)
+    """Its sender's run of packet numbers (link/core.py, Received)."""
     repeated: bool = field(default=False, compare=False)
     """May be a repeat: `confirmation` is above 0, or it is a COMMAND_INT, which has none."""
 
@@ -71,5 +73,6 @@ def parse_command(message: CommandLong | CommandInt, received: Received) -> Comm
         peer=received.peer,
         introduced=received.introduced,
         may_ask=received.may_ask,
+        numbering=received.numbering,
         repeated=isinstance(message, CommandInt) or message.confirmation > 0,
     )

@@ -41,7 +41,7 @@ class FtpServer:
         system: int,
         component: int,
         pacer: BulkPacer,
-        allowed: Callable[[Received], bool] = lambda received: True,
+        allowed: Callable[[Received, float], bool] = lambda received, now: True,
     ) -> None:
         self._ids = (system, component)
         self._pacer = pacer
@@ -62,7 +62,8 @@ class FtpServer:
         if packet.op in (FtpOpcode.ACK, FtpOpcode.NAK):
             return []
         again = self._stored_reply(client, packet, now)
-        return again or self._attempt(FtpRequest(client, packet, received.introduced and self._allowed(received)), now)
+        allowed = received.introduced and self._allowed(received, now)
+        return again or self._attempt(FtpRequest(client, packet, allowed), now)
 
     def tick(self, now: float) -> list[Outgoing]:
         """Continue bursts and waiting requests; drop what is too old."""

@@ -110,7 +110,7 @@ class ParamServer:
         system: int,
         component: int,
         pacer: BulkPacer,
-        allowed: Callable[[Received], bool] = lambda received: True,
+        allowed: Callable[[Received, float], bool] = lambda received, now: True,
         armed: Callable[[], bool] = lambda: False,
         changed: Callable[[Received, str, float], None] = lambda received, name, value: None,
         refused: Callable[[Received, str, float], None] = lambda received, text, now: None,
@@ -170,7 +170,7 @@ class ParamServer:
 
     def _set(self, message: m.ParamSet, received: Received, now: float) -> list[Outgoing]:
         name, index = message.param_id, self._index.get(message.param_id)
-        if not self._allowed(received):
+        if not self._allowed(received, now):
             return self._deny(message, index, received, now)
         if index is None:
             self._refused(received, f"No parameter {m.printable(name)}", now)

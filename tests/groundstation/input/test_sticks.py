@@ -43,6 +43,45 @@ def exact(style: Style = Style.HOLD, limit: float = 1.0) -> Sticks:
     return sticks
 
 
+# ---- after the key gate was closed ----
+
+
+def test_any_drive_key_delays_the_others_until_none_was_seen_for_the_longest_repeat_delay() -> None:
+    sticks = Sticks(limit=1.0)
+    sticks.reject(I, 1.0)
+    sticks.require_quiet()
+    sticks.press(J, 1.7)
+    assert sticks.axes(1.71) == NEUTRAL
+    assert sticks.held_over(1.71)
+    sticks.press(J, 2.44)
+    assert sticks.axes(2.45) == NEUTRAL
+    assert not sticks.held_over(3.20)
+    sticks.press(J, 3.20)
+    assert sticks.axes(3.21) == Axes(0.0, -1.0)
+    sticks.press(L, 3.22)
+    assert sticks.axes(3.23) == Axes(0.0, 1.0)
+
+
+def test_a_key_long_after_the_last_one_drives_at_once() -> None:
+    sticks = Sticks(limit=1.0)
+    sticks.press(I, 1.0)
+    sticks.require_quiet()
+    sticks.stop()
+    sticks.press(I, 1.76)
+    assert sticks.axes(1.77) == Axes(1.0, 0.0)
+
+
+def test_with_reported_releases_a_new_press_drives_at_once_and_a_repeat_does_not() -> None:
+    sticks = exact()
+    sticks.press(I, 1.0)
+    sticks.block(1.1)
+    sticks.require_quiet()
+    sticks.press(repeat(I), 1.2)
+    assert sticks.axes(1.21) == NEUTRAL
+    sticks.press(J, 1.22)
+    assert sticks.axes(1.23) == Axes(0.0, -1.0)
+
+
 # ---- hold, by timers ----
 
 

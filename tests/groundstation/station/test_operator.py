@@ -44,7 +44,9 @@ def test_a_key_that_repeats_from_before_the_gate_opened_does_not_drive() -> None
         cockpit.do(FORWARD)
         cockpit.run(0.04)
     assert all(x == 0 for _, x, _ in cockpit.demands(start))
-    cockpit.run(0.5)
+    assert cockpit.operator.held_over
+    cockpit.run(0.76)
+    assert not cockpit.operator.held_over
     cockpit.do(FORWARD)
     cockpit.run(0.2)
     assert cockpit.demands()[-1][1] == 600

@@ -10,7 +10,8 @@ from typing import Any, TypeVar
 import msgspec
 
 from groundstation.intents import AnyIntent, RenewLease, SetKeyGate
-from groundstation.snapshot import LinkView, LogLine, MessageRate, OperatorView, Snapshot, VehicleView
+from groundstation.snapshot import LinkView, LogLine, MessageRate, OperatorView, OutputView, Snapshot, VehicleView
+from groundstation.views import LogPage, View
 
 NOON = 1_700_000_000.0
 """A wall clock for log lines; the tests run in UTC."""
@@ -25,6 +26,7 @@ class Recorder:
         self.intents: list[AnyIntent] = []
         self.alive = True
         self._waiting: list[Snapshot] = []
+        self._views: list[View] = []
         self._ours, self._theirs = socket.socketpair()
         self._ours.setblocking(False)
 
@@ -44,6 +46,15 @@ class Recorder:
         newest = self._waiting[-1]
         self._waiting.clear()
         return newest
+
+    def pop_views(self) -> list[View]:
+        """The views that were offered since the last call."""
+        views, self._views = self._views, []
+        return views
+
+    def offer_view(self, view: View) -> None:
+        """Let this view come with the next snapshot."""
+        self._views.append(view)
 
     def offer(self, snapshot: Snapshot) -> None:
         """Let this be the newest snapshot."""
@@ -76,6 +87,11 @@ def path(count: int = 160) -> tuple[tuple[float, float], ...]:
     return tuple(points)
 
 
+def wheels(left: float, right: float) -> tuple[OutputView, ...]:
+    """The outputs of a rover with skid steering."""
+    return OutputView(name="left wheel", value=left), OutputView(name="right wheel", value=right)
+
+
 def vehicle(**changes: Any) -> VehicleView:
     """A rover that drives a curve, armed, with everything known."""
     track = path()
@@ -83,7 +99,7 @@ def vehicle(**changes: Any) -> VehicleView:
         system=1, name="Rover 1", autopilot=0, mode="MANUAL", armed=True, status=4, alive=True, silence=0.1, driver=255,
         in_control=True, position=track[-1], home=(0.0, 0.0), track=track, heading=2.4, roll=0.06, pitch=-0.03,
         speed=0.84, battery_voltage=11.82, battery_current=2.4, battery_remaining=0.76, gps_fix=3, gps_satellites=14,
-        demand=(0.58, 0.24), outputs=(0.71, 0.46), limits=("slew",), command_age=0.042, latency=0.0013,
+        demand=(0.58, 0.24), outputs=wheels(0.71, 0.46), limits=("slew",), command_age=0.042, latency=0.0013,
     )  # fmt: skip
     return msgspec.structs.replace(view, **changes)
 
@@ -104,6 +120,28 @@ TEXTS = (
     LogLine(time=NOON + 27, severity=2, label="vehicle", text="no MANUAL_CONTROL for 520 ms, motors stopped"),
     LogLine(time=NOON + 28, severity=6, label="vehicle", text="control regained"),
 )
+
+LONG = (
+    "PreArm: Compass 1 is not healthy, and a reason that is much longer than the width of a small terminal, so that it "
+    "takes two rows or three"
+)
+LOG_PAGE = LogPage(
+    tuple(
+        LogLine(time=NOON + at, severity=severity, label=label, text=text, count=count, number=number)
+        for number, (at, severity, label, text, count) in enumerate(
+            [
+                (0, 5, "station", "Rover 1 found", 1), (1, 6, "vehicle", "rover 1, mavhelm vehicle 0.1, MANUAL", 1),
+                (2, 4, "vehicle", LONG, 1), (3, 6, "ack", "arm accepted", 1), (3, 5, "state", "Rover 1: armed", 1),
+                (20, 4, "vehicle", "battery 11.9 V below 12.0 V", 3),
+                (27, 2, "vehicle", "no MANUAL_CONTROL for 520 ms, motors stopped", 1),
+                (28, 6, "vehicle", "control regained", 1),
+            ],
+            start=1,
+        )
+    ),
+    state=10,
+)  # fmt: skip
+"""What the Log screen gets."""
 
 RATES: Sequence[tuple[str, float, int, bool]] = (
     ("HEARTBEAT", 1.0, 2023, False), ("ATTITUDE", 10.0, 6577, False), ("VFR_HUD", 4.0, 7363, False),

@@ -13,5 +13,5 @@ class ExtraScreen(ConsoleScreen):
         super().__init__(context)
         self.shown: list[DisplayState] = []
 
-    def show_state(self, now: DisplayState) -> None:
+    def show_body(self, now: DisplayState) -> None:
         self.shown.append(now)

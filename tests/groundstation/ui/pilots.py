@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -56,11 +57,16 @@ class Console:
 
 @contextlib.asynccontextmanager
 async def console(
-    size: tuple[int, int] = (80, 24), picture: Snapshot | None = None, keymap: str = "standard"
+    size: tuple[int, int] = (80, 24),
+    picture: Snapshot | None = None,
+    keymap: str = "standard",
+    folder: Path = Path(),
+    *,
+    ascii_only: bool = False,
 ) -> AsyncIterator[Console]:
     """The app at work: a picture is shown and, where the size allows, keys drive."""
     station = Recorder()
-    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]))
+    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, ascii_only=ascii_only)
     try:
         async with app.run_test(size=size) as pilot:
             await until(lambda: app.gate.closure != STARTING)

@@ -15,7 +15,7 @@ from pathlib import Path
 from textual.drivers.linux_driver import LinuxDriver
 
 from groundstation.intents import AnyIntent, RenewLease
-from groundstation.ui.app import run
+from groundstation.ui.run import run
 from groundstation.ui.terminal import ConsoleDriver
 from tests.groundstation.ui.examples import Recorder, snapshot
 from tests.groundstation.ui.ptys import STANDARD

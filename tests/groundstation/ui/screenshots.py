@@ -1,6 +1,6 @@
 """Pictures for the documents: the real app, station and simulator drive a while, and what is shown then is kept.
 
-python -m tests.groundstation.ui.screenshots docs    writes docs/console_80x24.svg, docs/console_140x45.svg ...,
+python -m tests.groundstation.ui.screenshots docs    writes docs/drive_80x24.svg, docs/log_80x24.svg ...,
 and PNG files of them where rsvg-convert (Debian: librsvg2-bin, with fonts-jetbrains-mono) is installed.
 """
 
@@ -71,7 +71,11 @@ async def pictures(size: tuple[int, int]) -> dict[str, str]:
     async with armed_app(size) as (app, pilot):
         for key, seconds in DRIVE:
             await _hold(pilot, key, seconds)
-        made["console"] = frames.svg(app)
+        made["drive"] = frames.svg(app)
+        await pilot.press("f6")
+        await pilot.pause(1.0)
+        made["log"] = frames.svg(app)
+        await pilot.press("f1")
         await pilot.press("exclamation_mark")
         await pilot.pause(1.0)
         made["emergency"] = frames.svg(app)

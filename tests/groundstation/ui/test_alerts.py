@@ -10,19 +10,15 @@ import pytest
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents import ACTIONS
 from groundstation.snapshot import EmergencyProgress, LinkView, Snapshot
-from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts
-from groundstation.ui.display_state import DisplayState
-from groundstation.ui.key_gate import GateClosure
+from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts, hint
+from groundstation.ui.display_state import DisplayState, ScreenInfo
+from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD, GateClosure
 from tests.groundstation.ui.examples import helm, snapshot, vehicle, waiting
 from tests.groundstation.ui.ptys import STANDARD
 
 PROBLEM = LinkView(name="udp", problem="messages arrive with another dialect's checksum: HEARTBEAT")
 
 CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
-    (waiting(), {}, AlertLevel.HINT, "no vehicle yet"),
-    (snapshot(), {}, AlertLevel.HINT, "hold i to drive · SPACE stops, ! cuts the motors"),
-    (snapshot(vehicle=vehicle(armed=False)), {}, AlertLevel.HINT, "disarmed: hold r to arm Rover 1"),
-    (snapshot(vehicle=vehicle(mode="HOLD")), {}, AlertLevel.HINT, "HOLD: 1 changes to MANUAL"),
     (snapshot(vehicle=vehicle(limits=("slew", "neutral first"))), {}, AlertLevel.WARNING, "neutral first: release"),
     (snapshot(vehicle=vehicle(limits=("stale",))), {}, AlertLevel.WARNING, "stale: the vehicle has no recent command"),
     (
@@ -78,6 +74,15 @@ CASES: list[tuple[Snapshot, dict[str, Any], AlertLevel, str]] = [
         AlertLevel.WARNING,
         "ground station 255/230 uses our system id: use --system",
     ),
+    (
+        snapshot(
+            vehicle=vehicle(obeys="obeys ground station 250 only", warnings=("x",), refusal="y", limits=("stale",))
+        ),
+        {},
+        AlertLevel.WARNING,
+        "obeys ground station 250 only",
+    ),
+    (snapshot(operator=helm(held_over=True)), {}, AlertLevel.WARNING, "one is held from before; release it"),
     (snapshot(links=(PROBLEM,)), {}, AlertLevel.WARNING, "udp: messages arrive with another"),
     (snapshot(operator=helm(style="latch")), {}, AlertLevel.WARNING, "the vehicle keeps driving: k or SPACE stops"),
     (
@@ -148,4 +153,50 @@ def test_what_needs_a_hand_comes_before_what_is_in_the_way() -> None:
 
 
 def _urgency(level: AlertLevel) -> int:
-    return [AlertLevel.QUESTION, AlertLevel.DANGER, AlertLevel.WARNING, AlertLevel.HINT].index(level)
+    return [AlertLevel.QUESTION, AlertLevel.DANGER, AlertLevel.WARNING].index(level)
+
+
+NEUTRAL_FIRST = ("neutral first",)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"mode": "AUTO"}, {"mode": "HOLD"}, {"in_control": False, "driver": 254}, {"armed": False}],
+    ids=["AUTO", "HOLD", "driven by another station", "disarmed"],
+)
+def test_neutral_first_is_said_only_where_our_keys_drive(changes: dict[str, Any]) -> None:
+    def texts(**more: Any) -> list[str]:
+        view = vehicle(limits=NEUTRAL_FIRST, **more)
+        return [alert.text for alert in active_alerts(DisplayState(snapshot(vehicle=view), STANDARD))]
+
+    assert LIMITS["neutral first"] in texts()
+    assert LIMITS["neutral first"] not in texts(**changes)
+
+
+@pytest.mark.parametrize("closure", [OTHER_SCREEN, TEXT_FIELD])
+def test_another_screen_is_no_alert(closure: GateClosure) -> None:
+    assert active_alerts(DisplayState(snapshot(), STANDARD, closure=closure)) == []
+
+
+HINTS: list[tuple[Snapshot, str]] = [
+    (waiting(), "no vehicle yet · ? shows the keys, ^q leaves"),
+    (snapshot(), "hold i to drive · SPACE stops, ! cuts the motors"),
+    (snapshot(operator=helm(style="latch")), "press i to drive · SPACE stops, ! cuts the motors"),
+    (snapshot(vehicle=vehicle(armed=False)), "disarmed: hold r to arm Rover 1"),
+    (snapshot(vehicle=vehicle(mode="HOLD")), "HOLD: 1 changes to MANUAL, where the keys drive"),
+    (
+        snapshot(vehicle=vehicle(mode="AUTO", in_control=False, driver=254)),
+        "g asks for control · SPACE stops, ! cuts the motors",
+    ),
+    (snapshot(vehicle=vehicle(obeys="obeys ground station 250 only")), "SPACE stops, ! cuts the motors"),
+]
+
+
+@pytest.mark.parametrize(("picture", "words"), HINTS, ids=[case[1] for case in HINTS])
+def test_what_to_do_next(picture: Snapshot, words: str) -> None:
+    assert hint(DisplayState(picture, STANDARD)) == words
+
+
+def test_another_screen_has_a_hint_of_its_own() -> None:
+    info = ScreenInfo("log", hint="live")
+    assert hint(DisplayState(snapshot(), STANDARD, screen=info)) == "live"

@@ -10,9 +10,10 @@ import pytest
 
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents import ACTIONS
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.display_state import DisplayState
-from tests.groundstation.ui.examples import helm, snapshot, vehicle, waiting
+from tests.groundstation.ui import frames
+from tests.groundstation.ui.examples import LOG_PAGE, helm, snapshot, vehicle, waiting, wheels
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD
 
@@ -21,19 +22,33 @@ SMALL, WIDE = (80, 24), (140, 45)
 
 STANDING = snapshot(
     vehicle=vehicle(
-        armed=False, driver=0, in_control=False, speed=0.0, demand=(0.0, 0.0), outputs=(0.0, 0.0), limits=("disarmed",)
+        armed=False, driver=0, in_control=False, speed=0.0, demand=(0.0, 0.0), outputs=wheels(0.0, 0.0),
+        limits=("disarmed",),
     ),
     operator=helm(
         held=(), throttle=0.0, steering=0.0, gate_open=False, gate_reason="disarmed", reports_releases=False,
         stop_bound=0.75, sending=False, rate=0.0,
     ),
 )  # fmt: skip
-STOPPED = snapshot(vehicle=vehicle(emergency_stop=True, armed=False, failsafes=("estop",), outputs=(0.0, 0.0)))
+STOPPED = snapshot(vehicle=vehicle(emergency_stop=True, armed=False, failsafes=("estop",), outputs=wheels(0.0, 0.0)))
 UNKNOWN = snapshot(
     vehicle=vehicle(
         name="ArduPilot rover 1", driver=None, position=None, home=None, track=(), heading=None, roll=None, pitch=None,
         speed=math.nan, battery_voltage=None, battery_remaining=None, gps_fix=0, gps_satellites=None, demand=None,
         outputs=(), command_age=None, latency=None,
+    )
+)  # fmt: skip
+
+WARNED = snapshot(
+    vehicle=vehicle(
+        name="ArduPilot rover 1", driver=None, demand=None, command_age=None, latency=None, limits=(),
+        outputs=(OutputView(name="steering servo", value=0.25), OutputView(name="throttle servo", value=0.57)),
+        obeys="obeys ground station 250 only and we are 255: use --system 250",
+        warnings=(
+            "RC_OVERRIDE_TIME -1: never stops when the link is lost",
+            "FS_THR_ENABLE 0: without an RC receiver never stops when the link is lost",
+            "FS_GCS_ENABLE 0: no failsafe when the ground station is lost",
+        ),
     )
 )  # fmt: skip
 
@@ -47,21 +62,38 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "unknown_80x24": (SMALL, UNKNOWN, ()),
     "waiting_80x24": (SMALL, waiting(), ()),
     "waiting_140x45": (WIDE, waiting(simulator="ended with code 1: no free port"), ()),
-    "too_small_60x20": ((60, 20), snapshot(), ()),
+    "warned_80x24": (SMALL, WARNED, ()),
+    "too_small_39x12": ((39, 12), snapshot(), ()),
+    "strip_40x10": ((40, 10), snapshot(), ()),
+    "strip_60x15": ((60, 15), WARNED, ()),
+    "strip_79x23": ((79, 23), STANDING, ()),
+    "log_80x24": (SMALL, WARNED, ("f6",)),
+    "log_140x45": (WIDE, WARNED, ("f6",)),
+    "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
+}
+
+
+FRAMES |= {
+    f"ascii_{name}": FRAMES[name]
+    for name in ("drive_80x24", "drive_140x45", "waiting_80x24", "strip_40x10", "log_80x24", "log_140x45", "goto_80x24")
 }
 
 
 @pytest.mark.parametrize("name", FRAMES)
 async def test_the_frame_is_the_golden_one(name: str) -> None:
     size, picture, keys = FRAMES[name]
-    async with console(size, picture) as screen:
+    async with console(size, picture, ascii_only=name.startswith("ascii")) as screen:
         await screen.press(*keys)
         if keys:
+            screen.station.offer_view(LOG_PAGE)
             await screen.show(picture)
-        if name.startswith("hold"):
-            hold = HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4)
-            screen.app.drive.show_state(DisplayState(picture, STANDARD, hold=hold))
+            await screen.show(picture)  # the height of the alerts is known after the first one
+        if "hold" in name:
+            state = DisplayState(picture, STANDARD, hold=HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4))
+            while "Arm: hold r" not in screen.text:  # the app itself shows no hold, ten times a second
+                screen.app.drive.show_state(state)
+                await screen.pilot.pause()
         shown = screen.text
     file = GOLDEN / f"{name}.txt"
     if os.environ.get("GOLDEN") == "write":
@@ -76,3 +108,26 @@ def test_no_frame_is_wider_or_higher_than_its_terminal(name: str) -> None:
     lines = (GOLDEN / f"{name}.txt").read_text("utf-8").splitlines()
     assert len(lines) <= height
     assert max(map(len, lines)) <= width
+
+
+@pytest.mark.parametrize("name", [name for name in FRAMES if name.startswith("ascii")])
+def test_ascii_frames_are_ascii(name: str) -> None:
+    assert (GOLDEN / f"{name}.txt").read_text("utf-8").isascii()
+
+
+@pytest.mark.parametrize("name", ["drive_80x24", "log_80x24", "log_140x45", "strip_60x15"])
+async def test_without_colours_the_text_is_the_same_and_everything_is_grey(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    size, picture, keys = FRAMES[name]
+    async with console(size, picture) as screen:
+        await screen.press(*keys)
+        screen.station.offer_view(LOG_PAGE)
+        await screen.show(picture)
+        await screen.show(picture)
+        assert screen.text == (GOLDEN / f"{name}.txt").read_text("utf-8")
+        looks = [look for row in frames.cells(screen.app) for _, look in row]
+    colours = {each.get_truecolor() for look in looks for each in (look.color, look.bgcolor) if each is not None}
+    assert len(colours) > 3
+    assert all(red == green == blue for red, green, blue in colours)

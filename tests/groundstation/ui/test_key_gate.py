@@ -20,13 +20,13 @@ from groundstation.intents import (
     SetMode,
     Stop,
 )
-from groundstation.ui.key_gate import GateClosure, GateLevel, KeyGate
+from groundstation.ui.key_gate import OPENING_TIMEOUT, OTHER_SCREEN, TEXT_FIELD, GateClosure, KeyGate
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.examples import Recorder
 from tests.groundstation.ui.ptys import STANDARD
 from tests.groundstation.ui.sinks import Clock
 
-SMALL, TEXT = GateClosure("the terminal is too small"), GateClosure("another screen is open", GateLevel.STOPS)
+SMALL = GateClosure("the terminal is too small")
 
 
 @pytest.fixture
@@ -68,11 +68,11 @@ def test_closing_twice_for_one_reason_is_told_once(gate: KeyGate, station: Recor
     gate.set_closure(SMALL)
     gate.set_closure(SMALL)
     assert len(station.of(SetKeyGate)) == 1
-    gate.set_closure(TEXT)
-    assert station.of(SetKeyGate)[-1].reason == TEXT.reason
+    gate.set_closure(OTHER_SCREEN)
+    assert station.of(SetKeyGate)[-1].reason == OTHER_SCREEN.reason
 
 
-@pytest.mark.parametrize("shut", [SMALL, TEXT])
+@pytest.mark.parametrize("shut", [SMALL, OTHER_SCREEN])
 @pytest.mark.parametrize(("key", "kind"), [("space", Stop), ("k", Stop), ("exclamation_mark", EmergencyStop)])
 def test_stops_pass_a_shut_gate(gate: KeyGate, station: Recorder, shut: GateClosure, key: str, kind: type) -> None:
     gate.set_closure(shut)
@@ -83,7 +83,7 @@ def test_stops_pass_a_shut_gate(gate: KeyGate, station: Recorder, shut: GateClos
 
 def test_drive_keys_pass_a_shut_gate_for_the_station_to_remember(gate: KeyGate, station: Recorder) -> None:
     """It has been told that the gate is shut: a key pressed now must not drive when it opens."""
-    gate.set_closure(TEXT)
+    gate.set_closure(OTHER_SCREEN)
     gate.handle_keys([press("i"), KeyEvent("i", release=True)])
     assert station.of(DriveKeyDown)
     assert station.of(DriveKeyUp)
@@ -96,9 +96,68 @@ def test_commands_pass_unless_keys_are_text(gate: KeyGate, station: Recorder, ke
     gate.handle_keys([press(key)])
     assert intent in station.intents
     station.intents.clear()
-    gate.set_closure(TEXT)
+    gate.set_closure(OTHER_SCREEN)
     gate.handle_keys([press(key)])
     assert intent not in station.intents
+
+
+@pytest.mark.parametrize(
+    ("key", "kind"), [("ctrl+k", Stop), ("exclamation_mark", EmergencyStop), ("f9", EmergencyStop)]
+)
+def test_stops_that_are_no_text_pass_in_a_text_field(gate: KeyGate, station: Recorder, key: str, kind: type) -> None:
+    gate.set_closure(TEXT_FIELD)
+    station.intents.clear()
+    gate.handle_keys([press(key)])
+    assert [type(intent) for intent in station.intents][:1] == [kind]
+
+
+def test_text_stops_nothing_and_commands_nothing(gate: KeyGate, station: Recorder) -> None:
+    """A stop key would put a vehicle on a mission into HOLD."""
+    gate.set_closure(TEXT_FIELD)
+    station.intents.clear()
+    for keys in (["s", "k", "i", "p"], ["space"], ["i", "t"], ["r"], ["1"], ["i", "enter"], ["left", "backspace"]):
+        gate.handle_keys([press(key) for key in keys])
+    assert {type(intent) for intent in station.intents} == {DriveKeyDown}, "which the station rejects"
+
+
+def test_keys_of_another_screen_stop_nothing(gate: KeyGate, station: Recorder) -> None:
+    gate.set_closure(OTHER_SCREEN)
+    station.intents.clear()
+    gate.update(armed=True, driving=True)
+    gate.handle_keys([press("slash"), press("up"), press("pageup"), press("w")])
+    assert {type(intent) for intent in station.intents} == {DriveKeyDown}
+
+
+@pytest.mark.parametrize("opener", ["f6", "ctrl+g", "question_mark", "left_square_bracket", "ctrl+p"])
+@pytest.mark.parametrize("together", [True, False])
+def test_a_key_that_opens_a_screen_closes_at_once_for_the_keys_behind_it(
+    gate: KeyGate, station: Recorder, opener: str, together: bool
+) -> None:
+    """The event loop has had no turn yet: 1 is a digit of the go-to menu, not MANUAL."""
+    reads = [[press(opener), press("1"), press("2")]] if together else [[press(opener)], [press("1")], [press("2")]]
+    for read in reads:
+        gate.handle_keys(read)
+        gate.set_closure(None)  # the loop's timer runs before it handles the key
+    assert station.of(SetKeyGate)[-1].open is False
+    assert not station.of(SetMode)
+    gate.handle_keys([press("exclamation_mark")])
+    assert station.of(EmergencyStop)
+
+
+def test_the_gate_opens_again_when_the_screen_was_open_and_also_if_none_ever_opens(station: Recorder) -> None:
+    clock = Clock()
+    gate = KeyGate(station, STANDARD, clock)
+    gate.set_closure(None)
+    gate.handle_keys([press("f6")])
+    gate.screen_opened()
+    gate.set_closure(None)
+    assert gate.closure is None
+    gate.handle_keys([press("f6")])
+    gate.set_closure(None)
+    assert gate.closure == OTHER_SCREEN
+    clock.now += OPENING_TIMEOUT
+    gate.set_closure(None)
+    assert gate.closure is None
 
 
 def test_repeats_of_a_key_held_over_a_closing_are_dropped(gate: KeyGate, station: Recorder) -> None:
@@ -158,7 +217,7 @@ def test_a_held_key_arms_and_says_how_long_it_was_held(disarmed: KeyGate, statio
     assert disarmed.hold is None
 
 
-@pytest.mark.parametrize("shut", [SMALL, TEXT])
+@pytest.mark.parametrize("shut", [SMALL, OTHER_SCREEN])
 def test_a_shut_gate_arms_nothing(disarmed: KeyGate, station: Recorder, clock: Clock, shut: GateClosure) -> None:
     disarmed.set_closure(shut)
     hold_r(disarmed, clock, 5.0)
@@ -166,7 +225,7 @@ def test_a_shut_gate_arms_nothing(disarmed: KeyGate, station: Recorder, clock: C
     assert not station.of(Arm)
 
 
-@pytest.mark.parametrize("shut", [SMALL, TEXT])
+@pytest.mark.parametrize("shut", [SMALL, OTHER_SCREEN])
 def test_closing_cancels_and_opening_does_not_resume(
     disarmed: KeyGate, station: Recorder, clock: Clock, shut: GateClosure
 ) -> None:

@@ -4,17 +4,29 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.intents import DriveKeyDown, EmergencyStop, SetKeyGate, Stop
+from groundstation.intents import (
+    ACTIONS,
+    Disarm,
+    DriveKeyDown,
+    EmergencyStop,
+    RequestControl,
+    SelectNextVehicle,
+    SetKeyGate,
+    SetMode,
+    Stop,
+)
 from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.navigation import ROOT, load_screen
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.help import HelpScreen
+from groundstation.ui.screens.log import LogScreen
 from groundstation.ui.screens.screen import ConsoleScreen
+from groundstation.ui.widgets.status import StatusBar
 from tests.groundstation.ui.extra_screen import ExtraScreen
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
 
-EXTRA = ScreenRow("extra", "Extra", "One more screen", ("f6",), "tests.groundstation.ui.extra_screen:ExtraScreen")
+EXTRA = ScreenRow("extra", "Extra", "One more screen", ("f7",), "7", "tests.groundstation.ui.extra_screen:ExtraScreen")
 HELP = next(row for row in SCREENS if row.id == "help")
 
 
@@ -81,6 +93,61 @@ async def test_the_screen_on_top_is_shown_what_drive_is_shown() -> None:
         assert isinstance(extra, ExtraScreen)
         await until(lambda: extra.shown)
         assert extra.shown[-1].snapshot == screen.app.drive.snapshot
+
+
+async def test_a_screen_shows_the_newest_state_from_its_first_frame_on() -> None:
+    async with console() as screen:
+        screen.app.perform_action(ACTIONS["app.log"])
+        top = screen.app.screen
+        assert isinstance(top, LogScreen)
+        await until(
+            lambda: top.query("#status") and "Rover 1" in top.query_one("#status", StatusBar).draw(80, 1)[0].text
+        )
+        assert "no vehicle" not in screen.text
+
+
+@pytest.mark.parametrize(
+    ("keys", "shown"),
+    [
+        (["f6"], "log"), (["ctrl+g", "6"], "log"), (["ctrl+g", "f6"], "log"), (["f6", "ctrl+g", "1"], "drive"),
+        (["f6", "ctrl+g", "ctrl+g"], "drive"), (["f6", "escape", "ctrl+g", "ctrl+g"], "log"),
+        (["right_square_bracket"], "log"), (["left_square_bracket"], "log"), (["f6", "right_square_bracket"], "drive"),
+        (["f6", "left_square_bracket"], "drive"), (["ctrl+g", "escape"], "drive"), (["ctrl+g", "x"], "drive"),
+        (["f6", "ctrl+g", "escape"], "log"), (["f6", "f6"], "log"), (["question_mark", "f6"], "log"),
+        (["f6", "question_mark", "escape"], "drive"),
+    ],
+)  # fmt: skip
+async def test_ways_between_the_screens(keys: list[str], shown: str) -> None:
+    async with console() as screen:
+        await screen.press(*keys)
+        kind = load_screen(next(row for row in SCREENS if row.id == shown))
+        await until(lambda: isinstance(screen.app.screen, kind))
+        assert len(screen.app.screen_stack) == (2 if shown == "drive" else 3)
+        await until(lambda: (screen.app.gate.closure is None) is (shown == "drive"))
+
+
+async def test_the_menu_commands_nothing_but_the_next_vehicle() -> None:
+    """Outside of the menu the digits are modes."""
+    async with console() as screen:
+        for key in ("1", "2", "6", "r", "g"):
+            await screen.press("ctrl+g", key)
+            await screen.press("f1")
+        await screen.press("ctrl+g", "n")
+        await until(lambda: screen.app.screen is screen.app.drive)
+        assert screen.station.of(SelectNextVehicle) == [SelectNextVehicle()]
+        assert not screen.station.of(SetMode)
+        assert not screen.station.of(Disarm)
+        assert not screen.station.of(RequestControl)
+
+
+async def test_stops_work_in_the_menu() -> None:
+    async with console() as screen:
+        await screen.press("ctrl+g")
+        before = len(screen.station.of(Stop))
+        await screen.press("space")
+        assert len(screen.station.of(Stop)) == before + 1
+        await screen.press("ctrl+g", "exclamation_mark")
+        assert screen.station.of(EmergencyStop)
 
 
 async def test_drive_keys_drive_on_drive_only_and_stops_stop_everywhere() -> None:

@@ -37,10 +37,19 @@ def test_each_setting(name: str, good: float, bad: float, words: str) -> None:
     assert not check.warnings
     (warning,) = check.receive(value(name, bad), 0.0)
     assert words in warning
-    assert check.warnings == (warning,)
+    assert (*check.warnings, *filter(None, [check.obeys])) == (warning,)
     assert check.receive(value(name, bad), 0.0) == [], "reported once"
     check.receive(value(name, good), 0.0)
     assert not check.warnings
+    assert check.obeys is None
+
+
+def test_another_ground_station_that_it_obeys_is_no_setting_among_others() -> None:
+    check = new_check()
+    check.receive(value("RC_OVERRIDE_TIME", -1.0), 0.0)
+    check.receive(value("MAV_GCS_SYSID", 250.0), 0.0)
+    assert check.obeys == "obeys ground station 250 only and we are 255: use --system 250"
+    assert check.warnings == ("RC_OVERRIDE_TIME -1: never stops when the link is lost",)
 
 
 @pytest.mark.parametrize(

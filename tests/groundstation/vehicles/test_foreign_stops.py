@@ -162,7 +162,7 @@ def test_a_vehicle_of_another_station_does_not_move_and_a_warning_names_that_sta
     vehicle.parameters["MAV_GCS_SYSID"] = 252.0
     cockpit = Cockpit(vehicle)
     cockpit.run(3.0)
-    assert "obeys ground station 252 only and we are 255: use --system 252" in cockpit.view.warnings
+    assert cockpit.view.obeys == "obeys ground station 252 only and we are 255: use --system 252"
     cockpit.do(Arm(held=1.0))
     cockpit.run(1.0)
     cockpit.do(ReportKeyReleases(), FORWARD)
@@ -182,7 +182,8 @@ def test_parameters_that_the_vehicle_does_not_have_are_requested_three_times() -
 
 def test_what_the_driver_sees_of_it() -> None:
     cockpit, _ = driving()
-    assert cockpit.view.outputs == pytest.approx((-0.6, 0.6)), "servo 1 steers, servo 3 drives"
+    outputs = {output.name: output.value for output in cockpit.view.outputs}
+    assert outputs == pytest.approx({"servo 1": -0.6, "servo 3": 0.6}), "servo 1 steers, servo 3 drives"
     assert cockpit.view.name == "ArduPilot rover 1"
     assert cockpit.view.battery_voltage == pytest.approx(12.0)
     assert cockpit.view.in_control

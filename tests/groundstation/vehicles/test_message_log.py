@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from dialects.messages import StatusText
-from groundstation.vehicles.message_log import MAX_LENGTH, MAX_LINES, MessageLog
+from groundstation.ipc import MAX_PACKET, encode
+from groundstation.vehicles.message_log import MAX_LENGTH, MAX_LINES, NEWEST, PAGE, STATE, MessageLog
+from groundstation.views import LogPage, LogRequest
 
 
 def said(text: bytes, number: int = 0, chunk: int = 0, severity: int = 6) -> StatusText:
@@ -24,12 +28,53 @@ def test_repeats_in_a_row_are_counted() -> None:
 
 def test_the_log_is_bounded_and_keeps_the_newest() -> None:
     log = MessageLog()
-    for number in range(1000):
+    for number in range(5000):
         log.add(0.0, "station", f"{number} " + "x" * 1000)
     lines = log.build_lines(0.0, 0.0)
-    assert len(lines) == MAX_LINES
-    assert lines[-1].text.startswith("999 ")
+    assert len(lines) == NEWEST
+    assert lines[-1].text.startswith("4999 ")
     assert max(len(line.text) for line in lines) == MAX_LENGTH
+    kept = [line for page in pages(log) for line in page.lines]
+    assert [line.number for line in kept] == list(range(5001 - MAX_LINES, 5001))
+
+
+def pages(log: MessageLog, state: int = 0) -> Iterator[LogPage]:
+    """Request what is new until nothing is."""
+    while (page := log.build_page(LogRequest(state), 0.0, 0.0)) is not None:
+        yield page
+        state = page.state
+
+
+def test_a_screen_gets_each_line_once_and_a_repeated_one_again() -> None:
+    log = MessageLog()
+    log.add(1.0, "vehicle", "one")
+    log.add(2.0, "vehicle", "two")
+    (first,) = pages(log)
+    assert [(line.number, line.text, line.time) for line in first.lines] == [(1, "one", 1.0), (2, "two", 2.0)]
+    assert log.build_page(LogRequest(first.state), 3.0, 3.0) is None
+    log.add(3.0, "vehicle", "two")
+    log.add(4.0, "vehicle", "three")
+    (second,) = pages(log, first.state)
+    assert [(line.number, line.count) for line in second.lines] == [(2, 2), (3, 1)]
+
+
+def test_a_page_of_the_longest_texts_fits_the_pipe() -> None:
+    log = MessageLog()
+    for number in range(MAX_LINES):
+        log.add(0.0, "station", chr(0x1F600 + number % 40) * 1000)
+    first = next(pages(log))
+    assert len(first.lines) == PAGE
+    assert len(first.lines[0].text) == MAX_LENGTH
+    assert len(encode(first)) < MAX_PACKET
+
+
+def test_changes_of_state_are_in_the_log_but_not_in_the_snapshot() -> None:
+    log = MessageLog()
+    log.add(1.0, "vehicle", "low battery", 4)
+    for number in range(NEWEST):
+        log.add(2.0, STATE, f"mode {number}")
+    assert [line.text for line in log.build_lines(3.0, 3.0)] == ["low battery"]
+    assert len([line for page in pages(log) for line in page.lines]) == 1 + NEWEST
 
 
 def test_escape_sequences_never_get_through() -> None:

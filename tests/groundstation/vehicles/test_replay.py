@@ -18,8 +18,9 @@ from pymavlink.dialects.v20 import ardupilotmega
 from dialects.messages import MESSAGES
 from groundstation.intents import RenewLease, SetKeyGate
 from groundstation.ipc import encode
-from groundstation.snapshot import Snapshot
+from groundstation.snapshot import LogLine, Snapshot
 from groundstation.station.station import COMPONENT, Station
+from groundstation.views import LogRequest
 from link.core import LinkReport
 from link.protocol.channel import Channel
 from link.tlog.tlog import Record, read_records
@@ -49,12 +50,23 @@ class Replay(NamedTuple):
     recorded: dict[str, list[Any]]
     systems: tuple[int, ...]
     """System ids of the vehicles found."""
+    log: list[LogLine]
+    """The whole message log."""
 
 
 def seconds(records: list[Record]) -> Iterator[tuple[float, bytes]]:
     start = records[0].microseconds
     for record in records:
         yield (record.microseconds - start) / 1e6, record.raw
+
+
+def log_lines(station: Station) -> list[LogLine]:
+    lines: list[LogLine] = []
+    state = 0
+    while (page := station.log.build_page(LogRequest(state), 0.0, 0.0)) is not None:
+        lines += page.lines
+        state = page.state
+    return lines
 
 
 @cache
@@ -88,7 +100,7 @@ def replay() -> Replay:
         if message.get_srcSystem() == 1:
             newest[message.get_type()] = message
             everything.setdefault(message.get_type(), []).append(message)
-    return Replay(moments, sizes, channel.report(), everything, station.fleet.system_ids)
+    return Replay(moments, sizes, channel.report(), everything, station.fleet.system_ids, log_lines(station))
 
 
 def test_it_is_known_for_what_it_is() -> None:
@@ -141,12 +153,12 @@ def test_battery_gps_and_servos_are_those_recorded() -> None:
         assert vehicle.battery_voltage == pytest.approx(battery.voltages[0] / 1000)
         assert vehicle.battery_remaining == pytest.approx(battery.battery_remaining / 100)
         assert (vehicle.gps_fix, vehicle.gps_satellites) == (gps.fix_type, gps.satellites_visible)
-        pulses = (servos.servo1_raw, servos.servo3_raw)
-        assert vehicle.outputs == pytest.approx([(pulse - 1500) / 500 if pulse else 0.0 for pulse in pulses])
+        pulses = [pulse for pulse in (servos.servo1_raw, servos.servo3_raw) if pulse]
+        assert [output.value for output in vehicle.outputs] == pytest.approx([(each - 1500) / 500 for each in pulses])
         compared += 1
     assert compared > 1000
-    assert any(max(map(abs, moment.snapshot.vehicle.outputs), default=0) > 0.5
-               for moment in replay().moments if moment.snapshot.vehicle)  # fmt: skip
+    shown = [each for moment in replay().moments if moment.snapshot.vehicle for each in moment.snapshot.vehicle.outputs]
+    assert max(abs(each.value) for each in shown) > 0.5
 
 
 def test_unknown_ids_are_counted_and_are_no_loss() -> None:
@@ -161,7 +173,7 @@ def test_unknown_ids_are_counted_and_are_no_loss() -> None:
 
 
 def test_every_text_is_shown_and_repeats_are_counted() -> None:
-    shown = [line for line in replay().moments[-1].snapshot.texts if line.label == "vehicle"]
+    shown = [line for line in replay().log if line.label == "vehicle"]
     texts = [message.text for message in replay().recorded["STATUSTEXT"]]
     assert sum(line.count for line in shown) == len(texts)
     assert "Throttle armed" in {line.text for line in shown}

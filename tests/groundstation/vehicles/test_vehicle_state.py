@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.codec import decode
-from dialects.enums import Autopilot, SystemState
+from dialects.enums import Autopilot, DriveType, SystemState
 from groundstation.ipc import decode_from_station, encode
 from groundstation.snapshot import VehicleView
 from groundstation.station.station import Station
@@ -121,7 +121,7 @@ def test_drive_status() -> None:
     status = m.RoverDriveStatus(5000, 40, 6000, -2500, [5000, -10000, 0, 0], 1 | 1024, 255, 7)
     seen = view(heartbeat(), status)
     assert seen.demand == (0.6, -0.25)
-    assert seen.outputs == (0.5, -1.0)
+    assert [(output.name, output.value) for output in seen.outputs] == [("motor 1", 0.5), ("motor 2", -1.0)]
     assert seen.limits == ("slew", "neutral first")
     assert seen.command_age == 0.04
     assert view(heartbeat(), status, at=13.0).demand is None, "an old word is not shown as if it were true now"
@@ -141,15 +141,40 @@ def test_failsafe_countdown_runs_between_messages() -> None:
     assert view(m.RoverFailsafeStatus(0, 0, 0, 65535, 0, 0)).failsafe_in is None
 
 
-def test_ardupilots_servos_are_its_outputs() -> None:
-    servos = m.ServoOutputRaw(0, 0, 2000, 0, 1250, 0, 0, 0, 0, 0)
-    assert view(heartbeat(autopilot=Autopilot.ARDUPILOT), servos).outputs == (1.0, -0.5)
-    assert view(heartbeat(), servos).outputs == ()
+def drive_info(kind: DriveType, motors: int) -> m.RoverDriveInfo:
+    return m.RoverDriveInfo(1.5, 3.0, 0.4, 0.3, 450, kind, 0, 3, 0, motors)
 
 
-def test_an_unused_servo_output_is_zero() -> None:
-    servos = m.ServoOutputRaw(0, 0, 0, 0, 65535, 0, 0, 0, 0, 0)
-    assert view(heartbeat(autopilot=Autopilot.ARDUPILOT), servos).outputs == (0.0, 0.0)
+@pytest.mark.parametrize(
+    ("kind", "motors", "names"),
+    [
+        (DriveType.SKID, 2, ["left wheel", "right wheel"]),
+        (DriveType.ACKERMANN, 2, ["throttle", "steering servo"]),
+        (DriveType.MECANUM, 4, ["motor 1", "motor 2", "motor 3", "motor 4"]),
+        (DriveType.UNKNOWN, 2, ["motor 1", "motor 2"]),
+    ],
+)
+def test_outputs_are_named_by_the_arrangement_of_the_wheels(kind: DriveType, motors: int, names: list[str]) -> None:
+    status = m.RoverDriveStatus(5000, 40, 0, 0, [5000, -10000, 0, 0], 0, 255, 7)
+    assert [output.name for output in view(heartbeat(), drive_info(kind, motors), status).outputs] == names
+
+
+SERVOS = m.ServoOutputRaw(0, 0, 2000, 1750, 1250, 0, 0xFFFF, 0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("names", "outputs"),
+    [
+        ({1: "steering servo", 3: "throttle servo"}, [("steering servo", 1.0), ("throttle servo", -0.5)]),
+        ({2: "left wheel", 3: "right wheel"}, [("left wheel", 0.5), ("right wheel", -0.5)]),
+        ({4: "left wheel", 5: "right wheel"}, []),
+        ({}, []),
+    ],
+)
+def test_servo_outputs_without_a_pulse_are_hidden(names: dict[int, str], outputs: list[tuple[str, float]]) -> None:
+    vehicle = state(heartbeat(autopilot=Autopilot.ARDUPILOT), SERVOS)
+    vehicle.servo_names = names
+    assert [(output.name, output.value) for output in vehicle.build_view(10.0).outputs] == outputs
 
 
 def test_not_a_number_is_not_shown() -> None:

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from dialects.messages import Attitude, CommandAck, CommandLong, Heartbeat, ManualControl, Message, StatusText
 from link.core import Outgoing, Peer, Received
-from link.protocol.channel import MAX_PEERS, PEER_SILENCE, Channel
+from link.protocol.channel import Channel
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
-from link.protocol.sequence import RESTART_AFTER
+from link.protocol.peer_table import MAX_PEERS, PEER_SILENCE, RESERVED_PLACES
 from tests.link.frames import demand, frame, heartbeat
 
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
@@ -91,10 +91,25 @@ def test_a_sender_that_restarts_is_heard_again() -> None:
     channel = vehicle()
     channel.receive(demand(200), HERE, 0.0)
     assert numbers(channel.receive(demand(0), HERE, 0.1)) == [0]  # 56 on: plainly new
-    channel.receive(demand(20), HERE, 0.2)
-    heard = [numbers(channel.receive(demand(number), HERE, 0.3)) for number in range(RESTART_AFTER + 2)]
-    assert heard[-1] == [RESTART_AFTER + 1]
-    assert heard.count([]) == RESTART_AFTER
+    channel.receive(demand(90), HERE, 0.2)
+    (found,) = channel.receive(demand(1), HERE, 0.3)
+    assert (found.sequence, found.numbering, found.clash) == (1, 2, False)
+
+
+def test_frames_of_two_programs_in_one_numbering_are_marked() -> None:
+    channel = vehicle()
+    channel.receive(demand(7), HERE, 0.0)
+    (found,) = channel.receive(heartbeat(7), HERE, 0.0)
+    assert (found.numbering, found.clash) == (1, True)
+    assert found.digest != channel.receive(heartbeat(8), HERE, 0.0)[0].digest
+
+
+def test_a_stop_is_never_a_repeat() -> None:
+    channel = vehicle()
+    channel.receive(heartbeat(0), HERE, 0.0)
+    assert len(channel.receive(frame(ARM, 5) * 2, HERE, 0.0)) == 1
+    assert len(channel.receive(frame(DISARM, 6) * 2, HERE, 0.0)) == 2
+    assert channel.report().duplicates == 2
 
 
 def test_loss_is_counted_by_source() -> None:
@@ -108,15 +123,14 @@ def test_loss_is_counted_by_source() -> None:
 
 
 @given(st.lists(st.integers(0, 255), max_size=300))
-def test_demands_never_go_back_in_order(order: list[int]) -> None:
+def test_demands_never_go_back_within_a_numbering(order: list[int]) -> None:
     channel = vehicle()
-    newest: int | None = None
-    backward = 0
+    newest: dict[int, int] = {}
     for now, number in enumerate(order):
-        for found in channel.receive(demand(number), HERE, float(now)):
-            backward = backward + 1 if newest is not None and ((found.sequence - newest) & 0xFF) > 223 else 0
-            newest = found.sequence
-            assert backward <= 1  # only a restart steps back, and then counts on from there
+        for found in channel.receive(demand(number), HERE, now / 20):
+            ahead = (found.sequence - newest.get(found.numbering, found.sequence - 1)) & 0xFF
+            assert 0 < ahead < 128  # within one numbering
+            newest[found.numbering] = found.sequence
 
 
 # ---- who is answered ----
@@ -252,12 +266,28 @@ def test_a_connection_that_says_nothing_keeps_no_place_that_another_needs() -> N
 # ---- too much ----
 
 
+def test_the_ids_in_control_get_a_place_when_all_are_taken() -> None:
+    channel = vehicle()
+    for port in range(MAX_PEERS):
+        channel.receive(heartbeat(0, system=100), f"10.0.0.9:{port}", 0.0)
+    assert channel.receive(heartbeat(0), HERE, 0.1) == []
+    channel.reserve((255, 190))
+    (found,) = channel.receive(heartbeat(1), HERE, 0.2)
+    assert found.introduced
+    assert channel.receive(heartbeat(0, system=100), "10.0.0.9:99", 0.2) == []  # nobody else does
+    for port in range(1, RESERVED_PLACES + 2):
+        channel.receive(heartbeat(0), f"10.0.0.7:{port}", 0.3)
+    assert len(audience(channel)) == MAX_PEERS + RESERVED_PLACES
+    channel.reserve(None)
+    assert channel.receive(heartbeat(0), "10.0.0.7:99", 0.4) == []
+
+
 def test_22_peers_are_limited_and_a_real_one_keeps_its_place() -> None:
     channel = vehicle()
     real = channel.receive(heartbeat(0), HERE, 0.0)[0].peer
     for port in range(5000):
         channel.receive(demand(port % 256), ("10.0.0.1", port), 0.001 * port)
-    assert len(channel._peers) <= MAX_PEERS
+    assert len(list(channel._peers)) <= MAX_PEERS
     assert sent(channel, CommandAck(400, 0), peer=real) == [(HERE, 0)]
     assert channel.receive(heartbeat(1), HERE, 5.0) != []
 
@@ -308,7 +338,7 @@ def test_noise_makes_no_peer_and_is_counted() -> None:
     channel = vehicle()
     assert channel.receive(b"Init ArduRover V4.7.0-dev\n", HERE, 0.0) == []
     assert channel.report().resync_bytes == 26
-    assert not channel._peers
+    assert not list(channel._peers)
 
 
 def test_a_foreign_dialect_is_named_after_three_frames() -> None:
@@ -367,7 +397,7 @@ def test_there_is_one_place_for_senders_of_stops() -> None:
     (second,) = channel.receive(frame(DISARM), THERE, 1.0)
     assert sent(channel, CommandAck(400, 0), peer=first.peer) == []
     assert [address for address, _ in sent(channel, CommandAck(400, 0), peer=second.peer)] == [THERE]
-    assert len(channel._peers) == MAX_PEERS
+    assert len(list(channel._peers)) == MAX_PEERS
 
 
 def test_a_stop_without_a_place_is_in_the_telemetry_log() -> None:

@@ -195,7 +195,7 @@ class Witness:
 
     def twist(self, speed: float, system: int) -> None:
         self.field.twist(speed, system=system)
-        self.asked |= self.field.armed and system == self.field.rover._control.owner
+        self.asked |= self.field.armed and system == self.field.rover._control.ownership.owner
 
     def go(self, place: tuple[float, float]) -> None:
         if self.field.reposition(Point(*place)) is Result.ACCEPTED:

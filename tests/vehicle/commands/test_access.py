@@ -9,6 +9,7 @@ import pytest
 from dialects.enums import Command, Result
 from link.core import Peer
 from link.services.command.request import CommandRequest
+from tests.vehicle.conversations import conversation
 from vehicle.commands.access import Access, CommandAccess, is_invalid_position, parse_altitude, parse_position
 from vehicle.drive.control import Control
 from vehicle.navigation.geo import Home
@@ -50,8 +51,8 @@ class Denials:
         self.texts: list[str] = []
         texts = StatusTextQueue(lambda severity, text: self.texts.append(text))
         control = Control(Params(), texts, system=1, boot=0.0)
-        control.set_owner(DRIVER, 0.0)
-        self.access = CommandAccess(control, texts)
+        control.take(conversation(DRIVER), 0.0)
+        self.access = CommandAccess(control.ownership, texts)
         self.texts.clear()
 
 

@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from dialects.messages import INVALID_AXIS, UINT16_MAX, ManualControl, RcChannelsOverride
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER
+from tests.vehicle.conversations import conversation
 from tests.vehicle.safety.rig import BOOT, START, Rig
 
 
@@ -27,12 +28,12 @@ def override(rig: Rig, target: int = 1, **channels: int) -> bool:
 
 def test_at_the_start_no_station_is_in_control_and_no_neutral_was_seen() -> None:
     control = Rig().control
-    assert (control.owner, control.demand, control.not_in_control_count) == (0, None, 0)
-    assert not control.takeover_allowed
+    assert (control.ownership.owner, control.demand, control.not_in_control_count) == (0, None, 0)
+    assert not control.ownership.takeover_allowed
     assert not control.neutral_seen
     assert not control.presence.known
     assert control.override.channels == {}
-    assert control.silence_duration(BOOT + 2.0) == 2.0  # since the boot
+    assert control.ownership.silence_duration(BOOT + 2.0) == 2.0  # since the boot
     assert control.demand_age(START) is None
     assert not control.is_demand_stale(START)
     assert not control.requests_motion()
@@ -112,7 +113,7 @@ class TestManualControl:
 class TestNeutralFirst:
     def test_a_neutral_demand_is_seen_up_to_the_dead_band(self) -> None:
         rig = Rig(MAN_DEADBAND=10)
-        rig.control.set_owner(DRIVER, START)
+        rig.control.take(conversation(DRIVER), START)
         assert rig.control.deadband == 0.1
         assert raw(rig, x=101)
         assert not rig.control.neutral_seen

@@ -6,9 +6,11 @@ import pytest
 
 from dialects.enums import OperatorFlag
 from dialects.messages import INVALID_AXIS, RoverOperatorPresence
-from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER
+from tests.vehicle.bench import AHEAD, BEAT, DRIVER, NEUTRAL, OTHER
+from tests.vehicle.conversations import conversation
 from tests.vehicle.safety.rig import BOOT, Rig
-from vehicle.drive.operator_session import PROOF_VALID, SUCCESSION_TIME, Source
+from vehicle.drive.conversation import Conversation
+from vehicle.drive.driver import SUCCESSION_TIME
 
 ECHO_MAX = 0.5
 NO_AXES: dict[str, int] = {"x": INVALID_AXIS, "r": INVALID_AXIS}
@@ -33,6 +35,7 @@ class Sessions(Rig):
         y: int = INVALID_AXIS,
         clock: int | None = None,
         introduced: bool = True,
+        numbering: int = 0,
     ) -> bool:
         """A ROVER_OPERATOR_PRESENCE with axes, at once."""
         self.clock += 1
@@ -40,18 +43,19 @@ class Sessions(Rig):
             target, 1, self.clock if clock is None else clock, round((self.now - BOOT - age) * 1000), session, 1, 0,
             int(OperatorFlag.AXES), x, y, INVALID_AXIS, r,
         )  # fmt: skip
-        received = self.received(message, system, introduced=introduced)
+        received = self.received(message, system, introduced=introduced)._replace(numbering=numbering)
+        self.control.hear(received, self.now)
         return self.control.handle_operator_presence(received, message, self.now)
 
     @property
-    def source(self) -> Source:
-        return Source.of(self.received(None))
+    def source(self) -> Conversation:
+        return conversation(DRIVER)
 
     def owned(self) -> Sessions:
         """Session 7 of DRIVER is in control, with a stick at rest."""
         self.prove()
-        self.control.set_owner(DRIVER, self.now, self.source)
-        assert self.control.session is not None
+        self.control.take(self.source, self.now)
+        assert self.control.ownership.session is not None
         assert self.prove()
         assert self.control.neutral_seen
         return self
@@ -61,9 +65,9 @@ class TestTakingControl:
     def test_the_session_of_the_sender_takes_it(self) -> None:
         rig = Sessions()
         assert not rig.prove()
-        rig.control.set_owner(DRIVER, rig.now, rig.source)
-        assert rig.control.session is not None
-        assert rig.control.session.id == 7
+        rig.control.take(rig.source, rig.now)
+        assert rig.control.ownership.session is not None
+        assert rig.control.ownership.session.id == 7
 
     @pytest.mark.parametrize(
         "wrong", [{"age": ECHO_MAX + 0.001}, {"target": 2}, {"introduced": False}, {"system": OTHER}]
@@ -71,37 +75,34 @@ class TestTakingControl:
     def test_without_a_good_proof_of_its_own_there_is_none(self, wrong: dict[str, float]) -> None:
         rig = Sessions()
         assert not rig.prove(**wrong)  # type: ignore[arg-type]
-        rig.control.set_owner(DRIVER, rig.now, rig.source)
-        assert rig.control.session is None
+        rig.control.take(rig.source, rig.now)
+        assert rig.control.ownership.session is None
 
     def test_a_proof_at_the_limit_is_good(self) -> None:
         rig = Sessions()
         rig.prove(age=ECHO_MAX)
-        rig.control.set_owner(DRIVER, rig.now, rig.source)
-        assert rig.control.session is not None
+        rig.control.take(rig.source, rig.now)
+        assert rig.control.ownership.session is not None
 
     def test_who_is_in_control_may_add_its_session_and_keeps_it(self) -> None:
         rig = Sessions()
-        rig.control.set_owner(DRIVER, rig.now)
-        assert rig.control.session is None
+        rig.control.take(conversation(DRIVER), rig.now)
+        assert rig.control.ownership.session is None
         assert not rig.prove(7)
-        rig.control.set_owner(DRIVER, rig.now, rig.source)
-        session = rig.control.session
+        rig.control.take(rig.source, rig.now)
+        session = rig.control.ownership.session
         assert session is not None
         rig.prove(8)
-        rig.control.set_owner(DRIVER, rig.now, rig.source)
-        assert rig.control.session is session
-        rig.now += 2 * PROOF_VALID
-        rig.control.set_owner(DRIVER, rig.now, rig.source)
-        assert rig.control.session is session
+        rig.control.take(rig.source, rig.now)
+        assert rig.control.ownership.session is session
 
     def test_another_owner_and_a_release_end_it(self) -> None:
         rig = Sessions().owned()
-        rig.control.set_owner(OTHER, rig.now)
-        assert rig.control.session is None
+        rig.control.take(conversation(OTHER), rig.now)
+        assert rig.control.ownership.session is None
         rig = Sessions().owned()
         rig.control.release("gave it up", rig.now)
-        assert rig.control.session is None
+        assert rig.control.ownership.session is None
 
     def test_at_the_start_nothing_has_been_succeeded(self) -> None:
         assert not Sessions().control.pop_succession()
@@ -146,13 +147,13 @@ class TestDemands:
         rig.now += 3.0
         assert not rig.prove(x=INVALID_AXIS, r=INVALID_AXIS)
         assert rig.control.demand is before
-        assert rig.control.silence_duration(rig.now) == 0.0
+        assert rig.control.ownership.silence_duration(rig.now) == 0.0
 
     def test_an_old_proof_is_no_sign_of_life(self) -> None:
         rig = Sessions().owned()
         rig.now += 3.0
         rig.prove(x=0, age=2.0)
-        assert rig.control.silence_duration(rig.now) == 3.0
+        assert rig.control.ownership.silence_duration(rig.now) == 3.0
 
     @pytest.mark.parametrize(("kind", "side"), [(1, None), (4, 0.5)])
     def test_sideways_where_the_vehicle_can(self, kind: float, side: float | None) -> None:
@@ -164,14 +165,14 @@ class TestDemands:
     def test_heartbeats_with_its_system_id_are_no_sign_of_life(self) -> None:
         rig = Sessions().owned()
         rig.now += 3.0
-        rig.control.update_liveness(rig.received(None), rig.now)
-        assert rig.control.silence_duration(rig.now) == 3.0
+        rig.control.hear(rig.received(BEAT), rig.now)
+        assert rig.control.ownership.silence_duration(rig.now) == 3.0
 
     def test_a_presence_without_axes_is_none_of_it(self) -> None:
         rig = Sessions().owned()
         rig.now += 3.0
         rig.presence()
-        assert rig.control.silence_duration(rig.now) == 3.0
+        assert rig.control.ownership.silence_duration(rig.now) == 3.0
 
     def test_of_another_system_it_is_none(self) -> None:
         rig = Sessions().owned()
@@ -185,10 +186,10 @@ class TestSuccession:
         rig = Sessions().owned()
         rig.prove(x=500)
         rig.now += silence
-        assert rig.prove(8) is succeeds
-        assert rig.control.session is not None
-        assert rig.control.session.id == (8 if succeeds else 7)
-        assert rig.said("cannot drive") is not succeeds
+        assert rig.prove(8, numbering=2) is succeeds
+        assert rig.control.ownership.session is not None
+        assert rig.control.ownership.session.id == (8 if succeeds else 7)
+        assert rig.said("Another program uses your ids 255/190: it may only stop") is not succeeds
         assert rig.control.pop_succession() is succeeds
         assert not rig.control.pop_succession()
 
@@ -197,9 +198,9 @@ class TestSuccession:
         rig = Sessions().owned()
         rig.now += 2.0
         assert not rig.prove(8, **wrong)  # type: ignore[arg-type]
-        assert rig.control.session is not None
-        assert rig.control.session.id == 7
-        assert not rig.said("cannot drive")
+        assert rig.control.ownership.session is not None
+        assert rig.control.ownership.session.id == 7
+        assert not rig.said("Another program")
 
     def test_the_successor_begins_with_neutral_and_without_a_demand(self) -> None:
         rig = Sessions().owned()
@@ -208,7 +209,7 @@ class TestSuccession:
         assert rig.prove(8, x=900)
         assert not rig.control.neutral_seen
         assert rig.said("release the keys first")
-        assert rig.control.silence_duration(rig.now) == 0.0
+        assert rig.control.ownership.silence_duration(rig.now) == 0.0
 
     def test_the_stick_at_rest_of_the_one_before_is_no_proof_for_the_successor(self) -> None:
         rig = Sessions().owned()
@@ -221,12 +222,12 @@ class TestSuccession:
         assert not rig.stick(AHEAD)
         rig.now += 4.9
         assert not rig.stick(AHEAD)
-        assert rig.control.session is not None
+        assert rig.control.ownership.session is not None
         rig.now += 0.2
-        assert rig.stick(NEUTRAL)
-        assert rig.control.session is None
+        assert [rig.stick(NEUTRAL) for _ in range(2)] == [False, True]
+        assert rig.control.ownership.session is None
         assert not rig.control.presence.known
-        assert rig.control.silence_duration(rig.now) == 0.0
+        assert rig.control.ownership.silence_duration(rig.now) == 0.0
         assert rig.control.pop_succession()
 
     def test_its_first_demand_forgets_the_one_before(self) -> None:
@@ -234,5 +235,5 @@ class TestSuccession:
         rig.prove(x=500)
         rig.control.neutral_seen = True
         rig.now += 5.1
-        assert rig.stick(AHEAD)
+        assert [rig.stick(AHEAD) for _ in range(3)] == [False, False, True]
         assert not rig.control.neutral_seen

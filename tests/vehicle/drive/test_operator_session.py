@@ -16,7 +16,8 @@ from dialects.enums import OperatorFlag
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, Bench, said
 from tests.vehicle.field import Field
-from vehicle.drive.operator_session import PROOF_VALID, SUCCESSION_TIME
+from vehicle.drive.driver import SUCCESSION_TIME
+from vehicle.drive.operator_session import PROOF_VALID
 
 BOOT = 100.0
 FAST, SLOW = "fast link", "slow link"
@@ -246,7 +247,7 @@ def test_the_driver_is_told_of_a_twin_once() -> None:
         twin.send(NEUTRAL)
         bench.wait(0.05)
     assert bench.turning
-    assert len([text for text in bench.texts if "Another program uses system id 255" in text]) == 1
+    assert len([text for text in bench.texts if "Another program uses your ids 255/190" in text]) == 1
 
 
 # ---- succession ----
@@ -351,10 +352,14 @@ def test_no_demand_older_than_opr_echo_max_is_in_use(seed: int, loss: float, del
 def check_demand(bench: Bench, station: Station) -> None:
     """A demand for motion that counts was built for it, and less than OPR_ECHO_MAX ago."""
     control = bench.rover._control
-    if control.session is None or control.session.id != station.session or not control.requests_motion():
+    if (
+        control.ownership.session is None
+        or control.ownership.session.id != station.session
+        or not control.requests_motion()
+    ):
         return
-    assert control.session.clock is not None
-    at, axes = station.built[control.session.clock]
+    assert control.ownership.session.clock is not None
+    at, axes = station.built[control.ownership.session.clock]
     assert axes is AHEAD
     if not control.is_demand_stale(bench.now):
         assert bench.now - at <= 0.45 + CYCLE

@@ -8,23 +8,23 @@ import pytest
 
 from dialects.enums import OperatorFlag
 from dialects.messages import RoverOperatorPresence
-from link.core import Peer, Received
+from link.core import Peer
+from vehicle.drive.conversation import Conversation
 from vehicle.drive.operator_session import (
+    LINKS_MAX,
     PROOF_VALID,
-    SOURCES_MAX,
-    SUCCESSION_TIME,
+    SENDERS_MAX,
     DemandOrder,
     DrivingSession,
     Proof,
     RecentProofs,
-    Source,
     echo_age,
     parse_proof,
 )
 
 WRAP = 2**32
 PEER = Peer(0, "gcs")
-SOURCE = Source(255, 190, PEER)
+SENDER = Conversation(255, 190, PEER, 1)
 PROOF = Proof(session=7, clock=100, age=0.1)
 
 
@@ -33,11 +33,7 @@ def message(flags: int, echo: int = 1000) -> RoverOperatorPresence:
 
 
 def test_bounds() -> None:
-    assert (SUCCESSION_TIME, PROOF_VALID, SOURCES_MAX) == (0.7, 1.0, 16)
-
-
-def test_the_source_is_system_component_and_peer() -> None:
-    assert Source.of(Received(message(0), 255, 190, 3, PEER, introduced=True)) == SOURCE
+    assert (PROOF_VALID, SENDERS_MAX, LINKS_MAX) == (1.0, 16, 8)
 
 
 def test_only_a_message_with_axes_is_a_proof() -> None:
@@ -57,7 +53,7 @@ def test_the_age_of_an_echo(echo: int, since_boot: float, age: float) -> None:
 
 class TestSession:
     def test_its_first_demand_is_the_newest(self) -> None:
-        session = DrivingSession(7, 10.0)
+        session = DrivingSession(7)
         assert session.clock is None
         assert session.order(PROOF._replace(clock=0)) is DemandOrder.NEWEST
 
@@ -67,43 +63,64 @@ class TestSession:
          (100, 100 + WRAP // 2 - 1, True), (100, 100 + WRAP // 2, False), (100, 100 + WRAP // 2 + 1, False)],
     )  # fmt: skip
     def test_later_demands_go_by_the_clock_of_the_sender(self, before: int, after: int, newest: bool) -> None:
-        order = DrivingSession(7, 10.0, clock=before).order(PROOF._replace(clock=after))
+        order = DrivingSession(7, clock=before).order(PROOF._replace(clock=after))
         assert order is (DemandOrder.NEWEST if newest else DemandOrder.NOT_NEWER)
 
-    def test_it_may_be_succeeded_after_its_time_without_a_proof(self) -> None:
-        session = DrivingSession(7, 0.0)
-        assert not session.may_be_succeeded(SUCCESSION_TIME)
-        assert session.may_be_succeeded(SUCCESSION_TIME + 0.001)
-        assert not DrivingSession(7, 10.0).may_be_succeeded(10.6)
+    def test_a_conversation_is_proven_for_a_second(self) -> None:
+        session = DrivingSession.begin(SENDER, PROOF, 10.0)
+        assert session.is_proven(SENDER, 11.0)
+        assert not session.is_proven(SENDER, 11.01)
+        assert not session.is_proven(SENDER._replace(numbering=2), 10.0)
+
+    def test_a_late_proof_proves_nothing_and_ends_nothing(self) -> None:
+        session = DrivingSession.begin(SENDER, PROOF, 10.0)
+        slow = SENDER._replace(peer=Peer(1, "slow"))
+        session.add_proof(SENDER, PROOF._replace(age=3.0), 10.5, good=False)
+        session.add_proof(slow, PROOF._replace(age=3.0), 10.5, good=False)
+        assert session.is_proven(SENDER, 10.5)
+        assert not session.is_proven(slow, 10.5)
+        assert session.links[slow].age == 3.0
+        session.add_proof(slow, PROOF, 10.6, good=True)
+        assert session.is_proven(slow, 10.6)
+
+    def test_the_age_of_a_setpoint_is_that_of_the_proof_and_the_time_since(self) -> None:
+        session = DrivingSession.begin(SENDER, PROOF, 10.0)
+        assert session.setpoint_age(SENDER, 10.2) == pytest.approx(0.3)
+        assert session.setpoint_age(SENDER._replace(numbering=2), 10.2) == math.inf
+
+    def test_of_too_many_conversations_the_one_that_was_proven_longest_ago_is_forgotten(self) -> None:
+        session = DrivingSession.begin(SENDER, PROOF, 10.0)
+        for number in range(1, LINKS_MAX + 5):
+            session.add_proof(SENDER._replace(numbering=number), PROOF, 5.0, good=number % 2 == 0)
+        assert len(session.links) == LINKS_MAX
+        assert SENDER in session.links
 
 
 class TestRecentProofs:
     def test_a_proof_names_the_session_for_one_second(self) -> None:
         proofs = RecentProofs()
-        proofs.add(SOURCE, PROOF, 10.0)
-        assert proofs.session_of(SOURCE, 11.0) == DrivingSession(7, 10.0)
-        assert proofs.session_of(SOURCE, 11.01) is None
+        proofs.add(SENDER, PROOF, 10.0)
+        assert proofs.session_of(SENDER, 11.0) == DrivingSession.begin(SENDER, PROOF, 10.0)
+        assert proofs.session_of(SENDER, 11.01) is None
 
     def test_without_a_proof_there_is_none(self) -> None:
         proofs = RecentProofs()
-        assert proofs.session_of(None, 0.0) is None
-        assert proofs.session_of(SOURCE, 0.0) is None
-        proofs.add(SOURCE, PROOF, 10.0)
-        assert proofs.session_of(None, 10.0) is None
-        assert proofs.session_of(SOURCE._replace(component=1), 10.0) is None
+        assert proofs.session_of(SENDER, 0.0) is None
+        proofs.add(SENDER, PROOF, 10.0)
+        assert proofs.session_of(SENDER._replace(component=1), 10.0) is None
 
-    def test_the_newest_of_a_source_counts(self) -> None:
+    def test_the_newest_of_a_sender_counts(self) -> None:
         proofs = RecentProofs()
-        proofs.add(SOURCE, PROOF, 10.0)
-        proofs.add(SOURCE, PROOF._replace(session=8), 10.5)
-        assert proofs.session_of(SOURCE, 11.2) == DrivingSession(8, 10.5)
+        proofs.add(SENDER, PROOF, 10.0)
+        proofs.add(SENDER, PROOF._replace(session=8), 10.5)
+        assert proofs.session_of(SENDER, 11.2) == DrivingSession.begin(SENDER, PROOF._replace(session=8), 10.5)
 
     def test_of_too_many_the_oldest_is_forgotten(self) -> None:
         proofs = RecentProofs()
-        sources = [SOURCE._replace(component=number) for number in range(SOURCES_MAX + 1)]
-        for source in sources[:SOURCES_MAX]:
-            proofs.add(source, PROOF, 10.0)
-        proofs.add(sources[0], PROOF, 10.1)  # now the newest
-        assert all(proofs.session_of(source, 10.2) for source in sources[:SOURCES_MAX])
-        proofs.add(sources[-1], PROOF, 10.2)
-        assert [source.component for source in sources if not proofs.session_of(source, 10.3)] == [1]
+        senders = [SENDER._replace(component=number) for number in range(SENDERS_MAX + 1)]
+        for sender in senders[:SENDERS_MAX]:
+            proofs.add(sender, PROOF, 10.0)
+        proofs.add(senders[0], PROOF, 10.1)  # now the newest
+        assert all(proofs.session_of(sender, 10.2) for sender in senders[:SENDERS_MAX])
+        proofs.add(senders[-1], PROOF, 10.2)
+        assert [sender.component for sender in senders if not proofs.session_of(sender, 10.3)] == [1]

@@ -8,6 +8,7 @@ from dialects.messages import RoverOperatorPresence
 from dialects.modes import Mode
 from link.core import Peer, Received
 from tests.vehicle.bench import DRIVER, NEUTRAL
+from tests.vehicle.conversations import conversation
 from vehicle.drive.control import Control
 from vehicle.navigation.estimate import Estimate
 from vehicle.params import Params
@@ -67,7 +68,7 @@ class Rig:
         """A MANUAL_CONTROL of a ground station, at once."""
         message = build_manual_control(axes, 1)
         received = self.received(message, system)
-        self.control.update_liveness(received, self.now)
+        self.control.hear(received, self.now)
         return self.control.handle_manual_control(received, message, self.now)
 
     def presence(
@@ -80,7 +81,7 @@ class Rig:
 
     def controlled(self) -> Rig:
         """DRIVER takes control and shows a stick at rest."""
-        self.control.set_owner(DRIVER, self.now)
+        self.control.take(conversation(DRIVER), self.now)
         assert self.stick(NEUTRAL)
         return self
 
@@ -100,7 +101,7 @@ class Rig:
     def armed(self, *, neutral: bool = True) -> Rig:
         """Boot, arm, and show a stick at rest."""
         self.cycle()
-        assert self.safety.arm(DRIVER, self.now) == []
+        assert self.safety.arm(conversation(DRIVER), self.now) == []
         if neutral:
             assert self.stick(NEUTRAL)
         return self

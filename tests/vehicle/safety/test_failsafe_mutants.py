@@ -12,6 +12,7 @@ from dialects.messages import RoverOperatorPresence
 from dialects.modes import Mode
 from link.core import Peer, Received
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, said
+from tests.vehicle.conversations import conversation
 from tests.vehicle.field import Field
 from tests.vehicle.safety.rig import STANDING, START
 from vehicle.drive.control import Control
@@ -34,7 +35,7 @@ class Scene:
         self.params = Params(TIMES | params)
         texts = StatusTextQueue()
         self.control = Control(self.params, texts, system=1, boot=0.0)
-        self.control.set_owner(DRIVER, START)
+        self.control.take(conversation(DRIVER), START)
         self.battery = BatteryMonitor(self.params)
         self.computer = PiMonitor(self.params, texts)
         self.sequence = 0
@@ -43,7 +44,7 @@ class Scene:
         self.sequence += 1
         message = build_manual_control(axes, 1)
         received = Received(message, DRIVER, 190, self.sequence, Peer(0, "gcs"), introduced=True)
-        self.control.update_liveness(received, now)
+        self.control.hear(received, now)
         assert self.control.handle_manual_control(received, message, now)
 
     def presence(self, now: float, age_ms: int = 0) -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from dialects.enums import Failsafe
+from tests.vehicle.conversations import conversation
 from tests.vehicle.safety.rig import MOTIONS, STANDING, START, Rig
 from vehicle.params import Params
 from vehicle.safety.failsafe import RULES, FailsafeAction, FailsafeStep
@@ -287,8 +288,8 @@ class TestCheck:
             Failsafe.TILT, Failsafe.BLOCKED, Failsafe.POSITION, Failsafe.FENCE
         }  # fmt: skip
         rig = Rig(FS_GCS_TIMEOUT=5)
-        rig.control.set_owner(255, START)
+        rig.control.take(conversation(255), START)
         assert self.check(rig, STANDING, START + 5.1, armed=False) == []
-        rig.control.set_owner(255, START + 60.0)
+        rig.control.take(conversation(255), START + 60.0)
         assert self.check(rig, STANDING, START + 60.0) == []
         assert self.check(rig, STANDING, START + 65.1) == [HOLD]

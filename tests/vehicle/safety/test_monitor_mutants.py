@@ -7,6 +7,7 @@ import pytest
 from dialects.enums import Failsafe, Result, Severity
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, Bench, said
+from tests.vehicle.conversations import conversation
 from tests.vehicle.safety.rig import STANDING, START, Rig
 from vehicle.drive.demand import Demand
 from vehicle.drive.gate import MotorTest
@@ -90,9 +91,11 @@ class TestCycle:
     def test_an_autonomous_mode_does_not_outlive_a_succession(self, mode: Mode, held: bool) -> None:
         rig = Rig(FS_GCS_TIMEOUT=5, FS_GCS_ENABLE=0).armed()
         assert rig.safety.choose_mode(mode, rig.now) is None
-        rig.control.session = DrivingSession(7, rig.now)
+        driver = rig.control.ownership.driver
+        assert driver is not None
+        driver.session = DrivingSession(7)
         rig.now += 5.1
-        assert rig.stick(NEUTRAL)
+        assert [rig.stick(NEUTRAL) for _ in range(3)] == [False, False, True]
         rig.cycle()
         assert (rig.safety.mode is Mode.HOLD) is held
 
@@ -105,11 +108,11 @@ class TestCycle:
     def test_a_disarmed_vehicle_is_not_kept_by_a_silent_owner(self) -> None:
         rig = Rig(FS_GCS_TIMEOUT=5, FS_GCS_ENABLE=0, DISARM_DELAY=0).armed()
         rig.cycle(5.1)
-        assert rig.control.owner == DRIVER  # armed
+        assert rig.control.ownership.owner == DRIVER  # armed
         rig.safety.disarm("by GCS", rig.now - 1.0)
-        assert rig.control.owner == DRIVER
+        assert rig.control.ownership.owner == DRIVER
         rig.cycle()
-        assert rig.control.owner == 0
+        assert rig.control.ownership.owner == 0
 
 
 class TestClearance:
@@ -238,7 +241,7 @@ class TestIdle:
         rig = Rig(DISARM_DELAY=delay, FS_GCS_ENABLE=0)
         rig.cycle(60.0)
         assert rig.now == 160.0
-        assert rig.safety.arm(DRIVER, rig.now) == []
+        assert rig.safety.arm(conversation(DRIVER), rig.now) == []
         return rig
 
     def test_it_disarms_after_the_delay(self) -> None:

@@ -7,6 +7,7 @@ import pytest
 from dialects.enums import Failsafe, Severity
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, DRIVER, NEUTRAL, OTHER
+from tests.vehicle.conversations import conversation
 from tests.vehicle.safety.rig import Rig
 from vehicle.readings import ComputerReadings
 from vehicle.safety.states import SafetyState
@@ -36,8 +37,8 @@ class TestArming:
         rig.stick(AHEAD)
         generation = rig.safety.mode_generation
         rig.now += 5.0
-        assert rig.safety.arm(DRIVER, rig.now) == []
-        assert rig.control.owner == DRIVER
+        assert rig.safety.arm(conversation(DRIVER), rig.now) == []
+        assert rig.control.ownership.owner == DRIVER
         assert rig.control.demand is None
         assert rig.safety.armed_at == rig.now
         assert rig.safety.mode_generation > generation
@@ -51,7 +52,7 @@ class TestArming:
         rig.stick(NEUTRAL)
         rig.stick(AHEAD)
         rig.now += 60.0
-        rig.safety.arm(DRIVER, rig.now)
+        rig.safety.arm(conversation(DRIVER), rig.now)
         assert rig.control.demand is None
         assert not rig.control.neutral_seen
 
@@ -59,20 +60,20 @@ class TestArming:
         rig = Rig().armed()
         before = (rig.safety.mode_generation, rig.safety.armed_at, len(rig.texts))
         rig.now += 5.0
-        assert rig.safety.arm(DRIVER, rig.now) == []
+        assert rig.safety.arm(conversation(DRIVER), rig.now) == []
         assert (rig.safety.mode_generation, rig.safety.armed_at, len(rig.texts)) == before
 
     def test_by_another_is_refused_whoever_may_take_over(self) -> None:
         rig = Rig().armed()
-        rig.control.takeover_allowed = True
+        rig.control.ownership.takeover_allowed = True
         rig.now += 60.0
-        assert len(rig.safety.arm(OTHER, rig.now, force=True)) == 1
-        assert rig.control.owner == DRIVER
+        assert len(rig.safety.arm(conversation(OTHER), rig.now, force=True)) == 1
+        assert rig.control.ownership.owner == DRIVER
 
     def test_by_another_while_disarmed_needs_control(self) -> None:
         rig = Rig().armed()
         rig.safety.disarm("by GCS", rig.now)
-        assert len(rig.safety.arm(OTHER, rig.now)) == 1
+        assert len(rig.safety.arm(conversation(OTHER), rig.now)) == 1
         assert not rig.safety.armed
 
     def test_what_is_wrong_is_reported_and_force_skips_the_soft_checks(self) -> None:
@@ -80,10 +81,10 @@ class TestArming:
         rig.cycle()
         rig.safety.battery.update(1.0, rig.now)
         rig.now += 4.0
-        assert len(rig.safety.arm(DRIVER, rig.now)) == 1
+        assert len(rig.safety.arm(conversation(DRIVER), rig.now)) == 1
         assert not rig.safety.armed
-        assert rig.control.owner == 0
-        assert rig.safety.arm(DRIVER, rig.now, force=True) == []
+        assert rig.control.ownership.owner == 0
+        assert rig.safety.arm(conversation(DRIVER), rig.now, force=True) == []
 
     def test_changed_safety_parameters_are_reported(self) -> None:
         rig = Rig(FS_TIMEOUT=5).armed()
@@ -94,7 +95,7 @@ class TestArming:
         rig = Rig().armed()
         rig.endure(Failsafe.TILT)
         assert rig.safety.failsafes.latched == Failsafe.TILT
-        rig.safety.arm(DRIVER, rig.now)
+        rig.safety.arm(conversation(DRIVER), rig.now)
         assert not rig.safety.failsafes.latched
 
     @pytest.mark.parametrize(
@@ -105,7 +106,7 @@ class TestArming:
         rig.cycle()
         assert rig.safety.choose_mode(mode, rig.now) is None
         assert not rig.safety.autonomy_confirmed
-        rig.safety.arm(DRIVER, rig.now)
+        rig.safety.arm(conversation(DRIVER), rig.now)
         assert rig.said("again to start") is stands
         assert not rig.safety.autonomy_confirmed
         assert rig.safety.choose_mode(mode, rig.now) is None
@@ -159,7 +160,7 @@ class TestProblems:
 
     def test_a_stick_that_is_not_at_rest_while_it_is_fresh(self) -> None:
         rig = self.ready(MAN_TIMEOUT=0.5)
-        rig.control.set_owner(DRIVER, rig.now)
+        rig.control.take(conversation(DRIVER), rig.now)
         rig.stick(NEUTRAL)
         assert rig.safety.prearm_problems(rig.now) == []
         rig.stick(AHEAD)
@@ -197,7 +198,7 @@ class TestDisarming:
         for silence, owner in ((4.9, DRIVER), (5.1, 0)):
             rig = Rig(FS_GCS_TIMEOUT=5).armed()
             rig.safety.disarm("by GCS", rig.now + silence)
-            assert rig.control.owner == owner
+            assert rig.control.ownership.owner == owner
 
     def test_the_end_of_a_motor_test_ends_what_was_requested_while_disarmed(self) -> None:
         rig = Rig()

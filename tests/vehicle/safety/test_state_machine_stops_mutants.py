@@ -8,6 +8,7 @@ from dialects import messages as m
 from dialects.enums import Command, Failsafe, Result, Severity, SystemState
 from dialects.modes import Mode
 from tests.vehicle.bench import AHEAD, CYCLE, DRIVER, NEUTRAL, Bench, said
+from tests.vehicle.conversations import conversation
 from tests.vehicle.safety.rig import Rig
 from vehicle.safety.states import SafetyState
 
@@ -213,7 +214,7 @@ def test_shutdown_is_the_end() -> None:
     rig = Rig().armed()
     rig.safety.shutdown()
     assert rig.safety.state is SafetyState.OFF
-    assert rig.safety.arm(DRIVER, rig.now, force=True) != []
+    assert rig.safety.arm(conversation(DRIVER), rig.now, force=True) != []
 
 
 def test_an_overrun_of_the_loop_is_reported_with_its_length() -> None:
@@ -227,7 +228,7 @@ def test_an_overrun_is_cleared_by_the_next_arming() -> None:
     rig = Rig().armed()
     rig.safety.handle_loop_overrun(0.3, rig.now)
     assert rig.safety.latched == Failsafe.LOOP_OVERRUN
-    assert rig.safety.arm(DRIVER, rig.now) == []
+    assert rig.safety.arm(conversation(DRIVER), rig.now) == []
     assert not rig.safety.latched
 
 

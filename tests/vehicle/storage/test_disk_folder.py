@@ -213,7 +213,7 @@ class Vehicle:
     def __init__(self, folder: DiskFolder, *, allowed: bool = True) -> None:
         tree = FileTree(GeneratedFolder({}), {"logs": folder})
         pacer = BulkPacer(lambda peer: 1e9)
-        self.server = FtpServer(tree, system=1, component=1, pacer=pacer, allowed=lambda received: allowed)
+        self.server = FtpServer(tree, system=1, component=1, pacer=pacer, allowed=lambda received, now: allowed)
         self._sequence = 0
 
     def ask(self, op: FtpOpcode, data: bytes = b"", *, offset: int = 0, size: int | None = None) -> FtpPacket:

@@ -12,6 +12,7 @@ from dialects.enums import Command, DriveType, Result
 from link.core import LinkReport, Peer
 from link.services.pacing import DEFAULT_RATE
 from tests.vehicle.bench import AHEAD, DRIVER, EVERYTHING, NEUTRAL, Bench
+from tests.vehicle.conversations import conversation
 from vehicle.autonomy.navigator import Navigator
 from vehicle.drive.control import Control
 from vehicle.params import Params
@@ -151,7 +152,7 @@ class Wire:
         return sent / seconds / SIK
 
     def arm(self) -> None:
-        assert self._safety.arm(DRIVER, self.now) == []
+        assert self._safety.arm(conversation(DRIVER), self.now) == []
 
     @property
     def telemetry(self) -> float:

@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega, common
 from dialects import messages as m
 from dialects.enums import Command, Result
 from link.core import RECORDER, Peer
-from link.protocol.channel import MAX_PEERS
+from link.protocol.peer_table import MAX_PEERS
 from tests.vehicle.bench import MESSAGE_IDS
 from tests.vehicle.crowd import Crowd, weight
 from vehicle.storage.logbook import NullLogRecorder

@@ -12,13 +12,15 @@ from groundstation.intents import (
     Arm,
     ClearEmergencyStop,
     Disarm,
+    DriveKeyDown,
     EmergencyStop,
     SetKeyGate,
     StartSimulator,
 )
-from groundstation.snapshot import LinkView
+from groundstation.snapshot import EmergencyProgress, LinkView
+from groundstation.ui.alerts import LIMITS
 from tests.groundstation.held_key import hold_until
-from tests.groundstation.ui.examples import snapshot, vehicle, waiting
+from tests.groundstation.ui.examples import snapshot, vehicle, waiting, wheels
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import until
 
@@ -87,8 +89,8 @@ async def test_with_a_vehicle_enter_starts_nothing() -> None:
 
 
 async def test_a_small_terminal_says_what_it_needs_and_still_stops() -> None:
-    async with console(size=(70, 20)) as screen:
-        assert "needs 80 x 24" in screen.text
+    async with console(size=(39, 12)) as screen:
+        assert "needs 40 x 10" in screen.text
         assert "Rover 1 · MANUAL · ARMED\n" in screen.text
         assert screen.station.of(SetKeyGate)[-1].open is False
         await screen.press("space", "exclamation_mark")
@@ -96,7 +98,7 @@ async def test_a_small_terminal_says_what_it_needs_and_still_stops() -> None:
 
 
 async def test_a_small_terminal_arms_nothing_and_shows_the_state() -> None:
-    async with console(size=(60, 20), picture=DISARMED) as screen:
+    async with console(size=(60, 9), picture=DISARMED) as screen:
         await screen.press("r")
         assert screen.app.gate.hold is None
         with pytest.raises(TimeoutError):
@@ -109,8 +111,38 @@ async def test_a_small_terminal_arms_nothing_and_shows_the_state() -> None:
         assert screen.station.of(Disarm)
 
 
+@pytest.mark.parametrize("size", [(40, 10), (60, 15), (79, 23)])
+async def test_on_the_strip_keys_drive_and_arm_and_what_a_driver_must_see_is_there(size: tuple[int, int]) -> None:
+    async with console(size=size) as screen:
+        assert screen.app.gate.closure is None
+        await screen.press("i")
+        assert screen.station.of(DriveKeyDown)
+        await until(lambda: screen.text.startswith(" ARMED  MANUAL  Rover 1"))
+        for words in ("0.84 m/s", "you drive", "hold i to drive", "stops when you let go", "! E-STOP"):
+            assert words in screen.text
+        await screen.show(DISARMED)
+        await screen.press("r")
+        await until(lambda: "? Arm: hold r" in screen.text)
+        await screen.hold("r", lambda: screen.station.of(Arm))
+        assert screen.text.startswith(" DISARMED  MANUAL")
+
+
+@pytest.mark.parametrize("size", [(40, 10), (60, 15)])
+async def test_the_strip_shows_the_first_alert_and_arming_whatever_else_there_is(size: tuple[int, int]) -> None:
+    bad = vehicle(
+        name="ArduPilot rover 111", armed=True, emergency_stop=True, emergency_progress=EmergencyProgress.UNANSWERED,
+        warnings=tuple(f"SETTING_{number} 0: never stops when the link is lost" for number in range(9)),
+        refusal="mode AUTO denied: no mission", limits=tuple(LIMITS),
+    )  # fmt: skip
+    async with console(size=size, picture=snapshot(vehicle=bad)) as screen:
+        assert screen.text.startswith(" ARMED  E-STOP SENT  MANUAL")
+        flat = " ".join(screen.text.split())
+        assert "EMERGENCY STOP sent, NOT acknowledged, but the vehicle reports ARMED" in flat
+        assert "F6 lists all" in flat
+
+
 async def test_growing_opens_the_gate() -> None:
-    async with console(size=(70, 20)) as screen:
+    async with console(size=(39, 20)) as screen:
         await screen.pilot.resize_terminal(80, 24)
         await until(lambda: screen.app.gate.closure is None)
         await screen.show(snapshot())
@@ -134,7 +166,7 @@ async def test_numbers_that_are_none_do_not_break_the_screen() -> None:
     nan = math.nan
     strange = vehicle(
         position=(nan, math.inf), heading=nan, roll=nan, pitch=math.inf, speed=nan, battery_voltage=nan,
-        battery_remaining=nan, demand=(nan, nan), outputs=(nan, math.inf), command_age=nan, latency=math.inf,
+        battery_remaining=nan, demand=(nan, nan), outputs=wheels(nan, math.inf), command_age=nan, latency=math.inf,
     )  # fmt: skip
     for size in ((80, 24), (140, 45)):
         links = (LinkView(name="x", loss=nan, round_trip=nan),)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.ui.widgets.sticks import Bar, bar_cells, build_bars
+from groundstation.snapshot import OutputView
+from groundstation.ui.widgets.sticks import Bar, StickBars, bar_cells, build_bars
 from tests.groundstation.ui.examples import snapshot, vehicle
+from tests.groundstation.ui.frames import texts
 
 
 @given(st.integers(-100, 100), st.none() | st.integers(-100, 100), st.integers(5, 60))
@@ -15,20 +18,22 @@ def test_a_bar_always_has_its_width(percent: int, obeyed: int | None, width: int
     assert len("".join(part for part, _ in bar_cells(Bar("x", "#ffffff", percent, obeyed), width))) == width
 
 
-def test_a_bar_grows_from_the_middle() -> None:
-    def filled(percent: int) -> list[int]:
-        parts = [
-            (len(part), look.bgcolor.name) for part, look in bar_cells(Bar("x", "#123456", percent), 21) if look.bgcolor
-        ]
-        return [length for length, ground in parts if ground == "#123456"]
-
-    assert filled(0) == [0]
-    assert sum(filled(50)) == 5
-    assert sum(filled(-50)) == 5
-    assert sum(filled(100)) == 10
+@pytest.mark.parametrize(("percent", "full", "where"), [(0, 0, None), (50, 5, 11), (-50, 5, 5), (100, 10, 11)])
+def test_a_bar_grows_from_the_middle(percent: int, full: int, where: int | None) -> None:
+    cells = "".join(part for part, _ in bar_cells(Bar("x", "#123456", percent), 21))
+    assert cells.count("█") == full
+    assert cells[10] == "│"
+    assert where is None or cells.index("█") == where
 
 
-def test_two_motors_are_left_and_right_and_others_are_counted() -> None:
-    assert [bar.label for bar in build_bars(snapshot())] == ["throttle", "steering", "left", "right"]
-    four = snapshot(vehicle=vehicle(outputs=(0.1, 0.2, 0.3, 0.4)))
-    assert [bar.label for bar in build_bars(four)][2:] == ["motor 1", "motor 2", "motor 3", "motor 4"]
+def test_outputs_have_the_names_that_the_station_gives_and_unknown_ones_are_hidden() -> None:
+    assert [bar.label for bar in build_bars(snapshot())] == ["throttle", "steering", "left wheel", "right wheel"]
+    assert len(build_bars(snapshot(vehicle=vehicle(outputs=())))) == 2
+
+
+@pytest.mark.parametrize("width", [40, 42])
+def test_all_bars_begin_in_one_column(width: int) -> None:
+    servos = (OutputView(name="steering servo", value=-0.3), OutputView(name="throttle servo", value=0.0))
+    lines = texts(StickBars(build_bars(snapshot(vehicle=vehicle(outputs=servos)))).draw(width, 4))
+    assert lines[2].startswith("steering servo ")
+    assert len({line.index("│") if "│" in line else 15 + (width - 21 - 1) // 2 for line in lines}) == 1

@@ -1,0 +1,56 @@
+"""View feed: which views the screen watches, and which of them are due. Time is an argument."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from groundstation.views import View, ViewRequest
+
+
+@dataclass(frozen=True, slots=True)
+class ViewSource:
+    """Where the views of one kind of request come from."""
+
+    build: Callable[[Any, float, float], View | None]
+    """Called with the request, the time and the wall clock; None: nothing to show yet, or nothing new."""
+    period: float = 0.2
+    """Least time between two views, s. The first one after a screen opens is due at once."""
+
+
+@dataclass(slots=True)
+class _Watched:
+    """A request of the screen on top."""
+
+    request: ViewRequest
+    due: float = -math.inf
+    sent: View | None = None
+
+
+class ViewFeed:
+    """Answers the newest requests of the screen, one of a kind at a time."""
+
+    def __init__(self, sources: Mapping[type[ViewRequest], ViewSource]) -> None:
+        self._sources = sources
+        self._watched: dict[type[ViewRequest], _Watched] = {}
+
+    def watch(self, requests: Sequence[ViewRequest]) -> None:
+        """Answer these requests from now on and no others. A changed request keeps the rate of its kind."""
+        before, self._watched = self._watched, {}
+        for request in requests:
+            watched = before.get(type(request)) or _Watched(request)
+            if watched.request != request:
+                watched.request, watched.sent = request, None
+            self._watched[type(request)] = watched
+
+    def send_due(self, send: Callable[[View], bool], now: float, wall: float) -> None:
+        """Send the views that are due and have changed. `send` returns False for one that is to be tried again."""
+        for kind, watched in self._watched.items():
+            source = self._sources[kind]
+            if now < watched.due:
+                continue
+            view = source.build(watched.request, now, wall)
+            if view is not None and view != watched.sent and send(view):
+                watched.sent, watched.due = view, now + source.period
