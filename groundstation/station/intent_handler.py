@@ -18,6 +18,7 @@ from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
 from groundstation.station.operator import OperatorSession
+from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewFeed
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.message_log import MessageLog
@@ -51,6 +52,7 @@ class IntentHandler:
         departure: Departure,
         log: MessageLog,
         views: ViewFeed,
+        services: ServiceDesk,
     ) -> None:
         self._operator = operator
         self._fleet = fleet
@@ -59,6 +61,7 @@ class IntentHandler:
         self._departure = departure
         self._log = log
         self._views = views
+        self._services = services
         self._emergency_at = -math.inf
 
     def handle(self, intent: i.AnyIntent, now: float) -> None:
@@ -144,6 +147,12 @@ class IntentHandler:
     def _watch(self, intent: i.Watch, now: float) -> None:
         self._views.watch(intent.requests)
 
+    def _fetch_params(self, intent: i.FetchParams, now: float) -> None:
+        self._services.fetch_params(intent.request, now)
+
+    def _write_params(self, intent: i.WriteParams, now: float) -> None:
+        self._services.write_params(intent.request, intent.system, intent.changes, now)
+
     def _quit(self, intent: i.Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
@@ -185,6 +194,8 @@ HANDLERS: dict[type[i.Intent], Callable[[IntentHandler, Any, float], None]] = {
     i.SelectVehicle: IntentHandler._select,
     i.SelectNextVehicle: IntentHandler._select_next,
     i.Watch: IntentHandler._watch,
+    i.FetchParams: IntentHandler._fetch_params,
+    i.WriteParams: IntentHandler._write_params,
     i.Quit: IntentHandler._quit,
 }
 """Intent -> method, for all that are not commands to a vehicle. StartSimulator is handled in station_process.py."""

@@ -18,11 +18,12 @@ from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.message_rates import MessageRates
 from groundstation.station.operator import OperatorSession
+from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
-from groundstation.views import LogRequest
+from groundstation.views import LogRequest, ParamPageRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -47,19 +48,32 @@ class Station:
         self.log = MessageLog()
         self.operator = OperatorSession(style, speed, session)
         self.fleet = Fleet(self.log, system, COMPONENT)
-        self.views = ViewFeed({LogRequest: ViewSource(self.log.build_page, period=0.1)})
-        """Request -> its source."""
         self._endpoints = tuple(endpoints)
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
+        self._services = ServiceDesk(self.fleet, self._commander, self.log, system, COMPONENT)
+        self.views = ViewFeed(
+            {
+                LogRequest: ViewSource(self.log.build_page, period=0.1),
+                ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
+            }
+        )
+        """Request -> its source."""
         self._driving = DrivingController(self.operator, self.fleet, self._commander, system)
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._intents = IntentHandler(
-            self.operator, self.fleet, self._commander, self._driving, self._departure, self.log, self.views
+            self.operator,
+            self.fleet,
+            self._commander,
+            self._driving,
+            self._departure,
+            self.log,
+            self.views,
+            self._services,
         )
         self._links = LinkStats()
-        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log)
+        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self._services)
         self._timesync = TimesyncClient(system)
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
@@ -83,9 +97,10 @@ class Station:
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
         self._queries.receive(contact, received, now)
+        self._services.receive(contact, received, now)
         match received.message:
             case m.StatusText() as message:
-                self._handle_statustext(message, received.system, now)
+                self._handle_statustext(message, contact, now)
             case m.RoverDriveStatus() as message if message.source_system == self._system:
                 contact.state.latency.record_applied(message.source_seq, now, message.demand_age_ms / 1000)
         if contact is self.fleet.selected:
@@ -101,6 +116,7 @@ class Station:
         self._commander.tick(now)
         if self.operator.live:
             self._queries.tick(now)
+            self._services.tick(now)
         if self.operator.live and not self._driving.ending:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now)
@@ -121,7 +137,10 @@ class Station:
         outbox, self._outbox = self._outbox, []
         demands = self._driving.messages_to_send()
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
-        return demands + commands + self._timesync.messages_to_send() + outbox
+        services = self._services.messages_to_send()  # repeated later if they are dropped here
+        return (
+            demands + commands + self._timesync.messages_to_send() + outbox + (services if self.operator.live else [])
+        )
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
@@ -171,10 +190,11 @@ class Station:
         if self.operator.expire_lease(now):
             self.log.add(now, "station", "screen not responding: neutral, control released", Severity.CRITICAL)
 
-    def _handle_statustext(self, message: m.StatusText, system: int, now: float) -> None:
-        text = self.log.handle_statustext(message, system, now)
+    def _handle_statustext(self, message: m.StatusText, contact: Contact, now: float) -> None:
+        text = self.log.handle_statustext(message, contact.state.system, now)
         if text is not None:
-            self._commander.handle_statustext(system, text, message.severity, now)
+            self._commander.handle_statustext(contact.state.system, text, message.severity, now)
+            self._services.handle_text(contact, text, message.severity, now)
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
         state, commander = contact.state, self._commander

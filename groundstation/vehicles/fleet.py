@@ -12,6 +12,7 @@ from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
 from groundstation.vehicles.message_log import STATE, MessageLog
 from groundstation.vehicles.outputs import ServoFunctions
+from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
 from groundstation.vehicles.vehicle_state import VehicleState
@@ -34,6 +35,8 @@ class Contact:
     servo_functions: ServoFunctions | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
+    services: VehicleServices | None = None
+    """Parameters, plans and files; None before the first request."""
     ours: bool = False
     """This station has armed or driven the vehicle since the vehicle was last disarmed."""
     lost_at: float | None = None
