@@ -332,7 +332,7 @@ _ANSWERS: dict[str, Callable[[ForeignVehicle, Any], None]] = {
 
 def many_params(count: int) -> Iterator[tuple[str, ForeignParam]]:
     """Yield parameters of all ArduPilot types, with names that share beginnings."""
-    kinds = ((2, -128), (4, -3000), (6, 2_000_000_000), (REAL32, 0.1))
+    kinds = ((2, -127), (4, -3000), (6, 2_000_000_000), (REAL32, 0.1))
     for number in range(count):
         kind, value = kinds[number % 4]
         default = None if number % 3 else value - 1
