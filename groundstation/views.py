@@ -35,6 +35,8 @@ class LogPage(View, frozen=True):
     lines: tuple[LogLine, ...]
     state: int
     """State of the log after these lines. A screen that requests the lines after it loses none and gets none twice."""
+    after: int = 0
+    """That of the request: a page for the screen that was open before must not pass for an answer to this one."""
 
 
 class ParamPageRequest(ViewRequest, frozen=True):

@@ -151,8 +151,8 @@ class ConsoleApp(App[int]):
         """Take the newest snapshot; several may wait."""
         snapshot = self._client.receive()
         for view in self._client.pop_views():
-            if isinstance(self.screen, ConsoleScreen):
-                self.screen.show_view(view)
+            if (shown := self._navigator.shown) is not None:
+                shown.show_view(view)
         self._watch()
         if snapshot is not None:
             self._handle_snapshot(snapshot)
@@ -180,9 +180,9 @@ class ConsoleApp(App[int]):
         now = self._display_state()
         if self.drive.is_mounted:
             self.drive.show_state(now)
-        top = self.screen
-        if top is not self.drive and isinstance(top, ConsoleScreen) and top.is_mounted:
-            top.show_state(now)
+        shown = self._navigator.shown
+        if shown is not None and shown is not self.drive and shown.is_mounted:
+            shown.show_state(now)
 
     def _display_state(self) -> DisplayState:
         return DisplayState(

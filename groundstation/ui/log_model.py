@@ -62,6 +62,7 @@ class LogModel:
         self.filter = LogFilter()
         self._lines: list[LogLine] = []
         self._state = 0
+        self._shown: list[LogLine] | None = None
         self._rows: list[LogRow] = []
         self._width = 0
         self._top: tuple[int, int] | None = None
@@ -76,8 +77,9 @@ class LogModel:
 
     def add(self, page: LogPage) -> None:
         """Add the lines of a page; one that was counted again takes the place of the last line."""
-        if page.state <= self._state:
+        if page.after != self._state:  # not the answer to `request`
             return
+        self._shown = None
         self._state = page.state
         for line in page.lines:
             if self._lines and self._lines[-1].number >= line.number:
@@ -91,7 +93,9 @@ class LogModel:
     @property
     def shown(self) -> list[LogLine]:
         """The lines that the filter shows, oldest first."""
-        return [line for line in self._lines if self.filter.matches(line)]
+        if self._shown is None:
+            self._shown = [line for line in self._lines if self.filter.matches(line)]
+        return self._shown
 
     @property
     def count(self) -> int:
@@ -100,7 +104,7 @@ class LogModel:
 
     def set_filter(self, chosen: LogFilter) -> None:
         """Show other lines, the newest first of all."""
-        self.filter, self._top = chosen, None
+        self.filter, self._top, self._shown = chosen, None, None
         self._rows = list(self._wrapped(self._lines))
 
     def set_width(self, width: int) -> None:

@@ -83,11 +83,15 @@ class ScreenNavigator:
         text = top.takes_text if isinstance(top, ConsoleScreen) else not isinstance(top, GoToMenu)
         return TEXT_FIELD if text else OTHER_SCREEN
 
+    @property
+    def shown(self) -> ConsoleScreen | None:
+        """The screen that is visible: the one on top, also under a menu or the palette."""
+        screens = (each for each in reversed(self._app.screen_stack) if isinstance(each, ConsoleScreen))
+        return next(screens, None)
+
     def requests(self) -> tuple[ViewRequest, ...]:
-        """Return the views that the screen on top needs; under a menu or the palette it stays visible."""
-        shown = (each for each in reversed(self._app.screen_stack) if isinstance(each, ConsoleScreen))
-        top = next(shown, None)
-        return top.requests() if top is not None else ()
+        """Return the views that the visible screen needs."""
+        return self.shown.requests() if self.shown is not None else ()
 
     def go_back(self) -> None:
         """Close the screen on top of Drive. Anything else on top, such as the command palette, stays."""

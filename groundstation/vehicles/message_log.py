@@ -127,7 +127,7 @@ class MessageLog:
         lines = list(reversed(list(changed)))[:PAGE]
         if not lines:
             return None
-        return LogPage(tuple(_build_line(line, now, wall) for line in lines), lines[-1].state)
+        return LogPage(tuple(_build_line(line, now, wall) for line in lines), lines[-1].state, request.after)
 
 
 def _build_line(line: _Line, now: float, wall: float) -> LogLine:

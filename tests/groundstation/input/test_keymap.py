@@ -124,7 +124,7 @@ def test_every_binding_names_an_action() -> None:
 
 def test_actions_name_themselves() -> None:
     assert all(key == action.id and action.label and action.help for key, action in ACTIONS.items())
-    assert STANDARD.get_keys("drive.stop") == ("k", "space")
+    assert STANDARD.get_keys("drive.stop") == ("k", "space", "ctrl+k")
     action = STANDARD.get_action("i")
     assert action is not None
     assert action.id == "drive.forward"

@@ -44,11 +44,11 @@ def test_the_newest_lines_are_followed_until_it_is_scrolled() -> None:
     assert texts(made) == [f"line {number}" for number in range(16, 21)]
     made.scroll(-3, HEIGHT)
     assert not made.following
-    made.add(LogPage((line(21), line(22)), 22))
+    made.add(LogPage((line(21), line(22)), 22, after=20))
     assert texts(made)[0] == "line 13"
     made.scroll(10**6, HEIGHT)
     assert made.following
-    made.add(LogPage((line(23),), 23))
+    made.add(LogPage((line(23),), 23, after=22))
     assert texts(made)[-1] == "line 23"
 
 
@@ -57,21 +57,23 @@ def test_a_scrolled_window_stays_on_its_lines_when_old_ones_are_dropped() -> Non
     made.scroll(-(10**6), HEIGHT)
     made.scroll(500, HEIGHT)
     assert texts(made)[0] == "line 501"
-    made.add(LogPage(tuple(map(line, range(KEPT + 1, KEPT + 101))), KEPT + 100))
+    made.add(LogPage(tuple(map(line, range(KEPT + 1, KEPT + 101))), KEPT + 100, after=KEPT))
     assert texts(made)[0] == "line 501"
 
 
 def test_a_repeated_line_takes_the_place_of_the_last_one() -> None:
     made = model(3)
-    made.add(LogPage((line(3, "line 3", count=2), line(4)), 5))
+    made.add(LogPage((line(3, "line 3", count=2), line(4)), 5, after=3))
     assert texts(made) == ["line 1", "line 2", "line 3  ×2", "line 4"]
     assert made.request == LogRequest(5)
 
 
-def test_a_page_that_comes_twice_changes_nothing() -> None:
+def test_a_page_that_comes_twice_or_answers_another_request_changes_nothing() -> None:
     made = model(3)
     made.add(LogPage(tuple(map(line, range(1, 4))), 3))
+    made.add(LogPage((line(9),), 9, after=8))
     assert made.count == 3
+    assert made.request == LogRequest(3)
 
 
 @pytest.mark.parametrize(

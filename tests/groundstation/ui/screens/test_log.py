@@ -47,6 +47,11 @@ async def test_under_the_menu_it_stays_live() -> None:
         await open_log(screen)
         await screen.press("ctrl+g")
         await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100),)))
+        line = LogLine(time=NOON, severity=6, label="vehicle", text="under the menu", number=101)
+        screen.station.offer_view(LogPage((line,), 101, after=100))
+        await screen.show(snapshot(vehicle=vehicle(mode="HOLD")))
+        await until(lambda: "under the menu" in screen.text and " HOLD  ARMED " in screen.text)
+        assert "go to" in screen.text
 
 
 @pytest.mark.parametrize("size", [(80, 24), (140, 45), (60, 15)])
