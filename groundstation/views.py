@@ -71,7 +71,10 @@ class RequestLine(msgspec.Struct, frozen=True):
     """As in the intent that made it."""
     state: str
     """"running", "accepted", "refused", "no answer" or "cancelled"."""
-    text: str
+    what: str
+    """What was requested, e.g. "fetch parameters"."""
+    detail: str = ""
+    """Why it was refused, or what came of it."""
     done: int = 0
     total: int | None = None
 

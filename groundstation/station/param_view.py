@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.param_requests import param_type_name
+from groundstation.vehicles.requests import RequestReport
 from groundstation.views import ParamPage, ParamPageRequest, ParamRow, RequestLine
 from link.services.param.client import Param
 from link.services.param.values import same_float32
@@ -27,11 +28,7 @@ def build_param_page(contact: Contact, request: ParamPageRequest, ended: tuple[R
         known=len(params),
         total=services.params.client.total if services else None,
         has_defaults=any(param.default is not None for param in params.values()),
-        running=tuple(
-            RequestLine(number=each.number, state=each.state.value, text=each.what, done=each.done, total=each.total)
-            for each in running
-            if each.number >= 0
-        ),
+        running=tuple(request_line(report) for report in running if report.number >= 0),
         ended=ended,
     )
 
@@ -57,3 +54,12 @@ def _row(param: Param) -> ParamRow:
         default=param.default,
         changed=is_changed(param),
     )
+
+
+def request_line(report: RequestReport) -> RequestLine:
+    """Return a report for a screen; one that has a reason of the vehicle shows it last."""
+    detail = f"{report.detail}: {report.reason}" if report.reason else report.detail
+    return RequestLine(
+        number=report.number, state=report.state.value, what=report.what, detail=detail, done=report.done,
+        total=report.total,
+    )  # fmt: skip

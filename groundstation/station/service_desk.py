@@ -9,7 +9,7 @@ from collections import deque
 
 from dialects.enums import Command, Severity
 from groundstation.station.commander import Commander
-from groundstation.station.param_view import build_param_page
+from groundstation.station.param_view import build_param_page, request_line
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.param_writer import ParamWriter
@@ -116,10 +116,3 @@ class ServiceDesk:
         self._log.add(now, "ack", f"{name}: {report.text}", _SEVERITIES.get(report.state, Severity.INFO))
         if report.number >= 0:
             self._ended.append(request_line(report))
-
-
-def request_line(report: RequestReport) -> RequestLine:
-    """Return a report for a screen."""
-    return RequestLine(
-        number=report.number, state=report.state.value, text=report.text, done=report.done, total=report.total
-    )

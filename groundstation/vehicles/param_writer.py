@@ -21,6 +21,8 @@ class _Write:
     total: int
     current: int = 0
     """Number of the set under way."""
+    name: str = ""
+    """Its parameter."""
 
 
 class ParamWriter:
@@ -55,7 +57,8 @@ class ParamWriter:
             self._next(write, now)
             return
         self._write = None
-        text = f"{done - 1} of {write.total} are set; {report.text}"
+        self._book.advance(write.number, done - 1, write.total)
+        text = f"{report.reason or f'{write.name}: {report.detail}'} ({done - 1} of {write.total} set)"
         if report.state is RequestState.NO_ANSWER:
             self._book.fail(write.number, text)
         else:
@@ -68,5 +71,5 @@ class ParamWriter:
             return
         name, value = write.left.popleft()
         self._count += 1
-        write.current = -self._count
+        write.current, write.name = -self._count, name
         self._params.set(write.current, name, value, now)

@@ -58,7 +58,7 @@ def test_parameters_are_fetched_with_their_defaults_and_sent_page_by_page(loss: 
     drive = connected(loss)
     assert page(drive).known == 0
     drive.tell(i.FetchParams(1))
-    assert end_of(drive, 1).text == f"fetch parameters: accepted, {len(PARAMETERS)} parameters"
+    assert end_of(drive, 1).detail == f"{len(PARAMETERS)} parameters"
     whole = page(drive)
     assert names(whole) == sorted(PARAMETERS)
     assert (whole.total, whole.has_defaults) == (len(PARAMETERS), True)
@@ -74,7 +74,7 @@ def test_parameters_are_set_one_after_the_other() -> None:
     drive.tell(i.FetchParams(1))
     end_of(drive, 1)
     drive.tell(i.WriteParams(2, 1, (("FS_TIMEOUT", 2.0), ("FS_DISARM_T", 20.0))))
-    assert end_of(drive, 2).text == "set 2 parameters: accepted"
+    assert (end_of(drive, 2).what, end_of(drive, 2).state) == ("set 2 parameters", "accepted")
     changed = page(drive, ParamPageRequest(changed_only=True, rows=10))
     assert [(row.name, row.value, row.default) for row in changed.rows] == [
         ("FS_DISARM_T", 20.0, 30.0),
@@ -90,10 +90,8 @@ def test_a_write_stops_at_the_first_refusal_with_the_vehicles_words() -> None:
     drive.tell(i.WriteParams(7, 1, changes))
     line = end_of(drive, 7)
     assert line.state == "refused"
-    assert line.text == (
-        "set 3 parameters: refused, 1 of 3 are set; set FS_TIMEOUT to 99: refused, the value is out of range, "
-        '"FS_TIMEOUT not changed: 99 is not in 0.5 to 10"'
-    )
+    assert line.detail == "FS_TIMEOUT not changed: 99 is not in 0.5 to 10 (1 of 3 set)"
+    assert (line.done, line.total) == (1, 3)
     assert (drive.params["FS_DISARM_T"], drive.params["FS_GCS_TIMEOUT"]) == (20.0, 5.0)
 
 
@@ -101,7 +99,7 @@ def test_while_armed_the_vehicle_refuses_and_drives_on() -> None:
     drive = connected()
     drive.get_going()
     drive.tell(i.FetchParams(1), i.WriteParams(2, 1, (("FS_TIMEOUT", 3.0),)))
-    assert "FS_TIMEOUT not changed: disarm first" in end_of(drive, 2).text
+    assert "FS_TIMEOUT not changed: disarm first" in end_of(drive, 2).detail
     assert end_of(drive, 1).state == "accepted"
     assert drive.power > 0.5, "requests do not disturb the demand"
     drive.held = None
@@ -128,7 +126,7 @@ def test_a_request_without_the_vehicle_ends_at_once() -> None:
     assert "station: fetch parameters: refused, no vehicle yet" in texts(drive)
     drive = connected()
     drive.tell(i.WriteParams(2, 99, (("FS_TIMEOUT", 3.0),)))
-    assert end_of(drive, 2).text == "set parameters: refused, no vehicle yet"
+    assert end_of(drive, 2).detail == "no vehicle yet"
     drive.run(1.0)
     assert not any(isinstance(message, m.ParamSet) for _, message in drive.world.near.sent)
 
@@ -136,8 +134,8 @@ def test_a_request_without_the_vehicle_ends_at_once() -> None:
 def test_two_requests_at_once() -> None:
     drive = connected()
     drive.tell(i.FetchParams(1), i.FetchParams(2), i.WriteParams(3, 1, ()), i.FetchParams(1))
-    assert end_of(drive, 2).text == "fetch parameters: refused, parameters are being fetched already"
-    assert "there is nothing to set" in end_of(drive, 3).text
+    assert end_of(drive, 2).detail == "parameters are being fetched already"
+    assert "there is nothing to set" in end_of(drive, 3).detail
     drive.until(lambda: not page(drive).running)
 
 
