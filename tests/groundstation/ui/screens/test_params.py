@@ -67,7 +67,7 @@ async def test_progress_is_shown() -> None:
 async def test_only_the_rows_that_fit_are_requested() -> None:
     async with console((80, 24)) as screen:
         await open_params(screen)
-        await until(lambda: screen.station.of(Watch)[-1].requests[0].rows == 18)
+        await until(lambda: screen.station.of(Watch)[-1] == Watch((ParamPageRequest(rows=18),)))
         await screen.press("slash", *"fs")
         await until(lambda: screen.station.of(Watch)[-1] == Watch((ParamPageRequest("fs", rows=17),)))
         await screen.press("enter", "c")
