@@ -173,6 +173,12 @@ class WriteParams(Intent, frozen=True):
     """Names and values."""
 
 
+class CancelRequest(Intent, frozen=True):
+    """Cancel a request; what was set or sent before stays."""
+
+    request: int
+
+
 class Quit(Intent, frozen=True):
     """Send neutral several times and exit."""
 

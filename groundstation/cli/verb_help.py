@@ -9,6 +9,7 @@ VERB_HELP = {
     "rally": "show, get, put or clear the rally points",
     "modes": "print the modes of the vehicle",
     "mode": "change the mode",
+    "reboot": "restart the vehicle",
     "ftp": "ls, get, put, rm or crc files on the vehicle",
     "log": "list or get the logs on the vehicle",
 }

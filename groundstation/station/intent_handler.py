@@ -153,6 +153,9 @@ class IntentHandler:
     def _write_params(self, intent: i.WriteParams, now: float) -> None:
         self._services.write_params(intent.request, intent.system, intent.changes, now)
 
+    def _cancel_request(self, intent: i.CancelRequest, now: float) -> None:
+        self._services.cancel(intent.request, now)
+
     def _quit(self, intent: i.Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
@@ -196,6 +199,7 @@ HANDLERS: dict[type[i.Intent], Callable[[IntentHandler, Any, float], None]] = {
     i.Watch: IntentHandler._watch,
     i.FetchParams: IntentHandler._fetch_params,
     i.WriteParams: IntentHandler._write_params,
+    i.CancelRequest: IntentHandler._cancel_request,
     i.Quit: IntentHandler._quit,
 }
 """Intent -> method, for all that are not commands to a vehicle. StartSimulator is handled in station_process.py."""

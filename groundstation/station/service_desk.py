@@ -52,6 +52,14 @@ class ServiceDesk:
             self._writers[system].write(number, changes, now)
             self._collect(now)
 
+    def cancel(self, number: int, now: float) -> None:
+        """Cancel a request to any vehicle."""
+        for contact in self._fleet:
+            if contact.services is not None:
+                contact.services.cancel(number, now)
+                self._writers[contact.state.system].cancel(number)
+        self._collect(now)
+
     # ---- core ----
 
     def receive(self, contact: Contact, received: Received, now: float) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from groundstation.intents import AnyIntent, FetchParams, WriteParams
+from groundstation.intents import AnyIntent, CancelRequest, FetchParams, WriteParams
 from groundstation.views import ParamPage, ParamPageRequest, ParamRow, RequestLine
 
 MAX_UNDO = 100
@@ -175,6 +175,10 @@ class ParamModel:
         """Return the intent that reads all parameters again."""
         self._count += 1
         return FetchParams(self._count)
+
+    def cancel(self) -> tuple[AnyIntent, ...]:
+        """Return the intents that cancel what runs."""
+        return tuple(CancelRequest(line.number) for line in self.page.running) if self.page else ()
 
     def ask(self, now: float) -> bool:
         """Ask whether to write the pending changes; return whether there are any that are not being written."""

@@ -46,7 +46,7 @@ class CommandRequests:
         queries, self._queries = self._queries, []
         return queries
 
-    def cancel(self, number: int) -> None:
+    def cancel(self, number: int, now: float) -> None:
         """Stop repeating a command. The vehicle may have done it."""
         for command, each in list(self._numbers.items()):
             if each == number:

@@ -39,6 +39,8 @@ class LogRequests:
         if number == self._number:
             self._client.cancel()
             self._number = None
+        elif all(job[0] != number for job in self._jobs):
+            return
         self._jobs = deque(job for job in self._jobs if job[0] != number)
         self._book.cancel(number)
         self._begin_next(now)

@@ -81,7 +81,7 @@ class ParamRequests:
         self._when_settled(lambda later: first(name, later), now)
 
     def cancel(self, number: int, now: float) -> None:
-        """Cancel the fetch of this number."""
+        """Cancel a fetch. A read or set ends by itself within seconds."""
         if number != self._fetch:
             return
         if self._file is not None:

@@ -46,6 +46,12 @@ class ParamWriter:
         self._write = _Write(number, deque(changes), len(changes))
         self._next(self._write, now)
 
+    def cancel(self, number: int) -> None:
+        """Set no further parameters; the one under way may still be set."""
+        if self._write is not None and self._write.number == number:
+            self._write = None
+            self._book.cancel(number)
+
     def handle_report(self, report: RequestReport, now: float) -> None:
         """Go on when a set has ended; end the request when one was not accepted."""
         write = self._write

@@ -55,6 +55,11 @@ class VehicleServices:
         """Take a whole STATUSTEXT of the vehicle."""
         self.book.handle_text(text, severity, now)
 
+    def cancel(self, number: int, now: float) -> None:
+        """Cancel a request."""
+        for service in self._services:
+            service.cancel(number, now)
+
     def tick(self, now: float, *, may_query: bool = True) -> None:
         """Repeat what is overdue, report progress, give up at last.
 

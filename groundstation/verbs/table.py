@@ -13,7 +13,7 @@ from typing import Any
 
 from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import ftp, log, mode, param, plan
+from groundstation.verbs import ftp, log, mode, param, plan, reboot
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
 from link.services.param.values import is_float32
@@ -88,6 +88,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes)},
     "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
                               (("name", {"metavar": "MODE"}),))},
+    "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run)},
     "ftp": {
         "ls": VerbAction("list a folder", ftp.ls, (("path", {"nargs": "?", "default": "/", "metavar": "FOLDER"}),)),
         "get": VerbAction("download a file, resume, and compare its checksum", ftp.get,

@@ -38,6 +38,7 @@ class ParamsScreen(ConsoleScreen):
         ScreenKey("x", "Drop", "Drop the change of the selected parameter"),
         ScreenKey("u", "Undo", "Undo the last change; after a write the old values are changes again"),
         ScreenKey("R", "Read", "Read all parameters again"),
+        ScreenKey("X", "Cancel", "Cancel the reading or writing that runs"),
     )
 
     def __init__(self, context: ScreenContext) -> None:
@@ -177,6 +178,9 @@ class ParamsScreen(ConsoleScreen):
     def _read(self) -> None:
         self._send((self._model.fetch(),))
 
+    def _cancel(self) -> None:
+        self._send(self._model.cancel())
+
     # ---- parts ----
 
     def _send(self, intents: Iterable[AnyIntent]) -> None:
@@ -212,5 +216,6 @@ _ACTIONS = {
     "x": ParamsScreen._drop,
     "u": ParamsScreen._undo,
     "R": ParamsScreen._read,
+    "X": ParamsScreen._cancel,
 }
 """Key -> what it does; ParamsScreen.KEYS has their names."""

@@ -146,3 +146,19 @@ def test_a_vehicle_that_is_only_driven_has_no_services() -> None:
     assert selected.services is None
     assert page(drive).rows == ()
     assert selected.services is None
+
+
+def test_a_request_can_be_cancelled() -> None:
+    drive = connected()
+    drive.tell(i.FetchParams(1))
+    drive.run(0.05)
+    drive.tell(i.CancelRequest(1))
+    assert end_of(drive, 1, within=0.1).state == "cancelled"
+    drive.tell(i.FetchParams(2))
+    assert end_of(drive, 2).state == "accepted"
+    changes = tuple((name, PARAMETERS[name].default * 0.9) for name in ("WP_SPEED", "WP_RADIUS", "SPEED_MAX"))
+    drive.tell(i.WriteParams(3, 1, changes))
+    drive.tell(i.CancelRequest(3))
+    assert end_of(drive, 3).state == "cancelled"
+    drive.run(2.0)
+    assert drive.params["SPEED_MAX"] == PARAMETERS["SPEED_MAX"].default

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.intents import STOP_KEY, FetchParams, SetKeyGate, Stop, Watch, WriteParams
+from groundstation.intents import STOP_KEY, CancelRequest, FetchParams, SetKeyGate, Stop, Watch, WriteParams
 from groundstation.snapshot import Snapshot
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.params import ParamsScreen
@@ -62,6 +62,8 @@ async def test_progress_is_shown() -> None:
         line = RequestLine(1, "running", "fetch parameters", done=610, total=1235)
         await open_params(screen, param_page(running=(line,)))
         await until(lambda: "fetch parameters 610/1235" in screen.text)
+        await screen.press("X")
+        assert screen.station.of(CancelRequest) == [CancelRequest(1)]
 
 
 async def test_only_the_rows_that_fit_are_requested() -> None:
