@@ -30,12 +30,12 @@ from groundstation.ipc import (
     encode,
 )
 from groundstation.sitl import SimulatorControl, free_port
-from groundstation.snapshot import LogLine, OperatorView, Snapshot
+from groundstation.snapshot import Snapshot
 from groundstation.station.crash_neutral import CrashNeutral
+from groundstation.station.crash_snapshot import crash_snapshot
 from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.lasting_alerts import LastingAlerts
 from groundstation.station.station import COMPONENT, Station
-from groundstation.vehicles.message_log import MAX_LENGTH
 from link.endpoint import EndpointError, parse_endpoint
 from link.runner import Runner, open_links
 from link.runtime.event_loop import run_loop
@@ -227,17 +227,6 @@ class StationProcess:
     def _handle_loop_exception(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
         """Handle an exception in a callback of the loop that is not the runner's."""
         self._handle_crash(context.get("exception") or RuntimeError(str(context.get("message"))))
-
-
-def crash_snapshot(last: Snapshot, what: str, wall: float) -> Snapshot:
-    """Return the last snapshot with the reason why no other follows."""
-    line = LogLine(time=wall, severity=Severity.CRITICAL, label="station", text=what[:MAX_LENGTH])
-    stopped = OperatorView(
-        style=last.operator.style,
-        reports_releases=last.operator.reports_releases,
-        gate_reason="station crashed",
-    )
-    return msgspec.structs.replace(last, number=last.number + 1, operator=stopped, texts=(*last.texts, line))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

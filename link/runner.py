@@ -15,6 +15,7 @@ from link.core import Core, LinkReport, Outgoing, Received
 from link.protocol.channel import Channel
 from link.protocol.link_events import LinkEvents
 from link.protocol.log_tap import LogTap
+from link.protocol.sent_frames import SentFrames
 from link.routing.router import Delivery, Router
 from link.transport.transport import Link
 from link.transport.transports import open_transports
@@ -46,6 +47,7 @@ def open_links(
     endpoints: Sequence[str], *, system: int, component: int, wanted: frozenset[int] | None = None
 ) -> list[Link]:
     """Open all endpoints, or none. Raises EndpointError or LinkError. `wanted`: see Channel."""
+    sent = SentFrames()
     return [
         Link(
             transport,
@@ -58,6 +60,7 @@ def open_links(
                 wanted=wanted,
                 target=transport.fixed_address,
                 capacity=transport.capacity,
+                sent=sent,
             ),
         )
         for index, transport in enumerate(open_transports(endpoints))

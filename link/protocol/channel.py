@@ -20,6 +20,7 @@ from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
 from link.protocol.peer import PeerState, count_sources
 from link.protocol.peer_table import PeerTable
+from link.protocol.sent_frames import SentFrames
 from link.protocol.sequence import NEW, FrameOrder
 from link.protocol.stops import find_stops
 
@@ -36,7 +37,7 @@ class Channel:
 
     `system` and `component` (1..255) are ours. `stream`: bytes have no datagram boundaries. `wanted`: message ids that
     the core handles (None: all); others are counted and not decoded. `target`: the address that the user named, for
-    links that send first. `capacity`: bytes/s that the link carries, where known.
+    links that send first. `capacity`: bytes/s that the link carries, where known. `sent`: shared by all channels.
     """
 
     def __init__(
@@ -50,6 +51,7 @@ class Channel:
         wanted: frozenset[int] | None = None,
         target: Hashable | None = None,
         capacity: float | None = None,
+        sent: SentFrames | None = None,
     ) -> None:
         self.name = name
         self.index = index
@@ -57,6 +59,7 @@ class Channel:
         self.log_tap: LogTap | None = None
         """Records every frame that arrives."""
         self._capacity = capacity
+        self._sent = sent or SentFrames()
         self._flow = FlowControl()
         self._stream = stream
         self._wanted = wanted
@@ -112,7 +115,7 @@ class Channel:
             number, system, component, sequence, raw = frame
             sender = (system, component)
             if not system or sender == self.ids:  # component 0 is valid: pymavlink sends it by default
-                self._own_id |= sender == self.ids
+                self._own_id |= sender == self.ids and raw not in self._sent
                 continue
             state.last_seen, state.silent = now, False
             digest = hash(raw)
@@ -144,11 +147,6 @@ class Channel:
             accepted.append(Received(message, system, component, sequence, peer, introduced=False))
         return accepted
 
-    def _handle_radio_status(self, raw: bytes, now: float) -> None:
-        status = codec.decode(RadioStatus.id, payload_of(raw))
-        if isinstance(status, RadioStatus):
-            self._flow.handle_radio_status(status.txbuf, now)
-
     def _is_old(self, order: FrameOrder, frame: Frame) -> bool:
         """Count a repeated or overtaken frame; return whether to drop it.
 
@@ -164,7 +162,7 @@ class Channel:
     def _decode(self, state: PeerState, frame: Frame, now: float) -> Message | None:
         number, system, _, _, raw = frame
         if number == _RADIO_STATUS:
-            self._handle_radio_status(raw, now)
+            self._flow.handle_frame(raw, now)
         if self._wanted is not None and number not in self._wanted:
             return None
         kind = _RATE_CLASS.get(number, "rest")
@@ -195,6 +193,7 @@ class Channel:
             sequence = state.sequence
             state.sequence = (sequence + 1) & 0xFF
             data = codec.frame(number, payload, sequence, *self.ids)
+            self._sent.add(data)
             yield data, state.peer.address, sequence
 
     def _recipients(self, outgoing: Outgoing) -> list[PeerState]:

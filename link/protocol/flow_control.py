@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import math
 
+from dialects import codec
+from dialects.messages import RadioStatus
+from link.protocol.frame import payload_of
+
 DELAY_STEPS: tuple[tuple[int, int, float], ...] = ((0, 19, 0.060), (20, 49, 0.020), (91, 95, -0.020), (96, 100, -0.040))
 """Free buffer in %, from and to -> change in s of the delay between messages, as in ArduPilot's GCS_MAVLINK."""
 MAX_DELAY = 2.0
@@ -20,6 +24,12 @@ class FlowControl:
     def __init__(self) -> None:
         self._delay = 0.0
         self._last_seen = -math.inf
+
+    def handle_frame(self, raw: bytes, now: float) -> None:
+        """Take a frame of RADIO_STATUS."""
+        status = codec.decode(RadioStatus.id, payload_of(raw))
+        if isinstance(status, RadioStatus):
+            self.handle_radio_status(status.txbuf, now)
 
     def handle_radio_status(self, txbuf: int, now: float) -> None:
         """Take a report: the radio's transmit buffer is `txbuf` % free; 255 is "unknown"."""

@@ -97,7 +97,13 @@ class Recorder:
         return self._failure or (SLOW if self.lost else None)
 
     def start(self, open_file: Callable[[], LogFile]) -> None:
-        """Start a new file, opened in the thread; it begins with the current batch. Clears errors."""
+        """Start a new file, opened in the thread; it begins with the current batch. Clears errors.
+
+        The file before ends with the same batch: without it, a drive shorter than PERIOD would leave an empty file.
+        """
+        batch, size = self._batch, self._size
+        self._hand_over()
+        self._batch, self._size = batch.copy(), size
         self.lost, self._failure, self.recording = 0, None, True
         if not self._worker.submit(lambda: self._open(open_file)):
             self._failure = SLOW

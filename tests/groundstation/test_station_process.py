@@ -15,6 +15,7 @@ from dialects import messages as m
 from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, Quit, SetKeyGate, Watch
 from groundstation.ipc import IntentBatch, encode
 from groundstation.snapshot import LogLine, Snapshot
+from groundstation.station_process import LOG_SIZE
 from groundstation.views import LogPage, LogRequest
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.screen import FORWARD, Screen, running, until
@@ -211,3 +212,15 @@ def test_nothing_is_printed_and_the_log_is_written(tmp_path: Path, capfd: pytest
         screen.see(lambda snapshot: snapshot.number > 3)
     assert "invalid packet from the screen" in log_file.read_text()
     assert capfd.readouterr() == ("", "")
+
+
+def test_the_log_file_has_a_bound(tmp_path: Path) -> None:
+    """A full file is kept once, and a new one begun."""
+    log_file = tmp_path / "station.log"
+    log_file.write_bytes(b"earlier\n".ljust(LOG_SIZE, b"."))
+    with Screen(log_file=log_file) as screen:
+        screen.client._pipe.send(b"noise")
+        screen.see(lambda snapshot: snapshot.number > 3)
+    assert log_file.with_name("station.log.1").stat().st_size == LOG_SIZE
+    assert "invalid packet from the screen" in log_file.read_text()
+    assert log_file.stat().st_size < LOG_SIZE / 10

@@ -58,9 +58,12 @@ class Rover:
 
     def is_at(self, place: tuple[float, float], within: float = PATIENCE) -> None:
         """Wait until the true position is near `place` (latitude and longitude)."""
-        north = (place[0] - HOME[0]) * DEGREE
-        east = (place[1] - HOME[1]) * DEGREE * math.cos(math.radians(HOME[0]))
-        self.wait(lambda: math.dist(self._place(), (north, east)) < NEARLY, within, f"{north:.1f}, {east:.1f} m")
+        north, east = _metres(place)
+        self.wait(lambda: self.is_near(place), within, f"{north:.1f}, {east:.1f} m")
+
+    def is_near(self, place: tuple[float, float]) -> bool:
+        """Return whether the true position is near `place` (latitude and longitude)."""
+        return math.dist(self._place(), _metres(place)) < NEARLY
 
     def _place(self) -> tuple[float, float]:
         """Return the true position, m to the north and east of the start."""
@@ -83,6 +86,11 @@ class Rover:
         """Wait until the wheels have stopped."""
         self.wait(self.vehicle.stands, PATIENCE, "the wheels stop")
         self._stood = len(self.vehicle.outputs())
+
+
+def _metres(place: tuple[float, float]) -> tuple[float, float]:
+    """Return m to the north and east of HOME."""
+    return (place[0] - HOME[0]) * DEGREE, (place[1] - HOME[1]) * DEGREE * math.cos(math.radians(HOME[0]))
 
 
 LOSS = 0.1

@@ -112,6 +112,28 @@ def test_a_session_without_an_error_line_and_without_loss(mavproxy: Conversation
     mavproxy.hear("DISARMED")
 
 
+@pytest.mark.parametrize("reposition", [True, False])
+def test_guided_drives_to_a_place(mavproxy: Conversation, rover: Rover, reposition: bool) -> None:
+    """MAVProxy sends DO_REPOSITION, or MISSION_ITEM_INT with current 2 as its older versions do."""
+    place = (HOME[0] + 0.00004, HOME[1])
+    mavproxy.hear("Received .* parameters")
+    mavproxy.ask("status ESTIMATOR_STATUS", r"flags : \d\d")  # the position is known
+    mavproxy.say(f"set guided_use_reposition {reposition}")
+    mavproxy.say("arm throttle")
+    mavproxy.hear("COMPONENT_ARM_DISARM: ACCEPTED")
+    go_to = f"guided {place[0]:.7f} {place[1]:.7f} 0"
+    if not reposition:  # which changes no mode
+        mavproxy.ask(go_to, "TYPE_MISSION: ERROR")
+        assert not rover.vehicle.turning()
+        choose(mavproxy, "GUIDED")
+    mavproxy.ask(go_to, "DO_REPOSITION: ACCEPTED" if reposition else "TYPE_MISSION: ACCEPTED", 5.0)
+    rover.drives()
+    rover.is_at(place)
+    rover.stands()
+    mavproxy.say("disarm")
+    mavproxy.hear("DISARMED")
+
+
 def test_relays_and_servos_do_as_they_are_told(mavproxy: Conversation, rover: Rover) -> None:
     """Of a simulation, which has relays 0 and 1 and servos 9 and 10; 3 is a motor."""
     mavproxy.hear("Received .* parameters", 15)

@@ -10,13 +10,15 @@ import pytest
 
 from dialects.enums import MissionResult
 from tests.e2e.programs import Vehicle
-from tests.interop.conftest import Rover
+from tests.interop.conftest import HOME, Rover
 from tests.interop.script import Script, mavftp, mavparm, mavutil, mavwp
 from tests.ports import free_port
 from vehicle.params import TABLE
 
 pytestmark = pytest.mark.interop
 
+WAYPOINT, GLOBAL_RELATIVE_ALT = 16, 3
+"""MAV_CMD, MAV_FRAME"""
 ROVER_MODES = {"HOLD": 4, "MANUAL": 0}
 
 
@@ -40,6 +42,36 @@ def test_modes_have_their_names_and_the_stick_drives(script: Script, rover: Rove
     rover.stands()  # because no demand arrives any more
     link.arducopter_disarm()
     script.until(lambda: not link.motors_armed())
+
+
+@pytest.mark.parametrize("as_int", [False, True])
+def test_a_mission_item_with_current_2_drives_in_guided_only(script: Script, rover: Rover, as_int: bool) -> None:
+    """As in scripts made for ArduPilot; DroneKit's simple_goto sends the floats, to system and component 0."""
+    link, place = script.link, (HOME[0] + 0.00004, HOME[1])
+
+    def item(current: int) -> int | None:
+        if as_int:
+            x, y = round(place[0] * 1e7), round(place[1] * 1e7)
+            link.mav.mission_item_int_send(1, 1, 0, GLOBAL_RELATIVE_ALT, WAYPOINT, current, 0, 0, 0, 0, 0, x, y, 0)
+        else:
+            link.mav.mission_item_send(0, 0, 0, GLOBAL_RELATIVE_ALT, WAYPOINT, current, 0, 0, 0, 0, 0, *place, 0)
+        ack = script.hear("MISSION_ACK", within=1.0)
+        return None if ack is None else int(ack.type)
+
+    script.until(lambda: "GLOBAL_POSITION_INT" in link.messages)
+    link.set_mode("MANUAL")
+    script.until(lambda: link.flightmode == "MANUAL")
+    link.arducopter_arm()
+    script.until(link.motors_armed)
+    assert item(2) == MissionResult.ERROR
+    assert not rover.vehicle.turning()
+    link.set_mode("GUIDED")
+    script.until(lambda: link.flightmode == "GUIDED")
+    script.insist(lambda: None, lambda: item(2) == MissionResult.ACCEPTED)
+    script.until(rover.vehicle.turning)
+    assert item(3) == MissionResult.UNSUPPORTED
+    script.until(lambda: rover.is_near(place))
+    script.until(rover.vehicle.stands)
 
 
 def test_parameters_and_files(script: Script) -> None:

@@ -10,7 +10,7 @@ from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
 from link.core import Received
 from link.services.mission.commit import NullPlanWrite, PendingPlanWrite
-from link.services.mission.items import ItemRule, Items, MissionItem, PlanRules, PositionRule
+from link.services.mission.items import ItemRequest, ItemRule, Items, MissionItem, PlanRules, PositionRule
 from link.services.mission.server import MissionServer
 from link.services.pacing import BulkPacer
 from tests.link.services_world import from_gcs, messages
@@ -73,6 +73,8 @@ class Vehicle:
     stayed: list[tuple[MissionType, int, str | None]] = field(default_factory=list)
     unfits: list[tuple[MissionType, int | None, MissionResult]] = field(default_factory=list)
     selected: list[int] = field(default_factory=list)
+    requests: list[tuple[ItemRequest, MissionItem]] = field(default_factory=list)
+    """Items that were no part of a plan."""
     at: int = 0
     pacer: BulkPacer | None = None
 
@@ -107,6 +109,12 @@ class Vehicle:
     def set_current_item(self, sequence: int, received: Received, now: float) -> None:
         self.selected.append(sequence)
         self.at = sequence
+
+    def handle_item_request(
+        self, request: ItemRequest, item: MissionItem, received: Received, now: float
+    ) -> MissionResult:
+        self.requests.append((request, item))
+        return self.verdict
 
     def build_mission_current(self) -> m.MissionCurrent:
         return m.MissionCurrent(self.at)

@@ -13,10 +13,14 @@ import pytest
 
 from dialects.messages import Heartbeat, ManualControl, Message
 from link.core import LinkReport, Outgoing, Received
+from link.protocol.log_tap import LogTap
 from link.runner import Runner, open_links
 from tests.link.frames import demand, heartbeat
 from tests.link.ports import Cable
 from tests.ports import free_port
+
+VEHICLE = 1
+"""System id."""
 
 
 class Recorder:
@@ -227,3 +231,31 @@ async def test_a_message_that_cannot_be_encoded_is_logged_once(caplog: pytest.Lo
     assert len(logged) == 1
     assert "HEARTBEAT" in logged[0].message
     assert logged[0].exc_info is None  # one line, no traceback
+
+
+async def test_frames_that_a_program_with_two_links_hands_back_are_no_other_system() -> None:
+    """A ground station forwards what arrives on one link to the other, until it has seen the vehicle there as well."""
+    ports = free_port(), free_port()
+    runners: list[Runner] = []
+    returned: list[bytes] = []
+
+    def frames_arrived(_: float, frames: Sequence[bytes]) -> None:
+        returned.extend(frame for frame in frames if frame[5] == VEHICLE)
+
+    def beat(core: Recorder) -> bool:
+        core.outbox.append(Outgoing(Heartbeat(10, 0, 0, 0, 3, 3)))
+        if len(core.reports) > 1 and len(core.received) > 20:
+            for runner in runners:
+                runner.stop()
+        return False
+
+    cores = []
+    for name, system in (("udpin", VEHICLE), ("udpout", 255)):
+        links = open_links([f"{name}:127.0.0.1:{port}" for port in ports], system=system, component=1)
+        tap = LogTap(frames_arrived, system=9, component=1) if system == VEHICLE else None
+        cores.append(Recorder(beat, runners))
+        runners.append(Runner(cores[-1], links, period=0.01, log_tap=tap))
+    async with asyncio.timeout(60):
+        await asyncio.gather(*(runner.run() for runner in runners))
+    assert returned
+    assert not any(report.own_id for core in cores for reports in core.reports for report in reports)

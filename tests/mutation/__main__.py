@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import sys
 import tempfile
 import time
@@ -30,14 +31,20 @@ LIMIT = 2.0
 """s of tests to run against a mutant: behaviour that takes longer to test needs a test of its own."""
 
 
+MISSING = "the package coverage is missing: pip install -e '.[test,mutation]'"
+
+
 def main() -> int:
-    """Run the program; return 1 if survivors and explanations differ, 2 if the tests fail on unchanged code."""
+    """Run the program; return 1 if survivors and explanations differ, 2 if it cannot run or tests fail unchanged."""
     args = _parse()
     mutants = [mutant for path in _modules(args.paths) for mutant in build_mutants(path)]
     mutants = [mutant for mutant in mutants if args.only in f"{mutant.function}: {mutant.text}"]
     if args.list:
         print(*map(describe, mutants), sep="\n")
         return 0
+    if importlib.util.find_spec("coverage") is None:  # it is imported in a child only
+        print(f"tests.mutation: {MISSING}", file=sys.stderr)
+        return 2
     return _run(sorted(mutants, key=lambda mutant: not mutant.function), args)
 
 

@@ -26,16 +26,36 @@ class Baseline:
     failed: list[str]
 
 
+class BaselineError(Exception):
+    """The child has ended without a result; the message is one line."""
+
+
 def measure(items: Sequence[pytest.Item], paths: set[str]) -> Baseline:
-    """Run the tests in a child, under coverage of the modules at `paths`."""
-    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-        os.waitpid(fork(lambda at: _save(at, _run_under_coverage(items, paths)), Path(folder)), 0)
-        baseline: Baseline = pickle.loads((Path(folder) / "baseline").read_bytes())
+    """Run the tests in a child, under coverage of the modules at `paths`. Raises BaselineError."""
+    with tempfile.TemporaryDirectory(prefix="mutants-") as name:
+        folder = Path(name)
+        _, status = os.waitpid(fork(lambda at: _measure_to(at, items, paths), folder), 0)
+        if not (folder / "baseline").exists():
+            raise BaselineError(f"the child that runs the tests {_describe_end(folder, status)}")
+        baseline: Baseline = pickle.loads((folder / "baseline").read_bytes())
         return baseline
 
 
-def _save(folder: Path, baseline: Baseline) -> None:
-    (folder / "baseline").write_bytes(pickle.dumps(baseline))
+def _measure_to(folder: Path, items: Sequence[pytest.Item], paths: set[str]) -> None:
+    """Write the results to a file in `folder`, or the exception that ended the run."""
+    try:
+        result = pickle.dumps(_run_under_coverage(items, paths))
+    except BaseException as error:
+        (folder / "exception").write_text(" ".join(f"{type(error).__name__}: {error}".split()))
+        raise
+    (folder / "baseline").write_bytes(result)
+
+
+def _describe_end(folder: Path, status: int) -> str:
+    code = os.waitstatus_to_exitcode(status)
+    if (folder / "exception").exists():
+        return f"raised {(folder / 'exception').read_text()}"
+    return f"was ended by signal {-code}" if code < 0 else f"exited with code {code}"
 
 
 def _run_under_coverage(items: Sequence[pytest.Item], paths: set[str]) -> Baseline:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutation.baseline import Baseline, measure
+from tests.mutation.baseline import Baseline, BaselineError, measure
 from tests.mutation.child import KILLED, SURVIVED, Watch, fork, run_files, run_items
 from tests.mutation.loading import Functions, find_functions, replace_function, replace_module
 from tests.mutation.mutants import Mutant, unchanged
@@ -69,7 +69,11 @@ class Runner:
         self._functions = find_functions()
         gc.collect()
         gc.freeze()  # a collection in a child would copy the memory of the parent
-        self.baseline = measure(session.items, {mutant.path for mutant in self._mutants})
+        try:
+            self.baseline = measure(session.items, {mutant.path for mutant in self._mutants})
+        except BaselineError as error:
+            self.baseline.failed.append(str(error))
+            return True
         self.baseline.failed.extend(self._check())
         for mutant in () if self.baseline.failed else self._mutants:
             while len(self._running) >= self._jobs:

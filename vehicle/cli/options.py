@@ -171,7 +171,9 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "--state": {"metavar": "FOLDER", "help": "save parameters and plans there; without it a simulation saves none"},
     "--tlog": {"metavar": "FOLDER", "help": "record each drive there (default: logs in the folder of --state)"},
     "--motor-log": {"metavar": "FILE", "help": "append each change of the motors: CLOCK_MONOTONIC ns, throttles"},
-    "--log-file": {"metavar": "FILE", "help": "append the log with times and tracebacks; stderr has the brief one"},
+    "--log-file": {"metavar": "FILE",
+                   "help": "append the log with times and tracebacks; stderr has the brief one. At 10 MB it becomes "
+                   "FILE.1, and a new one begins"},
     "--verbose": {"action": "store_true", "help": "log more details"},
     "--version": {"action": _Version, "nargs": 0, "help": "show the version and exit"},
 }  # fmt: skip

@@ -19,6 +19,7 @@ from vehicle.commands.context import COMPONENT, Context, Reporting
 from vehicle.commands.demands import DemandMessages
 from vehicle.commands.fence import FenceCommands
 from vehicle.commands.files import FileServices
+from vehicle.commands.go_to import GoToItems
 from vehicle.commands.guided import GuidedCommands
 from vehicle.commands.inbound import Effect, InboundMessage, InboundTable
 from vehicle.commands.mission import MissionService
@@ -56,7 +57,8 @@ class Dispatcher:
         arming, guided = ArmingCommands(context), GuidedCommands(context)
         origin, fence = OriginCommands(context, reporting), FenceCommands(context)
         do_tables = (*guided.commands(), *fence.commands(), *self._accessories.commands())
-        self._mission = MissionService(context, do_items(do_tables), stores.plans)
+        go_to = GoToItems(context, guided.drive_to)
+        self._mission = MissionService(context, do_items(do_tables), go_to.handle, stores.plans)
         self._files = FileServices(context, self.logbook, self._mission.folder())
         requests = MessageRequests(reporting, self._files.message_builders())
         storage = PreflightStorage(context, self._params, self._mission)

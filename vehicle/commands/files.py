@@ -58,7 +58,7 @@ class FileServices:
             InboundMessage(m.LogRequestList, Access.CONNECTED, "LOG_ENTRY for each log", serve),
             InboundMessage(m.LogRequestData, Access.CONNECTED, "LOG_DATA", serve),
             InboundMessage(m.LogRequestEnd, Access.CONNECTED, "ends LOG_DATA", serve),
-            InboundMessage(m.LogErase, Access.DRIVER_OR_UNCLAIMED, "erases the logs while disarmed", serve,
+            InboundMessage(m.LogErase, Access.DRIVER, "erases the logs while disarmed", serve,
                            checks_sender=True),
         )  # fmt: skip
 

@@ -108,6 +108,17 @@ class GuidedCommands:
             self._texts.reply_once(key, received, Severity.WARNING, text, now)
             return
         self._texts.reset_once("setpoint")
+        self._use(target, now)
+
+    def drive_to(self, message: m.SetPositionTargetGlobalInt, received: Received, now: float) -> str | None:
+        """Put a position setpoint without a clock in force; return why it is refused, or None."""
+        target = self._rejection(received, now) or self._target(message)
+        if isinstance(target, SetpointRejection):
+            return target.reason
+        self._use(target, now)
+        return None
+
+    def _use(self, target: Target, now: float) -> None:
         self._navigator.set_target(target, now)
         self._safety.confirm_autonomy()
         self._navigator.step(self._safety, now)

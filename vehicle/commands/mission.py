@@ -6,7 +6,7 @@ The protocol itself is link/services/mission/server.py.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from dialects import messages as m
 from dialects.enums import Command, MissionResult, MissionType, Result, Severity
@@ -17,15 +17,15 @@ from link.services.command.server import CommandReply
 from link.services.ftp.files import Folder
 from link.services.mission.commit import PendingPlanWrite, PlanChange
 from link.services.mission.files import PlanFolder
-from link.services.mission.items import Items, MissionItem, describe_rejection
+from link.services.mission.items import ItemRequest, Items, MissionItem, describe_rejection
 from link.services.mission.server import MissionServer
 from vehicle.autonomy.mission.item_reached import ItemReachedSender
-from vehicle.autonomy.mission.rules import DoItem, plan_rules
+from vehicle.autonomy.mission.rules import DoItem, find_unsupported_items, plan_rules
 from vehicle.autonomy.navigator import PlanIds
 from vehicle.commands.access import Access, CommandResult
 from vehicle.commands.command_table import CommandSpec, CommandTable
 from vehicle.commands.context import Context
-from vehicle.commands.inbound import InboundMessage, InboundTable, from_server
+from vehicle.commands.inbound import Effect, InboundMessage, InboundTable, from_server
 from vehicle.navigation.fence import find_ineffective_items
 from vehicle.storage.plan_store import PlanStore
 from vehicle.telemetry.build_navigation import mission_state
@@ -35,12 +35,21 @@ REMIND_PERIOD = 30.0
 CURRENT_ITEM = -1
 """Sequence of DO_SET_MISSION_CURRENT that keeps the current item."""
 
+HandleItemRequest = Callable[[ItemRequest, MissionItem, Received, float], MissionResult]
+
 
 class MissionService:
     """Owns the mission server and is its `link.services.mission.server.MissionBackend`."""
 
-    def __init__(self, context: Context, do_items: Mapping[int, DoItem], store: PlanStore | None = None) -> None:
-        """Without a `store`, plans end with the program."""
+    def __init__(
+        self,
+        context: Context,
+        do_items: Mapping[int, DoItem],
+        handle_item_request: HandleItemRequest,
+        store: PlanStore | None = None,
+    ) -> None:
+        """Without a `store`, plans end with the program. `handle_item_request` takes items that are in no plan."""
+        self.handle_item_request = handle_item_request
         self._safety = context.safety
         self._control = context.control
         self._access = context.access
@@ -51,6 +60,8 @@ class MissionService:
         self._damage: dict[MissionType, str] = {}
         self._remind_due = -math.inf
         self._notices: list[str] = []
+        self._changes: list[str] = []
+        self._sizes = dict.fromkeys(MissionType, 0)
         self._rules = plan_rules(do_items)
         self._reached = ItemReachedSender()
         system, component = context.ids
@@ -77,15 +88,16 @@ class MissionService:
         writes = (
             (m.MissionCount, "starts an upload: MISSION_REQUEST_INT"),
             (m.MissionWritePartialList, "starts an upload of a part"),
-            (m.MissionItemInt, "item of an upload"),
-            (m.MissionItem, "item of an upload"),
             (m.MissionClearAll, "clears one plan or all"),
             (m.MissionSetCurrent, "chooses the next item: MISSION_CURRENT"),
         )
+        items = (m.MissionItemInt, m.MissionItem)
+        item = "item of an upload; current 2: drives there in GUIDED"
         serve = from_server(self._server.receive)
         return (
             *(InboundMessage(message, Access.CONNECTED, text, serve) for message, text in reads),
             *(InboundMessage(message, Access.DRIVER_OR_UNCLAIMED, text, serve) for message, text in writes),
+            *(InboundMessage(message, Access.DRIVER_OR_UNCLAIMED, item, serve, Effect.MOTION) for message in items),
             InboundMessage(m.MissionAck, Access.INTRODUCED, "ends an upload of its sender", serve),
         )
 
@@ -155,11 +167,15 @@ class MissionService:
         return self._store.save(kind, items)
 
     def handle_plan_changed(self, kind: MissionType, items: Items) -> None:
-        """Put a plan in force."""
+        """Put a plan in force, and report it to all: it may be another ground station's."""
         self._damage.pop(kind, None)
+        if items or self._sizes[kind]:
+            self._changes.append(
+                f"{kind.name.capitalize()} " + (f"changed, items: {len(items)}" if items else "cleared")
+            )
         self._apply(kind, items)
         if kind is MissionType.MISSION:
-            self._notices += self._find_unsupported_items(items)
+            self._notices += find_unsupported_items(items, self._do_items)
         elif kind is MissionType.FENCE:
             self._notices += find_ineffective_items(items)
 
@@ -201,6 +217,7 @@ class MissionService:
 
     def _apply(self, kind: MissionType, items: Items) -> None:
         navigator = self._navigator
+        self._sizes[kind] = len(items)
         navigator.set_plan_ids(PlanIds(**{each.name.lower(): self._server.plan_id(each) for each in self._rules}))
         if kind is MissionType.MISSION:
             self._reached.reset()
@@ -223,21 +240,12 @@ class MissionService:
             self._texts.send_once(f"plans {self._store.problem}", Severity.WARNING, text, now)
 
     def _send_notices(self, now: float) -> None:
+        for text in self._changes:
+            self._texts.send_change(Severity.NOTICE, text, now)
+        self._changes.clear()
         for text in self._notices:
             self._texts.send(Severity.WARNING, text, now)
         self._notices.clear()
-
-    def _find_unsupported_items(self, items: Items) -> list[str]:
-        """Report items that will be skipped: a plan of another vehicle runs without them, as in ArduPilot."""
-        found = {
-            number: reason
-            for number, item in enumerate(items)
-            if item.command in self._do_items and (reason := self._do_items[item.command].unsupported_reason(item))
-        }
-        if not found:
-            return []
-        numbers, reasons = ", ".join(map(str, found)), ", ".join(dict.fromkeys(found.values()))
-        return [f"Mission: no accessory for items {numbers}, will be skipped: {reasons}"]
 
     def _notify_rejected_file(self, kind: MissionType, why: str) -> None:
         self._notices.append(f"{kind.name.capitalize()} file rejected: {why}")

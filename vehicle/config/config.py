@@ -47,7 +47,7 @@ class LogSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Log files. The brief log always goes to stderr, and for a service to the journal."""
 
     file: str | None = None
-    """Append the log to this file, with times and tracebacks."""
+    """Append the log to this file, with times and tracebacks. At 10 MB it becomes FILE.1, and a new one begins."""
     verbose: bool = False
     """Log more details."""
     motors: str | None = None

@@ -10,14 +10,20 @@ import logging
 import os
 import queue
 import threading
+from collections.abc import Callable
+from functools import partial
 from typing import ClassVar
 
 from link.runtime import journald
+from vehicle.runtime.log_file import LogFile
 
 QUEUE_LINES = 1000
 """Size of the queue: more than the lines of a start and an end."""
 DRAIN = 1.0
 """s that the end of the program waits for the last lines."""
+
+_Write = Callable[[bytes], object]
+"""Writes a line; may raise OSError."""
 
 
 class _Brief(logging.Formatter):
@@ -38,16 +44,16 @@ class _Brief(logging.Formatter):
 
 
 class _Queued(logging.Handler):
-    """Puts formatted lines in the queue, with the descriptor to write to."""
+    """Puts formatted lines in the queue, with what writes them."""
 
-    def __init__(self, lines: queue.Queue[tuple[int, bytes] | None], descriptor: int) -> None:
+    def __init__(self, lines: queue.Queue[tuple[_Write, bytes] | None], write: _Write) -> None:
         super().__init__()
         self._lines = lines
-        self._descriptor = descriptor
+        self._write = write
 
     def emit(self, record: logging.LogRecord) -> None:
         try:
-            self._lines.put_nowait((self._descriptor, (self.format(record) + "\n").encode(errors="backslashreplace")))
+            self._lines.put_nowait((self._write, (self.format(record) + "\n").encode(errors="backslashreplace")))
         except queue.Full:
             return  # the newest line is lost
 
@@ -57,13 +63,11 @@ class DaemonLog:
 
     def __init__(self, path: str | None = None, *, verbose: bool = False) -> None:
         """Start logging, also to the file `path` with times and tracebacks. Raises OSError if it cannot be opened."""
-        self._lines: queue.Queue[tuple[int, bytes] | None] = queue.Queue(QUEUE_LINES)
-        self._handlers = [self._handler(journald.STDERR, _Brief())]
+        self._lines: queue.Queue[tuple[_Write, bytes] | None] = queue.Queue(QUEUE_LINES)
+        self._handlers = [self._handler(partial(os.write, journald.STDERR), _Brief())]
         if path is not None:
-            # Non-blocking: opening a pipe without a reader would block.
-            flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC | os.O_NONBLOCK
             full = logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s")
-            self._handlers.append(self._handler(os.open(path, flags, 0o644), full))
+            self._handlers.append(self._handler(LogFile(path).write, full))
         root = logging.getLogger()
         root.setLevel(logging.DEBUG if verbose else logging.INFO)
         for handler in self._handlers:
@@ -81,15 +85,15 @@ class DaemonLog:
             return
         self._thread.join(DRAIN)
 
-    def _handler(self, descriptor: int, formatter: logging.Formatter) -> logging.Handler:
-        handler = _Queued(self._lines, descriptor)
+    def _handler(self, write: _Write, formatter: logging.Formatter) -> logging.Handler:
+        handler = _Queued(self._lines, write)
         handler.setFormatter(formatter)
         return handler
 
     def _write(self) -> None:
         while (item := self._lines.get()) is not None:
-            descriptor, line = item
+            write, line = item
             try:
-                os.write(descriptor, line)
+                write(line)
             except OSError:
                 continue  # the terminal is closed or the disk is full: the error cannot be reported

@@ -6,7 +6,7 @@ starts at boot, in a log of its own. A vehicle that cannot record reports it and
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from typing import Protocol
 
@@ -99,6 +99,8 @@ class Logbook:
         self._open = False
         self._until = float("-inf")
         self._opening: Iterator[m.Message] = iter(())
+        self._removed: list[str] = []
+        """Names of the logs that were removed by FTP and not reported yet."""
 
     @property
     def is_healthy(self) -> bool | None:
@@ -120,6 +122,7 @@ class Logbook:
         elif self._open and not wanted:
             self.recording.stop()
         self._open, self._was_armed = bool(wanted), armed
+        self._report_removed(now)
         self.recording.tick(now)
         return [Outgoing(message, RECORDER) for message in islice(self._opening, PARAMS_PER_CYCLE)]
 
@@ -130,14 +133,12 @@ class Logbook:
             self._texts.send_once(f"{_KEY} {problem}", Severity.WARNING, f"Log: {problem}", now)
 
     def folder(self) -> Folder:
-        """Return the logs for MAVLink FTP, where files may be removed while disarmed."""
-        return _Logs(self.recording.folder, self._safety)
+        """Return the logs for MAVLink FTP, whose server checks the sender as well."""
+        return _Logs(self.recording.folder, self._removal_denial_reason, self._removed.append)
 
     def handle_log_erase(self, received: Received, now: float) -> None:
         """Handle LOG_ERASE: remove all logs, for the ground station in control and while disarmed."""
-        denial = self._control.ownership.denial_reason(received, now) or (
-            "disarm first" if self._safety.armed else None
-        )
+        denial = self._control.ownership.denial_reason(received, now) or self._removal_denial_reason()
         if not received.introduced:
             denial = "its HEARTBEAT is missing"
         if denial is not None:
@@ -146,6 +147,17 @@ class Logbook:
             return
         self.recording.remove_all()
         self._texts.send(Severity.NOTICE, f"Logs erased by GCS {received.system}", now)
+
+    def _report_removed(self, now: float) -> None:
+        for name in self._removed:
+            self._texts.send_change(Severity.NOTICE, f"Log {name} removed by GCS {self._control.ownership.owner}", now)
+        self._removed.clear()
+
+    def _removal_denial_reason(self) -> str | None:
+        """Return why nobody may remove logs now, or None: what is removed is lost, so somebody must be in control."""
+        if not self._control.ownership.owner:
+            return "no GCS is in control, request it first"
+        return "disarm first" if self._safety.armed else None
 
     def _values(self) -> Iterator[m.Message]:
         count = len(self._params)
@@ -157,11 +169,14 @@ _KEY = "recording"
 
 
 class _Logs(ReadOnlyFolder):
-    """The logs as a `link.services.ftp.files.Folder`: read-only; files may be removed while disarmed."""
+    """The logs as a `link.services.ftp.files.Folder`: read-only, but files may be removed."""
 
-    def __init__(self, logs: Folder, safety: Safety) -> None:
+    def __init__(
+        self, logs: Folder, removal_denial_reason: Callable[[], str | None], on_removed: Callable[[str], None]
+    ) -> None:
         self._logs = logs
-        self._safety = safety
+        self._removal_denial_reason = removal_denial_reason
+        self._on_removed = on_removed
 
     def entries(self) -> Sequence[Entry]:
         return self._logs.entries()
@@ -170,4 +185,9 @@ class _Logs(ReadOnlyFolder):
         return self._logs.open(name, query)
 
     def remove(self, name: str) -> FtpError | None:
-        return FtpError.PROTECTED if self._safety.armed else self._logs.remove(name)
+        if self._removal_denial_reason() is not None:
+            return FtpError.PROTECTED
+        error = self._logs.remove(name)
+        if error is None:
+            self._on_removed(name)
+        return error

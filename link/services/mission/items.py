@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import Enum
+from enum import Enum, IntEnum
 
 from dialects import messages as m
-from dialects.enums import MissionResult
+from dialects.enums import MissionResult, MissionType
 
 DEGREES_SCALE = 1e7
 """Degrees x this are `x` and `y` of MISSION_ITEM_INT in global frames."""
@@ -60,6 +60,18 @@ class MissionItem:
 
 Items = tuple[MissionItem, ...]
 """A plan."""
+
+
+class ItemRequest(IntEnum):
+    """`current` of MISSION_ITEM(_INT) that is no part of a plan but a request, an extension of ArduPilot.
+
+    DroneKit's simple_goto, Mission Planner and older scripts send it. MAVLink itself knows 0 and 1 only.
+    """
+
+    DRIVE_TO = 2
+    """Drive to the position now, in GUIDED."""
+    CHANGE_ALTITUDE = 3
+    """Change the altitude of the present target."""
 
 
 class PositionRule(Enum):
@@ -152,6 +164,13 @@ def _bad_place(item: MissionItem, place: PositionRule) -> MissionResult | None:
     if abs(item.latitude) > MAX_LATITUDE:
         return MissionResult.INVALID_X
     return MissionResult.INVALID_Y if abs(item.longitude) > MAX_LONGITUDE else None
+
+
+def item_request(message: m.MissionItem | m.MissionItemInt) -> ItemRequest | None:
+    """Return what an item requests, or None if it is a part of a plan."""
+    if message.mission_type != MissionType.MISSION:
+        return None
+    return next((request for request in ItemRequest if request == message.current), None)
 
 
 def from_message(message: m.MissionItem | m.MissionItemInt) -> MissionItem:

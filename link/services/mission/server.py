@@ -9,7 +9,6 @@ interprets and saves plans; the final MISSION_ACK waits for that (commit.py). Do
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 from dialects import messages as m
@@ -17,13 +16,10 @@ from dialects.enums import MissionResult, MissionType
 from link.core import Outgoing, Received
 from link.services.mission.commit import PlanBackend, PlanChange, PlanChanges
 from link.services.mission.download import PlanDownloads
-from link.services.mission.items import Items, MissionItem, PlanRules
+from link.services.mission.items import ItemRequest, Items, MissionItem, PlanRules, from_message, item_request
 from link.services.mission.plans import PlanTable
-from link.services.mission.upload import PlanUpload, Sender, ack, sender_of
+from link.services.mission.upload import EndedUpload, PlanUpload, Sender, ack, sender_of
 from link.services.pacing import BulkPacer
-
-REPEAT_WINDOW = 10.0
-"""s in which the last item, repeated because our MISSION_ACK was lost, is acknowledged again."""
 
 _Begin = m.MissionCount | m.MissionWritePartialList | m.MissionClearAll
 _Item = m.MissionItem | m.MissionItemInt
@@ -51,18 +47,13 @@ class MissionBackend(PlanBackend, Protocol):
     def set_current_item(self, sequence: int, received: Received, now: float) -> None:
         """Continue with this item of the mission, or report why not."""
 
+    def handle_item_request(
+        self, request: ItemRequest, item: MissionItem, received: Received, now: float
+    ) -> MissionResult:
+        """Handle an item that is no part of a plan; return the result for its MISSION_ACK."""
+
     def build_mission_current(self) -> m.MissionCurrent:
         """Return MISSION_CURRENT."""
-
-
-@dataclass(frozen=True, slots=True)
-class _EndedUpload:
-    """The end of an upload, to be acknowledged again when the MISSION_ACK got lost."""
-
-    sender: Sender
-    last: int
-    at: float
-    ack: Outgoing
 
 
 class MissionServer:
@@ -86,7 +77,7 @@ class MissionServer:
             self._plans, pacer or BulkPacer(), lambda: int(backend.build_mission_current().seq)
         )
         self._uploads: dict[MissionType, PlanUpload] = {}
-        self._ended: dict[MissionType, _EndedUpload] = {}
+        self._ended: dict[MissionType, EndedUpload] = {}
         self._now = 0.0
         """Time of the last tick."""
 
@@ -134,9 +125,7 @@ class MissionServer:
 
     def receive(self, received: Received, now: float) -> list[Outgoing]:
         """Answer one message; nothing if it is not for us or its sender may not ask."""
-        message = received.message
-        target = (getattr(message, "target_system", None), getattr(message, "target_component", None))
-        if not received.may_ask or target[0] != self._ids[0] or target[1] not in (0, self._ids[1]):
+        if not received.may_ask or not self._is_target(received.message):
             return []
         answer = self._downloads.receive(received)
         if answer is not None:
@@ -154,6 +143,12 @@ class MissionServer:
             else:
                 outgoing += upload.repeat_request(now)
         return outgoing
+
+    def _is_target(self, message: m.Message) -> bool:
+        """Return whether a message is for us. A request may go to all systems, as DroneKit's simple_goto does."""
+        system, component = getattr(message, "target_system", None), getattr(message, "target_component", None)
+        to_all = system == 0 and isinstance(message, _Item) and item_request(message)
+        return bool(system == self._ids[0] or to_all) and component in (0, self._ids[1])
 
     def _handle_write(self, received: Received, now: float) -> list[Outgoing]:
         match received.message:
@@ -234,9 +229,13 @@ class MissionServer:
         sender, kind = sender_of(received), self._plans.kind(message.mission_type)
         if kind is None:
             return []
+        if request := item_request(message):
+            verdict = self._backend.handle_item_request(request, from_message(message), received, now)
+            return [ack(sender, kind, verdict)]
         upload = self._uploads.get(kind)
         if upload is None or upload.sender != sender:
-            return self._repeat_ack(self._ended.get(kind), message, sender, now)
+            ended = self._ended.get(kind)
+            return ended.repeat_ack(message.seq, sender, now) if ended else []
         answer = upload.handle_item(message, now)
         if isinstance(answer, list):
             return answer
@@ -253,7 +252,7 @@ class MissionServer:
 
         def reply(verdict: MissionResult, now: float) -> list[Outgoing]:
             answer = ack(upload.sender, kind, verdict, self.plan_id(kind) if verdict is MissionResult.ACCEPTED else 0)
-            self._ended[kind] = _EndedUpload(upload.sender, last, now, answer)
+            self._ended[kind] = EndedUpload(upload.sender, last, now, answer)
             return [answer]
 
         if verdict is not MissionResult.ACCEPTED:
@@ -278,12 +277,6 @@ class MissionServer:
             return upload.use_int_only(now)
         del self._uploads[kind]
         return []
-
-    @staticmethod
-    def _repeat_ack(ended: _EndedUpload | None, message: _Item, sender: Sender, now: float) -> list[Outgoing]:
-        if ended is None or ended.sender != sender or message.seq != ended.last or now - ended.at > REPEAT_WINDOW:
-            return []
-        return [ended.ack]
 
     def _clear(
         self, message: m.MissionClearAll, kinds: Sequence[MissionType], received: Received, now: float

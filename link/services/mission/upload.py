@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from dialects import messages as m
@@ -17,6 +18,8 @@ MIN_REQUEST_INTERVAL = 0.2
 """s after which a wrong item leads to an immediate new request; sooner, both ends would send everything twice."""
 UPLOAD_TIMEOUT = 8.0
 """s without an item until an upload is cancelled (as in ArduPilot)."""
+REPEAT_WINDOW = 10.0
+"""s in which the last item, repeated because our MISSION_ACK was lost, is acknowledged again."""
 
 
 class Sender(NamedTuple):
@@ -35,6 +38,22 @@ def sender_of(received: Received) -> Sender:
 def ack(sender: Sender, kind: int, verdict: MissionResult, plan_id: int = 0) -> Outgoing:
     """Return MISSION_ACK. `plan_id`: id of the new plan at the end of an upload."""
     return Outgoing(m.MissionAck(sender.system, sender.component, verdict, kind, plan_id), sender.peer)
+
+
+@dataclass(frozen=True, slots=True)
+class EndedUpload:
+    """The end of an upload, to be acknowledged again when the MISSION_ACK got lost."""
+
+    sender: Sender
+    last: int
+    """Number of the item that ended it."""
+    at: float
+    ack: Outgoing
+
+    def repeat_ack(self, sequence: int, sender: Sender, now: float) -> list[Outgoing]:
+        """Return the MISSION_ACK again if the sender of the upload has repeated its last item."""
+        repeated = (sender, sequence) == (self.sender, self.last) and now - self.at <= REPEAT_WINDOW
+        return [self.ack] if repeated else []
 
 
 class PlanUpload:

@@ -11,6 +11,7 @@ import signal
 import struct
 import termios
 from collections.abc import AsyncIterator, Callable, Iterable
+from pathlib import Path
 from threading import Thread
 from typing import TypeVar
 
@@ -88,14 +89,14 @@ async def until(wanted: Callable[[], Value], within: float = PATIENCE) -> Value:
 
 @contextlib.asynccontextmanager
 async def app_on_a_pty(
-    size: tuple[int, int] = (100, 30), *, ascii_only: bool = False
+    size: tuple[int, int] = (100, 30), *, ascii_only: bool = False, folder: Path = Path()
 ) -> AsyncIterator[tuple[ConsoleApp, Recorder, Terminal]]:
     """The app with the Drive screen up and its gate open; on leaving it is quit if it has not ended by itself."""
     master, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
     handlers = {number: signal.getsignal(number) for number in (signal.SIGTSTP, signal.SIGCONT, signal.SIGWINCH)}
     recorder, terminal = Recorder(), Terminal(master, slave)
-    app = ConsoleApp(recorder, STANDARD, terminal=TerminalFile(slave, slave), ascii_only=ascii_only)
+    app = ConsoleApp(recorder, STANDARD, terminal=TerminalFile(slave, slave), folder=folder, ascii_only=ascii_only)
     running = asyncio.create_task(app.run_async(mouse=False))
     try:
         await until(lambda: app.gate.closure is None or running.done())

@@ -10,6 +10,7 @@ import asyncio
 import random
 from collections.abc import Awaitable, Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from groundstation.intents import Arm, ClearEmergencyStop
 from groundstation.ui.app import ConsoleApp
@@ -23,6 +24,8 @@ PAIRS = "cat directory using udp; please retry the query now; try very binary en
 """Words with r, y, rr and t."""
 
 REPORTS = ("\x1b[<64;11;12M", "\x1b[<0;20;5M\x1b[<0;20;5m", "\x1b[M`ir", "\x1b[M !y")
+
+F1 = "\x1bOP"
 
 GAPS = (0.005, 0.03, 0.06, 0.12, 0.25)
 """s between two keys: a script, an auto-repeat, a fast and a slow typist."""
@@ -84,7 +87,12 @@ class Monkey:
 
 async def rampage(seconds: float, seed: int) -> int:
     """Show that a held key arms, type for so many s, show it again. Return how often the text armed."""
-    async with app_on_a_pty() as (app, station, terminal):
+    with TemporaryDirectory() as folder:  # "[" opens the log, where "S" saves
+        return await _rampage(seconds, seed, Path(folder))
+
+
+async def _rampage(seconds: float, seed: int, folder: Path) -> int:
+    async with app_on_a_pty(folder=folder) as (app, station, terminal):
         station.offer(snapshot(vehicle=vehicle(armed=False)))
         await until(lambda: app.drive.snapshot.vehicle is not None)
         await _hold_arms(app, station, terminal)
@@ -101,7 +109,7 @@ async def _hold_arms(app: ConsoleApp, station: Recorder, terminal: Terminal) -> 
 
     def is_open() -> bool:
         if app.gate.closure is not None:
-            terminal.type("x")  # leaves the help screen
+            terminal.type(F1)  # leaves the help, the log and its filter
         return app.gate.closure is None
 
     await until(is_open)

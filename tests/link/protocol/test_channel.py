@@ -11,6 +11,7 @@ from link.protocol.channel import Channel
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
 from link.protocol.peer_table import MAX_PEERS, PEER_SILENCE, RESERVED_PLACES
+from link.protocol.sent_frames import SentFrames
 from tests.link.frames import demand, frame, heartbeat
 
 HERE, THERE = ("127.0.0.1", 5001), ("127.0.0.1", 5002)
@@ -60,6 +61,20 @@ def test_system_0_and_our_own_ids_are_dropped() -> None:
         assert channel.receive(heartbeat(0, system, component), HERE, 0.0) == []
     assert channel.report().own_id
     assert channel.receive(heartbeat(0, system=1, component=2), HERE, 0.0) != []
+
+
+def test_our_own_frames_that_come_back_are_no_other_system() -> None:
+    """A ground station with two endpoints forwards what it gets from one to the other."""
+    sent = SentFrames()
+    here, there = vehicle(sent=sent), vehicle(sent=sent)
+    here.receive(heartbeat(0), HERE, 0.0)
+    [(data, _, _)] = here.send(Outgoing(Heartbeat(10, 3, 0, 0, 3, 3)))
+    for channel in (here, there):
+        assert channel.receive(data, THERE, 0.1) == []
+        assert not channel.report().own_id
+    other = frame(Heartbeat(10, 3, 0, 0, 4, 3), data[4], system=1, component=1)
+    assert there.receive(other, THERE, 0.2) == []
+    assert (here.report().own_id, there.report().own_id) == (False, True)
 
 
 def test_only_wanted_messages_are_decoded() -> None:

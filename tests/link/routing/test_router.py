@@ -129,6 +129,19 @@ def test_radio_status_and_keys_stay_on_their_link(message: Message | str) -> Non
     assert rig.send(UDP, data) == {}
 
 
+@pytest.mark.parametrize("port", [SERIAL, UDP])
+def test_a_key_is_not_forwarded_with_a_wrong_checksum_either(port: int) -> None:
+    """The damage may be anywhere, and the key is in it. The link that sent it counts a checksum error."""
+    rig = Rig()
+    key = _setup_signing()
+    damaged = key[:-1] + bytes([key[-1] ^ 1])
+    follower = heartbeat(3, 1, 1) if port == SERIAL else heartbeat(3)
+    passed = rig.send(port, damaged, now=1.0) | rig.send(port, follower, now=1.3)
+    assert set(passed.values()) == {follower}  # the frame behind it is not lost
+    errors = [report.crc_errors for report in rig.router.table.transport_reports()]
+    assert errors[port] == 1
+
+
 def _setup_signing() -> bytes:
     return codec.frame(256, bytes(8) + b"\x01\x01" + b"k" * 32, 1, 255, 190)
 

@@ -66,6 +66,24 @@ def test_what_came_just_before_the_beginning_is_in_the_log_and_nothing_after_its
     assert file.closed
 
 
+def test_a_file_that_ends_with_the_next_one_keeps_its_last_frames() -> None:
+    """Shorter than PERIOD, it got none at all: they went to the next file, which begins with them as well."""
+    recorder, first, second = Recorder(), MemoryFile(), MemoryFile()
+    recorder.tick(1.0)
+    recorder.start(lambda: first)
+    recorder.add(1.1, [demand(1)])
+    recorder.add(1.2, [demand(2)])
+    recorder.start(lambda: second)
+    recorder.add(1.3, [demand(3)])
+    recorder.tick(1.0 + PERIOD)
+    recorder.close()
+    assert first.frames == [demand(1), demand(2)]
+    assert second.frames == [demand(1), demand(2), demand(3)]
+    assert first.closed
+    assert second.closed
+    assert recorder.problem is None
+
+
 def test_frames_are_in_the_file_soon_also_without_an_end() -> None:
     recorder, file = Recorder(), MemoryFile()
     recorder.start(lambda: file)

@@ -185,11 +185,28 @@ def erase(rover: Bench, system: int = DRIVER, *, introduced: bool = True) -> Non
     rover.wait(0.5)
 
 
+def take_control(rover: Bench, system: int = DRIVER) -> None:
+    assert rover.command(Command.REQUEST_OPERATOR_CONTROL, 1, system=system) is Result.ACCEPTED
+
+
 def test_the_driver_erases_all_while_disarmed() -> None:
     rover, writer = bench()
+    take_control(rover)
     erase(rover)
     assert writer.told == ["clear"]
     assert rover.texts[-1] == f"Logs erased by GCS {DRIVER}"
+
+
+def test_without_anybody_in_control_no_log_is_removed() -> None:
+    """What is removed is lost, so that its sender must have taken control, which all ground stations are told."""
+    rover, writer = bench()
+    erase(rover, OTHER)
+    assert rover.texts[-1] == f"GCS {OTHER}: logs not erased: no GCS is in control, request it first"
+    assert ask(rover, FtpOpcode.REMOVE, b"/logs/1.tlog").op == FtpOpcode.NAK
+    assert (writer.told, sorted(writer.folder.files)) == ([], ["1.tlog", "2.tlog"])
+    take_control(rover, OTHER)
+    erase(rover, OTHER)
+    assert writer.told == ["clear"]
 
 
 def test_nobody_erases_while_armed() -> None:
@@ -216,11 +233,29 @@ def test_nobody_but_the_driver_erases() -> None:
 @pytest.mark.parametrize("armed", [False, True])
 def test_a_log_is_removed_as_a_file_while_disarmed(armed: bool) -> None:
     rover, writer = bench()
+    take_control(rover)
     if armed:
         rover.arm()
     answer = ask(rover, FtpOpcode.REMOVE, b"/logs/1.tlog")
+    rover.wait(0.5)
     assert answer.op == (FtpOpcode.NAK if armed else FtpOpcode.ACK)
     assert ("1.tlog" in writer.folder.files) is armed
+    assert (f"Log 1.tlog removed by GCS {DRIVER}" in rover.texts) is not armed
+
+
+def test_a_log_that_is_not_there_is_not_reported_as_removed() -> None:
+    rover, _ = bench()
+    take_control(rover)
+    assert ask(rover, FtpOpcode.REMOVE, b"/logs/9.tlog").op == FtpOpcode.NAK
+    rover.wait(0.5)
+    assert not any("removed" in text for text in rover.texts)
+
+
+def test_only_the_driver_removes_a_log_as_a_file() -> None:
+    rover, writer = bench()
+    take_control(rover, OTHER)
+    assert ask(rover, FtpOpcode.REMOVE, b"/logs/1.tlog").op == FtpOpcode.NAK
+    assert "1.tlog" in writer.folder.files
 
 
 @pytest.mark.parametrize("op", [FtpOpcode.CREATE, FtpOpcode.OPEN_TO_WRITE])

@@ -258,6 +258,7 @@ def test_log_disarmed_and_erase(tmp_path: Path) -> None:
         vehicle.ready()
         ground.wait(lambda: grown(folder, 500), "it records")
         assert ground.log_list()[0].size == 3
+        ground.say(m.CommandLong(1, 1, Command.REQUEST_OPERATOR_CONTROL, 0, 1, 0, 0, 0, 0, 0, 0))
         ground.say(m.LogErase(1, 1))
         ground.wait(lambda: "Logs erased by GCS 255" in ground.texts(), "the erasing is told")
         ground.wait(lambda: len(logs_of(folder)) == 1, "the old log goes")

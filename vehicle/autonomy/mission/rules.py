@@ -92,3 +92,16 @@ def plan_rules(do_items: Mapping[int, DoItem]) -> dict[MissionType, PlanRules]:
         MissionType.FENCE: PlanRules(FENCE_RULES, capacity=200, check=_check_fence),
         MissionType.RALLY: PlanRules(RALLY_RULES, capacity=20),
     }
+
+
+def find_unsupported_items(items: Items, do_items: Mapping[int, DoItem]) -> list[str]:
+    """Report items that will be skipped: a plan of another vehicle runs without them, as in ArduPilot."""
+    found = {
+        number: reason
+        for number, item in enumerate(items)
+        if item.command in do_items and (reason := do_items[item.command].unsupported_reason(item))
+    }
+    if not found:
+        return []
+    numbers, reasons = ", ".join(map(str, found)), ", ".join(dict.fromkeys(found.values()))
+    return [f"Mission: no accessory for items {numbers}, will be skipped: {reasons}"]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.services.mission.items import UNSET_COORDINATE
+from link.services.mission.items import UNSET_COORDINATE, ItemRequest
 from tests.link.mission_vehicle import (
     DO_JUMP,
     FENCE_CIRCLE,
@@ -104,6 +104,74 @@ def test_choosing_an_item_is_answered_to_all() -> None:
     assert (outgoing.message.seq, outgoing.peer, vehicle.selected) == (1, None, [1])
 
 
+# ---- items that are no part of a plan ----
+
+
+def lone(current: int, target: int = 1, component: int = 1, kind: int = 0) -> m.MissionItemInt:
+    item = waypoint(7)
+    ids = (target, component, 0, item.frame, item.command, current, 0)
+    return m.MissionItemInt(*ids, *item.params, item.x, item.y, item.z, kind)
+
+
+@pytest.mark.parametrize("request_", [ItemRequest.DRIVE_TO, ItemRequest.CHANGE_ALTITUDE])
+@pytest.mark.parametrize("verdict", [MissionResult.ACCEPTED, MissionResult.ERROR])
+def test_a_lone_item_is_passed_on_and_acknowledged(request_: ItemRequest, verdict: MissionResult) -> None:
+    vehicle = Vehicle(verdict)
+    [ack] = vehicle.ask(lone(request_))
+    assert (ack.type, ack.mission_type, ack.opaque_id) == (verdict, MissionType.MISSION, 0)
+    assert (ack.target_system, ack.target_component) == (255, 190)
+    [(request, item)] = vehicle.requests
+    assert request is request_
+    assert plain((item,)) == plain((waypoint(7, autocontinue=False),))
+    assert (vehicle.plan, vehicle.changes) == ((), [])
+
+
+def test_a_lone_item_with_floats_is_the_same_request() -> None:
+    vehicle = Vehicle()
+    message = m.MissionItem(1, 1, 0, 3, 16, 2, 0, 0, 0, 0, 0, 47.5, 8.25, 0)
+    assert [ack.type for ack in vehicle.ask(message)] == [MissionResult.ACCEPTED]
+    [(request, item)] = vehicle.requests
+    assert (request, item.x, item.y) == (ItemRequest.DRIVE_TO, 475_000_000, 82_500_000)
+
+
+def test_a_lone_item_to_all_systems_is_handled_and_one_to_another_is_not() -> None:
+    """DroneKit's simple_goto sends target system 0."""
+    vehicle = Vehicle()
+    assert len(vehicle.ask(lone(2, target=0, component=0))) == 1
+    assert vehicle.ask(lone(2, target=2)) == []
+    assert vehicle.ask(lone(2, component=100)) == []
+    assert vehicle.ask(lone(0, target=0)) == []
+    assert len(vehicle.requests) == 1
+
+
+def test_a_lone_item_without_a_heartbeat_of_its_sender_is_not_answered() -> None:
+    vehicle = Vehicle()
+    assert vehicle.ask(lone(2), introduced=False) == []
+    assert vehicle.requests == []
+
+
+def test_a_lone_item_is_no_part_of_an_upload_of_its_sender() -> None:
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 1))
+    assert [type(answer) for answer in vehicle.ask(lone(2))] == [m.MissionAck]
+    assert vehicle.plan == ()
+    [ack] = vehicle.give(waypoint(5), 0)
+    assert ack.type == MissionResult.ACCEPTED
+    assert plain(vehicle.plan) == plain((waypoint(5),))
+    assert len(vehicle.requests) == 1
+
+
+def test_a_current_of_2_in_a_fence_is_an_item_of_the_upload() -> None:
+    """Only items of missions may be requests, as in ArduPilot."""
+    vehicle = Vehicle()
+    vehicle.ask(m.MissionCount(1, 1, 1, MissionType.FENCE))
+    circle = waypoint(command=FENCE_CIRCLE, params=(50.0, 0.0, 0.0, 0.0))
+    place = (circle.x, circle.y, circle.z)
+    [ack] = vehicle.ask(m.MissionItemInt(1, 1, 0, 3, FENCE_CIRCLE, 2, 1, *circle.params, *place, MissionType.FENCE))
+    assert ack.type == MissionResult.ACCEPTED
+    assert (len(vehicle.server.plan(MissionType.FENCE)), vehicle.requests) == (1, [])
+
+
 def test_a_saved_plan_passes_the_same_rules() -> None:
     vehicle = Vehicle()
     assert vehicle.server.load(MissionType.MISSION, [waypoint(x=UNSET_COORDINATE)]) is MissionResult.INVALID_X
@@ -122,7 +190,7 @@ WORDS = st.one_of(
     st.builds(
         m.MissionItem,
         *(st.just(1), st.just(1), st.integers(0, 3), st.integers(0, 255), st.integers(0, 65535)),
-        *(st.integers(0, 1), st.integers(0, 1), *[st.floats(width=32)] * 7, st.integers(0, 3)),
+        *(st.integers(0, 4), st.integers(0, 1), *[st.floats(width=32)] * 7, st.integers(0, 3)),
     ),
 )
 

@@ -9,8 +9,7 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import MissionResult, MissionType
-from link.services.mission.server import REPEAT_WINDOW
-from link.services.mission.upload import REQUEST_TIMEOUT, UPLOAD_TIMEOUT
+from link.services.mission.upload import REPEAT_WINDOW, REQUEST_TIMEOUT, UPLOAD_TIMEOUT
 from tests.link.mission_vehicle import (
     FENCE_CIRCLE,
     NAV_WAYPOINT,

@@ -1,0 +1,71 @@
+"""The outputs of the bridge's status: what is logged when, and a reader that goes away or does not read."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from dataclasses import replace
+
+import pytest
+
+from link.bridge.screens import StatusLogger, StatusWriter
+from link.bridge.status import BridgeStatus, LinkStatus
+
+LINK = LinkStatus("serial:/dev/ttyUSB0:57600", None, 1, 1.0, 20.0, 1.0, 20.0, 0.0, 0, 0, 0, 0, 0)
+PATIENCE = 60.0
+
+
+def status(problem: str | None = None, number: int = 0) -> BridgeStatus:
+    return BridgeStatus((replace(LINK, problem=problem),), (), number, 0)
+
+
+def test_a_problem_is_logged_once_when_it_begins_and_once_when_it_is_over(caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.INFO)
+    logger = StatusLogger()
+    for problem in (None, None, f"{LINK.endpoint}: unplugged", f"{LINK.endpoint}: unplugged", None, None):
+        logger.update(status(problem))
+    begun, over = caplog.records
+    assert (begun.levelno, over.levelno) == (logging.WARNING, logging.INFO)
+    assert begun.getMessage().count(LINK.endpoint) == 1
+    assert "unplugged" in begun.getMessage()
+    assert LINK.endpoint in over.getMessage()
+
+
+def test_an_output_that_blocks_holds_nobody_up_and_continues_with_the_newest() -> None:
+    drawn: list[int] = []
+    begun, free, ended = threading.Event(), threading.Event(), threading.Event()
+
+    def draw(status: BridgeStatus) -> None:
+        drawn.append(status.duplicates)
+        begun.set()
+        assert free.wait(PATIENCE)
+        if status.duplicates == 99:
+            ended.set()
+
+    writer = StatusWriter(draw)
+    writer.update(status(number=0))
+    assert begun.wait(PATIENCE)
+    for number in range(1, 100):
+        writer.update(status(number=number))
+    free.set()
+    assert ended.wait(PATIENCE)
+    assert drawn == [0, 99]
+
+
+def test_an_output_that_was_closed_is_logged_and_the_bridge_goes_on(caplog: pytest.LogCaptureFixture) -> None:
+    tried = threading.Event()
+
+    def draw(status: BridgeStatus) -> None:
+        tried.set()
+        raise BrokenPipeError
+
+    before = set(threading.enumerate())
+    writer = StatusWriter(draw)
+    [thread] = set(threading.enumerate()) - before
+    writer.update(status())
+    assert tried.wait(PATIENCE)
+    thread.join(PATIENCE)
+    assert not thread.is_alive()
+    assert "the status output was closed; the bridge continues" in caplog.text
+    for number in range(3):
+        writer.update(status(number=number))  # neither raises nor waits
