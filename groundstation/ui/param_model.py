@@ -65,6 +65,8 @@ class ParamModel:
 
     def show_page(self, page: ParamPage) -> tuple[AnyIntent, ...]:
         """Take a page; return the intents that follow: parameters that are not known are fetched once."""
+        if self.page is not None and self.page.known and not page.known:
+            self._fetched.discard(page.system)  # the station has forgotten them: the vehicle was lost, or restarted
         if self.page is not None and page.system != self.page.system:
             self.pending, self._undo, self._writing = {}, [], None  # they were for another vehicle
         self.page = page

@@ -72,6 +72,8 @@ class Contact:
             self.settings_check.restart()
         if self.servo_functions is not None:
             self.servo_functions.restart()
+        if self.services is not None:
+            self.services.params.forget()
 
 
 class Fleet:

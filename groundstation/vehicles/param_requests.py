@@ -90,6 +90,11 @@ class ParamRequests:
         self._book.cancel(number)
         self._fetch = self._file = None
 
+    def forget(self) -> None:
+        """Forget all values, unless they are being read or set: the vehicle may have restarted with others."""
+        if self._fetch is None and not self._access:
+            self.client.forget()
+
     # ---- core ----
 
     def receive(self, received: Received, now: float) -> None:

@@ -130,6 +130,11 @@ class ParamClient:
         self.params = {param.name: param for param in params}
         self._listing.finish(len(self.params))
 
+    def forget(self) -> None:
+        """Forget all values: the vehicle may have restarted with others."""
+        self.params.clear()
+        self._listing.forget()
+
     @property
     def fetching(self) -> bool:
         """Whether the list is under way."""

@@ -62,6 +62,11 @@ class ParamListing:
         """Count all `total` parameters as received, from another source."""
         self.active, self.total, self.problem, self.received = False, total, None, set(range(total))
 
+    def forget(self) -> None:
+        """Forget the list that has ended."""
+        self._reset(0.0)
+        self.active = False
+
     def handle_value(self, index: int, total: int, now: float) -> None:
         """Count a parameter that has arrived. An index beyond `total` is not one of the list."""
         if not self.active or index >= total:

@@ -162,3 +162,16 @@ def test_a_request_can_be_cancelled() -> None:
     assert end_of(drive, 3).state == "cancelled"
     drive.run(2.0)
     assert drive.params["SPEED_MAX"] == PARAMETERS["SPEED_MAX"].default
+
+
+def test_after_a_lost_link_the_values_are_forgotten() -> None:
+    drive = connected()
+    drive.tell(i.FetchParams(1))
+    end_of(drive, 1)
+    drive.world.cut()
+    drive.run(4.0)
+    assert page(drive).known == len(PARAMETERS)
+    drive.world.cut(False)
+    drive.until(lambda: page(drive).known == 0)
+    drive.tell(i.FetchParams(2))
+    assert end_of(drive, 2).state == "accepted"

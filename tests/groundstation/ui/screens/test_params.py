@@ -57,6 +57,13 @@ async def test_a_vehicle_whose_parameters_are_known_is_not_asked_again() -> None
         assert screen.station.of(FetchParams) == []
 
 
+async def test_parameters_that_the_station_has_forgotten_are_read_again() -> None:
+    async with console() as screen:
+        await open_params(screen)
+        await offer(screen, EMPTY)
+        await until(lambda: screen.station.of(FetchParams) == [FetchParams(1)])
+
+
 async def test_progress_is_shown() -> None:
     async with console() as screen:
         line = RequestLine(1, "running", "fetch parameters", done=610, total=1235)
