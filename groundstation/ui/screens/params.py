@@ -43,7 +43,7 @@ class ParamsScreen(ConsoleScreen):
 
     def __init__(self, context: ScreenContext) -> None:
         super().__init__(context)
-        self._model = ParamModel()
+        self._model = context.keep(ParamModel)
         self._table = ParamTable(self._model.table, id="table")
         self._pending = PendingList((), id="pending")
         self._field = Input(id="field")

@@ -119,6 +119,20 @@ async def test_what_was_written_can_be_undone_and_what_was_refused_stays() -> No
         await until(lambda: "0 → 2" in screen.text)
 
 
+async def test_changes_outlive_the_screen_and_numbers_go_on() -> None:
+    async with console() as screen:
+        await open_params(screen)
+        await screen.press("d", "W", "y")
+        assert [intent.request for intent in screen.station.of(WriteParams)] == [1]
+        await screen.press("escape")
+        await until(lambda: screen.app.screen is screen.app.drive)
+        line = RequestLine(1, "no answer", "set 1 parameter", "after 8 tries", 0, 1)
+        await open_params(screen, param_page(ended=(line,)))
+        await until(lambda: "2 → 1" in screen.text and "after 8 tries" in screen.text)
+        await screen.press("W", "y")
+        assert [intent.request for intent in screen.station.of(WriteParams)] == [1, 2]
+
+
 async def test_default_drop_and_undo() -> None:
     async with console() as screen:
         await open_params(screen)
