@@ -303,19 +303,6 @@ class MissionResult(IntEnum):
     CANCELLED = rover.MAV_MISSION_OPERATION_CANCELLED
 
 
-_MISSION_RESULT_NAMES: dict[int, str] = {
-    **{result: result.name for result in MissionResult},
-    MissionResult.INVALID_X: "INVALID_PARAM5_X",
-    MissionResult.INVALID_Y: "INVALID_PARAM6_Y",
-    MissionResult.CANCELLED: "OPERATION_CANCELLED",
-}
-
-
-def mission_result_name(result: int) -> str:
-    """Return the name of a `MAV_MISSION_RESULT` without its prefix; "result 99" for an unknown one."""
-    return _MISSION_RESULT_NAMES.get(result, f"result {result}")
-
-
 def command_name(command: int) -> str:
     """Return the name of a `MAV_CMD` without its prefix; "command 65535" for an unknown one."""
     if command in Command._value2member_map_:  # also those that pymavlink's common.xml lacks
@@ -328,17 +315,3 @@ def result_name(result: int) -> str:
     """Return the name of a `MAV_RESULT` in lower case, e.g. "denied"; "result 99" for an unknown one."""
     entry = rover.enums["MAV_RESULT"].get(result)
     return entry.name.removeprefix("MAV_RESULT_").replace("_", " ").lower() if entry else f"result {result}"
-
-
-_PARAM_ERROR_TEXTS: dict[int, str] = {
-    ParamErrorCode.DOES_NOT_EXIST: "no such parameter",
-    ParamErrorCode.VALUE_OUT_OF_RANGE: "the value is out of range",
-    ParamErrorCode.PERMISSION_DENIED: "permission denied",
-    ParamErrorCode.READ_ONLY: "it is read-only",
-    ParamErrorCode.TYPE_MISMATCH: "the value does not fit its type",
-}
-
-
-def param_error_text(error: int) -> str:
-    """Return what a `MAV_PARAM_ERROR` means; "parameter error 99" for an unknown one."""
-    return _PARAM_ERROR_TEXTS.get(error, f"parameter error {error}")

@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from dialects.enums import ParamErrorCode, param_error_text
+from dialects.enums import ParamErrorCode
+from dialects.result_texts import param_error_text
 from groundstation.vehicles.file_requests import FileRequests
 from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.requests import RequestBook

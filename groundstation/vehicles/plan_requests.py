@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from dialects import messages as m
-from dialects.enums import MissionResult, MissionType, mission_result_name
+from dialects.enums import MissionResult, MissionType
+from dialects.result_texts import mission_result_name
 from groundstation.vehicles.requests import RequestBook
 from link.core import Outgoing, Received
 from link.services.mission.client import MissionClient, MissionOutcome
