@@ -39,6 +39,64 @@ class LogPage(View, frozen=True):
     """That of the request: a page for the screen that was open before must not pass for an answer to this one."""
 
 
+class ParamPageRequest(ViewRequest, frozen=True):
+    """Parameters of the selected vehicle, sorted by name."""
+
+    filter: str = ""
+    """Words, one of which must be in the name; upper or lower case. Empty: all."""
+    changed_only: bool = False
+    """Only those that are not at their default."""
+    first: int = 0
+    """First row, counted among those that match."""
+    rows: int = 0
+
+
+class ParamRow(msgspec.Struct, frozen=True):
+    """One parameter."""
+
+    name: str
+    value: float
+    kind: str
+    """Name of its MAV_PARAM_TYPE, e.g. "INT8"."""
+    default: float | None
+    """None: not known."""
+    changed: bool
+    """It is not at its default."""
+
+
+class RequestLine(msgspec.Struct, frozen=True):
+    """A request to the vehicle that runs or has ended."""
+
+    number: int
+    """As in the intent that made it."""
+    state: str
+    """"running", "accepted", "refused", "no answer" or "cancelled"."""
+    what: str
+    """What was requested, e.g. "fetch parameters"."""
+    detail: str = ""
+    """Why it was refused, or what came of it."""
+    done: int = 0
+    total: int | None = None
+
+
+class ParamPage(View, frozen=True):
+    """A page of parameters."""
+
+    system: int
+    """System id of the vehicle."""
+    rows: tuple[ParamRow, ...]
+    first: int
+    """Number of the first row: less than requested if there are fewer that match."""
+    matching: int
+    known: int
+    total: int | None
+    """Parameters that the vehicle has; None: not known."""
+    has_defaults: bool
+    running: tuple[RequestLine, ...]
+    ended: tuple[RequestLine, ...]
+    """The last requests that have ended, oldest first."""
+
+
 if TYPE_CHECKING:
     AnyRequest: TypeAlias = ViewRequest
     AnyView: TypeAlias = View

@@ -9,6 +9,7 @@ from dialects import messages as m
 from dialects.enums import Command, Severity
 from groundstation.station.commander import Commander
 from groundstation.station.link_stats import LinkStats
+from groundstation.station.service_desk import ServiceDesk
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.stream_requests import stream_rate
@@ -18,7 +19,10 @@ from link.core import Outgoing, Received
 class VehicleQueries:
     """Queries each vehicle, one command of a kind at a time, because they are acknowledged one at a time."""
 
-    def __init__(self, fleet: Fleet, commander: Commander, links: LinkStats, log: MessageLog) -> None:
+    def __init__(
+        self, fleet: Fleet, commander: Commander, links: LinkStats, log: MessageLog, services: ServiceDesk
+    ) -> None:
+        self._services = services
         self._fleet = fleet
         self._commander = commander
         self._links = links
@@ -64,7 +68,7 @@ class VehicleQueries:
 
     def _query_dialect(self, contact: Contact, now: float) -> None:
         state = contact.state
-        pending = self._commander.is_pending(Command.REQUEST_MESSAGE, state)
+        pending = self._commander.is_pending(Command.REQUEST_MESSAGE, state) or self._services.is_querying(contact)
         if not pending and contact.dialect_probe.is_due(state.autopilot, state.sends_drive_status(now), now):
             self._commander.request_message(state, m.RoverDriveInfo.id, now)
 

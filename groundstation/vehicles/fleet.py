@@ -14,6 +14,7 @@ from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
 from groundstation.vehicles.message_log import STATE, MessageLog
 from groundstation.vehicles.outputs import ServoFunctions
+from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
 from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
@@ -40,6 +41,8 @@ class Contact:
     servo_functions: ServoFunctions | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
+    services: VehicleServices | None = None
+    """Parameters, plans and files; None before the first request."""
     ours: bool = False
     """This station has armed or driven the vehicle since the vehicle was last disarmed."""
     releasing: bool = False
@@ -106,6 +109,8 @@ class Contact:
             self.settings_check.restart()
         if self.servo_functions is not None:
             self.servo_functions.restart()
+        if self.services is not None:
+            self.services.params.forget()
 
 
 class Fleet:

@@ -13,7 +13,7 @@ from groundstation.intents import ACTIONS
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.display_state import DisplayState
 from tests.groundstation.ui import frames
-from tests.groundstation.ui.examples import LOG_PAGE, helm, snapshot, vehicle, waiting, wheels
+from tests.groundstation.ui.examples import LOG_PAGE, helm, param_page, snapshot, vehicle, waiting, wheels
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD
 
@@ -69,6 +69,8 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "strip_79x23": ((79, 23), STANDING, ()),
     "log_80x24": (SMALL, WARNED, ("f6",)),
     "log_140x45": (WIDE, WARNED, ("f6",)),
+    "params_80x24": (SMALL, snapshot(), ("f4",)),
+    "params_140x45": (WIDE, STANDING, ("f4",)),
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
@@ -76,7 +78,16 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
 
 FRAMES |= {
     f"ascii_{name}": FRAMES[name]
-    for name in ("drive_80x24", "drive_140x45", "waiting_80x24", "strip_40x10", "log_80x24", "log_140x45", "goto_80x24")
+    for name in (
+        "drive_80x24",
+        "drive_140x45",
+        "waiting_80x24",
+        "strip_40x10",
+        "log_80x24",
+        "log_140x45",
+        "params_80x24",
+        "goto_80x24",
+    )
 }
 
 
@@ -86,8 +97,10 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
     async with console(size, picture, ascii_only=name.startswith("ascii")) as screen:
         await screen.press(*keys)
         if keys:
-            screen.station.offer_view(LOG_PAGE)
+            screen.station.offer_view(param_page() if "params" in name else LOG_PAGE)
             await screen.show(picture)
+            if "params" in name:
+                await screen.press("down", "enter", "backspace", "0", "enter", "W")
             await screen.show(picture)  # the height of the alerts is known after the first one
         if "hold" in name:
             state = DisplayState(picture, STANDARD, hold=HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4))
