@@ -2,7 +2,7 @@
 
 Three conventions are in use: our rover reads x and r as the specification says, ArduPilot Rover reads z and y (z = 0 is
 neutral), PX4 rovers read z with 500 as neutral, and y or r. To add one, add a row to AXIS_MAPS; if the frame decides,
-as in PX4, to PX4_FRAMES.
+to PX4_FRAMES or ROVER_FRAMES.
 Definition: https://mavlink.io/en/messages/common.html#MANUAL_CONTROL.
 """
 
@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from dialects.enums import Autopilot
+from dialects.enums import Autopilot, DriveType
 from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence
 
 FULL_DEFLECTION = 1000
@@ -73,14 +73,24 @@ PX4_FRAMES: dict[int, AxisMap] = {
 roll turns the nose, in reverse too. 13, rover_mecanum: yaw turns the nose; roll moves it sideways."""
 
 
+ROVER_FRAMES: dict[int, AxisMap] = {
+    DriveType.ACKERMANN: replace(AXIS_MAPS[Autopilot.GENERIC], reverse_flips_steering=True),
+}
+"""`drive_type` of our vehicle's ROVER_DRIVE_INFO -> axes in MANUAL. There r is the angle of the steered wheels, which
+turn the nose to the other side in reverse; drives that turn by their wheels take r for the nose."""
+
+FRAMES: dict[int, dict[int, AxisMap]] = {Autopilot.PX4: PX4_FRAMES, Autopilot.GENERIC: ROVER_FRAMES}
+"""MAV_AUTOPILOT -> the axes of frames that differ from AXIS_MAPS."""
+
+
 def axis_map(autopilot: int, frame: int | None = None) -> AxisMap:
     """Return the axes of a vehicle; for an unknown autopilot those of the specification.
 
-    `frame`: PX4's CA_AIRFRAME. While it is not known, the axes are those of a differential rover.
+    `frame`: PX4's CA_AIRFRAME, or the drive type of our own vehicle. While it is not known, the axes are those of a
+    rover that turns by its wheels.
     """
-    if autopilot == Autopilot.PX4 and frame in PX4_FRAMES:
-        return PX4_FRAMES[frame]
-    return AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
+    default = AXIS_MAPS.get(autopilot, AXIS_MAPS[Autopilot.GENERIC])
+    return default if frame is None else FRAMES.get(autopilot, {}).get(frame, default)
 
 
 def build_manual_control(axes: Axes, target: int, axis_map: AxisMap = AXIS_MAPS[Autopilot.GENERIC]) -> ManualControl:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from dialects.enums import Autopilot, ModeFlag
+from dialects.enums import Autopilot, ModeFlag, VehicleType
 
 
 class Mode(IntEnum):
@@ -87,3 +87,27 @@ def custom_mode(mode: Mode, autopilot: int = Autopilot.GENERIC) -> tuple[int, in
     if mode not in pairs:
         raise ValueError(f"PX4 has no mode {mode.name}")
     return pairs[mode]
+
+
+_PX4_AUTO = {3: "AUTO_LOITER", 4: "AUTO_MISSION", 5: "AUTO_RTL"}
+"""Sub modes of PX4's AUTO that a rover has, from bits 24-31 of custom_mode (PX4 px4_custom_mode.h)."""
+
+
+def known_modes(autopilot: int, kind: int) -> dict[str, int]:
+    """Return name -> custom_mode of a vehicle that does not list its modes; empty for one that is not known.
+
+    `kind` is MAV_TYPE: other vehicles of ArduPilot have other numbers.
+    """
+    if autopilot == Autopilot.PX4:
+        main = {name: number << 16 for number, name in _PX4_MAIN.items() if name != "AUTO"}
+        return main | {name: 4 << 16 | sub << 24 for sub, name in _PX4_AUTO.items()}
+    if kind in (VehicleType.GROUND_ROVER, VehicleType.SURFACE_BOAT):
+        return {mode.name: int(mode) for mode in Mode if mode is not Mode.INITIALISING}
+    return {}
+
+
+def set_mode_params(custom_mode: int, autopilot: int) -> tuple[float, float, float]:
+    """Return parameters 1 to 3 of DO_SET_MODE: PX4 takes main and sub mode apart."""
+    if autopilot == Autopilot.PX4:
+        return float(ModeFlag.CUSTOM), float(custom_mode >> 16 & 0xFF), float(custom_mode >> 24 & 0xFF)
+    return float(ModeFlag.CUSTOM), float(custom_mode), 0.0

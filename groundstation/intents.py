@@ -171,6 +171,30 @@ class Watch(Intent, frozen=True):
     requests: tuple[AnyRequest, ...] = ()
 
 
+class FetchParams(Intent, frozen=True):
+    """Fetch all parameters of the selected vehicle."""
+
+    request: int
+    """Number by which views report how it stands; chosen by the screen, rising from 1."""
+
+
+class WriteParams(Intent, frozen=True):
+    """Set parameters of the selected vehicle, one after the other; stops at the first that is not set."""
+
+    request: int
+    """Number by which views report how it stands; chosen by the screen, rising from 1."""
+    system: int
+    """The vehicle that the operator saw: another one that is selected meanwhile must not get them."""
+    changes: tuple[tuple[str, float], ...]
+    """Names and values."""
+
+
+class CancelRequest(Intent, frozen=True):
+    """Cancel a request; what was set or sent before stays."""
+
+    request: int
+
+
 class Quit(Intent, frozen=True):
     """Send neutral several times and exit."""
 

@@ -35,6 +35,8 @@ class ScreenRow:
 SCREENS: tuple[ScreenRow, ...] = (
     ScreenRow("drive", "Drive", "Drive screen, the only one where keys drive", ("f1",), "1",
               "groundstation.ui.screens.drive:DriveScreen"),
+    ScreenRow("params", "Params", "Parameters of the vehicle: read, change, write", ("f4",), "4",
+              "groundstation.ui.screens.params:ParamsScreen"),
     ScreenRow("log", "Log", "All alerts and messages, to scroll, filter and save", ("f6",), "6",
               "groundstation.ui.screens.log:LogScreen"),
     ScreenRow("links", "Links", "Vehicles, links and who is in control: choose a vehicle", ("f7",), "7",

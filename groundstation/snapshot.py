@@ -52,6 +52,8 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     """System id of the ground station in control, 0 for none; None if the vehicle sends no CONTROL_STATUS."""
     in_control: bool = False
     """We are in control; without CONTROL_STATUS: the vehicle accepted arming or a control request from us."""
+    twin: bool = False
+    """The ground station in control is another program with our system id."""
     control_wait: float | None = None
     """Seconds for which the station in control may still answer our request; None without a request."""
     emergency_stop: bool = False

@@ -171,9 +171,9 @@ class ControlView(View, frozen=True, kw_only=True):
     in_control: bool = False
     """This station is in control."""
     driver: int | None = None
-    """System id in CONTROL_STATUS, 0 for none; None if the vehicle sends none."""
+    """System id of the ground station in control, 0 for none; None if the vehicle does not report it."""
     program: Program | None = None
-    """The program in ROVER_CONTROL; None if the vehicle sends none, or no program is in control."""
+    """Its program in ROVER_CONTROL; None if the vehicle sends none, or no program is in control."""
     age: float | None = None
     """Seconds since the vehicle reported it."""
     takeover: bool = False
@@ -190,6 +190,64 @@ class ControlView(View, frozen=True, kw_only=True):
     """The vehicle signs its frames."""
     signing: tuple[int, ...] = ()
     """All system ids whose newest frame was signed."""
+
+
+class ParamPageRequest(ViewRequest, frozen=True):
+    """Parameters of the selected vehicle, sorted by name."""
+
+    filter: str = ""
+    """Words, one of which must be in the name; upper or lower case. Empty: all."""
+    changed_only: bool = False
+    """Only those that are not at their default."""
+    first: int = 0
+    """First row, counted among those that match."""
+    rows: int = 0
+
+
+class ParamRow(msgspec.Struct, frozen=True):
+    """One parameter."""
+
+    name: str
+    value: float
+    kind: str
+    """Name of its MAV_PARAM_TYPE, e.g. "INT8"."""
+    default: float | None
+    """None: not known."""
+    changed: bool
+    """It is not at its default."""
+
+
+class RequestLine(msgspec.Struct, frozen=True):
+    """A request to the vehicle that runs or has ended."""
+
+    number: int
+    """As in the intent that made it."""
+    state: str
+    """"running", "accepted", "refused", "no answer" or "cancelled"."""
+    what: str
+    """What was requested, e.g. "fetch parameters"."""
+    detail: str = ""
+    """Why it was refused, or what came of it."""
+    done: int = 0
+    total: int | None = None
+
+
+class ParamPage(View, frozen=True):
+    """A page of parameters."""
+
+    system: int
+    """System id of the vehicle."""
+    rows: tuple[ParamRow, ...]
+    first: int
+    """Number of the first row: less than requested if there are fewer that match."""
+    matching: int
+    known: int
+    total: int | None
+    """Parameters that the vehicle has; None: not known."""
+    has_defaults: bool
+    running: tuple[RequestLine, ...]
+    ended: tuple[RequestLine, ...]
+    """The last requests that have ended, oldest first."""
 
 
 if TYPE_CHECKING:

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from groundstation.cli import main as station_main
+from groundstation.verbs import main as verbs_main
+from groundstation.verbs.table import VERBS
 from link.bridge import __main__ as bridge_main
 from tests.recipes.tree import documented_counts
 from vehicle.cli import options, subcommands
@@ -79,6 +81,8 @@ def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, w
         subcommands.build_parser(words[0]).parse_args(words[1:])
     elif program == "vehicle":
         options.build_parser().parse_intermixed_args(options.join_home_option(words))
+    elif program == "groundstation" and words and words[0] in VERBS:
+        verbs_main.build_parser(words[0]).parse_args(words[1:])
     elif program == "groundstation":
         station_main._parser()[0].parse_args(words)
     else:

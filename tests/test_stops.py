@@ -42,7 +42,7 @@ class Drive:
         start = 100.0
         self.station = Station(["memory"], now=start)
         self.motors = SimulatedMotors()
-        params = Params({})
+        params = self.params = Params({})
         self.rover = Rover(params, now=start)
         body = SimulatedBody(
             lambda: self.motors.outputs,

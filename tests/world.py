@@ -48,14 +48,15 @@ class Host:
         for received in self.channel.receive(data, address, now):
             self.core.receive(received, now)
 
-    def pop_frames(self, now: float) -> list[bytes]:
-        """Return the frames to send."""
+    def pop_frames(self, now: float, to: Hashable) -> list[bytes]:
+        """Return the frames to send to an address; those to others are lost."""
         frames: list[bytes] = []
         outbox: list[Outgoing] = [] if self.frozen else self.core.messages_to_send()
         for outgoing in outbox:
             self.sent.append((now, outgoing.message))
-            for data, _, sequence in self.channel.send(outgoing):
-                frames.append(data)
+            for data, address, sequence in self.channel.send(outgoing):
+                if address == to:
+                    frames.append(data)
                 if self.listener is not None:
                     self.listener.handle_sent(outgoing.message, sequence, now)
         return frames
@@ -86,6 +87,8 @@ class World:
         self.down = down or LossyPipe()
         self.near = Host(near, self._channel("near", near_ids, "far"), period)
         self.far = Host(far, self._channel("far", far_ids, "near"), period)
+        self.near_address: Hashable = "near"
+        """Where the far end sees the near one; another one is that of a program that roams."""
         self._start = now
         self._steps = 0
 
@@ -122,13 +125,13 @@ class World:
         for data in self.down.receive(self.now):
             self.near.receive(data, "far", self.now)
         for data in self.up.receive(self.now):
-            self.far.receive(data, "near", self.now)
+            self.far.receive(data, self.near_address, self.now)
         self.near.advance(self.now)
         self.far.advance(self.now)
         self._exchange()
 
     def _exchange(self) -> None:
-        for data in self.near.pop_frames(self.now):
+        for data in self.near.pop_frames(self.now, "far"):
             self.up.send(data, self.now)
-        for data in self.far.pop_frames(self.now):
+        for data in self.far.pop_frames(self.now, self.near_address):
             self.down.send(data, self.now)

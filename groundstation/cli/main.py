@@ -15,6 +15,7 @@ from platformdirs import user_log_path
 
 from groundstation.cli.terminal import needs_ascii
 from groundstation.cli.unknown_options import describe_unknown
+from groundstation.cli.verb_help import VERB_HELP, verb_help
 from groundstation.client import StationClient, StationError
 from groundstation.input.keymap import KEYMAPS, KeymapError
 from groundstation.input.keymap_file import load_keymap
@@ -42,6 +43,9 @@ examples:
 first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
 one press of `r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
 Keys drive on the Drive screen only. F6 lists all alerts and messages, Ctrl-G goes to the other screens, Escape back.
+
+verbs, which open no screen (groundstation VERB --help):
+{verb_help()}
 
 endpoints:
 {endpoint_help()}
@@ -71,10 +75,18 @@ class UsageError(Exception):
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the ground station. Returns 0 after a session, 2 for wrong arguments, 1 when the station crashed."""
+    """Run the ground station. Returns 0 after a session, 2 for wrong arguments, 1 when the station crashed.
+
+    A verb returns a code of groundstation/verbs/exit_codes.py.
+    """
     stdio.ensure_open()
+    arguments = sys.argv[1:] if arguments is None else arguments
+    if arguments and arguments[0] in VERB_HELP:
+        from groundstation.verbs.main import run as run_verb  # loads the dialect, which the screen does without
+
+        return run_verb(arguments)
     parser, names = _parser()
-    options, unknown = parser.parse_known_args(parser.reject_empty(sys.argv[1:] if arguments is None else arguments))
+    options, unknown = parser.parse_known_args(parser.reject_empty(arguments))
     if unknown:
         parser.error(describe_unknown(unknown, names))
     try:

@@ -13,19 +13,20 @@ from groundstation.station.operator import OperatorSession
 from groundstation.vehicles.fleet import Contact, Fleet
 from link.core import Outgoing
 
-IDLE_PROOF_PERIOD = 0.5
-"""s between proofs of this session to the selected vehicle of our dialect while it gets no demand: the session that is
-proven in the last second before arming is the one that drives."""
+IDLE_PROOF_PERIOD = 0.3
+"""s between proofs of this session to the selected vehicle of our dialect while it gets no demand: arming, and every
+other command, counts only of a session that was proven in the last second, and two proofs in a row may get lost."""
 
 
 class DrivingController:
-    """Connects the operator with the selected vehicle. `system` is our system id."""
+    """Connects the operator with the selected vehicle. `ids` are our system and component id."""
 
-    def __init__(self, operator: OperatorSession, fleet: Fleet, commander: Commander, system: int) -> None:
+    def __init__(self, operator: OperatorSession, fleet: Fleet, commander: Commander, ids: tuple[int, int]) -> None:
         self._operator = operator
         self._fleet = fleet
         self._commander = commander
-        self._system = system
+        self._ids = ids
+        self._system = ids[0]
         self._ending = False
         self._demands: dict[int, list[Message]] = {}
         """Newest demand of each vehicle, with its operator presence: state, so a newer one replaces it."""
@@ -106,9 +107,19 @@ class DrivingController:
         return not self._demands and all(contact.demand_stream.finished for contact in self._fleet)
 
     def is_in_control(self, contact: Contact) -> bool:
-        """Return whether we control this vehicle: by its CONTROL_STATUS, else by its acceptance of our commands."""
+        """Return whether we control this vehicle: by what it reports, else by its acceptance of our commands."""
         state = contact.state
-        return self._commander.is_claimed(state.system) if state.driver is None else state.driver == self._system
+        accepted = self._commander.is_claimed(state.system)
+        return state.control.is_program(self._ids, self._operator.session, accepted=accepted)
+
+    @property
+    def drives_any(self) -> bool:
+        """We control an armed vehicle."""
+        return any(contact.state.armed and self.is_in_control(contact) for contact in self._fleet)
+
+    def is_driven_by_twin(self, contact: Contact) -> bool:
+        """Return whether another program with our system id controls this vehicle."""
+        return contact.state.driver == self._system and not self.is_in_control(contact)
 
     def blocked_reason(self, now: float) -> str | None:
         """Return why keys do not drive now, as a text for the driver; None when they do."""
@@ -126,6 +137,10 @@ class DrivingController:
             return f"{state.name}: link lost"
         if not state.armed:
             return "arming" if self._commander.is_arming(state.system) else "disarmed"
+        if state.control.clash:
+            return f"another program uses our id {self._system}: use --system"
+        if self.is_driven_by_twin(contact):
+            return f"another program with our id {self._system} is in control"
         if not self.is_in_control(contact):
             return f"GCS {state.driver} is in control" if state.driver else "not in control"
         if contact.releasing:
@@ -133,13 +148,17 @@ class DrivingController:
         return None if state.mode in DRIVABLE_MODES else f"mode {state.mode}"
 
     def _may_stream(self, contact: Contact) -> bool:
-        """Return whether demands go to this vehicle: only if armed and ours, so as not to fight another driver."""
+        """Return whether demands go to this vehicle: only if armed and ours, so as not to fight another driver.
+
+        A silent driver with our system id is this program before a restart: neutral demands take over from it.
+        """
         state = contact.state
         if self._ending or contact.releasing or not self._operator.live:
             return False
         if self._commander.is_arming(state.system):
             return state.driver in (None, self._system)
-        return state.armed and self.is_in_control(contact)
+        follows = self.is_driven_by_twin(contact) and state.control.silent
+        return state.armed and (self.is_in_control(contact) or follows)
 
     def _update_ours(self, contact: Contact) -> None:
         """Note which vehicles this station has armed or drives; until the vehicle reports disarmed."""

@@ -19,6 +19,7 @@ from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
 from groundstation.station.handover import Handover
 from groundstation.station.operator import OperatorSession
+from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewFeed
 from groundstation.vehicles.fleet import Fleet
 from groundstation.vehicles.message_log import MessageLog
@@ -53,6 +54,7 @@ class IntentHandler:
         handover: Handover,
         log: MessageLog,
         views: ViewFeed,
+        services: ServiceDesk,
     ) -> None:
         self._operator = operator
         self._fleet = fleet
@@ -62,6 +64,7 @@ class IntentHandler:
         self._handover = handover
         self._log = log
         self._views = views
+        self._services = services
         self._emergency_at = -math.inf
 
     def handle(self, intent: i.AnyIntent, now: float) -> None:
@@ -170,6 +173,15 @@ class IntentHandler:
     def _keep_control(self, intent: i.KeepControl, now: float) -> None:
         self._handover.keep(now)
 
+    def _fetch_params(self, intent: i.FetchParams, now: float) -> None:
+        self._services.fetch_params(intent.request, now)
+
+    def _write_params(self, intent: i.WriteParams, now: float) -> None:
+        self._services.write_params(intent.request, intent.system, intent.changes, now)
+
+    def _cancel_request(self, intent: i.CancelRequest, now: float) -> None:
+        self._services.cancel(intent.request, now)
+
     def _quit(self, intent: i.Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
@@ -209,6 +221,9 @@ HANDLERS: dict[type[i.Intent], Callable[[IntentHandler, Any, float], None]] = {
     i.ReleaseControl: IntentHandler._release_control,
     i.GiveControl: IntentHandler._give_control,
     i.KeepControl: IntentHandler._keep_control,
+    i.FetchParams: IntentHandler._fetch_params,
+    i.WriteParams: IntentHandler._write_params,
+    i.CancelRequest: IntentHandler._cancel_request,
     i.Quit: IntentHandler._quit,
 }
 """Intent -> method, for all that are not commands to a vehicle. StartSimulator is handled in station_process.py."""

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from dialects import messages as m
-from dialects.enums import Command, ControlFlag, state_name
+from dialects.enums import state_name
 from groundstation.station.commander import Commander
 from groundstation.station.driving import DrivingController
 from groundstation.station.ground_stations import GroundStations
 from groundstation.station.handover import Handover
 from groundstation.station.link_stats import LinkStats
+from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewSource
+from groundstation.vehicles.control_report import ControlReport
 from groundstation.vehicles.fleet import Contact, Fleet
-from groundstation.vehicles.vehicle_details import Place, VehicleDetails, find_way
+from groundstation.vehicles.vehicle_details import Place, find_way
 from groundstation.views import (
     ControlRequest,
     ControlView,
@@ -30,12 +31,6 @@ from link.services.timesync import TimesyncClient
 PERIOD = 0.5
 """s between two views: tables change all their lines, which is expensive over SSH."""
 
-VERSION_TRIES, VERSION_PERIOD = 3, 2.0
-"""How often AUTOPILOT_VERSION is requested of a vehicle, and s between: a vehicle may accept and not send it."""
-
-TAKEOVER_ALLOWED = 2
-"""GCS_CONTROL_STATUS_FLAGS of CONTROL_STATUS."""
-
 
 class LinkViews:
     """Builds the three views, only while the screen watches them. `ours` is this station."""
@@ -46,6 +41,7 @@ class LinkViews:
         commander: Commander,
         driving: DrivingController,
         handover: Handover,
+        queries: VehicleQueries,
         links: LinkStats,
         timesync: TimesyncClient,
         ours: Program,
@@ -55,11 +51,10 @@ class LinkViews:
         self._commander = commander
         self._driving = driving
         self._handover = handover
+        self._queries = queries
         self._links = links
         self._timesync = timesync
         self._ours = ours
-        self._versions: dict[int, tuple[int, float]] = {}
-        """System id -> how often its AUTOPILOT_VERSION was requested, and when it may be again."""
 
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
@@ -74,7 +69,7 @@ class LinkViews:
 
     def _build_vehicles(self, request: VehiclesRequest, now: float, wall: float) -> VehiclesView:
         for contact in self._fleet:
-            self._request_version(contact, now)
+            self._queries.request_version(contact, now)
         contacts = sorted(self._fleet, key=lambda contact: contact.state.system)
         return VehiclesView(tuple(self._vehicle(contact, now) for contact in contacts), self._fleet.not_shown)
 
@@ -109,14 +104,6 @@ class LinkViews:
             return contact.details.home
         return selected.details.place
 
-    def _request_version(self, contact: Contact, now: float) -> None:
-        state = contact.state
-        tries, due = self._versions.get(state.system, (0, now))
-        wanted = not contact.details.firmware and contact.lost_at is None and tries < VERSION_TRIES and now >= due
-        if wanted and not self._commander.is_pending(Command.REQUEST_MESSAGE, state):
-            self._versions[state.system] = (tries + 1, now + VERSION_PERIOD)
-            self._commander.request_message(state, m.AutopilotVersion.id, now)
-
     # ---- links ----
 
     def _build_links(self, request: LinksRequest, now: float, wall: float) -> LinksView:
@@ -132,18 +119,18 @@ class LinkViews:
         contact = self._fleet.selected
         if contact is None:
             return ControlView(vehicle="", ours=self._ours, stations=stations, signing=signing)
-        flags = _flags(contact.details)
+        control, at = contact.state.control, contact.details.control_at
         waits = self._handover.waits_for(contact, now)
         return ControlView(
             vehicle=contact.state.name,
             ours=self._ours,
             in_control=self._driving.is_in_control(contact),
-            driver=contact.state.driver,
-            program=_program(contact.details),
-            age=_age(contact.details, now),
-            takeover=ControlFlag.TAKEOVER_ALLOWED in flags,
-            clash=ControlFlag.CLASH in flags,
-            silent=ControlFlag.SILENT in flags,
+            driver=control.driver,
+            program=_program(control),
+            age=None if at is None else round(now - at, 1),
+            takeover=contact.details.takeover,
+            clash=control.clash,
+            silent=control.silent,
             waits=None if waits is None else round(waits),
             stations=stations,
             signs=contact.signs,
@@ -151,28 +138,7 @@ class LinkViews:
         )
 
 
-def _program(details: VehicleDetails) -> Program | None:
-    if details.control is None or not details.control.message.driver_system:
+def _program(control: ControlReport) -> Program | None:
+    if not control.driver or control.component is None:
         return None
-    message = details.control.message
-    return Program(message.driver_system, message.driver_component, message.session_id)
-
-
-def _flags(details: VehicleDetails) -> ControlFlag:
-    """Return the flags of ROVER_CONTROL; CONTROL_STATUS has one of them, for vehicles that send nothing else."""
-    if details.control is not None:
-        return ControlFlag(details.control.message.flags & ALL_FLAGS)
-    status = details.control_status
-    allowed = status is not None and bool(status.flags & TAKEOVER_ALLOWED)
-    return ControlFlag.TAKEOVER_ALLOWED if allowed else ControlFlag(0)
-
-
-ALL_FLAGS = ControlFlag.TAKEOVER_ALLOWED | ControlFlag.CLASH | ControlFlag.SILENT
-
-
-def _age(details: VehicleDetails, now: float) -> float | None:
-    """Return the age of the newest report of who is in control."""
-    if details.control_status is None and details.control is None:
-        return None
-    control_at = details.control.at if details.control is not None else details.control_status_at
-    return round(now - max(control_at, details.control_status_at), 1)
+    return Program(control.driver, control.component, control.session or 0)

@@ -21,11 +21,12 @@ from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
 from groundstation.station.message_rates import MessageRates
 from groundstation.station.operator import OperatorSession
+from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
-from groundstation.views import LogRequest, Program
+from groundstation.views import LogRequest, ParamPageRequest, Program
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -56,22 +57,29 @@ class Station:
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
-        self._driving = DrivingController(self.operator, self.fleet, self._commander, system)
+        self._services = ServiceDesk(self.fleet, self._commander, self.log, system, COMPONENT)
+        self._driving = DrivingController(self.operator, self.fleet, self._commander, (system, COMPONENT))
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
         self._links = LinkStats()
+        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self._services)
         self._timesync = TimesyncClient(system)
         self._link_views = LinkViews(
             self.fleet,
             self._commander,
             self._driving,
             self._handover,
+            self._queries,
             self._links,
             self._timesync,
             Program(system, COMPONENT, session),
         )
         self.views = ViewFeed(
-            {LogRequest: ViewSource(self.log.build_page, period=0.1), **self._link_views.sources},
+            {
+                LogRequest: ViewSource(self.log.build_page, period=0.1),
+                ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
+                **self._link_views.sources,
+            }
         )
         """Request -> its source."""
         self._intents = IntentHandler(
@@ -83,8 +91,8 @@ class Station:
             self._handover,
             self.log,
             self.views,
+            self._services,
         )
-        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log)
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
@@ -111,6 +119,7 @@ class Station:
         contact.details.receive(received, now)
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
+        self._services.receive(contact, received, now)
         match received.message:
             case m.StatusText() as message:
                 self._handle_statustext(message, contact, now)
@@ -130,9 +139,10 @@ class Station:
         self._handover.tick(now)
         if self.operator.live:
             self._queries.tick(now)
+            self._services.tick(now)
         if self.operator.live and not self._driving.ending:
             self._timesync.tick(now)
-            self._outbox += self._heartbeat.tick(now)
+            self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
         self._driving.update(now)
         self._departure.tick(now)
 
@@ -151,7 +161,10 @@ class Station:
         outbox, self._outbox = self._outbox, []
         demands = self._driving.messages_to_send()
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
-        return demands + commands + self._timesync.messages_to_send() + outbox
+        services = self._services.messages_to_send()  # repeated later if they are dropped here
+        return (
+            demands + commands + self._timesync.messages_to_send() + outbox + (services if self.operator.live else [])
+        )
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
@@ -232,12 +245,14 @@ class Station:
         if text is not None:
             contact.state.handle_text(text)
             self._commander.handle_statustext(system, text, message.severity, now)
+            self._services.handle_text(contact, text, message.severity, now)
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
         state, commander = contact.state, self._commander
         return state.build_view(
             now,
             in_control=self._driving.is_in_control(contact),
+            twin=self._driving.is_driven_by_twin(contact),
             control_wait=self._handover.waits_for(contact, now),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),

@@ -9,21 +9,30 @@ from dialects import messages as m
 from dialects.enums import Command, Severity
 from groundstation.station.commander import Commander
 from groundstation.station.link_stats import LinkStats
+from groundstation.station.service_desk import ServiceDesk
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.stream_requests import stream_rate
 from link.core import Outgoing, Received
 
+VERSION_TRIES, VERSION_PERIOD = 3, 2.0
+"""How often AUTOPILOT_VERSION is requested of a vehicle, and s between: a vehicle may accept and not send it."""
+
 
 class VehicleQueries:
     """Queries each vehicle, one command of a kind at a time, because they are acknowledged one at a time."""
 
-    def __init__(self, fleet: Fleet, commander: Commander, links: LinkStats, log: MessageLog) -> None:
+    def __init__(
+        self, fleet: Fleet, commander: Commander, links: LinkStats, log: MessageLog, services: ServiceDesk
+    ) -> None:
+        self._services = services
         self._fleet = fleet
         self._commander = commander
         self._links = links
         self._log = log
         self._outbox: list[Outgoing] = []
+        self._versions: dict[int, tuple[int, float]] = {}
+        """System id -> how often its AUTOPILOT_VERSION was requested, and when it may be again."""
 
     def receive(self, contact: Contact, received: Received, now: float) -> None:
         """Handle a message of a vehicle."""
@@ -47,6 +56,20 @@ class VehicleQueries:
                 self._query_outputs(contact, now)
                 self._request_telemetry(contact, now)
 
+    def request_version(self, contact: Contact, now: float) -> None:
+        """Request AUTOPILOT_VERSION, if it is not known: called while a screen shows it."""
+        state = contact.state
+        tries, due = self._versions.get(state.system, (0, now))
+        wanted = not contact.details.firmware and contact.lost_at is None and tries < VERSION_TRIES and now >= due
+        if wanted and not self._is_requesting(contact):
+            self._versions[state.system] = (tries + 1, now + VERSION_PERIOD)
+            self._commander.request_message(state, m.AutopilotVersion.id, now)
+
+    def _is_requesting(self, contact: Contact) -> bool:
+        """Return whether a REQUEST_MESSAGE is not acknowledged yet: another one would take its answer."""
+        pending = self._commander.is_pending(Command.REQUEST_MESSAGE, contact.state)
+        return pending or self._services.is_querying(contact)
+
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now and clear the queue."""
         outbox, self._outbox = self._outbox, []
@@ -64,8 +87,9 @@ class VehicleQueries:
 
     def _query_dialect(self, contact: Contact, now: float) -> None:
         state = contact.state
-        pending = self._commander.is_pending(Command.REQUEST_MESSAGE, state)
-        if not pending and contact.dialect_probe.is_due(state.autopilot, state.sends_drive_status(now), now):
+        if not self._is_requesting(contact) and contact.dialect_probe.is_due(
+            state.autopilot, state.sends_drive_status(now), now
+        ):
             self._commander.request_message(state, m.RoverDriveInfo.id, now)
 
     def _query_settings(self, contact: Contact, now: float) -> None:

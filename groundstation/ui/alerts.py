@@ -190,6 +190,8 @@ def _driver(now: DisplayState) -> Iterator[Alert]:
     vehicle = now.snapshot.vehicle
     if vehicle is not None and not vehicle.in_control and (vehicle.driver or vehicle.armed):
         who = f"ground station {vehicle.driver} drives" if vehicle.driver else "you are not in control"
+        if vehicle.twin:
+            who = f"another program with our id {vehicle.driver} drives (use --system)"
         asks = f"{now.key('vehicle.control')} requests control"
         if now.away is not None:
             who = f"tmux was detached for {now.away:.0f} s, control was released"

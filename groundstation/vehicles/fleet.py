@@ -9,10 +9,12 @@ from dataclasses import dataclass, field
 from dialects.axes import Axes, AxisMap, axis_map
 from dialects.enums import Autopilot, Severity, VehicleType
 from dialects.messages import Heartbeat, Message
+from dialects.modes import Mode
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
 from groundstation.vehicles.message_log import STATE, MessageLog
 from groundstation.vehicles.outputs import ServoFunctions
+from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
 from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
@@ -41,6 +43,8 @@ class Contact:
     servo_functions: ServoFunctions | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
+    services: VehicleServices | None = None
+    """Parameters, plans and files; None before the first request."""
     ours: bool = False
     """This station has armed or driven the vehicle since the vehicle was last disarmed."""
     releasing: bool = False
@@ -66,8 +70,16 @@ class Contact:
         They change only with a neutral demand: a frame that is read late must not turn the steering while driving.
         """
         if self.axes is None or demand.neutral:
-            self.axes = axis_map(self.state.autopilot, self.settings_check.frame if self.settings_check else None)
+            self.axes = axis_map(
+                self.state.autopilot, self.settings_check.frame if self.settings_check else self._drive
+            )
         return self.axes
+
+    @property
+    def _drive(self) -> int | None:
+        """The drive type of our own vehicle, where it decides on the axes: in ACRO the steering is a turn rate."""
+        info = self.state.drive_info
+        return None if info is None or self.state.mode == Mode.ACRO.name else int(info.drive_type)
 
     @property
     def without_link(self) -> str | None:
@@ -99,6 +111,8 @@ class Contact:
             self.settings_check.restart()
         if self.servo_functions is not None:
             self.servo_functions.restart()
+        if self.services is not None:
+            self.services.params.forget()
 
 
 class Fleet:

@@ -1,4 +1,4 @@
-"""Details of one vehicle that only the Links screen shows: components, place on earth, firmware, who is in control."""
+"""Details of one vehicle that only the Links screen shows: components, place on earth, firmware, takeover."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from dialects import messages as m
-from dialects.enums import type_name
+from dialects.enums import ControlFlag, type_name
 from groundstation.vehicles.track import METRES_PER_DEGREE
 from groundstation.views import ComponentRow
 from link.core import Received
@@ -17,6 +17,9 @@ MAX_COMPONENTS = 16
 
 COMPONENT_TIMEOUT = 10.0
 """s without a HEARTBEAT after which a component is not listed any more."""
+
+TAKEOVER_ALLOWED = 2
+"""GCS_CONTROL_STATUS_FLAGS of CONTROL_STATUS."""
 
 MAX_LATITUDE, MAX_LONGITUDE = 90.0, 180.0
 
@@ -37,13 +40,6 @@ class Way(NamedTuple):
     """Degrees clockwise from north, 0..360."""
 
 
-class ControlReport(NamedTuple):
-    """The newest ROVER_CONTROL, and when it arrived."""
-
-    message: m.RoverControl
-    at: float
-
-
 class VehicleDetails:
     """Collects the details from the messages of one system. `component` is the one that the station talks to."""
 
@@ -52,9 +48,10 @@ class VehicleDetails:
         self.home: Place | None = None
         self.firmware = ""
         """Version of AUTOPILOT_VERSION, e.g. "4.6.1"; empty until it has arrived."""
-        self.control_status: m.ControlStatus | None = None
-        self.control_status_at = -math.inf
-        self.control: ControlReport | None = None
+        self.takeover = False
+        """A request for control is granted without asking the driver."""
+        self.control_at: float | None = None
+        """When the vehicle reported last who is in control."""
         self._component = component
         self._components: dict[int, tuple[str, float]] = {}
         """Component id -> its kind in words, and when its HEARTBEAT arrived."""
@@ -88,10 +85,10 @@ class VehicleDetails:
         self.firmware = f"{number >> 24}.{number >> 16 & 0xFF}.{number >> 8 & 0xFF}" if number else ""
 
     def _control_status(self, message: m.ControlStatus, now: float) -> None:
-        self.control_status, self.control_status_at = message, now
+        self.takeover, self.control_at = bool(message.flags & TAKEOVER_ALLOWED), now
 
     def _rover_control(self, message: m.RoverControl, now: float) -> None:
-        self.control = ControlReport(message, now)
+        self.takeover, self.control_at = bool(message.flags & ControlFlag.TAKEOVER_ALLOWED), now
 
 
 _HANDLERS: Mapping[type[m.Message], Callable[[VehicleDetails, Any, float], None]] = {

@@ -13,10 +13,12 @@ from dialects import messages as m
 from dialects.enums import Autopilot, DriveLimit, Failsafe, ModeFlag, Sensor, SystemState, VehicleType
 from dialects.modes import DRIVABLE_MODES, STANDING_MODES, mode_name
 from groundstation.snapshot import OutputView, VehicleView
+from groundstation.vehicles.control_report import ControlReport
 from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS
 from groundstation.vehicles.latency import LatencyMeter
 from groundstation.vehicles.outputs import drive_names
 from groundstation.vehicles.track import LocalFrame, Track
+from groundstation.vehicles.values import all_finite, drive_demand, flag_words, within
 from link.core import Received
 from link.protocol.heartbeat import HeartbeatMonitor
 
@@ -51,7 +53,7 @@ class VehicleState:
         self.mode = "unknown"
         self.armed = False
         self.status: int = SystemState.UNINIT
-        self.driver: int | None = None
+        self.control = ControlReport()
         self.drive_info: m.RoverDriveInfo | None = None
         self.boot_time: int | None = None
         """Newest time_boot_ms of the vehicle."""
@@ -103,6 +105,11 @@ class VehicleState:
         return self.armed and self.mode not in DRIVABLE_MODES | STANDING_MODES
 
     @property
+    def driver(self) -> int | None:
+        """System id of the ground station in control, 0: none; None: the vehicle does not tell."""
+        return self.control.driver
+
+    @property
     def name(self) -> str:
         """Name for the driver, e.g. "Rover 1", "ArduPilot rover 1"."""
         text = f"{_AUTOPILOTS.get(self.autopilot, '')}{_KINDS.get(self.kind, 'vehicle')} {self.system}"
@@ -133,10 +140,10 @@ class VehicleState:
             status=self.status,
             alive=self.monitor.is_alive(now),
             silence=self.monitor.silence(now),
-            driver=self.driver,
+            driver=self.control.driver,
             track=self._track.points,
             speed=self._speed(),
-            demand=_demand(drive),
+            demand=drive_demand(drive),
             outputs=self._outputs(drive),
             limits=flag_words(DriveLimit, drive.limits) if drive else (),
             command_age=drive.demand_age_ms / 1000 if drive and drive.demand_age_ms != UNKNOWN_U16 else None,
@@ -156,9 +163,6 @@ class VehicleState:
         self.armed = bool(message.base_mode & ModeFlag.ARMED)
         self.mode = mode_name(message.custom_mode, message.autopilot)
 
-    def _control_status(self, message: m.ControlStatus, now: float) -> None:
-        self.driver = message.gcs_main
-
     def _drive_status(self, message: m.RoverDriveStatus, now: float) -> None:
         self._drive = message
 
@@ -177,7 +181,7 @@ class VehicleState:
             self._read(heading=math.radians(message.heading % 360))
 
     def _local_position(self, message: m.LocalPositionNed, now: float) -> None:
-        if _finite(message.x, message.y, message.vx, message.vy):
+        if all_finite(message.x, message.y, message.vx, message.vy):
             self._velocity = (message.vx, message.vy)
             self._move(message.x, message.y)
 
@@ -188,7 +192,7 @@ class VehicleState:
         self._move(*self._frame.to_local(message.lat / 1e7, message.lon / 1e7))
 
     def _home(self, message: m.HomePosition, now: float) -> None:
-        if m.LocalPositionNed in self._times and _finite(message.x, message.y):
+        if m.LocalPositionNed in self._times and all_finite(message.x, message.y):
             self._values["home"] = (message.x, message.y)
         else:
             self._values["home"] = self._frame.to_local(message.latitude / 1e7, message.longitude / 1e7)
@@ -219,12 +223,12 @@ class VehicleState:
             count = min(4, self.drive_info.motor_count) if self.drive_info else 2
             names = drive_names(self.drive_info, count)
             return tuple(
-                OutputView(name=name, value=_within(value / 10_000))
+                OutputView(name=name, value=within(value / 10_000))
                 for name, value in zip(names, drive.output, strict=False)
             )
         pulses = {channel: getattr(self._servos, f"servo{channel}_raw", 0) for channel in self.servo_names}
         return tuple(
-            OutputView(name=name, value=_within((pulses[channel] - 1500) / 500))
+            OutputView(name=name, value=within((pulses[channel] - 1500) / 500))
             for channel, name in self.servo_names.items()
             if pulses[channel] not in NO_PULSE
         )
@@ -267,26 +271,10 @@ class VehicleState:
         return max(0.0, status.action_in_ms / 1000 - (now - self._times[m.RoverFailsafeStatus]))
 
 
-def flag_words(flags: type[DriveLimit] | type[Failsafe], value: int) -> tuple[str, ...]:
-    """Return the names of the flags in `value`, e.g. "neutral first"; unknown bits are left out."""
-    return tuple(str(flag.name).replace("_", " ").lower() for flag in flags if value & flag)
-
-
-def _demand(drive: m.RoverDriveStatus | None) -> tuple[float, float] | None:
-    return (_within(drive.demand_throttle / 10_000), _within(drive.demand_steering / 10_000)) if drive else None
-
-
-def _within(value: float) -> float:
-    return max(-1.0, min(1.0, value))
-
-
-def _finite(*values: float) -> bool:
-    return all(math.isfinite(value) for value in values)
-
-
 _HANDLERS: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
     m.Heartbeat: VehicleState._heartbeat,
-    m.ControlStatus: VehicleState._control_status,
+    m.ControlStatus: lambda state, message, now: state.control.handle_control_status(message),
+    m.RoverControl: lambda state, message, now: state.control.handle_rover_control(message),
     m.RoverDriveStatus: VehicleState._drive_status,
     m.RoverFailsafeStatus: VehicleState._failsafe_status,
     m.RoverDriveInfo: VehicleState._drive_information,

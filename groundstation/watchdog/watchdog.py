@@ -81,8 +81,8 @@ class _Target:
         if not self.sent:
             return f"neutral could NOT be sent to {name} ({self.error or 'no link'})"
         if sending:
-            return f"the watchdog sends neutral to {name}"
-        return f"{name} may still move after {SEND_FOR:.0f} s of neutral"
+            return f"neutral is sent to {name}"  # short: an alert has 70 characters at 80 columns
+        return f"{name} may still move"
 
 
 @dataclass(slots=True)

@@ -17,6 +17,7 @@ from typing import Any
 from tests.benchmarks import (
     bridge,
     cost,
+    foreign_params,
     framer,
     key_to_motor,
     link_loss,
@@ -41,6 +42,7 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "loop_lateness": (loop_lateness.run, "how late the vehicle's control cycles are, idle and on a busy machine"),
     "bridge": (bridge.run, "the bridge as a router, beside MAVProxy, pymavlink and C"),
     "services": (services.run, "parameters, a mission and a log from a real vehicle, by UDP and at 57600 baud"),
+    "foreign_params": (foreign_params.run, "1200 parameters of an ArduPilot-like vehicle, as a file and as a list"),
     "stations": (stations.run, "what 1, 4 and 16 ground stations cost the vehicle"),
     "strangers": (strangers.run, "CPU, demands and stops of a vehicle that strangers flood"),
     "mission": (mission.run, "ten minutes of AUTO in real time: how far the rover really is beside its lines"),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from dialects.enums import Autopilot, ModeFlag, result_name
-from dialects.modes import Mode, base_mode, custom_mode, mode_name
+from dialects.enums import Autopilot, ModeFlag, VehicleType, result_name
+from dialects.modes import Mode, base_mode, custom_mode, known_modes, mode_name, set_mode_params
 
 
 def test_numbers_are_ardurovers() -> None:
@@ -43,3 +43,18 @@ def test_do_set_mode_parameters() -> None:
 def test_names_of_results() -> None:
     assert result_name(2) == "denied"
     assert result_name(99) == "result 99"
+
+
+def test_modes_of_vehicles_that_do_not_list_them() -> None:
+    rover = known_modes(Autopilot.ARDUPILOT, VehicleType.GROUND_ROVER)
+    assert (rover["MANUAL"], rover["HOLD"], rover["AUTO"], rover["GUIDED"]) == (0, 4, 10, 15)
+    assert "INITIALISING" not in rover
+    assert known_modes(Autopilot.ARDUPILOT, 2) == {}, "a copter has other numbers"
+    px4 = known_modes(Autopilot.PX4, VehicleType.GROUND_ROVER)
+    assert (px4["MANUAL"], px4["AUTO_MISSION"]) == (0x010000, 0x04040000)
+    assert all(mode_name(custom, Autopilot.PX4) in name for name, custom in px4.items())
+
+
+def test_parameters_of_do_set_mode() -> None:
+    assert set_mode_params(10, Autopilot.ARDUPILOT) == (1, 10, 0)
+    assert set_mode_params(0x03040000, Autopilot.PX4) == (1, *custom_mode(Mode.HOLD, Autopilot.PX4))

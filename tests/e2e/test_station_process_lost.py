@@ -93,7 +93,7 @@ def bench(tmp_path: Path) -> Iterator[Bench]:
 def test_the_screen_says_what_becomes_of_an_ardurover(bench: Bench) -> None:
     at = time.monotonic()
     os.kill(bench.station, signal.SIGKILL)
-    shows(bench.program, "station process ended: the watchdog sends neutral to ArduPilot rover 1")
+    shows(bench.program, "station process ended: neutral is sent to ArduPilot rover 1")
     bench.stops_soon(at)
     shows(bench.program, "station process ended: ArduPilot rover 1 stands")
     bench.program.type("\x11")
@@ -103,7 +103,7 @@ def test_the_screen_says_what_becomes_of_an_ardurover(bench: Bench) -> None:
 def test_the_screen_names_a_station_that_stands_still(bench: Bench) -> None:
     at = time.monotonic()
     os.kill(bench.station, signal.SIGSTOP)
-    shows(bench.program, "station not responding: the watchdog sends neutral to ArduPilot rover 1")
+    shows(bench.program, "station not responding: neutral is sent to ArduPilot rover 1")
     bench.stops_soon(at)
     os.kill(bench.station, signal.SIGCONT)
     shows(bench.program, "station stopped for")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import msgspec
 import pytest
 
@@ -10,7 +12,10 @@ from groundstation.ipc import IntentBatch, decode_from_screen, encode
 from groundstation.station.intent_handler import HANDLERS, VEHICLE_COMMANDS
 
 KINDS = Intent.__subclasses__()
-VALUES = {"key": "i", "throttle": 1, "steering": -1, "open": True, "style": "latch", "mode": "HOLD", "system": 3}
+VALUES: dict[str, Any] = {
+    "key": "i", "throttle": 1, "steering": -1, "open": True, "style": "latch", "mode": "HOLD", "system": 3,
+    "request": 5, "changes": (("FS_ACTION", 2.0),),
+}  # fmt: skip
 """Field -> a value for fields without a default."""
 
 

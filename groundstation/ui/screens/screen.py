@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from textual.app import ComposeResult
 from textual.screen import Screen
@@ -18,6 +18,8 @@ from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.instruments import CHROME, InstrumentRow
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.views import View, ViewRequest
+
+Kept = TypeVar("Kept")
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +35,13 @@ class ScreenContext:
     """Returns the newest display state: what a screen shows first."""
     folder: Path
     """Where screens save files."""
+    kept: dict[type, Any] = field(default_factory=dict)
+    """What screens keep while they are closed, by its class."""
+
+    def keep(self, kind: type[Kept]) -> Kept:
+        """Return the object of this class that lives as long as the app: a screen itself ends when it is closed."""
+        found: Kept = self.kept.setdefault(kind, kind())
+        return found
 
 
 class ConsoleScreen(Screen[None]):

@@ -63,8 +63,7 @@ class ControlPanel(Instrument[ControlPanelValue]):
             return [("this vehicle does not tell", style(AMBER)), (f" · {ours}", style(DIM))]
         if not view.driver:
             return [("no ground station", style(TEXT)), (f" · {request} requests control", style(DIM))]
-        told = view.program  # of the second before, where the other message has arrived and this one has not
-        driver = told if told is not None and told.system == view.driver else Program(view.driver, 0)
+        driver = view.program or Program(view.driver, 0)
         if view.driver == view.ours.system:
             return _own(view, driver, release)
         return [(f"ground station {_name(driver)}", style(AMBER, bold=True)), (f" · {request} asks for it", style(DIM))]

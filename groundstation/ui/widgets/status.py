@@ -126,7 +126,8 @@ def driver_part(vehicle: VehicleView, *, station_runs: bool) -> Part:
     if vehicle.in_control:
         return ("you drive" if vehicle.armed and vehicle.drivable else "you are in control", style(GREEN, bold=True))
     if vehicle.driver:
-        return (f"driven by {vehicle.driver}", style(AMBER, bold=True))
+        who = f"another {vehicle.driver}" if vehicle.twin else f"{vehicle.driver}"
+        return (f"driven by {who}", style(AMBER, bold=True))
     return ("" if vehicle.driver is None else "no GCS in control", style(DIM))
 
 

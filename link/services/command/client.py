@@ -40,6 +40,8 @@ class _Waiting:
     target: tuple[int, int]
     due: float
     sent: int = 0
+    progress: int | None = None
+    """% of a command that is IN_PROGRESS; None: not told."""
 
 
 class CommandClient:
@@ -70,6 +72,11 @@ class CommandClient:
         """Return whether a command of this kind to this system still waits for its COMMAND_ACK."""
         return (target_system, int(command)) in self._waiting
 
+    def progress(self, command: int, target_system: int) -> int | None:
+        """Return how far a command is that the vehicle reports as in progress, %; None: not told."""
+        waiting = self._waiting.get((target_system, int(command)))
+        return waiting.progress if waiting else None
+
     def receive(self, received: Received, now: float) -> None:
         """Handle COMMAND_ACK; other messages are ignored."""
         message = received.message
@@ -80,6 +87,7 @@ class CommandClient:
             return
         if message.result == Result.IN_PROGRESS:
             waiting.sent, waiting.due = 1, now + PROGRESS_TIMEOUT
+            waiting.progress = message.progress if message.progress <= 100 else waiting.progress
             return
         del self._waiting[received.system, message.command]
         known = Result(message.result) if message.result in Result._value2member_map_ else Result.FAILED

@@ -58,6 +58,24 @@ class FtpError(IntEnum):
     NOT_FOUND = 10
 
 
+_ERROR_TEXTS: dict[int, str] = {
+    FtpError.FAIL: "the vehicle reports a failure",
+    FtpError.FAIL_ERRNO: "the vehicle's file system reports an error",
+    FtpError.INVALID_SIZE: "the vehicle does not accept the size",
+    FtpError.INVALID_SESSION: "the vehicle has closed the file",
+    FtpError.NO_SESSIONS: "the vehicle has too many files open",
+    FtpError.UNKNOWN_COMMAND: "the vehicle cannot do this",
+    FtpError.FILE_EXISTS: "the file exists already",
+    FtpError.PROTECTED: "the vehicle protects the file",
+    FtpError.NOT_FOUND: "no such file on the vehicle",
+}
+
+
+def ftp_error_text(error: int) -> str:
+    """Return what a MAV_FTP_ERR means, for the operator."""
+    return _ERROR_TEXTS.get(error, f"the vehicle reports FTP error {error}")
+
+
 @dataclass(frozen=True, slots=True)
 class FtpPacket:
     """One request or reply."""

@@ -64,6 +64,12 @@ class FileReassembly:
         return bytes(self._data[: self.end])
 
     @property
+    def beginning(self) -> bytes:
+        """What arrived without a gap from the start."""
+        gap = next(self.received.gaps(self.end), None)
+        return bytes(self._data[: self.end if gap is None else gap[0]])
+
+    @property
     def complete(self) -> bool:
         """Whether the whole file has arrived."""
         return next(self.received.gaps(self.end), None) is None

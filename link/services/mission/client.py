@@ -25,6 +25,16 @@ RESTARTS = 2
 """How often an upload is restarted that the vehicle has cancelled for lack of items."""
 
 
+_NOT_OF_AN_ITEM = (
+    MissionResult.ACCEPTED,
+    MissionResult.ERROR,
+    MissionResult.NO_SPACE,
+    MissionResult.DENIED,
+    MissionResult.CANCELLED,
+)
+"""Results that are about the whole job."""
+
+
 class MissionOperation(Enum):
     """What the client is doing."""
 
@@ -42,7 +52,14 @@ class MissionOutcome:
     result: int | None
     """MAV_MISSION_RESULT; None: no answer."""
     items: Items = ()
-    """Items of a download."""
+    """Items of a download; of one that failed those that arrived, from the first, with which it can be resumed."""
+    item: int | None = None
+    """Number of the item that the vehicle has refused, as far as its MISSION_ACK shows: it came before all were
+    sent."""
+    count: int | None = None
+    """Length of the plan, where known."""
+    tries: int = 0
+    """How often the last message was sent."""
     plan_id: int = 0
     """Id of the vehicle's plan after an upload or a download (a different one in MISSION_CURRENT means that the plan
     has changed); 0: the plan is empty, or the vehicle has no ids."""
@@ -69,6 +86,8 @@ class _MissionTransfer:
     count: int | None = None
     """Items of a download, once known."""
     plan_id: int = 0
+    resumed: MissionOutcome | None = None
+    """The download that failed and is resumed."""
 
 
 class MissionClient:
@@ -86,9 +105,18 @@ class MissionClient:
         count = m.MissionCount(*self._target, len(items), kind)
         self._begin(MissionOperation.UPLOAD, kind, count, now, items)
 
-    def download(self, kind: MissionType, now: float) -> None:
-        """Download the vehicle's plan."""
+    def download(self, kind: MissionType, now: float, resume: MissionOutcome | None = None) -> None:
+        """Download the vehicle's plan. `resume`: a download that failed; its items are kept if the plan is the same."""
         self._begin(MissionOperation.DOWNLOAD, kind, m.MissionRequestList(*self._target, kind), now)
+        if self._work is not None and resume is not None and resume.kind == kind:
+            self._work.resumed = resume
+
+    def cancel(self) -> None:
+        """Cancel the job under way, without an outcome; tell the vehicle."""
+        if self._work is not None:
+            kind = self._work.kind
+            self._outbox.append(Outgoing(m.MissionAck(*self._target, MissionResult.CANCELLED, kind)))
+        self._work = None
 
     def clear(self, kind: MissionType, now: float) -> None:
         """Clear the vehicle's plan; MissionType.ALL clears all three."""
@@ -119,6 +147,7 @@ class MissionClient:
                 self._send_item(work, message.seq, now)
             case m.MissionCount() if work.job is MissionOperation.DOWNLOAD and work.count is None:
                 work.count, work.plan_id = message.count, message.opaque_id
+                self._take_resumed(work)
                 self._next(work, now)
             case m.MissionItemInt() | m.MissionItem() if (
                 work.job is MissionOperation.DOWNLOAD and work.count is not None
@@ -178,6 +207,13 @@ class MissionClient:
         if sequence < len(work.items):
             self._send(work, to_message(work.items[sequence], sequence, work.kind, self._target), now)
 
+    @staticmethod
+    def _take_resumed(work: _MissionTransfer) -> None:
+        """Keep the items of a failed download if the vehicle's id shows that the plan is still the same."""
+        before = work.resumed
+        if before is not None and work.plan_id and (before.plan_id, before.count) == (work.plan_id, work.count):
+            work.items = list(before.items)
+
     def _next(self, work: _MissionTransfer, now: float) -> None:
         """Request the next item of a download, or acknowledge the last."""
         if len(work.items) == work.count:
@@ -196,5 +232,17 @@ class MissionClient:
 
     def _finish(self, work: _MissionTransfer, result: int | None) -> None:
         self._work = None
-        items = tuple(work.items) if work.job is MissionOperation.DOWNLOAD and result == MissionResult.ACCEPTED else ()
-        self._outcomes.append(MissionOutcome(work.job, work.kind, result, items, work.plan_id))
+        items = tuple(work.items) if work.job is MissionOperation.DOWNLOAD else ()
+        count = work.count if work.job is MissionOperation.DOWNLOAD else len(work.items)
+        self._outcomes.append(
+            MissionOutcome(
+                work.job, work.kind, result, items, self._refused_item(work, result), count, work.sent, work.plan_id
+            )
+        )
+
+    def _refused_item(self, work: _MissionTransfer, result: int | None) -> int | None:
+        """Return the item that a MISSION_ACK refuses: the last that was sent, unless all were."""
+        sequence: int | None = getattr(work.last, "seq", None)
+        if work.job is not MissionOperation.UPLOAD or result in (None, *_NOT_OF_AN_ITEM) or sequence is None:
+            return None
+        return sequence if not self._sent_all(work) or len(work.items) == 1 else None

@@ -1,30 +1,40 @@
 """Client half of the parameter protocol: fetches all parameters of a vehicle, and reads or sets one.
 
-Gaps in a list are filled by index. A set is repeated until the vehicle answers with the wanted value, with another one
-(rejected) or with PARAM_ERROR. Source: https://mavlink.io/en/services/parameter.html.
+A set is repeated until the vehicle answers with the wanted value, with another one (rejected) or with PARAM_ERROR.
+Source: https://mavlink.io/en/services/parameter.html.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 from dialects import messages as m
 from dialects.enums import ParamErrorCode
 from link.core import Outgoing, Received
-from link.services.param.values import NAME_SIZE, REAL32, from_wire, is_float32, same_float32, to_wire
+from link.services.param.listing import ParamListing
+from link.services.param.values import (
+    REAL32,
+    from_wire,
+    name_from_wire,
+    name_to_wire,
+    same_float32,
+    to_wire,
+    value_fault,
+)
 
-LIST_TIMEOUT = 1.0
-"""s without a new parameter before gaps are filled: a 57600 baud radio with telemetry takes 0.3 s per value."""
 REPEAT_AFTER = 0.7
 """s without an answer before a set or read is repeated: ArduPilot answers a read in 0.1 s, a radio adds 0.4 s."""
 TRIES = 8
 """At 30 % loss each way all eight fail once in 218 requests of the worst kind."""
-WINDOW = 10
-"""Gaps requested at once: 320 bytes, a twentieth of a second of a 57600 baud radio."""
 REFUSED_AFTER = 2
 """Answers with another value before a set counts as rejected: the first may have been sent before the set arrived."""
 NO_INDEX = m.UINT16_MAX
 """`param_index` of an answer without a list index (ArduPilot)."""
+MAX_PARAMS = 8192
+"""Parameters that are kept: five times what the largest autopilot has. More names would be an attack on our memory."""
+HASH_CHECK = "_HASH_CHECK"
+"""PX4 sends a hash of all values under this name. It is no parameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +42,13 @@ class Param:
     """A parameter as the vehicle reported it."""
 
     name: str
+    """Bytes that are not printable ASCII are escaped, see values.name_from_wire."""
     value: float
     kind: int
     """MAV_PARAM_TYPE."""
     index: int | None
+    default: float | None = None
+    """None: not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +62,8 @@ class ParamOutcome:
     """Value that the vehicle reported; None: no answer."""
     fault: int | None
     """MAV_PARAM_ERROR of the vehicle, or ours where the request cannot be encoded."""
+    tries: int = 0
+    """How often the request was sent."""
 
     @property
     def done(self) -> bool:
@@ -62,6 +77,7 @@ class ParamOutcome:
 class _ParamRequest:
     """A set (`wanted`) or read under way."""
 
+    raw: bytes
     wanted: float | None
     due: float = 0.0
     sent: int = 0
@@ -70,9 +86,10 @@ class _ParamRequest:
 
 
 class ParamClient:
-    """Talks to one vehicle. `bytewise`: integers lie in the float's bytes (PX4, and MAVSDK's servers).
+    """Talks to one vehicle.
 
-    A read or set is sent up to `tries` times, `repeat_after` s apart.
+    `bytewise`: integers lie in the float's bytes (values.is_bytewise); set it before the first request. A read or set
+    is sent up to `tries` times, `repeat_after` s apart.
     """
 
     def __init__(
@@ -88,57 +105,91 @@ class ParamClient:
     ) -> None:
         self._own_system = system
         self._target = (target_system, target_component)
-        self._bytewise = bytewise
+        self.bytewise = bytewise
         self._repeat_after = repeat_after
         self._max_tries = tries
         self.params: dict[str, Param] = {}
         """All known parameters, by name."""
-        self.total: int | None = None
-        """Number of parameters that the vehicle reports."""
-        self.fetching = False
-        self._received: set[int] = set()
+        self._listing = ParamListing(self._target)
         self._requests: dict[str, _ParamRequest] = {}
-        self._due = 0.0
-        self._tries = 0
         self._outbox: list[Outgoing] = []
         self._outcomes: list[ParamOutcome] = []
 
+    # ---- all parameters ----
+
     def fetch(self, now: float) -> None:
-        """Start to fetch all parameters."""
-        self.fetching, self.total, self._tries = True, None, 0
-        self._received.clear()
-        self._request_list(now)
+        """Start to fetch all parameters by PARAM_REQUEST_LIST."""
+        self._outbox += self._listing.start(now)
+
+    def stop_fetch(self) -> None:
+        """End the list as it is."""
+        self._listing.stop()
+
+    def load(self, params: Iterable[Param]) -> None:
+        """Take all parameters from another source, such as a file of the vehicle. Others are forgotten."""
+        self.params = {param.name: param for param in params}
+        self._listing.finish(len(self.params))
+
+    def forget(self) -> None:
+        """Forget all values: the vehicle may have restarted with others."""
+        self.params.clear()
+        self._listing.forget()
+
+    @property
+    def fetching(self) -> bool:
+        """Whether the list is under way."""
+        return self._listing.active
 
     @property
     def complete(self) -> bool:
         """Whether every parameter of the list has arrived."""
-        return self.total is not None and len(self._received) >= self.total
+        return self._listing.complete
+
+    @property
+    def total(self) -> int | None:
+        """Number of parameters that the vehicle reports."""
+        return self._listing.total
+
+    @property
+    def problem(self) -> str | None:
+        """Why the list ended incomplete, or None."""
+        return self._listing.problem
 
     @property
     def progress(self) -> tuple[int, int | None]:
         """Parameters that have arrived, and the total."""
-        return len(self._received), self.total
+        return len(self._listing.received), self._listing.total
+
+    # ---- one parameter ----
 
     def set(self, name: str, value: float, now: float) -> None:
         """Set a parameter; replaces an unfinished request for the same one."""
-        if is_float32(value):
+        known = self.params.get(name)
+        fault = value_fault(value, known.kind if known else REAL32)
+        if fault is None:
             self._request(name, value, now)
         else:
-            self._outcomes.append(ParamOutcome(name, value, None, ParamErrorCode.VALUE_OUT_OF_RANGE))
+            self._outcomes.append(ParamOutcome(name, value, known.value if known else None, fault))
 
     def read(self, name: str, now: float) -> None:
         """Request one parameter."""
         self._request(name, None, now)
 
+    def cancel(self) -> None:
+        """Forget the reads and sets under way, without an outcome."""
+        self._requests.clear()
+
+    # ---- core ----
+
     def receive(self, received: Received, now: float) -> None:
         """Handle PARAM_VALUE and PARAM_ERROR of the vehicle; other messages are ignored."""
-        if received.system != self._target[0]:
+        if (received.system, received.component) != self._target:
             return
         match received.message:
             case m.ParamValue() as message:
                 self._value(message, now)
             case m.ParamError(target_system=target) as message if target in (0, self._own_system):
-                self._finish(message.param_id, fault=message.error)
+                self._finish(name_from_wire(message._param_id_raw), fault=message.error)
 
     def tick(self, now: float) -> None:
         """Repeat overdue requests, fill gaps, give up what was sent `tries` times."""
@@ -148,8 +199,7 @@ class ParamClient:
                     self._finish(name)
                 else:
                     self._send_request(name, request, now)
-        if self.fetching and now >= self._due:
-            self._continue(now)
+        self._outbox += self._listing.tick(now)
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
@@ -162,68 +212,51 @@ class ParamClient:
         return outcomes
 
     def _request(self, name: str, wanted: float | None, now: float) -> None:
-        """Send a request, unless the name does not fit: cut to 16 characters it could be another parameter's."""
-        if len(name) > NAME_SIZE or not name.isascii() or not name:
+        raw = name_to_wire(name)
+        if raw is None:
             self._outcomes.append(ParamOutcome(name, wanted, None, ParamErrorCode.DOES_NOT_EXIST))
             return
-        self._requests[name] = request = _ParamRequest(wanted)
+        self._requests[name] = request = _ParamRequest(raw, wanted)
         self._send_request(name, request, now)
 
     def _value(self, message: m.ParamValue, now: float) -> None:
-        value = from_wire(message.param_value, message.param_type, bytewise=self._bytewise)
+        name = name_from_wire(message._param_id_raw)
+        if not name or name == HASH_CHECK or (name not in self.params and len(self.params) >= MAX_PARAMS):
+            return
+        value = from_wire(message.param_value, message.param_type, bytewise=self.bytewise)
         index = None if message.param_index == NO_INDEX else message.param_index
-        self.params[message.param_id] = Param(message.param_id, value, message.param_type, index)
-        if self.fetching and index is not None and index < message.param_count:
-            self._listed(index, message.param_count, now)
-        request = self._requests.get(message.param_id)
+        self._store(Param(name, value, message.param_type, index))
+        if index is not None:
+            self._listing.handle_value(index, message.param_count, now)
+        request = self._requests.get(name)
         if request is None:
             return
         request.answers += 1
         if request.wanted is None or same_float32(value, request.wanted) or request.answers >= REFUSED_AFTER:
-            self._finish(message.param_id, value=value)
+            self._finish(name, value=value)
 
-    def _listed(self, index: int, total: int, now: float) -> None:
-        if index not in self._received:
-            self._due, self._tries = now + LIST_TIMEOUT, 0
-        if total != self.total:
-            self.total = total
-            self._received = {each for each in self._received if each < total}
-        self._received.add(index)
-        self.fetching = not self.complete
+    def _store(self, param: Param) -> None:
+        """Keep a parameter, with the index and the default that an answer to a set does not have."""
+        known = self.params.get(param.name)
+        if known is not None:
+            index = known.index if param.index is None else param.index
+            param = replace(param, index=index, default=known.default)
+        self.params[param.name] = param
 
     def _finish(self, name: str, *, value: float | None = None, fault: int | None = None) -> None:
         request = self._requests.pop(name, None)
         if request is not None:
             known = self.params.get(name)
             now_is = value if value is not None else known.value if fault is not None and known else None
-            self._outcomes.append(ParamOutcome(name, request.wanted, now_is, fault))
-
-    def _continue(self, now: float) -> None:
-        """Request the list again, or what is missing of it, or give up."""
-        if self._tries >= TRIES:
-            self.fetching = False
-        elif self.total is None:
-            self._request_list(now)
-        else:
-            self._tries += 1
-            self._due = now + REPEAT_AFTER
-            missing = (index for index in range(self.total) if index not in self._received)
-            for _, index in zip(range(WINDOW), missing, strict=False):
-                self._outbox.append(Outgoing(m.ParamRequestRead(*self._target, b"", index)))
-
-    def _request_list(self, now: float) -> None:
-        self._outbox.append(Outgoing(m.ParamRequestList(*self._target)))
-        self._tries += 1
-        self._due = now + LIST_TIMEOUT
+            self._outcomes.append(ParamOutcome(name, request.wanted, now_is, fault, request.sent))
 
     def _send_request(self, name: str, request: _ParamRequest, now: float) -> None:
-        encoded = name.encode("ascii")
         if request.wanted is None:
-            self._outbox.append(Outgoing(m.ParamRequestRead(*self._target, encoded, -1)))
+            self._outbox.append(Outgoing(m.ParamRequestRead(*self._target, request.raw, -1)))
         else:
             known = self.params.get(name)
             kind = known.kind if known else REAL32
-            value = to_wire(request.wanted, kind, bytewise=self._bytewise)
-            self._outbox.append(Outgoing(m.ParamSet(*self._target, encoded, value, kind)))
+            value = to_wire(request.wanted, kind, bytewise=self.bytewise)
+            self._outbox.append(Outgoing(m.ParamSet(*self._target, request.raw, value, kind)))
         request.sent += 1
         request.due = now + self._repeat_after

@@ -1,9 +1,12 @@
-"""Values of PARAM_VALUE: several types inside one float, and the shortest decimal form of a float32."""
+"""Names and values of PARAM_VALUE: several types inside one float, and the shortest decimal form of a float32."""
 
 from __future__ import annotations
 
 import math
+import re
 import struct
+
+from dialects.enums import Autopilot, Capability, ParamErrorCode
 
 REAL32 = 9
 """MAV_PARAM_TYPE_REAL32."""
@@ -11,15 +14,56 @@ NAME_SIZE = 16
 """Bytes of `param_id`."""
 
 _FORMATS: dict[int, tuple[str, int, int]] = {
-    1: ("<I", 0, 0xFF),
-    2: ("<i", -0x80, 0x7F),
-    3: ("<I", 0, 0xFFFF),
-    4: ("<i", -0x8000, 0x7FFF),
+    1: ("<Bxxx", 0, 0xFF),
+    2: ("<bxxx", -0x80, 0x7F),
+    3: ("<Hxx", 0, 0xFFFF),
+    4: ("<hxx", -0x8000, 0x7FFF),
     5: ("<I", 0, 0xFFFF_FFFF),
     6: ("<i", -0x8000_0000, 0x7FFF_FFFF),
 }
-"""MAV_PARAM_TYPE of an integer -> its four bytes, smallest, largest."""
+"""MAV_PARAM_TYPE of an integer -> its place in the four bytes (the first ones), smallest, largest."""
 _FLOAT = struct.Struct("<f")
+_ESCAPED = re.compile(r"\\x([0-9a-f]{2})")
+
+
+def name_from_wire(raw: bytes) -> str:
+    r"""Return the name in `param_id`. A byte that is not a printable ASCII character becomes e.g. "\xff".
+
+    So two names are never equal unless their bytes are, and the name can be sent back.
+    """
+    name = raw.split(b"\0", 1)[0][:NAME_SIZE]
+    return "".join(chr(byte) if 0x20 < byte < 0x7F and byte != 0x5C else f"\\x{byte:02x}" for byte in name)
+
+
+def name_to_wire(name: str) -> bytes | None:
+    """Return `param_id` for a name; None if it does not fit: cut to 16 bytes it could be another parameter's."""
+    if not name.isascii():
+        return None
+    raw = _ESCAPED.sub(lambda found: chr(int(found[1], 16)), name).encode("latin-1")
+    return raw if 0 < len(raw) <= NAME_SIZE and b"\0" not in raw else None
+
+
+def is_bytewise(autopilot: int, capabilities: int) -> bool:
+    """Return whether integers are stored in the bytes of `param_value` (https://mavlink.io/en/services/parameter.html).
+
+    Where `capabilities` (AUTOPILOT_VERSION) name neither encoding, ArduPilot casts and all others store bytes, as
+    QGroundControl and MAVSDK assume.
+    """
+    if capabilities & Capability.PARAM_C_CAST:
+        return False
+    return bool(capabilities & Capability.PARAM_BYTEWISE) or autopilot != Autopilot.ARDUPILOT
+
+
+def value_fault(value: float, kind: int) -> ParamErrorCode | None:
+    """Return why `value` cannot be sent as MAV_PARAM_TYPE `kind`, or None."""
+    if not is_float32(value):
+        return ParamErrorCode.VALUE_OUT_OF_RANGE
+    if kind not in _FORMATS:
+        return None
+    if value != round(value):
+        return ParamErrorCode.TYPE_MISMATCH
+    _, low, high = _FORMATS[kind]
+    return None if low <= value <= high else ParamErrorCode.VALUE_OUT_OF_RANGE
 
 
 def from_wire(value: float, kind: int, *, bytewise: bool) -> float:
@@ -33,14 +77,10 @@ def from_wire(value: float, kind: int, *, bytewise: bool) -> float:
 
 
 def to_wire(value: float, kind: int, *, bytewise: bool) -> float:
-    """Return `param_value` for `value`; integers are rounded and clamped to their type."""
-    if kind not in _FORMATS:
+    """Return `param_value` for a value without `value_fault`."""
+    if not bytewise or kind not in _FORMATS:
         return value
-    form, low, high = _FORMATS[kind]
-    whole = max(low, min(high, round(value)))
-    if not bytewise:
-        return float(whole)
-    return float(_FLOAT.unpack(struct.pack(form, whole))[0])
+    return float(_FLOAT.unpack(struct.pack(_FORMATS[kind][0], round(value)))[0])
 
 
 def shortest_float32(value: float) -> float:
@@ -49,7 +89,7 @@ def shortest_float32(value: float) -> float:
         packed = _FLOAT.pack(value)
     except OverflowError:  # beyond every float32
         return value
-    for digits in range(6, 9):
+    for digits in range(6, 10):  # nine digits tell all float32 apart
         short = float(f"{value:.{digits}g}")
         if _FLOAT.pack(short) == packed:
             return short
@@ -66,4 +106,12 @@ def is_float32(value: float) -> bool:
 
 def same_float32(one: float, other: float) -> bool:
     """Return whether both are the same float32."""
-    return shortest_float32(one) == shortest_float32(other)
+    try:
+        return bool(_FLOAT.unpack(_FLOAT.pack(one)) == _FLOAT.unpack(_FLOAT.pack(other)))
+    except OverflowError:  # beyond every float32
+        return one == other
+
+
+def value_text(value: float) -> str:
+    """Return a value for people and files: whole numbers exactly, others with up to nine digits."""
+    return f"{value:.0f}" if math.isfinite(value) and value == int(value) and abs(value) < 1e15 else f"{value:.9g}"

@@ -78,7 +78,7 @@ class Flotilla:
                 self.far[str(address)].receive(data, "station", self.now)
         for address, host in self.far.items():
             host.advance(self.now)
-            for data in host.pop_frames(self.now):
+            for data in host.pop_frames(self.now, "station"):
                 self.near.receive(data, address, self.now)
 
     def watch(self, *requests: ViewRequest) -> None:

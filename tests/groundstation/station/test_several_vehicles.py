@@ -72,7 +72,7 @@ class Convoy:
         for address, hosts in self._far.items():
             for host in hosts:
                 host.advance(self.now)
-                for data in host.pop_frames(self.now):
+                for data in host.pop_frames(self.now, "station"):
                     self._near.receive(data, address, self.now)
 
     @property

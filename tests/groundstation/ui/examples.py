@@ -20,7 +20,7 @@ from groundstation.snapshot import (
     StationOutage,
     VehicleView,
 )
-from groundstation.views import LogPage, View
+from groundstation.views import LogPage, ParamPage, ParamRow, RequestLine, View
 
 NOON = 1_700_000_000.0
 """A wall clock for log lines; the tests run in UTC."""
@@ -181,3 +181,28 @@ def waiting(**changes: Any) -> Snapshot:
     """No vehicle yet."""
     text = "waiting for a vehicle on udpin:127.0.0.1:14550"
     return snapshot(vehicle=None, operator=OperatorView(gate_reason="no vehicle"), texts=(), waiting=text, **changes)
+
+
+PARAMS: tuple[tuple[str, float, str, float | None], ...] = (
+    ("FS_ACTION", 2.0, "INT8", 1.0),
+    ("FS_GCS_ENABLE", 1.0, "INT8", 1.0),
+    ("FS_TIMEOUT", 1.5, "REAL32", 1.5),
+    ("INS_GYR_ID", 2753028.0, "INT32", None),
+    ("RC_OPTIONS", 32.0, "INT32", 32.0),
+    ("WP_SPEED", 0.45, "REAL32", 2.0),
+)
+
+
+def param_page(
+    *changes: tuple[str, float], running: tuple[RequestLine, ...] = (), ended: tuple[RequestLine, ...] = ()
+) -> ParamPage:
+    """Return a page of parameters, some with other values."""
+    values = dict(changes)
+    rows = tuple(
+        ParamRow(
+            name=name, value=values.get(name, value), kind=kind, default=default,
+            changed=default is not None and values.get(name, value) != default,
+        )
+        for name, value, kind, default in PARAMS
+    )  # fmt: skip
+    return ParamPage(1, rows, 0, len(rows), len(rows), len(rows), has_defaults=True, running=running, ended=ended)

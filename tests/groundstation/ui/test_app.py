@@ -107,7 +107,7 @@ async def test_a_dead_station_is_said() -> None:
 
 
 async def test_a_station_that_does_not_respond_closes_the_gate_until_it_does() -> None:
-    text = "station not responding: the watchdog sends neutral to Rover 1"
+    text = "station not responding: neutral is sent to Rover 1"
     async with console(picture=snapshot()) as screen:
         await until(lambda: screen.app.gate.closure is None)
         screen.station.outage = StationOutage(text)

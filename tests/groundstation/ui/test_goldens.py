@@ -15,7 +15,7 @@ from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.display_state import DisplayState
 from groundstation.views import ControlView, LinksView, VehiclesView, View
 from tests.groundstation.ui import frames
-from tests.groundstation.ui.examples import LOG_PAGE, helm, snapshot, vehicle, waiting, wheels
+from tests.groundstation.ui.examples import LOG_PAGE, helm, param_page, snapshot, vehicle, waiting, wheels
 from tests.groundstation.ui.link_examples import FLEET, OURS, VIEWS
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD
@@ -72,6 +72,8 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "strip_79x23": ((79, 23), STANDING, ()),
     "log_80x24": (SMALL, WARNED, ("f6",)),
     "log_140x45": (WIDE, WARNED, ("f6",)),
+    "params_80x24": (SMALL, snapshot(), ("f4",)),
+    "params_140x45": (WIDE, STANDING, ("f4",)),
     "links_80x24": (SMALL, FLEET, ("f7",)),
     "links_140x45": (WIDE, FLEET, ("f7",)),
     "links_panel_80x24": (SMALL, FLEET, ("f7", "tab")),
@@ -83,15 +85,27 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
 
 FRAMES |= {
     f"ascii_{name}": FRAMES[name]
-    for name in ("drive_80x24", "drive_140x45", "waiting_80x24", "strip_40x10", "log_80x24", "log_140x45", "goto_80x24",
-                 "links_80x24", "links_140x45")
-}  # fmt: skip
+    for name in (
+        "drive_80x24",
+        "drive_140x45",
+        "waiting_80x24",
+        "strip_40x10",
+        "log_80x24",
+        "log_140x45",
+        "params_80x24",
+        "links_80x24",
+        "links_140x45",
+        "goto_80x24",
+    )
+}
 
 
 def views_for(name: str) -> Sequence[View]:
     """Return what the station sends to the screen of a frame."""
     if "empty" in name:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
+    if "params" in name:
+        return (param_page(),)
     return VIEWS if "links" in name else (LOG_PAGE,)
 
 
@@ -104,6 +118,8 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
             for view in views_for(name):
                 screen.station.offer_view(view)
             await screen.show(picture)
+            if "params" in name:
+                await screen.press("down", "enter", "backspace", "0", "enter", "W")
             await screen.show(picture)  # the height of the alerts is known after the first one
         if "hold" in name:
             state = DisplayState(picture, STANDARD, hold=HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4))

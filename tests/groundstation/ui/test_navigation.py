@@ -111,9 +111,9 @@ async def test_a_screen_shows_the_newest_state_from_its_first_frame_on() -> None
     [
         (["f6"], "log"), (["ctrl+g", "6"], "log"), (["ctrl+g", "f6"], "log"), (["f6", "ctrl+g", "1"], "drive"),
         (["f6", "ctrl+g", "ctrl+g"], "drive"), (["f6", "escape", "ctrl+g", "ctrl+g"], "log"),
-        (["right_square_bracket"], "log"), (["left_square_bracket"], "links"),
-        (["f6", "right_square_bracket"], "links"),
-        (["f7", "right_square_bracket"], "drive"), (["ctrl+g", "7"], "links"), (["f6", "left_square_bracket"], "drive"),
+        (["right_square_bracket"], "params"), (["left_square_bracket"], "links"), (["f4"], "params"),
+        (["f6", "right_square_bracket"], "links"), (["f7", "right_square_bracket"], "drive"),
+        (["ctrl+g", "7"], "links"), (["f6", "left_square_bracket"], "params"),
         (["ctrl+g", "escape"], "drive"), (["ctrl+g", "x"], "drive"),
         (["f6", "ctrl+g", "escape"], "log"), (["f6", "f6"], "log"), (["question_mark", "f6"], "log"),
         (["f6", "question_mark", "escape"], "drive"),

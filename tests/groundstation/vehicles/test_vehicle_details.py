@@ -61,7 +61,7 @@ def test_another_component_is_listed_and_says_nothing_for_the_vehicle() -> None:
     receive(details, m.Heartbeat(18, 8, 0, 0, 4, 3), component=191)
     receive(details, m.Heartbeat(250, 8, 0, 0, 4, 3), component=192)
     receive(details, m.Heartbeat(10, 0, 0, 0, 4, 3), component=1)
-    assert (details.place, details.control) == (None, None)
+    assert (details.place, details.control_at) == (None, None)
     assert [(each.component, each.kind) for each in details.components(1.0)] == [
         (191, "onboard controller"), (192, "type 250"),
     ]  # fmt: skip

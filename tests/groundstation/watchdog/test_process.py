@@ -63,7 +63,7 @@ def test_a_killed_station_stops_the_rover_at_once_and_the_screen_says_what_is_kn
 ) -> None:
     drive = Drive(line, stack)
     killed = drive.signal(signal.SIGKILL)
-    until(lambda: "the watchdog sends neutral to ArduPilot rover 1" in drive.outage())
+    until(lambda: "neutral is sent to ArduPilot rover 1" in drive.outage())
     drive.stops_within(0.2, killed)
     until(lambda: drive.outage() == "station process ended: ArduPilot rover 1 stands")
     assert drive.screen.client.left_armed == (
@@ -83,7 +83,7 @@ def test_a_stopped_station_stops_the_rover_and_its_held_key_moves_nothing_when_i
     send = drive.screen.client.send
     stopped = drive.signal(signal.SIGSTOP)
     drive.stops_within(0.3, stopped)
-    until(lambda: "not responding: the watchdog sends neutral to ArduPilot rover 1" in drive.outage())
+    until(lambda: "not responding: neutral is sent to ArduPilot rover 1" in drive.outage())
     drive.signal(signal.SIGCONT)
     back = time.monotonic()
     until(lambda: send(REPEAT) is None and time.monotonic() > back + 1.5)

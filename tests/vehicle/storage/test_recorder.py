@@ -21,7 +21,8 @@ from dialects.enums import Command
 from link.core import Peer, Received
 from link.protocol.frame import Frame, payload_of
 from link.protocol.framer import Framer
-from link.services.ftp.client import FtpClient, FtpOutcome
+from link.services.ftp.client import FtpClient
+from link.services.ftp.job import FtpOutcome
 from link.tlog.tlog import Record, read_records
 from tests.ports import free_port
 from tests.vehicle.ground import Ground, drive, running
@@ -36,7 +37,7 @@ PEER = Peer(0, "vehicle")
 class Reader(Ground):
     """A ground station that fetches files and logs."""
 
-    def fetch(self, ask: Callable[[FtpClient], None]) -> FtpOutcome:
+    def fetch(self, ask: Callable[[FtpClient], object]) -> FtpOutcome:
         """What our own FTP client brings."""
         client = FtpClient(255, 190, target_system=1)
         outcomes: list[FtpOutcome] = []

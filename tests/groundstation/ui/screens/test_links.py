@@ -231,7 +231,6 @@ async def test_every_size_shows_vehicles_armed_or_not(size: tuple[int, int]) -> 
             {"driver": 250, "program": Program(250, 190, 7), "in_control": False},
             "ground station 250/190, session 00000007 · g asks for it",
         ),
-        ({"driver": 250, "in_control": False}, "ground station 250 · g asks for it"),
         ({"driver": None, "program": None, "in_control": False}, "this vehicle does not tell · g requests it"),
         ({"driver": None, "program": None}, "this vehicle does not tell · it accepts our commands"),
         ({"program": Program(255, 190, 7)}, "another program with our id: 255/190, session 00000007"),

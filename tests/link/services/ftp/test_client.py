@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from link.core import Outgoing
-from link.services.ftp.client import MAX_SIZE, TRIES, FtpClient, FtpOutcome
+from link.services.ftp.client import FtpClient
+from link.services.ftp.job import MAX_SIZE, TRIES, FtpOutcome
 from link.services.ftp.protocol import FtpError, FtpOpcode, FtpPacket, parse_packet
 from tests.link.ftp_vehicle import Vehicle
 from tests.link.services_world import Pair, from_vehicle, messages

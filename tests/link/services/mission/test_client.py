@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -97,3 +98,71 @@ def test_words_of_other_vehicles_and_to_others_do_not_count() -> None:
     assert client.outcomes() == []
     client.receive(from_vehicle(m.MissionAck(255, 190, 0, 0)), 0.1)
     assert len(client.outcomes()) == 1
+
+
+def uploading(count: int) -> MissionClient:
+    client = MissionClient(255, 190, target_system=1)
+    client.upload([waypoint(number) for number in range(count)], MissionType.MISSION, 0.0)
+    return client
+
+
+def request(client: MissionClient, sequence: int) -> None:
+    client.receive(from_vehicle(m.MissionRequest(255, 190, sequence, 0)), 0.1)
+
+
+@pytest.mark.parametrize(
+    ("count", "requested", "result", "item"),
+    [
+        (12, 8, MissionResult.INVALID_X, 8),
+        (12, 11, MissionResult.INVALID_X, None),  # all were sent: it may be any
+        (1, 0, MissionResult.INVALID_X, 0),
+        (12, 8, MissionResult.NO_SPACE, None),
+        (12, 8, MissionResult.DENIED, None),
+        (12, None, MissionResult.UNSUPPORTED, None),
+    ],
+)
+def test_the_item_that_was_refused_is_named(count: int, requested: int | None, result: int, item: int | None) -> None:
+    client = uploading(count)
+    if requested is not None:
+        request(client, requested)
+    client.receive(from_vehicle(m.MissionAck(255, 190, result, 0)), 0.2)
+    [outcome] = client.outcomes()
+    assert (outcome.done, outcome.result, outcome.item) == (False, result, item)
+
+
+@pytest.mark.parametrize("changed", [False, True])
+def test_a_download_is_resumed_unless_the_plan_has_changed(changed: bool) -> None:
+    vehicle = Vehicle()
+    vehicle.upload([waypoint(number) for number in range(30)])
+    client = MissionClient(255, 190, target_system=1)
+    pair = Pair(vehicle.server, client)
+    client.download(MissionType.MISSION, pair.now)
+    pair.run_until(lambda: client.progress[0] == 20, within=5.0)
+    for second in range(60):
+        client.tick(pair.now + second)
+    [failed] = client.outcomes()
+    assert (failed.done, len(failed.items), failed.count, failed.tries) == (False, 20, 30, TRIES)
+    client.messages_to_send()
+    if changed:
+        vehicle.upload([waypoint(number + 5) for number in range(30)])
+    sent = pair.sent_by_client
+    client.download(MissionType.MISSION, pair.now, failed)
+    outcome = ending(client, pair, within=60.0)
+    assert outcome.done
+    assert plain(outcome.items) == plain(vehicle.plan)
+    assert pair.sent_by_client - sent == (32 if changed else 12)
+
+
+def test_a_cancelled_upload_is_cancelled_on_the_vehicle() -> None:
+    vehicle = Vehicle()
+    client = MissionClient(255, 190, target_system=1)
+    pair = Pair(vehicle.server, client)
+    client.upload([waypoint(number) for number in range(30)], MissionType.MISSION, pair.now)
+    pair.run_until(lambda: client.progress[0] == 10, within=5.0)
+    client.cancel()
+    for _ in range(100):
+        pair.step()
+    assert client.outcomes() == []
+    assert vehicle.plan == ()
+    client.upload([waypoint()], MissionType.MISSION, pair.now)
+    assert ending(client, pair, within=5.0).done

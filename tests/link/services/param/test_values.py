@@ -7,7 +7,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dialects import messages as m
-from link.services.param.values import REAL32, from_wire, shortest_float32, to_wire
+from dialects.enums import Autopilot, Capability, ParamErrorCode
+from link.services.param.values import (
+    NAME_SIZE,
+    REAL32,
+    from_wire,
+    is_bytewise,
+    name_from_wire,
+    name_to_wire,
+    same_float32,
+    shortest_float32,
+    to_wire,
+    value_fault,
+)
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4, 5, 6])
@@ -24,5 +36,56 @@ def test_the_shortest_number_is_the_same_float32(value: float) -> None:
     assert through_float32(shortest_float32(value)) == value
 
 
+@pytest.mark.parametrize("typed", [1.17549435e-38, 0.123456791, 16777217.9, -0.0])
+def test_a_typed_number_is_the_same_as_its_echo(typed: float) -> None:
+    assert same_float32(typed, through_float32(typed))
+    assert same_float32(typed, shortest_float32(through_float32(typed)))
+    assert not same_float32(typed, typed * 1.001 + 1e-39)
+
+
 def through_float32(value: float) -> float:
     return m.ParamValue.unpacker.unpack(m.ParamValue.unpacker.pack(value, 1, 0, b"A", REAL32))[0]  # type: ignore[no-any-return]
+
+
+@given(st.binary(min_size=1, max_size=NAME_SIZE).filter(lambda raw: b"\0" not in raw))
+def test_any_name_survives_the_way_to_the_screen_and_back(raw: bytes) -> None:
+    name = name_from_wire(raw)
+    assert name.isprintable()
+    assert " " not in name
+    assert name_to_wire(name) == raw
+
+
+@pytest.mark.parametrize("name", ["", "SEVENTEEN_LETTERS", "GRÖSSE", "\\x00"])
+def test_names_that_no_vehicle_has(name: str) -> None:
+    assert name_to_wire(name) is None
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "capabilities", "bytewise"),
+    [
+        (Autopilot.ARDUPILOT, 61935, False),  # as ArduRover 4.7 reports
+        (Autopilot.PX4, Capability.PARAM_BYTEWISE | Capability.FTP, True),
+        (Autopilot.PX4, 0, True),
+        (Autopilot.GENERIC, 0xE004, True),  # MAVSDK's server: bytes, but it does not say so
+        (Autopilot.GENERIC, Capability.PARAM_C_CAST, False),
+        (Autopilot.ARDUPILOT, Capability.PARAM_BYTEWISE, True),
+    ],
+)
+def test_the_encoding_of_integers(autopilot: int, capabilities: int, bytewise: bool) -> None:
+    assert is_bytewise(autopilot, capabilities) is bytewise
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "fault"),
+    [
+        (1.7, 2, ParamErrorCode.TYPE_MISMATCH),
+        (128, 2, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        (-1, 1, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        (float("nan"), 6, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        (1e39, REAL32, ParamErrorCode.VALUE_OUT_OF_RANGE),
+        (127, 2, None),
+        (1.7, REAL32, None),
+    ],
+)
+def test_values_that_a_type_cannot_hold(value: float, kind: int, fault: ParamErrorCode | None) -> None:
+    assert value_fault(value, kind) is fault

@@ -1,0 +1,153 @@
+"""What a vehicle says about itself on request: AUTOPILOT_VERSION with its capabilities, AVAILABLE_MODES.
+
+Requests for messages are answered by COMMAND_ACK one at a time, so whoever owns the vehicle's commands sends them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from dialects import messages as m
+from dialects.enums import Capability
+from link.core import Received
+
+TRIES = 3
+RETRY_AFTER = 1.0
+"""s without the message before it is requested again: its COMMAND_ACK does not mean that it comes (ArduPilot)."""
+MAX_MODES = 128
+"""AVAILABLE_MODES of one vehicle; ArduPilot has 30, PX4 up to 40 with modes of other programs."""
+NOT_SELECTABLE = 2
+"""MAV_MODE_PROPERTY_NOT_USER_SELECTABLE."""
+
+
+@dataclass(frozen=True, slots=True)
+class MessageRequest:
+    """Parameters 1 and 2 of REQUEST_MESSAGE."""
+
+    message: int
+    index: int = 0
+
+
+VERSION = MessageRequest(m.AutopilotVersion.id)
+
+
+@dataclass(frozen=True, slots=True)
+class AvailableMode:
+    """One mode, as AVAILABLE_MODES reports it."""
+
+    name: str
+    custom_mode: int
+    standard_mode: int
+    properties: int
+
+    @property
+    def selectable(self) -> bool:
+        """Whether an operator may select the mode now."""
+        return not self.properties & NOT_SELECTABLE
+
+
+class VehicleIdentity:
+    """Collects what one component of a vehicle says about itself."""
+
+    def __init__(self, component: int) -> None:
+        self._component = component
+        self.version: m.AutopilotVersion | None = None
+        self._modes: dict[int, AvailableMode] = {}
+        self._mode_count: int | None = None
+        self._monitor: int | None = None
+        self._wants_modes = False
+        self._asked: dict[MessageRequest, int] = {}
+        """How often each was requested."""
+        self._exhausted: set[MessageRequest] = set()
+        """Requested TRIES times in vain."""
+        self._last: MessageRequest | None = None
+        self._due = 0.0
+
+    @property
+    def capabilities(self) -> int:
+        """MAV_PROTOCOL_CAPABILITY; 0 while not known."""
+        return int(self.version.capabilities) if self.version else 0
+
+    @property
+    def settled(self) -> bool:
+        """Whether the capabilities are known, or will not be."""
+        return self.version is not None or VERSION in self._exhausted
+
+    @property
+    def may_have_files(self) -> bool:
+        """Whether MAVLink FTP is offered, or not known."""
+        return self.version is None or bool(self.capabilities & Capability.FTP)
+
+    @property
+    def modes(self) -> tuple[AvailableMode, ...] | None:
+        """All modes in the vehicle's order; None while not known."""
+        if self._mode_count is None or len(self._modes) < self._mode_count:
+            return None
+        return tuple(self._modes[index] for index in sorted(self._modes))
+
+    @property
+    def modes_settled(self) -> bool:
+        """Whether the modes are known, or will not be."""
+        return self.modes is not None or (self._wants_modes and self._exhausted.issuperset(self._mode_requests()))
+
+    def want_modes(self) -> None:
+        """Request the modes, if they are not known."""
+        self._wants_modes = True
+
+    def receive(self, received: Received) -> None:
+        """Take what the vehicle says; other messages are ignored."""
+        if received.component != self._component:
+            return
+        match received.message:
+            case m.AutopilotVersion() as message:
+                self.version, self._due = message, 0.0
+            case m.AvailableModes() as message:
+                self._add_mode(message)
+            case m.AvailableModesMonitor() as message:
+                if self._monitor not in (None, message.seq):  # the set of modes has changed
+                    self._forget_modes()
+                self._monitor = message.seq
+
+    def next_request(self, now: float) -> MessageRequest | None:
+        """Return the message to request now, or None; call only while no other request is pending."""
+        if now < self._due:
+            return None
+        self._exhausted = {request for request, tries in self._asked.items() if tries >= TRIES}
+        request = next((each for each in self._wanted() if each not in self._exhausted), None)
+        if request is not None:
+            self._asked[request] = self._asked.get(request, 0) + 1
+            self._last, self._due = request, now + RETRY_AFTER
+        return request
+
+    def handle_refusal(self) -> None:
+        """Give up the last request: the vehicle has refused it, or has not answered the command at all."""
+        if self._last is not None:
+            self._asked[self._last], self._due = TRIES, 0.0
+
+    def _wanted(self) -> list[MessageRequest]:
+        version = [VERSION] if self.version is None else []
+        return version + (self._mode_requests() if self._wants_modes and self.modes is None else [])
+
+    def _mode_requests(self) -> list[MessageRequest]:
+        """Return how to request what is missing: all at once, or the lost ones one by one."""
+        if self._mode_count is None:
+            return [MessageRequest(m.AvailableModes.id)]
+        missing = (index for index in range(1, self._mode_count + 1) if index not in self._modes)
+        return [MessageRequest(m.AvailableModes.id, index) for index in missing]
+
+    def _add_mode(self, message: m.AvailableModes) -> None:
+        count, index = message.number_modes, message.mode_index
+        if not 1 <= index <= count <= MAX_MODES:
+            return
+        if count != self._mode_count:
+            self._modes.clear()
+            self._mode_count = count
+        name = m.printable(message._mode_name_raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
+        if self._last == MessageRequest(m.AvailableModes.id, index):
+            self._due = 0.0  # the next is requested at once
+        self._modes[index] = AvailableMode(name, message.custom_mode, message.standard_mode, message.properties)
+
+    def _forget_modes(self) -> None:
+        self._modes.clear()
+        self._mode_count = None
+        self._asked = {each: tries for each, tries in self._asked.items() if each == VERSION}

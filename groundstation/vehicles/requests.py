@@ -1,0 +1,137 @@
+"""Requests to one vehicle: each has a number, and ends accepted, refused with the reason, or without an answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from dialects.enums import Severity
+
+REASON_WITHIN = 1.0
+"""s between a refusal and the vehicle's STATUSTEXT that explains it; either may arrive first."""
+MAX_REQUESTS = 1000
+"""Requests under way at once; more are refused."""
+
+
+class RequestState(Enum):
+    """How a request stands."""
+
+    RUNNING = "running"
+    ACCEPTED = "accepted"
+    REFUSED = "refused"
+    NO_ANSWER = "no answer"
+    CANCELLED = "cancelled"
+
+    @property
+    def ended(self) -> bool:
+        """Whether nothing more follows."""
+        return self is not RequestState.RUNNING
+
+
+@dataclass(frozen=True, slots=True)
+class RequestReport:
+    """How one request stands."""
+
+    number: int
+    """Chosen by whoever made the request."""
+    what: str
+    """What was requested, e.g. "set FS_ACTION to 2"."""
+    state: RequestState = RequestState.RUNNING
+    detail: str = ""
+    """Why it was refused, or what came of it."""
+    reason: str = ""
+    """STATUSTEXT of the vehicle that explains a refusal."""
+    done: int = 0
+    total: int | None = None
+    """Items or bytes that were transferred, and all, where known."""
+
+    @property
+    def text(self) -> str:
+        """One line: what was requested, how it ended, and why."""
+        parts = [f"{self.what}: {self.state.value}", self.detail, f'"{self.reason}"' if self.reason else ""]
+        return ", ".join(part for part in parts if part)
+
+
+class RequestBook:
+    """The requests to one vehicle, and its texts that explain refusals."""
+
+    def __init__(self) -> None:
+        self._running: dict[int, RequestReport] = {}
+        self._refused: dict[int, float] = {}
+        """Refusals that wait for a reason, until when."""
+        self._changed: dict[int, RequestReport] = {}
+        self._reason: tuple[str, float] | None = None
+
+    @property
+    def running(self) -> tuple[RequestReport, ...]:
+        """The requests that have not ended."""
+        return tuple(self._running.values())
+
+    def begin(self, number: int, what: str) -> bool:
+        """Begin a request. Return False, and report it as refused, if its number is in use or too many run."""
+        report = RequestReport(number, what)
+        if number in self._running or len(self._running) >= MAX_REQUESTS:
+            detail = "its number is in use" if number in self._running else "too many requests"
+            self._changed[number] = replace(report, state=RequestState.REFUSED, detail=detail)
+            return False
+        self._running[number] = self._changed[number] = report
+        return True
+
+    def advance(self, number: int, done: int, total: int | None) -> None:
+        """Report progress."""
+        report = self._running.get(number)
+        if report is not None and (report.done, report.total) != (done, total):
+            self._running[number] = self._changed[number] = replace(report, done=done, total=total)
+
+    def accept(self, number: int, detail: str = "") -> None:
+        """End a request as accepted."""
+        self._end(number, RequestState.ACCEPTED, detail)
+
+    def refuse(self, number: int, detail: str, now: float, *, by_vehicle: bool = True) -> None:
+        """End a request as refused; `by_vehicle`: with the vehicle's STATUSTEXT, for which it waits REASON_WITHIN."""
+        report = self._running.get(number)
+        if report is None:
+            return
+        if not by_vehicle:
+            self._end(number, RequestState.REFUSED, detail)
+            return
+        self._running[number] = replace(report, detail=detail)
+        self._refused[number] = now + REASON_WITHIN
+        if self._reason is not None and now - self._reason[1] <= REASON_WITHIN:
+            self._give_reason(self._reason[0])
+
+    def fail(self, number: int, detail: str) -> None:
+        """End a request without an answer; `detail` names the tries."""
+        self._end(number, RequestState.NO_ANSWER, detail)
+
+    def cancel(self, number: int) -> None:
+        """End a request because the operator wants it no more."""
+        self._end(number, RequestState.CANCELLED, "")
+
+    def handle_text(self, text: str, severity: int, now: float) -> None:
+        """Take a STATUSTEXT of the vehicle. A warning explains the refusals around it."""
+        if severity <= Severity.WARNING:
+            self._reason = (text, now)
+            self._give_reason(text)
+
+    def tick(self, now: float) -> None:
+        """End the refusals for which no reason has come."""
+        for number, until in list(self._refused.items()):
+            if now >= until:
+                self._end(number, RequestState.REFUSED, self._running[number].detail)
+
+    def pop_changes(self) -> list[RequestReport]:
+        """Return the newest report of each request that has changed since the last call."""
+        changed, self._changed = self._changed, {}
+        return list(changed.values())
+
+    def _give_reason(self, text: str) -> None:
+        for number in list(self._refused):
+            self._running[number] = replace(self._running[number], reason=text)
+            self._end(number, RequestState.REFUSED, self._running[number].detail)
+
+    def _end(self, number: int, state: RequestState, detail: str) -> None:
+        report = self._running.pop(number, None)
+        self._refused.pop(number, None)
+        if report is not None:
+            self._changed[number] = replace(report, state=state, detail=detail)

@@ -1,0 +1,93 @@
+"""The MAVLink services of one vehicle, as the ground station uses them: parameters, plans, files, logs, commands.
+
+Each request has a number and ends in `book`. Nothing is sent before the first request.
+"""
+
+from __future__ import annotations
+
+from dialects.enums import Autopilot, Command, Result, VehicleType
+from groundstation.vehicles.command_requests import CommandRequests
+from groundstation.vehicles.file_requests import FileRequests
+from groundstation.vehicles.identity import VehicleIdentity
+from groundstation.vehicles.log_requests import LogRequests
+from groundstation.vehicles.mode_requests import ModeRequests
+from groundstation.vehicles.param_requests import ParamRequests
+from groundstation.vehicles.plan_requests import PlanRequests
+from groundstation.vehicles.requests import RequestBook
+from link.core import Outgoing, Received
+from link.services.command.client import CommandClient
+from link.services.ftp.client import FtpClient
+from link.services.log.client import LogClient
+from link.services.mission.client import MissionClient
+from link.services.param.client import ParamClient
+
+
+class VehicleServices:
+    """Services of the component `target` (system, component). `system` and `component` are our ids."""
+
+    def __init__(self, system: int, component: int, target: tuple[int, int]) -> None:
+        to, at = target
+        self.autopilot: int = Autopilot.GENERIC
+        """MAV_AUTOPILOT of its HEARTBEAT."""
+        self.kind: int = VehicleType.GROUND_ROVER
+        """MAV_TYPE of its HEARTBEAT."""
+        self.book = RequestBook()
+        self.identity = VehicleIdentity(at)
+        self.commands = CommandRequests(CommandClient(system, component), self.book, target)
+        self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
+        self.files = FileRequests(FtpClient(system, component, target_system=to, target_component=at), self.book)
+        self.plans = PlanRequests(MissionClient(system, component, target_system=to, target_component=at), self.book)
+        self.logs = LogRequests(LogClient(system, component, target_system=to, target_component=at), self.book)
+        params = ParamClient(system, component, target_system=to, target_component=at)
+        self.params = ParamRequests(params, self.files, self.identity, self.book, lambda: self.autopilot)
+        self._services = (self.commands, self.files, self.logs, self.plans, self.params)
+        self._used = False
+
+    def receive(self, received: Received, now: float) -> None:
+        """Handle a message of the vehicle."""
+        self.identity.receive(received)
+        self.modes.receive(received, now)
+        for service in self._services:
+            service.receive(received, now)
+        self._take_queries(now)
+
+    def handle_text(self, text: str, severity: int, now: float) -> None:
+        """Take a whole STATUSTEXT of the vehicle."""
+        self.book.handle_text(text, severity, now)
+
+    def cancel(self, number: int, now: float) -> None:
+        """Cancel a request."""
+        for service in self._services:
+            service.cancel(number, now)
+
+    def tick(self, now: float, *, may_query: bool = True) -> None:
+        """Repeat what is overdue, report progress, give up at last.
+
+        `may_query`: no other REQUEST_MESSAGE of ours is under way, whose COMMAND_ACK would be taken for ours.
+        """
+        self._used = self._used or bool(self.book.running)
+        for service in self._services:
+            service.tick(now)
+        self._take_queries(now)
+        self.modes.tick(now)
+        if self._used and may_query:
+            self._query_identity(now)
+        self.book.tick(now)
+
+    def messages_to_send(self) -> list[Outgoing]:
+        """Return the messages to send now, and remove them."""
+        return [outgoing for service in self._services for outgoing in service.messages_to_send()]
+
+    def _query_identity(self, now: float) -> None:
+        if self.commands.is_waiting(Command.REQUEST_MESSAGE):
+            return
+        request = self.identity.next_request(now)
+        if request is not None:
+            self.commands.query(Command.REQUEST_MESSAGE, (request.message, request.index), now)
+
+    def _take_queries(self, now: float) -> None:
+        for outcome in self.commands.pop_queries():
+            if outcome.command == Command.DO_SET_MODE:
+                self.modes.handle_outcome(outcome, now)
+            elif outcome.result is not Result.ACCEPTED:
+                self.identity.handle_refusal()

@@ -1,0 +1,77 @@
+"""Missions as text: what Mission Planner writes is read and written back alike; MAVProxy reads it."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pymavlink import mavwp
+
+from groundstation.formats.errors import FileFormatError
+from groundstation.formats.plan import Home, Plan
+from groundstation.formats.waypoint_file import format_waypoints, parse_waypoints
+from link.services.mission.files import encode_plan
+from tests.link.mission_vehicle import plain, waypoint
+
+MISSION_PLANNER = """\
+QGC WPL 110
+0\t1\t0\t16\t0.00000000\t0.00000000\t0.00000000\t0.00000000\t-35.36326210\t149.16523740\t584.090000\t1
+1\t0\t3\t16\t0.00000000\t1.50000000\t0.00000000\t0.00000000\t-35.36275440\t149.16514870\t100.000000\t1
+2\t0\t3\t177\t1.00000000\t5.00000000\t0.00000000\t0.00000000\t0.00000000\t0.00000000\t0.000000\t1
+"""
+
+
+def test_mission_planners_file_is_written_back_byte_for_byte() -> None:
+    plan = parse_waypoints(MISSION_PLANNER, "x")
+    assert plan.home == Home(-35.3632621, 149.1652374, 584.09)
+    assert [item.params[0] for item in plan.mission] == [0.0, 0.0], "the jump leads to the first item"
+    assert format_waypoints(plan) == MISSION_PLANNER
+    assert parse_waypoints(MISSION_PLANNER.replace("\n", "\r\n"), "x") == plan
+
+
+def test_the_rovers_own_file_has_no_home() -> None:
+    items = (waypoint(0), waypoint(1))
+    plan = parse_waypoints(encode_plan(items).decode(), "x")
+    assert plan.home is None
+    assert plain(plan.mission) == plain(items)
+    assert plain(parse_waypoints(format_waypoints(plan), "x").mission) == plain(items)
+
+
+def test_a_first_item_that_looks_like_home_is_not_taken_for_it() -> None:
+    items = (waypoint(0, frame=0), waypoint(1, frame=0))
+    assert plain(parse_waypoints(format_waypoints(Plan(mission=items)), "x").mission) == plain(items)
+
+
+def test_pymavlink_reads_it(tmp_path: Path) -> None:
+    file = tmp_path / "plan.waypoints"
+    file.write_text(format_waypoints(Plan(mission=(waypoint(0), waypoint(1)), home=Home(47.0, 8.0, 400.0))))
+    loader: Any = mavwp.MAVWPLoader()  # type: ignore[no-untyped-call]
+    assert loader.load(str(file)) == 3
+    assert (loader.wp(0).x, loader.wp(0).z) == (47.0, 400.0)
+    assert loader.wp(2).x == pytest.approx(waypoint(1).latitude, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("", "f.waypoints:1: is not 'QGC WPL 110'"),
+        ("QGC WPL 110\n0\t1\t0\n", "f.waypoints:2: has 3 fields, not 12"),
+        ("QGC WPL 110\n\n0 1 0 16 x 0 0 0 0 0 0 1\n", "f.waypoints:3: could not convert string to float: 'x'"),
+        ("QGC WPL 110\n0 1 0 16 1e99 0 0 0 0 0 0 1\n", "f.waypoints:2: 1e99 is too large"),
+    ],
+)
+def test_an_error_is_one_line_with_the_place(text: str, error: str) -> None:
+    with pytest.raises(FileFormatError) as caught:
+        parse_waypoints(text, "f.waypoints")
+    assert str(caught.value) == error
+
+
+@given(st.text())
+def test_no_text_raises_anything_else(text: str) -> None:
+    for junk in (text, "QGC WPL 110\n" + text):
+        with contextlib.suppress(FileFormatError):
+            parse_waypoints(junk, "x")

@@ -1,0 +1,113 @@
+"""The model of the Parameters screen: the selection, the window, changes and their undo."""
+
+from __future__ import annotations
+
+from groundstation.intents import FetchParams, WriteParams
+from groundstation.ui.param_model import ANSWER_WITHIN, MAX_UNDO, ParamModel
+from groundstation.views import ParamPage, ParamPageRequest, ParamRow, RequestLine
+from tests.groundstation.ui.examples import param_page
+
+
+def rows(first: int, count: int) -> tuple[ParamRow, ...]:
+    return tuple(
+        ParamRow(name=f"P{number:03}", value=float(number), kind="REAL32", default=None, changed=False)
+        for number in range(first, first + count)
+    )
+
+
+def page(first: int, count: int, matching: int = 100, ended: tuple[RequestLine, ...] = ()) -> ParamPage:
+    return ParamPage(1, rows(first, count), first, matching, 100, 100, has_defaults=False, running=(), ended=ended)
+
+
+def shown(height: int = 10) -> ParamModel:
+    model = ParamModel()
+    model.set_height(height)
+    model.show_page(page(0, height))
+    return model
+
+
+def test_the_window_follows_the_selection() -> None:
+    model = shown()
+    model.move(9)
+    assert model.request == ParamPageRequest(rows=10)
+    model.move(1)
+    assert model.request == ParamPageRequest(first=1, rows=10)
+    assert model.selected is None, "its row has not arrived"
+    model.show_page(page(1, 10))
+    assert model.selected is not None
+    assert model.selected.name == "P010"
+    model.move(1000)
+    assert model.request.first == 90
+    model.move(-1000)
+    assert model.request.first == 0
+
+
+def test_fewer_that_match_move_the_selection_up() -> None:
+    model = shown()
+    model.move(9)
+    model.show_page(page(0, 3, matching=3))
+    assert model.selected is not None
+    assert model.selected.name == "P002"
+
+
+def test_a_filter_begins_at_the_top() -> None:
+    model = shown()
+    model.move(50)
+    model.set_filter("FS", changed_only=True)
+    assert model.request == ParamPageRequest("FS", True, 0, 10)
+
+
+def test_a_value_as_it_was_is_no_change() -> None:
+    model = shown()
+    assert model.change("0x05") is None
+    assert [change.value for change in model.pending.values()] == [5.0]
+    assert model.change("0") is None
+    assert model.pending == {}
+
+
+def test_undo_goes_back_step_by_step_and_is_bounded() -> None:
+    model = shown()
+    for value in range(1, MAX_UNDO + 50):
+        model.change(str(value))
+    steps = 0
+    while model.undo():
+        steps += 1
+    assert steps == MAX_UNDO
+
+
+def test_a_question_that_is_not_answered_ends() -> None:
+    model = shown()
+    assert not model.ask(0.0), "nothing to write"
+    model.change("5")
+    assert model.ask(0.0)
+    assert model.write(ANSWER_WITHIN) == ()
+    assert model.ask(20.0)
+    [intent] = model.write(20.0 + ANSWER_WITHIN - 0.1)
+    assert intent == WriteParams(1, 1, (("P000", 5.0),))
+    assert not model.ask(21.0), "it is being written"
+
+
+def test_numbers_of_requests_rise() -> None:
+    model = shown()
+    assert [model.fetch(), model.fetch()] == [FetchParams(1), FetchParams(2)]
+
+
+def test_old_ends_of_other_requests_do_not_end_a_write() -> None:
+    model = shown()
+    model.change("5")
+    model.ask(0.0)
+    model.write(0.0)
+    model.show_page(page(0, 10, ended=(RequestLine(7, "accepted", "set 1 parameter"),)))
+    assert list(model.pending) == ["P000"]
+    model.show_page(page(0, 10, ended=(RequestLine(1, "no answer", "set 1 parameter", "after 8 tries", 0, 1),)))
+    assert list(model.pending) == ["P000"], "it was not set"
+    assert model.status == "no answer: after 8 tries"
+    assert model.ask(1.0), "and can be written again"
+
+
+def test_the_examples_have_changes() -> None:
+    model = ParamModel()
+    model.set_height(10)
+    model.show_page(param_page())
+    assert model.change_to_default() is None
+    assert [change.value for change in model.pending.values()] == [1.0]

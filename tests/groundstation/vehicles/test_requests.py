@@ -1,0 +1,88 @@
+"""Requests end once, and a refusal has the vehicle's own words if they come within a second."""
+
+from __future__ import annotations
+
+import pytest
+
+from dialects.enums import Severity
+from groundstation.vehicles.requests import MAX_REQUESTS, RequestBook, RequestReport, RequestState
+
+WARNING = Severity.WARNING
+
+
+def ended(book: RequestBook) -> list[RequestReport]:
+    return [report for report in book.pop_changes() if report.state.ended]
+
+
+@pytest.mark.parametrize("said", [9.5, 10.0, 10.9])
+def test_a_text_before_or_behind_a_refusal_explains_it(said: float) -> None:
+    book = RequestBook()
+    book.begin(1, "set A to 2")
+    for tenth in range(80, 130):
+        now = tenth / 10
+        if now == said:
+            book.handle_text("A not changed: disarm first", WARNING, now)
+        if now == 10.0:
+            book.refuse(1, "permission denied", now)
+        book.tick(now)
+    [report] = ended(book)
+    assert report.text == 'set A to 2: refused, permission denied, "A not changed: disarm first"'
+
+
+@pytest.mark.parametrize(("said", "severity"), [(8.9, WARNING), (11.1, WARNING), (10.0, Severity.NOTICE)])
+def test_an_old_or_harmless_text_explains_nothing(said: float, severity: int) -> None:
+    book = RequestBook()
+    book.begin(1, "set A to 2")
+    for tenth in range(80, 130):
+        now = tenth / 10
+        if now == said:
+            book.handle_text("Battery low", severity, now)
+        if now == 10.0:
+            book.refuse(1, "permission denied", now)
+        book.tick(now)
+    [report] = ended(book)
+    assert report.reason == ""
+
+
+def test_a_request_runs_until_its_reason_is_waited_for() -> None:
+    book = RequestBook()
+    book.begin(1, "x")
+    book.refuse(1, "no", 10.0)
+    book.tick(10.9)
+    assert ended(book) == []
+    assert len(book.running) == 1
+    book.tick(11.0)
+    assert [report.state for report in ended(book)] == [RequestState.REFUSED]
+
+
+def test_our_own_refusal_ends_at_once() -> None:
+    book = RequestBook()
+    book.begin(1, "x")
+    book.refuse(1, "no such file", 10.0, by_vehicle=False)
+    assert [report.text for report in ended(book)] == ["x: refused, no such file"]
+
+
+def test_each_request_ends_once() -> None:
+    book = RequestBook()
+    book.begin(1, "x")
+    book.advance(1, 3, 10)
+    assert [(report.done, report.total) for report in book.pop_changes()] == [(3, 10)]
+    book.accept(1, "10 items")
+    book.fail(1, "after 3 tries")
+    book.cancel(1)
+    book.advance(1, 4, 10)
+    assert [report.text for report in book.pop_changes()] == ["x: accepted, 10 items"]
+
+
+def test_a_number_in_use_is_refused_and_the_first_goes_on() -> None:
+    book = RequestBook()
+    assert book.begin(1, "first")
+    assert not book.begin(1, "second")
+    assert [report.what for report in book.running] == ["first"]
+    assert [report.text for report in ended(book)] == ["second: refused, its number is in use"]
+
+
+def test_the_number_of_requests_is_bounded() -> None:
+    book = RequestBook()
+    assert all(book.begin(number, "x") for number in range(MAX_REQUESTS))
+    assert not book.begin(MAX_REQUESTS, "x")

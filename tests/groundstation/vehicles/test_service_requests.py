@@ -1,0 +1,121 @@
+"""Requests about plans, files and logs: their order, their end in the book, cancelling."""
+
+from __future__ import annotations
+
+import random
+
+from dialects.enums import MissionType
+from groundstation.vehicles.file_requests import FileRequests
+from groundstation.vehicles.log_requests import LogRequests
+from groundstation.vehicles.plan_requests import PlanRequests
+from groundstation.vehicles.requests import RequestBook, RequestState
+from link.services.ftp.client import FtpClient
+from link.services.ftp.files import MemoryFolder
+from link.services.log.client import LogClient, LogFile
+from link.services.log.server import LogServer
+from link.services.mission.client import MissionClient
+from link.services.pacing import BulkPacer
+from tests.link import ftp_vehicle, mission_vehicle
+from tests.link.mission_vehicle import plain, waypoint
+from tests.link.services_world import Pair
+
+DATA = random.Random(2).randbytes(30_000)
+ITEMS = [waypoint(number) for number in range(30)]
+
+
+def ends(book: RequestBook) -> dict[int, RequestState]:
+    return {report.number: report.state for report in book.pop_changes() if report.state.ended}
+
+
+def test_plans_go_one_after_the_other() -> None:
+    vehicle, book = mission_vehicle.Vehicle(), RequestBook()
+    plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
+    pair = Pair(vehicle.server, plans)
+    plans.upload(1, MissionType.MISSION, ITEMS, pair.now)
+    plans.download(2, MissionType.MISSION, pair.now)
+    plans.clear(3, MissionType.MISSION, pair.now)
+    pair.run_until(lambda: len(book.running) == 1, 20.0)
+    assert plain(plans.plans[MissionType.MISSION]) == plain(tuple(ITEMS))
+    pair.run_until(lambda: not book.running, 20.0)
+    assert set(ends(book).values()) == {RequestState.ACCEPTED}
+    assert plans.plans[MissionType.MISSION] == vehicle.plan == ()
+
+
+def test_an_upload_that_is_cancelled_changes_nothing_and_the_next_request_runs() -> None:
+    vehicle, book = mission_vehicle.Vehicle(), RequestBook()
+    plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
+    pair = Pair(vehicle.server, plans)
+    plans.upload(1, MissionType.MISSION, ITEMS, pair.now)
+    plans.upload(2, MissionType.MISSION, ITEMS[:5], pair.now)
+    plans.download(3, MissionType.FENCE, pair.now)
+    pair.run_until(lambda: any(report.done > 10 for report in book.running), 5.0)
+    plans.cancel(2, pair.now)
+    plans.cancel(1, pair.now)
+    pair.run_until(lambda: not book.running, 20.0)
+    assert ends(book) == {1: RequestState.CANCELLED, 2: RequestState.CANCELLED, 3: RequestState.ACCEPTED}
+    assert vehicle.plan == ()
+
+
+def test_a_download_that_was_not_answered_goes_on_where_it_ended() -> None:
+    vehicle, book = mission_vehicle.Vehicle(), RequestBook()
+    vehicle.upload(ITEMS)
+    plans = PlanRequests(MissionClient(255, 190, target_system=1), book)
+    pair = Pair(vehicle.server, plans)
+    plans.download(1, MissionType.MISSION, pair.now)
+    pair.run_until(lambda: any(report.done >= 20 for report in book.running), 5.0)
+    for second in range(60):
+        plans.tick(pair.now + second)
+    plans.messages_to_send()
+    [failed] = [report for report in book.pop_changes() if report.state.ended]
+    assert failed.text == "download mission: no answer, after 16 tries, 20 of 30 items arrived"
+    sent = pair.sent_by_client
+    plans.download(2, MissionType.MISSION, pair.now)
+    pair.run_until(lambda: not book.running, 20.0)
+    assert plain(plans.plans[MissionType.MISSION]) == plain(tuple(ITEMS))
+    assert pair.sent_by_client - sent < 15
+
+
+def test_files_are_cancelled_one_by_one() -> None:
+    vehicle, book = ftp_vehicle.Vehicle(logs={"1.bin": DATA}, rate=50_000.0), RequestBook()
+    files = FileRequests(FtpClient(255, 190, target_system=1), book)
+    pair = Pair(vehicle.server, files)
+    files.download(1, "/logs/1.bin", pair.now)
+    files.checksum(2, "/logs/1.bin", pair.now)
+    files.list_folder(3, "/logs", pair.now)
+    pair.run_until(lambda: any(report.done > 5000 for report in book.running), 5.0)
+    assert files.beginning == DATA[: len(files.beginning)] != b""
+    files.cancel(1, pair.now)
+    files.cancel(2, pair.now)
+    pair.run_until(lambda: not book.running, 20.0)
+    assert ends(book) == {1: RequestState.CANCELLED, 2: RequestState.CANCELLED, 3: RequestState.ACCEPTED}
+    outcome = files.pop_result(3)
+    assert outcome is not None
+    assert [entry.name for entry in outcome.entries] == ["1.bin"]
+    assert files.pop_result(3) is None
+
+
+def test_a_path_that_cannot_be_sent_is_refused_at_once() -> None:
+    book = RequestBook()
+    files = FileRequests(FtpClient(255, 190, target_system=1), book)
+    files.download(1, "", 0.0)
+    assert ends(book) == {1: RequestState.REFUSED}
+
+
+def test_logs_are_cancelled_one_by_one() -> None:
+    book = RequestBook()
+    logs = LogRequests(LogClient(255, 190, target_system=1), book)
+    server = LogServer(
+        MemoryFolder({"1.bin": DATA}), system=1, component=1, pacer=BulkPacer(lambda peer: 50_000.0)
+    )  # fmt: skip
+    pair = Pair(server, logs)
+    log = LogFile(0, 0, len(DATA))
+    logs.download(1, log, pair.now)
+    logs.download(2, log, pair.now)
+    logs.download(3, log, pair.now)
+    pair.run_until(lambda: len(logs.beginning) > 5000, 5.0)
+    logs.cancel(9, pair.now)
+    logs.cancel(2, pair.now)
+    logs.cancel(1, pair.now)
+    pair.run_until(lambda: not book.running, 20.0)
+    assert ends(book) == {1: RequestState.CANCELLED, 2: RequestState.CANCELLED, 3: RequestState.ACCEPTED}
+    assert logs.pop_data(3) == DATA

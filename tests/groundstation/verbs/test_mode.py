@@ -1,0 +1,82 @@
+"""`groundstation modes` and `mode` with vehicles as ArduPilot and PX4 behave, on real sockets."""
+
+from __future__ import annotations
+
+import pytest
+
+from groundstation.verbs.exit_codes import ExitCode
+from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+
+Capture = pytest.CaptureFixture[str]
+SHORT = [("MANU", 0, 0), ("STER", 3, 0), ("HOLD", 4, 0), ("AUTO", 10, 2)]
+"""As ArduRover 4.7 lists them; AUTO has no mission."""
+
+
+def verb(capsys: Capture, vehicle: ForeignVehicle, *arguments: str) -> VerbRun:
+    return run_verb(capsys, *arguments, "-e", vehicle.endpoint, "-v", "1")
+
+
+def test_modes_as_the_vehicle_lists_them(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        vehicle.modes = SHORT
+        assert verb(capsys, vehicle, "modes").out == (
+            "> MANUAL                0\n  STEERING              3\n  HOLD                  4\n"
+            "  AUTO                 10  not now\n"
+        )  # fmt: skip
+        records = verb(capsys, vehicle, "modes", "--json").records
+        assert records[3] == {"name": "AUTO", "custom_mode": 10, "selectable": False, "current": False}
+
+
+@pytest.mark.parametrize(("autopilot", "name"), [(ARDUPILOT, "GUIDED"), (PX4, "AUTO_MISSION")])
+def test_modes_by_autopilot_and_type(capsys: Capture, autopilot: int, name: str) -> None:
+    with ForeignVehicle(autopilot) as vehicle:
+        vehicle.acks[512] = (3, "")  # REQUEST_MESSAGE is not supported
+        listed = verb(capsys, vehicle, "modes")
+        assert listed.code == 0
+        assert name in listed.out.split()
+        assert "not listed by the vehicle" in listed.err
+
+
+@pytest.mark.parametrize(("autopilot", "custom"), [(ARDUPILOT, 4), (PX4, 3 << 24 | 4 << 16)])
+def test_a_change_is_done_when_the_heartbeat_reports_it(capsys: Capture, autopilot: int, custom: int) -> None:
+    with ForeignVehicle(autopilot) as vehicle:
+        vehicle.acks[512] = (3, "")
+        name = "hold" if autopilot == ARDUPILOT else "auto_loiter"
+        changed = verb(capsys, vehicle, "mode", name, "--json")
+        assert changed.code == 0, changed.err
+        assert vehicle.mode == custom
+        [record] = changed.records
+        assert (record["ok"], record["mode"], record["verb"]) == (True, name.upper(), "mode")
+
+
+def test_a_mode_that_is_accepted_and_not_reported_is_not_done(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        vehicle.modes, vehicle.obeys = SHORT, False
+        changed = verb(capsys, vehicle, "mode", "HOLD")
+        assert changed.code == ExitCode.REFUSED
+        assert "accepted, but its heartbeat reports another mode" in changed.err
+
+
+def test_a_refusal_has_the_vehicles_own_words(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        vehicle.modes, vehicle.acks[176] = SHORT, (4, "No Mission. Can't set AUTO.")
+        refused = verb(capsys, vehicle, "mode", "auto")
+        assert refused.code == ExitCode.REFUSED
+        assert refused.err.endswith('mode AUTO: refused, FAILED, "No Mission. Can\'t set AUTO."\n')
+
+
+def test_a_mode_that_moves_the_vehicle_is_named(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        vehicle.modes = SHORT
+        assert "may move by itself in AUTO" in verb(capsys, vehicle, "mode", "AUTO").err
+        assert verb(capsys, vehicle, "mode", "STEERING").err == ""
+
+
+def test_a_mode_that_does_not_exist(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        vehicle.modes = SHORT
+        unknown = verb(capsys, vehicle, "mode", "FLY")
+        assert unknown.code == ExitCode.REFUSED
+        assert "no such mode; there are: MANUAL, STEERING, HOLD, AUTO" in unknown.err
+        assert [command for command in vehicle.of("COMMAND_LONG") if command.command == 176] == []

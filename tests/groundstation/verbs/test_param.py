@@ -1,0 +1,257 @@
+"""`groundstation param` with vehicles as ArduPilot and PX4 behave, on real sockets."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from groundstation.verbs.exit_codes import ExitCode
+from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignParam, ForeignVehicle, many_params
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+
+Capture = pytest.CaptureFixture[str]
+
+
+def some_params() -> dict[str, ForeignParam]:
+    return {
+        "FS_ACTION": ForeignParam(2, 2, 1),
+        "FS_TIMEOUT": ForeignParam(1.5),
+        "INS_GYR_ID": ForeignParam(-1234567, 6),
+        "RC_OPTIONS": ForeignParam(32, 6, 0),
+        "STAT_BOOTCNT": ForeignParam(7, 4, read_only=True),
+    }
+
+
+@pytest.fixture(params=[ARDUPILOT, PX4], ids=["ardupilot", "px4"])
+def vehicle(request: pytest.FixtureRequest) -> Iterator[ForeignVehicle]:
+    with ForeignVehicle(request.param) as running:
+        running.params = some_params()
+        yield running
+
+
+def param(capsys: Capture, vehicle: ForeignVehicle, *arguments: str) -> VerbRun:
+    return run_verb(capsys, "param", *arguments, "-e", vehicle.endpoint, "-v", "1")
+
+
+def test_get_by_pattern_and_by_name(capsys: Capture, vehicle: ForeignVehicle) -> None:
+    found = param(capsys, vehicle, "get", "fs_*")
+    defaults = "  # default 1" if vehicle.autopilot == ARDUPILOT else ""
+    assert (found.code, found.out) == (0, f"FS_ACTION        2{defaults}\nFS_TIMEOUT       1.5\n")
+    assert (
+        param(capsys, vehicle, "get", "ins_gyr_id", "FS_TIMEOUT").out
+        == "INS_GYR_ID       -1234567\nFS_TIMEOUT       1.5\n"
+    )
+    assert param(capsys, vehicle, "get", "RC_OPTIONS", "--json").records == [
+        {"param_id": "RC_OPTIONS", "param_value": 32.0, "param_type": "INT32", "default": None}
+    ]
+
+
+def test_all_come_in_order_as_a_file_or_as_a_list(capsys: Capture, vehicle: ForeignVehicle) -> None:
+    got = param(capsys, vehicle, "get")
+    assert [line.split()[0] for line in got.out.splitlines()] == sorted(vehicle.params)
+    lists, files = len(vehicle.of("PARAM_REQUEST_LIST")), len(vehicle.of("FILE_TRANSFER_PROTOCOL"))
+    assert (lists, files > 2) == ((0, True) if vehicle.autopilot == ARDUPILOT else (1, False))
+
+
+def test_set_is_confirmed_by_the_vehicle(capsys: Capture, vehicle: ForeignVehicle) -> None:
+    done = param(capsys, vehicle, "set", "FS_ACTION", "1")
+    assert (done.code, done.out) == (0, "FS_ACTION 1 (was 2)\n")
+    assert vehicle.params["FS_ACTION"].value == 1
+    done = param(capsys, vehicle, "set", "ins_gyr_id", "0x10", "--json")
+    assert done.records[0] | {"took": 0} == {
+        "ok": True, "verb": "param set", "vehicle": 1, "param_id": "INS_GYR_ID", "param_value": 16.0,
+        "detail": "was -1234567", "took": 0,
+    }  # fmt: skip
+    assert vehicle.params["INS_GYR_ID"].value == 16
+
+
+def test_a_refusal_has_the_vehicles_own_words(capsys: Capture, vehicle: ForeignVehicle) -> None:
+    refused = param(capsys, vehicle, "set", "STAT_BOOTCNT", "0")
+    assert refused.code == ExitCode.REFUSED
+    assert refused.err.endswith('set STAT_BOOTCNT to 0: refused, the vehicle keeps 7, "STAT_BOOTCNT is read-only"\n')
+    assert vehicle.params["STAT_BOOTCNT"].value == 7
+
+
+@pytest.mark.parametrize(
+    ("value", "words"), [("1.7", "its type INT8 cannot hold 1.7"), ("200", "its type INT8 cannot hold 200")]
+)
+def test_what_the_type_cannot_hold_is_not_sent(
+    capsys: Capture, vehicle: ForeignVehicle, value: str, words: str
+) -> None:
+    refused = param(capsys, vehicle, "set", "FS_ACTION", value)
+    assert refused.code == ExitCode.REFUSED
+    assert words in refused.err
+    assert vehicle.of("PARAM_SET") == []
+
+
+def test_a_name_that_nobody_answers_ends_with_the_number_of_tries(capsys: Capture, vehicle: ForeignVehicle) -> None:
+    unknown = param(capsys, vehicle, "get", "NO_SUCH")
+    assert (unknown.code, unknown.out) == (ExitCode.NO_ANSWER, "")
+    assert unknown.err.endswith("read NO_SUCH: no answer, after 8 tries\n")
+    assert len(vehicle.of("PARAM_REQUEST_READ")) == 8
+
+
+def test_save_diff_and_load(capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path) -> None:
+    file = str(tmp_path / "a.param")
+    assert param(capsys, vehicle, "save", file).code == 0
+    assert param(capsys, vehicle, "diff", file).code == 0
+    vehicle.params["FS_TIMEOUT"].value, vehicle.params["RC_OPTIONS"].value = 3.0, 64.0
+    differing = param(capsys, vehicle, "diff", file)
+    assert (differing.code, differing.out) == (
+        ExitCode.DIFFERS,
+        "FS_TIMEOUT       1.5          here 3\nRC_OPTIONS       32           here 64\n",
+    )
+    dry = param(capsys, vehicle, "load", file, "--dry-run")
+    assert (dry.code, dry.out) == (
+        ExitCode.DIFFERS,
+        "FS_TIMEOUT       3 -> 1.5\nRC_OPTIONS       64 -> 32\n",
+    )
+    assert vehicle.of("PARAM_SET") == []
+    loaded = param(capsys, vehicle, "load", file)
+    assert (loaded.code, loaded.out) == (0, dry.out)
+    assert (vehicle.params["FS_TIMEOUT"].value, vehicle.params["RC_OPTIONS"].value) == (1.5, 32)
+
+
+def test_load_stops_at_the_first_refusal_and_says_what_stands(
+    capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path
+) -> None:
+    file = tmp_path / "a.param"
+    file.write_text("FS_ACTION 1\nSTAT_BOOTCNT 0\nRC_OPTIONS 1\n")
+    loaded = param(capsys, vehicle, "load", str(file))
+    assert loaded.code == ExitCode.PARTLY
+    assert loaded.out == "FS_ACTION        2 -> 1\n"
+    assert '"STAT_BOOTCNT is read-only"' in loaded.err
+    assert "1 of 3 are set; not tried: RC_OPTIONS" in loaded.err
+    assert vehicle.params["RC_OPTIONS"].value == 32
+
+
+def test_a_file_of_another_vehicle_names_what_is_not_here(
+    capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path
+) -> None:
+    file = tmp_path / "a.param"
+    file.write_text("FS_ACTION 1\nFENCE_RADIUS 300\n")
+    assert "FENCE_RADIUS     not on the vehicle\n" in param(capsys, vehicle, "diff", str(file)).out
+    loaded = param(capsys, vehicle, "load", str(file))
+    assert loaded.code == ExitCode.PARTLY
+    assert "not on the vehicle: FENCE_RADIUS" in loaded.err
+    assert vehicle.params["FS_ACTION"].value == 1
+
+
+def test_changed_saves_what_is_not_at_its_default(capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path) -> None:
+    file = tmp_path / "a.param"
+    saved = param(capsys, vehicle, "save", str(file), "--changed", "--format", "qgc")
+    if vehicle.autopilot == PX4:
+        assert saved.code == ExitCode.REFUSED
+        assert "does not report defaults" in saved.err
+    else:
+        assert file.read_text().splitlines()[3:] == ["1\t1\tFS_ACTION\t2\t2", "1\t1\tRC_OPTIONS\t32\t6"]
+
+
+@pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
+def test_a_thousand_parameters_over_a_lossy_list(capsys: Capture, autopilot: int) -> None:
+    with ForeignVehicle(autopilot, loss=0.05, ftp=False) as vehicle:
+        vehicle.params = dict(many_params(1200))
+        got = param(capsys, vehicle, "get", "--json")
+        assert got.code == 0, got.err
+        values = {record["param_id"]: record["param_value"] for record in got.records}
+        assert values == pytest.approx({name: each.value for name, each in vehicle.params.items()}, rel=1e-6)
+
+
+def test_integers_of_px4_are_exact(capsys: Capture) -> None:
+    with ForeignVehicle(PX4) as vehicle:
+        vehicle.params = {"A": ForeignParam(2_000_000_001, 6), "B": ForeignParam(-1, 6), "C": ForeignParam(4e9 + 7, 5)}
+        assert param(capsys, vehicle, "get").out.split() == ["A", "2000000001", "B", "-1", "C", "4000000007"]
+        assert param(capsys, vehicle, "set", "A", "-2000000001").code == 0
+        assert vehicle.params["A"].value == -2_000_000_001
+
+
+def test_a_list_with_a_hole_is_printed_and_the_hole_named(capsys: Capture) -> None:
+    with ForeignVehicle(PX4) as vehicle:
+        vehicle.params = {name: ForeignParam(1.0) for name in ("A", "B", "C")}
+        vehicle.silent.add(20)  # PARAM_REQUEST_READ
+        hidden = vehicle._value
+
+        def without_b(name: str, index: int) -> object:
+            return hidden("A", 0) if name == "B" else hidden(name, index)
+
+        vehicle._value = without_b  # type: ignore[method-assign]
+        got = param(capsys, vehicle, "get")
+        assert got.code == ExitCode.PARTLY
+        assert [line.split()[0] for line in got.out.splitlines()] == ["A", "C"]
+        assert "1 of 3 parameters missing after 8 tries" in got.err
+        saved = param(capsys, vehicle, "save", "/tmp/never.param", "--yes")
+        assert saved.code == ExitCode.NO_ANSWER
+        assert "nothing was changed or written" in saved.err
+
+
+def test_a_vehicle_without_parameters(capsys: Capture) -> None:
+    with ForeignVehicle(PX4, ftp=False) as vehicle:
+        vehicle.silent |= {20, 21, 76}
+        got = param(capsys, vehicle, "get")
+        assert got.code == ExitCode.NO_ANSWER
+        assert "fetch parameters: no answer, no list after 8 tries" in got.err
+
+
+def test_two_vehicles_need_a_choice_before_a_change(capsys: Capture) -> None:
+    with ForeignVehicle(ARDUPILOT) as one, ForeignVehicle(ARDUPILOT) as two:
+        two._link.srcSystem = 2
+        one.params, two.params = some_params(), some_params()
+        both = ["-e", one.endpoint, "-e", two.endpoint]
+        chosen = run_verb(capsys, "param", "set", "FS_ACTION", "1", *both)
+        assert chosen.code == ExitCode.USAGE
+        assert "vehicles 1, 2 are here: choose one with --vehicle" in chosen.err
+        assert one.params["FS_ACTION"].value == two.params["FS_ACTION"].value == 2
+
+
+def test_no_vehicle_and_the_wrong_vehicle(capsys: Capture, vehicle: ForeignVehicle) -> None:
+    started = time.monotonic()
+    none = run_verb(capsys, "param", "get", "-e", "udpout:127.0.0.1:9", "--wait", "0.3")
+    assert none.code == ExitCode.NO_VEHICLE
+    assert none.err == "groundstation: no vehicle on udpout:127.0.0.1:9 within 0.3 s\n"
+    assert time.monotonic() - started < 5
+    other = run_verb(capsys, "param", "get", "-e", vehicle.endpoint, "-v", "7", "--wait", "2")
+    assert (other.code, other.out) == (ExitCode.NO_VEHICLE, "")
+    assert "no vehicle 7" in other.err
+    assert "but 1" in other.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["get", "-e", "carrier:pigeon"], "udpin:HOST:PORT"),
+        (["set", "A", "nan", "-e", "udpout:127.0.0.1:9"], "'nan' is not a number that a parameter can have"),
+        (["set", "A"], "VALUE"),
+        (["fly"], "invalid choice: 'fly'"),
+        ([], "ACTION"),
+        (["get", "--wait", "-1"], "'-1' is not a number of seconds above 0"),
+        (["get", "-v", "256"], "'256' is not a number from 1 to 255"),
+        (["get", "-e", ""], "-e has nothing behind it"),
+    ],
+)
+def test_mistakes_are_one_line(capsys: Capture, arguments: list[str], words: str) -> None:
+    run = run_verb(capsys, "param", *arguments)
+    assert (run.code, run.out) == (ExitCode.USAGE, "")
+    assert run.err.count("\n") == 1
+    assert words in run.err
+
+
+def test_files_that_cannot_be_read_or_written(capsys: Capture, vehicle: ForeignVehicle, tmp_path: Path) -> None:
+    existing = tmp_path / "a.param"
+    existing.write_bytes(b"\xff\xfe\x00")
+    twice = tmp_path / "b.param"
+    twice.write_text("A 1\nA 2\n")
+    for arguments, words in (
+        (["diff", str(tmp_path / "none")], "No such file or directory"),
+        (["diff", str(existing)], "this is not a text file"),
+        (["load", str(twice)], "b.param:2: A is given twice, first in line 1: remove one"),
+        (["save", str(existing)], "exists already; --yes overwrites it"),
+        (["save", str(tmp_path)], "this is a folder; name a file"),
+        (["save", str(tmp_path / "x" / "y")], "there is no folder"),
+    ):
+        run = param(capsys, vehicle, *arguments)
+        assert run.code == ExitCode.USAGE, run.err
+        assert words in run.err
+        assert run.err.count("\n") == 1

@@ -1,0 +1,95 @@
+"""Downloads that are resumed, and the checksum at their end."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import pytest
+
+from link.services.ftp.client import FtpClient
+from link.services.ftp.download import CHANGED
+from link.services.ftp.job import FtpOutcome
+from link.services.ftp.protocol import FtpError, FtpOpcode, crc32, parse_packet
+from tests.link.ftp_vehicle import Vehicle
+from tests.link.services_world import Pair
+
+DATA = random.Random(7).randbytes(20_000)
+
+
+class Watched:
+    """The vehicle's server; keeps the opcodes and offsets that it was asked for, and may not know some."""
+
+    def __init__(self, vehicle: Vehicle, unknown: frozenset[FtpOpcode] = frozenset()) -> None:
+        self.vehicle, self.unknown = vehicle, unknown
+        self.asked: list[tuple[int, int]] = []
+
+    def receive(self, received: Any, now: float) -> list[Any]:
+        packet = parse_packet(received.message)
+        self.asked.append((packet.op, packet.offset))
+        return [] if packet.op in self.unknown else self.vehicle.server.receive(received, now)
+
+    def tick(self, now: float) -> list[Any]:
+        return self.vehicle.server.tick(now)
+
+
+def fetch(server: Watched, loss: float = 0.0, **how: Any) -> FtpOutcome:
+    client = FtpClient(255, 190, target_system=1)
+    pair = Pair(server, client, loss=loss, seed=2)
+    client.download("/logs/1.bin", pair.now, **how)
+    pair.run_until(lambda: not client.busy, 60.0)
+    [outcome] = client.outcomes()
+    return outcome
+
+
+def test_a_download_is_resumed_behind_what_has_arrived() -> None:
+    server = Watched(Vehicle(logs={"1.bin": DATA}))
+    outcome = fetch(server, have=DATA[:12_345], verify=True)
+    assert outcome.done
+    assert outcome.data == DATA
+    assert outcome.checksum == crc32(DATA)
+    assert min(offset for op, offset in server.asked if op == FtpOpcode.BURST) == 12_345
+
+
+def test_what_was_kept_of_another_file_is_noticed() -> None:
+    outcome = fetch(Watched(Vehicle(logs={"1.bin": DATA})), have=b"x" * 500, verify=True)
+    assert (outcome.done, outcome.problem) == (False, CHANGED)
+
+
+@pytest.mark.parametrize("have", [DATA, DATA + b"more"])
+def test_a_whole_file_is_only_compared_and_a_longer_one_fetched_anew(have: bytes) -> None:
+    server = Watched(Vehicle(logs={"1.bin": DATA}))
+    outcome = fetch(server, have=have, verify=True)
+    assert outcome.done
+    assert outcome.data == DATA
+    assert (FtpOpcode.BURST in {op for op, _ in server.asked}) == (have != DATA)
+
+
+def test_the_beginning_of_a_file_is_kept_when_the_vehicle_falls_silent() -> None:
+    vehicle = Vehicle(logs={"1.bin": DATA}, rate=10_000.0)
+    client = FtpClient(255, 190, target_system=1)
+    pair = Pair(vehicle.server, client)
+    client.download("/logs/1.bin", pair.now)
+    pair.run_until(lambda: client.progress[0] > 5000, within=5.0)
+    for second in range(60):
+        client.tick(pair.now + second)
+    [outcome] = client.outcomes()
+    assert not outcome.done
+    assert outcome.problem == "no answer after 16 tries"
+    assert len(outcome.data) > 5000
+    assert outcome.data == DATA[: len(outcome.data)]
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.2])
+def test_a_vehicle_without_checksums_still_gives_files(loss: float) -> None:
+    outcome = fetch(Watched(Vehicle(logs={"1.bin": DATA}), frozenset({FtpOpcode.CRC})), loss, verify=True)
+    assert (outcome.done, outcome.checksum, outcome.data) == (True, None, DATA)
+
+
+def test_a_file_that_is_not_there_is_named() -> None:
+    outcome = fetch(Watched(Vehicle(logs={})))
+    assert (outcome.done, outcome.error, outcome.problem) == (
+        False,
+        FtpError.NOT_FOUND,
+        "no such file on the vehicle",
+    )
