@@ -35,7 +35,6 @@ from groundstation.views import (
     LinkRow,
     LinksRequest,
     LinksView,
-    Program,
     VehiclesRequest,
     View,
 )
@@ -219,38 +218,6 @@ async def test_every_size_shows_vehicles_armed_or_not(size: tuple[int, int]) -> 
 
 
 # ---- control ----
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({}, "this one, 255/190, session 1a2b3c4d · G releases it"),
-        ({"driver": 0, "program": None, "in_control": False}, "no ground station · g requests control"),
-        ({"driver": 250, "program": None, "in_control": False}, "ground station 250 · g asks for it"),
-        (
-            {"driver": 250, "program": Program(250, 190, 7), "in_control": False},
-            "ground station 250/190, session 00000007 · g asks for it",
-        ),
-        ({"driver": None, "program": None, "in_control": False}, "this vehicle does not tell · g requests it"),
-        ({"driver": None, "program": None}, "this vehicle does not tell · it accepts our commands"),
-        ({"program": Program(255, 190, 7)}, "another program with our id: 255/190, session 00000007"),
-        ({"program": Program(255, 191, 7)}, "another program with our id: 255/191"),
-        ({"program": None}, "this one, 255 · G releases it"),
-        ({"age": 12.0}, "reported 12 s ago"),
-        ({"clash": True}, "two programs send with the ids of the driver: its demands do not count"),
-        ({"silent": True}, "the driver is silent"),
-        ({"takeover": True}, "granted without asking the driver"),
-        ({"waits": 7.0}, "the driver may answer for 7 s"),
-        ({"signs": True, "signing": (1,)}, "the vehicle signs; this station cannot sign"),
-        ({"signing": (7, 9)}, "not this vehicle; systems that sign: 7, 9"),
-        ({}, "off: nobody signs"),
-    ],
-)
-async def test_who_is_in_control(changes: dict[str, object], words: str) -> None:
-    view = msgspec.structs.replace(CONTROL, **changes)
-    async with console((140, 45), FLEET) as screen:
-        await open_links(screen, views=(SIX, LINKS, view))
-        assert words in screen.text
 
 
 async def test_without_a_vehicle_it_says_what_the_station_waits_for() -> None:
