@@ -13,7 +13,16 @@ from groundstation.intents import ACTIONS
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.display_state import DisplayState
 from tests.groundstation.ui import frames
-from tests.groundstation.ui.examples import LOG_PAGE, helm, snapshot, vehicle, waiting, wheels
+from tests.groundstation.ui.examples import (
+    LOG_PAGE,
+    MESSAGES_PAGE,
+    SYS_STATUS_VIEW,
+    helm,
+    snapshot,
+    vehicle,
+    waiting,
+    wheels,
+)
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD
 
@@ -69,6 +78,8 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "strip_79x23": ((79, 23), STANDING, ()),
     "log_80x24": (SMALL, WARNED, ("f6",)),
     "log_140x45": (WIDE, WARNED, ("f6",)),
+    "messages_80x24": (SMALL, snapshot(), ("f3", *["down"] * 8)),
+    "messages_140x45": (WIDE, snapshot(), ("f3", *["down"] * 8)),
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
@@ -76,7 +87,17 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
 
 FRAMES |= {
     f"ascii_{name}": FRAMES[name]
-    for name in ("drive_80x24", "drive_140x45", "waiting_80x24", "strip_40x10", "log_80x24", "log_140x45", "goto_80x24")
+    for name in (
+        "drive_80x24",
+        "drive_140x45",
+        "waiting_80x24",
+        "strip_40x10",
+        "log_80x24",
+        "log_140x45",
+        "goto_80x24",
+        "messages_80x24",
+        "messages_140x45",
+    )
 }
 
 
@@ -84,10 +105,13 @@ FRAMES |= {
 async def test_the_frame_is_the_golden_one(name: str) -> None:
     size, picture, keys = FRAMES[name]
     async with console(size, picture, ascii_only=name.startswith("ascii")) as screen:
-        await screen.press(*keys)
+        await screen.press(*keys[:1])
         if keys:
-            screen.station.offer_view(LOG_PAGE)
+            for view in (LOG_PAGE, MESSAGES_PAGE):
+                screen.station.offer_view(view)
             await screen.show(picture)
+            await screen.press(*keys[1:])
+            screen.station.offer_view(SYS_STATUS_VIEW)
             await screen.show(picture)  # the height of the alerts is known after the first one
         if "hold" in name:
             state = DisplayState(picture, STANDARD, hold=HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4))
