@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import ClassVar
 
 from textual import events
 from textual.containers import Horizontal
 from textual.widget import Widget
 from textual.widgets import Input
 
-from groundstation.ui.display_state import DisplayState, ScreenKey
+from groundstation.ui.display_state import ScreenKey
 from groundstation.ui.messages_model import MessagesModel, key_of
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.message_detail import MessageDetail, MessageDetailValue, detail_lines
@@ -20,6 +19,9 @@ from groundstation.views import MESSAGE_ORDERS, MessagesPage, MessageView, View,
 TITLES = 1
 """Line of titles in the table."""
 
+WIDE = 120
+"""Columns from which on the table has more of its columns, and the fields have columns."""
+
 STEPS = {"up": -1, "down": 1, "pageup": -1, "pagedown": 1, "home": -1, "end": 1}
 """Key -> direction in which it moves."""
 
@@ -28,7 +30,6 @@ class MessagesScreen(ConsoleScreen):
     """Table beside detail. TAB chooses which of them the arrows move in."""
 
     CSS_PATH = "messages.tcss"
-    HORIZONTAL_BREAKPOINTS: ClassVar[list[tuple[int, str]] | None] = [(0, "-narrow"), (120, "-wide")]
     KEYS = (
         ScreenKey("slash", "Filter", "Show messages by words: a name, >5Hz, age>3, src:1/1, field:volt, sent"),
         ScreenKey("enter", "Open", "Open or close the source"),
@@ -70,9 +71,10 @@ class MessagesScreen(ConsoleScreen):
         elif isinstance(view, MessageView) and self._is_selected(view):
             self._show_message(view)
 
-    def show_body(self, now: DisplayState) -> None:
-        """Show the rows at the size that the table has now."""
-        self._show_table()
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out the panels, and show the rows at the size that the table has then."""
+        self.set_class(event.size.width >= WIDE, "-wide")
+        self.call_after_refresh(self._show_table)
 
     @property
     def hint(self) -> str:
@@ -104,6 +106,7 @@ class MessagesScreen(ConsoleScreen):
         elif event.key in _ACTIONS:
             event.stop()
             _ACTIONS[event.key](self)
+        self._show_table()
         self.show_state(self._state)
 
     def on_input_changed(self, event: Input.Changed) -> None:

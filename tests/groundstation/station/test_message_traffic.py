@@ -168,10 +168,14 @@ def test_the_station_sends_pages_and_the_message_at_their_rates_while_they_are_w
     cockpit.run(2.0)
     sent: list[View] = []
 
+    def send(view: View) -> bool:
+        sent.append(view)
+        return True
+
     def run(seconds: float) -> None:
         for _ in range(round(seconds / 0.025)):
             cockpit.run(0.025)
-            cockpit.station.views.send_due(lambda view: sent.append(view) is None, cockpit.now, cockpit.now)
+            cockpit.station.views.send_due(send, cockpit.now, cockpit.now)
 
     run(1.0)
     assert sent == []

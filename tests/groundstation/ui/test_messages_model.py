@@ -74,7 +74,8 @@ def test_a_row_that_has_gone_gives_the_cursor_to_the_one_in_its_place() -> None:
     model.add(page(total=3), HEIGHT)
     assert model.selected == (1, 1, False, "M2")
     model.add(page(total=0), HEIGHT)
-    assert (model.selected, model.cursor, shown(model)) == (None, 0, [])
+    assert model.message_request is None
+    assert (model.cursor, shown(model)) == (0, [])
 
 
 def test_another_filter_or_order_starts_anew_and_ignores_pages_for_the_old_one() -> None:
