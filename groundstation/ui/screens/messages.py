@@ -89,16 +89,14 @@ class MessagesScreen(ConsoleScreen):
     @property
     def takes_text(self) -> bool:
         """Return whether the text of the filter is edited."""
-        return self._field.has_focus
+        return self.focused is self._field
 
     # ---- keys ----
 
     def on_key(self, event: events.Key) -> None:
         """Handle the keys of this screen; those of other screens go on to the app."""
         if self.takes_text:
-            if event.key == "escape":
-                event.stop()
-                self._end_text("")
+            self._handle_text_key(event)
             return
         if event.key in STEPS:
             event.stop()
@@ -108,6 +106,18 @@ class MessagesScreen(ConsoleScreen):
             _ACTIONS[event.key](self)
         self._show_table()
         self.show_state(self._state)
+
+    def _handle_text_key(self, event: events.Key) -> None:
+        """Handle what the field has not: Escape, and the keys behind "/" in one read, which come here."""
+        if event.key == "escape":
+            event.stop()
+            self._end_text("")
+        elif event.key == "enter":
+            event.stop()
+            self._end_text(self._field.value)
+        elif event.is_printable and event.character:
+            event.stop()
+            self._field.insert_text_at_cursor(event.character)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         """Filter while the text is typed."""
@@ -120,7 +130,7 @@ class MessagesScreen(ConsoleScreen):
     def _begin_text(self) -> None:
         self._frozen = False
         self._field.display = True
-        self._field.focus()
+        self.set_focus(self._field)  # at once: the next keys of the same read are text
 
     def _end_text(self, text: str) -> None:
         self._field.value = text

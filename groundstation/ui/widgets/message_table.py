@@ -67,8 +67,8 @@ class MessageTable(Instrument[MessageTableValue]):
 
 
 def _titles(width: int) -> Strip:
-    right = "Hz".rjust(6) + ("B/s".rjust(9) if width >= WIDE else "") + "age s".rjust(6)
-    right += ("lost".rjust(7) + "count".rjust(9)) if width >= WIDE else ""
+    right = "Hz".rjust(6) + ("B/s".rjust(8) if width >= WIDE else "") + "age s".rjust(6)
+    right += ("lost".rjust(7) + "count".rjust(8)) if width >= WIDE else ""
     return strip((" source, message".ljust(width - len(right) - 1)[: width - len(right) - 1] + right, style(DIM)))
 
 
@@ -77,12 +77,12 @@ def _numbers(row: MessageRow, width: int, ground: str) -> Iterator[Part]:
     silent = row.rate < SILENT
     yield ("" if silent else f"{row.rate:.1f}").rjust(6), style(GREEN, ground, bold=not row.name)
     if width >= WIDE:
-        yield ("" if silent else f"{row.bytes:.0f}").rjust(9), style(TEXT, ground)
+        yield ("" if silent else f"{row.bytes:.0f}").rjust(8), style(TEXT, ground)
     yield (format_age(row.age) if row.name else "").rjust(6), style(AMBER if silent else DIM, ground)
     if width >= WIDE:
         loss = "" if row.loss is None else f"{row.loss:.1%}"
         yield loss.rjust(7), style(AMBER if row.loss else DIM, ground)
-        yield str(row.count).rjust(9), style(DIM, ground)
+        yield str(row.count).rjust(8), style(DIM, ground)
     yield " ", style(TEXT, ground)
 
 

@@ -10,7 +10,7 @@ from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.messages import MessagesScreen
 from groundstation.views import MessageField, MessageRequest, MessageRow, MessagesPage, MessagesRequest
 from tests.groundstation.ui.examples import MESSAGES_PAGE, SYS_STATUS_VIEW, snapshot
-from tests.groundstation.ui.pilots import Console, console
+from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.groundstation.ui.ptys import STANDARD, until
 
 SYS_STATUS = MessageRequest(1, 1, False, "SYS_STATUS")
@@ -80,6 +80,14 @@ async def test_the_filter_is_requested_while_it_is_typed_enter_keeps_it_and_esca
         assert screen.app.screen is top
         await screen.press("escape")
         await until(lambda: screen.app.screen is screen.app.drive)
+
+
+async def test_a_filter_that_arrives_in_one_read_is_text() -> None:
+    async with console() as screen:
+        await open_messages(screen)
+        type_in(screen, "/heart\r")
+        await until(lambda: page_request(screen).text == "heart" and "filter “heart”" in screen.text)
+        assert page_request(screen).closed == ()
 
 
 async def test_order_and_closed_sources_are_requested() -> None:
