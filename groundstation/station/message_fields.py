@@ -27,7 +27,8 @@ UNITS: dict[str, tuple[float, str, int]] = {
 """Unit of a field (mavlink_types.xsd) -> factor, the unit that people use, and its decimals."""
 
 HEALTH = "onboard_control_sensors_health"
-"""Field of SYS_STATUS that is shown together with "present" and "enabled"."""
+JOINED = ("onboard_control_sensors_present", "onboard_control_sensors_enabled")
+"""Fields of SYS_STATUS: the flags of all three are listed once, with the health."""
 
 
 def build_fields(message: Message) -> tuple[MessageField, ...]:
@@ -45,7 +46,8 @@ def _build(message: Message, name: str) -> MessageField:
     if enum and isinstance(value, int):
         if kind.fielddisplays_by_name.get(name) == "bitmask":
             flags = flag_names(enum, value)
-            return MessageField(name, f"0x{value:x}", "", f"{len(flags)} flags" if len(flags) > 1 else "", flags)
+            summary = f"{len(flags)} flags" if len(flags) > 1 else ""
+            return MessageField(name, f"0x{value:x}", "", summary, () if name in JOINED else flags)
         return MessageField(name, str(value), "", enum_names(enum).get(value, f"not in {enum}"))
     return MessageField(name, _text(value), unit, _in_usual_unit(value, unit))
 

@@ -15,7 +15,8 @@ from groundstation.views import MessageField, MessageView
 
 WIDE = 70
 """Cells from which on value, unit and meaning have columns of their own."""
-VALUE, UNIT = 16, 7
+VALUE, UNIT, MEANING = 16, 7, 14
+"""Cells of the columns; names that leave no room for the others are cut."""
 INDENT = 3
 SHARE = 0.55
 """Of the width: the longest name of a field in the narrow form."""
@@ -46,13 +47,17 @@ def detail_lines(view: MessageView, width: int) -> list[list[Part]]:
     room = min(names, int(width * SHARE)) + 1
     lines: list[list[Part]] = []
     for each in view.fields:
-        lines += _wide(each, names + 1, width) if width >= WIDE else _narrow(each, room, width)
+        lines += (
+            _wide(each, min(names + 1, width - VALUE - UNIT - MEANING - 2), width)
+            if width >= WIDE
+            else _narrow(each, room, width)
+        )
         lines += ([(" " * INDENT + clean(flag), _flag_style(flag))] for flag in each.flags)
     return lines
 
 
 def _wide(field: MessageField, names: int, width: int) -> Iterator[list[Part]]:
-    name = (f" {clean(field.name):<{names}}", style(TEXT))
+    name = (f" {clean(field.name)[: names - 1]:<{names}}", style(TEXT))
     value, meaning = clean(field.value), clean(field.meaning)
     if len(value) > VALUE:
         yield [name]

@@ -87,5 +87,5 @@ def test_enums_and_units_of_ardurover_are_named() -> None:
     fields = {field.name: field for field in (*beat.fields, *status.fields)}
     assert fields["type"].meaning == "GROUND_ROVER"
     assert fields["autopilot"].meaning == "ARDUPILOTMEGA"
-    assert "3D_GYRO" in " ".join(fields["onboard_control_sensors_present"].flags)
+    assert "3D_GYRO" in " ".join(fields["onboard_control_sensors_health"].flags)
     assert fields["voltage_battery"].meaning.endswith(" V")
