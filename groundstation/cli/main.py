@@ -42,7 +42,8 @@ examples:
 
 first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
 one press of `r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
-Keys drive on the Drive screen only. F6 lists all alerts and messages, Ctrl-G goes to the other screens, Escape back.
+Keys drive on the Drive screen only. F6 lists all alerts and messages, F3 every MAVLink message,
+Ctrl-G goes to the other screens, Escape back.
 
 verbs, which open no screen (groundstation VERB --help):
 {verb_help()}

@@ -37,6 +37,9 @@ class KeyEvent:
     release: bool = False
 
 
+SPLIT = KeyEvent("split_sequence")
+"""A key whose escape sequence arrived in pieces. Not bound to any action, and so a stop key while driving."""
+
 _COMMON = {key: action.id for action in ACTIONS.values() for key in action.keys}
 
 KEYMAPS: dict[str, dict[str, str]] = {

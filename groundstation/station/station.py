@@ -19,14 +19,14 @@ from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
-from groundstation.station.message_rates import MessageRates
+from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
-from groundstation.views import LogRequest, ParamPageRequest, Program
+from groundstation.views import LogRequest, MessageRequest, MessagesRequest, ParamPageRequest, Program
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -53,6 +53,7 @@ class Station:
         self.log = MessageLog()
         self.operator = OperatorSession(style, speed, session)
         self.fleet = Fleet(self.log, system, COMPONENT)
+        self._traffic = MessageTraffic(system, COMPONENT)
         self._endpoints = tuple(endpoints)
         self._system = system
         self._started = now
@@ -78,6 +79,8 @@ class Station:
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
                 ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
+                MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
+                MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
                 **self._link_views.sources,
             }
         )
@@ -96,7 +99,6 @@ class Station:
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
-        self._message_rates = MessageRates()
         self._simulator_state: str | None = None
         self._addresses: tuple[str, ...] = ()
         self._outbox: list[Outgoing] = []
@@ -111,9 +113,10 @@ class Station:
             self.log.add(now, "station", conflict, Severity.WARNING)
         self._link_views.stations.receive(received, now)
         contact = self.fleet.get_or_add(received, now)
+        autopilot = contact is not None and contact.state.component == received.component
+        self._traffic.count(received.message, received.system, received.component, now, known=autopilot)
         if contact is None:
             return
-        self._message_rates.count(received.message, now, system=received.system)
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
         contact.details.receive(received, now)
@@ -151,6 +154,8 @@ class Station:
         selected = self.fleet.selected
         self._links.update(reports, selected.state.system if selected else None, now)
         self.fleet.observe(reports, now)
+        self._traffic.observe(reports)
+        self._traffic.set_labels({(each.state.system, each.state.component): each.state.name for each in self.fleet})
         for report in reports:
             event = self._link_events.update(report)
             if event:
@@ -168,7 +173,7 @@ class Station:
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
-        self._message_rates.count(message, now)
+        self._traffic.count_sent(message, now)
         self._driving.handle_sent(message, sequence, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
@@ -223,7 +228,7 @@ class Station:
             ),
             links=self._links.build_views(self._timesync.round_trip),
             texts=self.log.build_lines(now, wall),
-            messages=self._message_rates.build_rates(selected.state.system if selected else 0, now),
+            messages=self._traffic.build_rates(selected.state.system if selected else 0, now),
             simulator=self._simulator_state,
         )
 

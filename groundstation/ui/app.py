@@ -178,6 +178,7 @@ class ConsoleApp(App[int]):
 
     def _show(self) -> None:
         self._shown_at = self._clock()
+        self._key_hint.note_split(self.gate.split_keys, self._shown_at)
         now = self._display_state()
         if self.drive.is_mounted:
             self.drive.show_state(now)

@@ -10,7 +10,7 @@ from enum import Enum, auto
 from typing import Protocol
 
 from groundstation.input.hold_to_confirm import HoldProgress, HoldToConfirm
-from groundstation.input.keymap import KeyEvent, Keymap
+from groundstation.input.keymap import SPLIT, KeyEvent, Keymap
 from groundstation.intents import (
     AnyIntent,
     DriveKeyDown,
@@ -114,6 +114,8 @@ class KeyGate:
         self._opening_until = -math.inf
         self._hold = HoldToConfirm(keymap)
         self.ping = TerminalPing()
+        self.split_keys = 0
+        """Keys that arrived in pieces and did nothing, so far."""
 
     @property
     def closure(self) -> GateClosure | None:
@@ -127,6 +129,7 @@ class KeyGate:
     def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         """Handle the keys of one read, in the input thread."""
         with self._lock:
+            self.split_keys += batch.count(SPLIT)
             read = self._hold.handle_read(
                 self._drop_stray_repeats(batch), armed=self._armed, allowed=self._closure is None, now=self._clock()
             )
@@ -140,6 +143,13 @@ class KeyGate:
                 passing.append(read.confirmed)
             if passing:
                 self._client.send(*passing)
+
+    def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:
+        """Handle the stop keys among the keys of a split escape sequence, and no others."""
+        actions = [(press, self.keymap.get_action(press.key)) for press in batch]
+        stops = [press for press, action in actions if action and isinstance(action.intent, (Stop, EmergencyStop))]
+        if stops:
+            self.handle_keys(stops)
 
     def cancel_hold(self) -> None:
         """End the hold of a key that confirms an action; it must be released before it counts again."""

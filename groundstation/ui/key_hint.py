@@ -1,10 +1,12 @@
-"""Hint for a letter that does nothing because of Caps Lock or the keyboard layout: few terminals report either."""
+"""Hint for a key that does nothing: because of Caps Lock or the keyboard layout, or because it arrived in pieces."""
 
 from __future__ import annotations
 
 import math
 
 from groundstation.input.keymap import Keymap
+
+SPLIT_HINT = "a key arrived in pieces (slow line) and did nothing; stop keys work. ^g opens screens"
 
 SHOWN_FOR = 5.0
 """s, as long as it takes to read."""
@@ -17,11 +19,17 @@ class KeyHint:
         self._keymap = keymap
         self._text: str | None = None
         self._until = -math.inf
+        self._split = 0
 
     def press(self, key: str, now: float) -> None:
         """Handle a key, by Textual's name."""
         self._text = None if self._keymap.get_action(key) else self._explain(key)
         self._until = now + SHOWN_FOR
+
+    def note_split(self, count: int, now: float) -> None:
+        """Handle the number of keys that arrived in pieces so far."""
+        if count != self._split:
+            self._split, self._text, self._until = count, SPLIT_HINT, now + SHOWN_FOR
 
     def text(self, now: float) -> str | None:
         """Return the hint while it is shown."""

@@ -12,13 +12,14 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Protocol, cast
 
 from textual import events
-from textual._keyboard_protocol import MODIFIER_FUNCTIONAL_KEYS
+from textual._ansi_sequences import ANSI_SEQUENCES_KEYS
+from textual._keyboard_protocol import FUNCTIONAL_KEYS, MODIFIER_FUNCTIONAL_KEYS
 from textual._xterm_parser import XTermParser
 from textual.keys import Keys
 from textual.message import Message
 
-from groundstation.input.keymap import KeyEvent
-from groundstation.ui.mouse import MouseReportFilter
+from groundstation.input.keymap import SPLIT, KeyEvent
+from groundstation.ui.escape_sequences import ESC, Piece, SequenceAssembler, is_string, is_whole
 
 PONG = "\x1b[0n"
 """Answer to terminal.PING."""
@@ -34,12 +35,14 @@ MAX_SIZE = 1000
 """Columns or rows that a terminal may report: drawing more would take minutes."""
 
 _KEY = re.compile(r"\x1b\[(\d+)((?::\d*)*)(?:;(\d*)(?::(\d*))?)?(?:;([\d:]*))?([u~ABCDEFHPQRS])")
-_REPORT = re.compile(r"\x1b\[(?:\?\d+u|\d+n|\?[\d;]*\$p)")
-"""Answers to our queries; the last is Textual's own query of a mode, as a bad line echoes it."""
-_CUT = re.compile(r"\x1b\[[0-?]*\$?[\x00-\x1a\x1c-\x20!]")
-"""A sequence without its end, then a key that no sequence contains: Ctrl and a letter, space or "!", the stop keys."""
-_PASTE = KeyEvent("paste")
-"""Not bound to any action, and so a stop key while driving."""
+_REPORT = re.compile(r"\x1b\[(?:\?\d+u|\??\d+n|[?>=][\d;]*c|\??[\d;]*\$[py]|[\d;]*t)")
+"""Answers of terminals: to our queries, and others. "$p" is Textual's own query of a mode, as a bad line echoes it."""
+_MODE_REPORT = re.compile(r"\x1b\[\?\d+;\d\$y")
+"""The answer to that query, which the stock parser reads."""
+_PASTE, UNKNOWN = KeyEvent("paste"), "unknown_sequence"
+"""Not bound to any action, and so stop keys while driving."""
+LONGEST = 32
+"""Characters of a sequence; the stock parser takes a longer one for keys."""
 _REPEAT, _RELEASE = "2", "3"
 _SHIFT, _CAPS_LOCK = 1, 64
 _LOCKS = _CAPS_LOCK | 128
@@ -73,6 +76,9 @@ class KeySink(Protocol):
     def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         """Handle the keys of one read, in order."""
 
+    def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:
+        """Handle keys from the rest of an escape sequence that a slow line has split: only a stop key counts."""
+
     def handle_release_support(self) -> None:
         """Note that the terminal reports repeats and releases."""
 
@@ -92,9 +98,9 @@ class KeyEventParser(XTermParser):
     def __init__(self, sink: KeySink, debug: bool = False, *, clock: Callable[[], float] = time.monotonic) -> None:
         self._sink = sink
         self._clock = clock
-        self._mouse = MouseReportFilter()
+        self._sequences = SequenceAssembler()
+        self._mouse_reports = 0
         self._pasting = False
-        self._end_of_read = ""
         self._read_at = 0.0
         """Time of the last read."""
         self._names: dict[str, str] = {}
@@ -103,46 +109,70 @@ class KeyEventParser(XTermParser):
 
     def feed(self, data: str) -> Iterable[Message]:
         """Return the events of one read. Its keys have gone to the sink when this returns."""
-        reports = self._mouse.removed
-        found = self._parse_batch(self._mouse.feed(data, self._clock()))
-        if self._mouse.removed != reports:
-            self._sink.cancel_hold()
-        self._follow_paste(data)
-        return found
+        self._read_at = self._clock()
+        return self._handle(self._sequences.feed(data, self._read_at))
 
     def tick(self) -> Iterable[Message]:
         """Return the events that depend on time: a lone Escape, and the end of a paste that was never closed."""
         now = self._clock()
         if self._pasting and now - self._read_at > PASTE_PATIENCE:
             return self.feed(PASTE_ENDS)
-        found = self._parse_batch(alone) if (alone := self._mouse.expire(now)) else []
-        if alone and self._timeout_time is not None:
-            self._timeout_time = 0.0  # the filter has waited for the rest already
-        return found + self._batched(super().tick())
+        return self._handle(self._sequences.expire(now))
 
-    def _parse_batch(self, text: str) -> list[Message]:
-        return self._batched(super().feed(text)) if text else []  # "" would mean the end of the input
+    def _handle(self, pieces: Iterable[Piece]) -> list[Message]:
+        """Return the events of one read, after its keys have gone to the sink as one batch."""
+        found, batch = list[Message](), list[KeyEvent]()
+        for piece in pieces:
+            keys = [_PASTE] if piece.text == PASTE_BEGINS and not self._pasting else []
+            tokens = [token for token in self._parse(piece) if not _is_oversized(token)]
+            keys += [press for token in tokens if (press := self._key_event(token)) is not None]
+            if piece.split:
+                keys = self._handle_split(piece, keys)
+                tokens = [token for token in tokens if not isinstance(token, events.Key)]
+            batch += (press for press in keys if press != _PASTE or press not in batch)
+            found += tokens
+        self._tell(found, batch)
+        return found
 
-    def _follow_paste(self, data: str) -> None:
-        """Report a paste as a key from its first moment on: it is a stop key while driving."""
-        self._read_at = self._clock()
-        seen = self._end_of_read + data
-        self._end_of_read = seen[1 - len(PASTE_ENDS) :]
-        before, begun, ended = self._pasting, seen.rfind(PASTE_BEGINS), seen.rfind(PASTE_ENDS)
-        if begun != ended:
-            self._pasting = begun > ended
-        if self._pasting and not before:
-            self._sink.handle_keys([_PASTE])
-
-    def _batched(self, tokens: Iterable[Message]) -> list[Message]:
-        found = [token for token in tokens if not _is_oversized(token)]
-        batch = [press for token in found if (press := self._key_event(token)) is not None]
+    def _tell(self, found: Iterable[Message], batch: Sequence[KeyEvent]) -> None:
+        if self._mouse_reports != self._sequences.mouse_reports:
+            self._mouse_reports = self._sequences.mouse_reports
+            self._sink.cancel_hold()
         if batch:
             self._sink.handle_keys(batch)
         if any(isinstance(token, events.AppBlur) for token in found):
             self._names.clear()
             self._sink.close("the terminal window has lost the focus")
-        return found
+
+    def _parse(self, piece: Piece) -> Iterable[Message]:
+        """Return what the stock parser makes of a piece; it never gets a part of a sequence."""
+        text = piece.text
+        if text in (PASTE_BEGINS, PASTE_ENDS):
+            self._pasting = text == PASTE_BEGINS
+        elif self._pasting and (piece.split or text[:1] == ESC):
+            return []  # the stock parser would take what follows a sequence in a paste for keys
+        elif text == ESC:
+            return [events.Key("escape", ESC)]
+        elif piece.in_sequence and (parsed := self._parse_at_once(text)) is not None:
+            return parsed
+        return list(super().feed(text)) if text else []
+
+    def _parse_at_once(self, sequence: str) -> list[Message] | None:
+        """Return the events of a sequence for whose end the stock parser would wait; None for all others."""
+        if is_string(sequence):
+            return []
+        if len(sequence) > LONGEST:
+            return list(self._unknown(sequence))
+        if len(sequence) == 2 and not self._parse_stock(sequence, alt=False):
+            return [_with_alt(key) for key in self._parse_stock(sequence[1], alt=True)]
+        return None
+
+    def _handle_split(self, piece: Piece, keys: Sequence[KeyEvent]) -> list[KeyEvent]:
+        """Pass stop keys and releases of a split sequence; any other key in it is no key, but neutral."""
+        self._sink.handle_split_keys([press for press in keys if not press.release])
+        if self._pasting or len(piece.text) == 1 or (piece.text and not keys):
+            return []
+        return [*(press for press in keys if press.release), SPLIT]
 
     def _key_event(self, token: Message) -> KeyEvent | None:
         match token:
@@ -153,18 +183,23 @@ class KeyEventParser(XTermParser):
         return None
 
     def _sequence_to_key_events(self, sequence: str, alt: bool = False) -> Iterable[events.Key]:
-        if _REPORT.fullmatch(sequence):
+        if _REPORT.fullmatch(sequence) and not _MODE_REPORT.fullmatch(sequence):
             if sequence == PONG:
                 self._sink.handle_pong()
             # "CSI ? flags u" is discarded: Contour answers with flags and then reports no releases. The first sub-field
             # with an event type is the proof.
             return [_ignored(sequence)]
-        if _CUT.fullmatch(sequence):
-            return self._parse_stock(sequence[-1], alt=False)  # the stock parser would wait for 0.1 s without input
         found = _KEY.fullmatch(sequence)
         if found is None:
-            return self._parse_stock(sequence, alt)
+            return self._parse_stock(sequence, alt) or self._unknown(sequence)
         code, alternates, modifiers, kind, text, end = found.groups(default="")
+        if end != "u" and code + end not in FUNCTIONAL_KEYS:  # F19, "33~": the stock parser takes 33 for "!"
+            names = ANSI_SEQUENCES_KEYS.get(sequence)
+            return (
+                [events.Key(name.value, None) for name in names]
+                if isinstance(names, tuple)
+                else self._unknown(sequence)
+            )
         if kind:
             self._sink.handle_release_support()
         latin = find_latin_sequence(code, alternates, modifiers, end)
@@ -174,6 +209,13 @@ class KeyEventParser(XTermParser):
         if latin is not None:  # the key of this place, which still types its own letter
             keys = [events.Key(key.key, keys[0].character if keys else None) for key in self._parse_stock(latin, alt)]
         return self._pressed(code + end, keys, repeat=kind == _REPEAT)
+
+    def _unknown(self, sequence: str) -> list[events.Key]:
+        """Return a key without a meaning; its last character may be a stop key behind a sequence without its end."""
+        if not is_whole(sequence) or _MODE_REPORT.fullmatch(sequence):
+            return []
+        self._sink.handle_split_keys([KeyEvent(key.key) for key in self._parse_stock(sequence[-1], alt=False)])
+        return [events.Key(UNKNOWN, None)]
 
     def _released(self, code: str, plain: str, alt: bool) -> Iterable[events.Key]:
         stock = self._parse_stock(plain, alt)
@@ -219,6 +261,13 @@ def find_latin_sequence(code: str, alternates: str, modifiers: str, end: str) ->
 
 def _is_oversized(token: Message) -> bool:
     return isinstance(token, events.Resize) and max(token.size) > MAX_SIZE
+
+
+def _with_alt(key: events.Key) -> events.Key:
+    """Return the key as Alt and this key; Space and "!" stop with Alt as well."""
+    if "+" in key.key or key.character in (" ", "!"):
+        return key
+    return events.Key(f"alt+{key.key}", None)
 
 
 def _ignored(sequence: str) -> events.Key:

@@ -149,7 +149,7 @@ class Ledger:
 def _running_costs(options: Options, goals: list[Goal]) -> Table:
     ledger = Ledger(QUICK_WINDOW if options.quick else WINDOW)
     for number in range(ROUNDS):
-        for state in (_bare, _waiting, _connected, _flooded):
+        for state in (_bare, _waiting, _connected, _flooded, _flooded_table):
             options.say(f"cost: round {number + 1} of {ROUNDS}, {state.__name__.strip('_')}")
             state(ledger)
     goals += _goals(ledger.costs)
@@ -162,6 +162,7 @@ def _goals(costs: dict[str, Cost]) -> Iterator[Goal]:
         ("groundstation, CPU waiting", f"{GROUND}, waiting", 2.0),
         ("groundstation, CPU with a rover that stands", f"{GROUND}, rover disarmed", 2.0),
         ("groundstation, CPU at 1000 messages/s", f"{GROUND}, {FLOOD} messages/s", 15.0),
+        ("groundstation, CPU at 1000 messages/s, Messages screen", f"{GROUND}, {FLOOD} messages/s, Messages", 20.0),
         ("vehicle, CPU disarmed", f"{VEHICLE}, disarmed", 1.5),
         ("vehicle, CPU driving", f"{VEHICLE}, driving", 1.5),
     ):
@@ -202,13 +203,25 @@ def _hold(rig: Rig, seconds: float) -> None:
 
 
 def _flooded(ledger: Ledger) -> None:
+    _flood(ledger, f"{GROUND}, {FLOOD} messages/s")
+
+
+def _flooded_table(ledger: Ledger) -> None:
+    """Measure with the Messages screen on top and a message chosen in it."""
+    _flood(ledger, f"{GROUND}, {FLOOD} messages/s, Messages", b"\x1b[13~", b"\x1b[B" * 3)
+
+
+def _flood(ledger: Ledger, name: str, *keys: bytes) -> None:
     port = free_port()
     with ExitStack() as stack:
         watch, program = stack.enter_context(_alone(python("groundstation", f"udpin:127.0.0.1:{port}"), "waiting"))
         sock = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         sock.connect(("127.0.0.1", port))
         frames = Flood(sock)
-        ledger.book({f"{GROUND}, {FLOOD} messages/s": program}, lambda seconds: frames.send(watch, seconds))
+        for each in keys:
+            frames.send(watch, 1.0)
+            program.type(each)
+        ledger.book({name: program}, lambda seconds: frames.send(watch, seconds))
 
 
 class Flood:

@@ -1,22 +1,35 @@
-"""Names of enum entries in words."""
+"""Names of enum values, beside pymavlink's own tables."""
 
 from __future__ import annotations
 
 import pytest
+from pymavlink.dialects.v20 import common
 
-from dialects.enums import state_name, type_name
-
-
-@pytest.mark.parametrize(
-    ("number", "name"),
-    [(0, "generic"), (10, "ground rover"), (18, "onboard controller"), (30, "camera"), (250, "type 250")],
-)
-def test_types(number: int, name: str) -> None:
-    assert type_name(number) == name
+from dialects.enum_names import enum_names, flag_names
 
 
 @pytest.mark.parametrize(
-    ("number", "name"), [(0, "uninit"), (5, "critical"), (8, "flight termination"), (9, "state 9")]
+    "enum", ["MAV_TYPE", "MAV_STATE", "MAV_SYS_STATUS_SENSOR", "GPS_FIX_TYPE", "MAV_CMD", "MAV_COMPONENT"]
 )
-def test_states(number: int, name: str) -> None:
-    assert state_name(number) == name
+def test_every_value_of_the_official_definition_has_its_name(enum: str) -> None:
+    names = enum_names(enum)
+    for value, entry in common.enums[enum].items():
+        if not entry.name.endswith("ENUM_END"):
+            assert entry.name.endswith(names[value]), value
+
+
+def test_the_part_shared_with_the_enum_is_left_out() -> None:
+    assert enum_names("MAV_TYPE")[6] == "GCS"
+    assert enum_names("GPS_FIX_TYPE")[3] == "3D_FIX"
+    assert enum_names("MAV_SYS_STATUS_SENSOR")[1 << 24] == "LOGGING"
+    assert enum_names("ROVER_FAILSAFE")
+
+
+def test_an_enum_that_is_not_known_has_no_names() -> None:
+    assert enum_names("NO_SUCH_ENUM") == {}
+
+
+def test_flags_are_the_bits_that_are_set() -> None:
+    assert flag_names("MAV_MODE_FLAG", 0x81) == ("CUSTOM_MODE_ENABLED", "SAFETY_ARMED")
+    assert flag_names("MAV_SYS_STATUS_SENSOR_EXTENDED", 1 << 30 | 1) == ("RECOVERY_SYSTEM", "0x40000000")
+    assert flag_names("MAV_MODE_FLAG", 0) == ()

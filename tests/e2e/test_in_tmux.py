@@ -147,6 +147,23 @@ def test_a_key_held_over_the_log_screen_does_not_drive(tmux: Callable[..., Tmux]
     terminal.until(speed_shown, PATIENCE, holding="i")
 
 
+@pytest.mark.parametrize(("columns", "lines"), [(80, 24), (140, 45)])
+def test_the_messages_of_the_simulator(tmux: Callable[..., Tmux], columns: int, lines: int) -> None:
+    terminal = tmux(columns, lines, "--sitl")
+    terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
+    terminal.press("F3")
+    terminal.until(
+        lambda screen: "1/1 Rover 1" in screen and re.search(r"ATTITUDE +[1-9]", screen) is not None, PATIENCE
+    )
+    terminal.press("/", "h", "e", "a", "r", "t", "Enter")
+    terminal.until(lambda screen: "HEARTBEAT" in screen and "ATTITUDE" not in screen, PATIENCE)
+    terminal.press("Down")
+    terminal.until(lambda screen: "HEARTBEAT #0" in screen and "GROUND_ROVER" in screen, PATIENCE)
+    terminal.until(lambda screen: "HEARTBEAT >" in screen and "this station" in screen, PATIENCE)
+    terminal.press("Escape")
+    terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
+
+
 def test_waiting_offers_the_simulator(tmux: Callable[..., Tmux]) -> None:
     port = free_port()
     terminal = tmux(80, 24, f"udpin:127.0.0.1:{port}")

@@ -20,7 +20,17 @@ from groundstation.snapshot import (
     StationOutage,
     VehicleView,
 )
-from groundstation.views import LogPage, ParamPage, ParamRow, RequestLine, View
+from groundstation.views import (
+    LogPage,
+    MessageField,
+    MessageRow,
+    MessagesPage,
+    MessageView,
+    ParamPage,
+    ParamRow,
+    RequestLine,
+    View,
+)
 
 NOON = 1_700_000_000.0
 """A wall clock for log lines; the tests run in UTC."""
@@ -206,3 +216,41 @@ def param_page(
         for name, value, kind, default in PARAMS
     )  # fmt: skip
     return ParamPage(1, rows, 0, len(rows), len(rows), len(rows), has_defaults=True, running=running, ended=ended)
+
+
+def _source(
+    system: int, component: int, label: str, loss: float | None, *messages: tuple[str, float, float, int, float]
+) -> list[MessageRow]:
+    sent = loss is None and system == 255
+    rows = [MessageRow(system, component, sent, *message) for message in messages]
+    rate, size = sum(row.rate for row in rows), sum(row.bytes for row in rows)
+    count, age = sum(row.count for row in rows), min(row.age for row in rows)
+    return [MessageRow(system, component, sent, "", rate, size, count, age, label, loss, 31 if loss else 0), *rows]
+
+
+MESSAGE_ROWS = (
+    *_source(
+        1, 1, "Rover 1", 0.003, ("ATTITUDE", 10.0, 400.0, 4906, 0.1), ("AVAILABLE_MODES_MONITOR", 0.3, 4.0, 163, 2.1),
+        ("COMMAND_ACK", 0.0, 0.0, 14, 41.3), ("GLOBAL_POSITION_INT", 5.0, 200.0, 2451, 0.1),
+        ("HEARTBEAT", 1.0, 21.0, 490, 0.7), ("PARAM_VALUE", 0.0, 0.0, 1241, 126.2),
+        ("SERVO_OUTPUT_RAW", 20.0, 660.0, 9812, 0.0), ("SYS_STATUS", 2.0, 86.0, 981, 0.4),
+        ("VFR_HUD", 10.0, 320.0, 4905, 0.0),
+    ),
+    *_source(51, 68, "telemetry radio", 0.0, ("RADIO_STATUS", 1.0, 17.0, 488, 0.6)),
+    *_source(
+        255, 190, "this station", None, ("HEARTBEAT", 1.0, 21.0, 490, 0.3), ("MANUAL_CONTROL", 20.0, 800.0, 9811, 0.0)
+    ),
+)  # fmt: skip
+MESSAGES_PAGE = MessagesPage(MESSAGE_ROWS, 0, len(MESSAGE_ROWS), 12, 69.3, 2518.0)
+SYS_STATUS_VIEW = MessageView(
+    1, 1, False, "SYS_STATUS", 1, 2.0, 981, 0.4, 43,
+    (
+        MessageField("onboard_control_sensors_present", "0x5361fc2f", "", "3 flags", ("3D_GYRO", "RC_RECEIVER", "GPS")),
+        MessageField("onboard_control_sensors_health", "1398930479", "", "1 of 2 enabled not healthy",
+                     ("✗ RC_RECEIVER", "✓ 3D_GYRO", "· GPS")),
+        MessageField("load", "412", "d%", "41.2 %"), MessageField("voltage_battery", "12104", "mV", "12.104 V"),
+        MessageField("battery_remaining", "76", "%"), MessageField("errors_comm", "3", ""),
+        MessageField("a_long_text", "a text that is longer than the room beside the name of its field", ""),
+    ),
+)  # fmt: skip
+"""What the Messages screen gets."""

@@ -12,11 +12,16 @@ class Sink:
 
     def __init__(self) -> None:
         self.batches: list[list[KeyEvent]] = []
+        self.split: list[str] = []
+        """Keys in the rest of split sequences."""
         self.told: list[str] = []
         self.cancelled = 0
 
     def handle_keys(self, batch: Sequence[KeyEvent]) -> None:
         self.batches.append(list(batch))
+
+    def handle_split_keys(self, batch: Sequence[KeyEvent]) -> None:
+        self.split += [press.key for press in batch]
 
     def handle_release_support(self) -> None:
         self.told.append("exact")

@@ -15,7 +15,17 @@ from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.display_state import DisplayState
 from groundstation.views import ControlView, LinksView, VehiclesView, View
 from tests.groundstation.ui import frames
-from tests.groundstation.ui.examples import LOG_PAGE, helm, param_page, snapshot, vehicle, waiting, wheels
+from tests.groundstation.ui.examples import (
+    LOG_PAGE,
+    MESSAGES_PAGE,
+    SYS_STATUS_VIEW,
+    helm,
+    param_page,
+    snapshot,
+    vehicle,
+    waiting,
+    wheels,
+)
 from tests.groundstation.ui.link_examples import FLEET, OURS, VIEWS
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD
@@ -78,6 +88,8 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "links_140x45": (WIDE, FLEET, ("f7",)),
     "links_panel_80x24": (SMALL, FLEET, ("f7", "tab")),
     "links_empty_80x24": (SMALL, waiting(), ("f7",)),
+    "messages_80x24": (SMALL, snapshot(), ("f3", *["down"] * 8)),
+    "messages_140x45": (WIDE, snapshot(), ("f3", *["down"] * 8)),
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
@@ -96,6 +108,8 @@ FRAMES |= {
         "links_80x24",
         "links_140x45",
         "goto_80x24",
+        "messages_80x24",
+        "messages_140x45",
     )
 }
 
@@ -106,18 +120,21 @@ def views_for(name: str) -> Sequence[View]:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
     if "params" in name:
         return (param_page(),)
-    return VIEWS if "links" in name else (LOG_PAGE,)
+    return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE)
 
 
 @pytest.mark.parametrize("name", FRAMES)
 async def test_the_frame_is_the_golden_one(name: str) -> None:
     size, picture, keys = FRAMES[name]
     async with console(size, picture, ascii_only=name.startswith("ascii")) as screen:
-        await screen.press(*keys)
+        await screen.press(*keys[:1])
         if keys:
             for view in views_for(name):
                 screen.station.offer_view(view)
             await screen.show(picture)
+            await screen.press(*keys[1:])
+            if "messages" in name:
+                screen.station.offer_view(SYS_STATUS_VIEW)
             if "params" in name:
                 await screen.press("down", "enter", "backspace", "0", "enter", "W")
             await screen.show(picture)  # the height of the alerts is known after the first one

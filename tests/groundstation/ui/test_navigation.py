@@ -27,6 +27,7 @@ from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
 
 EXTRA = ScreenRow("extra", "Extra", "One more screen", ("f7",), "7", "tests.groundstation.ui.extra_screen:ExtraScreen")
+TABS = [row.id for row in SCREENS if row.in_tabs]
 HELP = next(row for row in SCREENS if row.id == "help")
 
 
@@ -111,9 +112,9 @@ async def test_a_screen_shows_the_newest_state_from_its_first_frame_on() -> None
     [
         (["f6"], "log"), (["ctrl+g", "6"], "log"), (["ctrl+g", "f6"], "log"), (["f6", "ctrl+g", "1"], "drive"),
         (["f6", "ctrl+g", "ctrl+g"], "drive"), (["f6", "escape", "ctrl+g", "ctrl+g"], "log"),
-        (["right_square_bracket"], "params"), (["left_square_bracket"], "links"), (["f4"], "params"),
-        (["f6", "right_square_bracket"], "links"), (["f7", "right_square_bracket"], "drive"),
-        (["ctrl+g", "7"], "links"), (["f6", "left_square_bracket"], "params"),
+        (["right_square_bracket"], TABS[1]), (["left_square_bracket"], TABS[-1]), (["f4"], "params"),
+        (["f6", "right_square_bracket"], (TABS + TABS)[TABS.index("log") + 1]), (["ctrl+g", "7"], "links"),
+        (["f6", "left_square_bracket"], TABS[TABS.index("log") - 1]), (["f7", "right_square_bracket"], "drive"),
         (["ctrl+g", "escape"], "drive"), (["ctrl+g", "x"], "drive"),
         (["f6", "ctrl+g", "escape"], "log"), (["f6", "f6"], "log"), (["question_mark", "f6"], "log"),
         (["f6", "question_mark", "escape"], "drive"),

@@ -1,0 +1,188 @@
+"""Message traffic: every kind of message by its source, received and sent: rate, count, age, the newest one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from itertools import groupby
+
+from dialects.codec import CRC_SIZE, HEADER_V2, EncodeError, encode_payload
+from dialects.enum_names import enum_names
+from dialects.messages import Message
+from groundstation.snapshot import MessageRate
+from groundstation.station.message_fields import build_fields
+from groundstation.station.message_filter import parse_filter, sorted_rows
+from groundstation.views import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
+from link.core import LinkReport, SourceCount
+from link.protocol.rate import RateMeter
+
+WINDOW = 3.0
+"""s over which rates are counted: a 1 Hz message then shows as 1.0 and not as 0 or 1."""
+
+MAX_KINDS = 1000
+"""Kinds of messages of sources that are no known vehicle: a flood of invented ids must not grow a table."""
+
+MAX_ROWS = 200
+"""Rows in one page, more than any terminal shows."""
+
+ORDER_PERIOD = 1.0
+"""s for which an order by changing numbers stays: rows must not jump."""
+
+Source = tuple[bool, int, int]
+"""Sent by us, system, component: received ones first, by their ids."""
+
+
+@dataclass(slots=True)
+class _Kind:
+    newest: Message
+    at: float = 0.0
+    count: int = 0
+    meter: RateMeter = field(default_factory=lambda: RateMeter(WINDOW))
+
+    @property
+    def length(self) -> int:
+        """Bytes of the newest frame, as MAVLink 2 without a signature."""
+        try:
+            return HEADER_V2 + len(encode_payload(self.newest)) + CRC_SIZE
+        except EncodeError:
+            return 0
+
+
+class MessageTraffic:
+    """Kinds of messages by source. `system` and `component` are our ids, under which sent messages are listed."""
+
+    def __init__(self, system: int, component: int) -> None:
+        self._own = (True, system, component)
+        self._kinds: dict[Source, dict[str, _Kind]] = {}
+        self._size = 0
+        self._not_shown = 0
+        self._losses: dict[tuple[int, int], SourceCount] = {}
+        self._labels: dict[tuple[int, int], str] = {}
+        self._order: tuple[float, tuple[str, str], list[tuple[Source, str]]] = (0.0, ("", ""), [])
+        """When rows were last sorted, for which order and filter, and the result."""
+
+    # ---- counting ----
+
+    def count(self, message: Message, system: int, component: int, now: float, *, known: bool) -> None:
+        """Count a received message; `known`: of the autopilot of a known vehicle, which always has a place."""
+        self._count((False, system, component), message, now, known=known)
+
+    def count_sent(self, message: Message, now: float) -> None:
+        """Count a message that this station sent."""
+        self._count(self._own, message, now, known=True)
+
+    def _count(self, source: Source, message: Message, now: float, *, known: bool) -> None:
+        kinds = self._kinds.get(source)
+        kind = None if kinds is None else kinds.get(message.msgname)
+        if kind is None:
+            if self._size >= MAX_KINDS and not known:
+                self._not_shown += 1
+                return
+            self._size += not known
+            kind = self._kinds.setdefault(source, {})[message.msgname] = _Kind(message)
+        kind.newest, kind.at = message, now
+        kind.count += 1
+        kind.meter.add(now)
+
+    def observe(self, reports: Iterable[LinkReport]) -> None:
+        """Take what was lost of each source, from the link that has received most of it."""
+        for report in reports:
+            for ids, counted in report.sources.items():
+                if ids not in self._losses or counted.received >= self._losses[ids].received:
+                    self._losses[ids] = counted
+
+    def set_labels(self, labels: dict[tuple[int, int], str]) -> None:
+        """Set the names of vehicles, by system and component."""
+        self._labels = labels
+
+    # ---- for the screen ----
+
+    def build_rates(self, system: int, now: float) -> tuple[MessageRate, ...]:
+        """Return the rates of one vehicle, and those of what we sent to all, by name."""
+        sums: dict[tuple[bool, str], tuple[float, int]] = {}
+        for (sent, other, _), kinds in self._kinds.items():
+            if sent or other == system:
+                for name, kind in kinds.items():
+                    rate, count = sums.get((sent, name), (0.0, 0))
+                    sums[sent, name] = rate + kind.meter.rate(now), count + kind.count
+        return tuple(
+            MessageRate(name=name, rate=rate, count=count, sent=sent)
+            for (sent, name), (rate, count) in sorted(sums.items())
+        )
+
+    def build_page(self, request: MessagesRequest, now: float, wall: float) -> MessagesPage:
+        """Return the rows that a screen shows."""
+        every = [row for source in sorted(self._kinds) for row in self._message_rows(source, now)]
+        rows = self._arrange(request, every, now)
+        count = max(1, min(request.count, MAX_ROWS))
+        first = max(0, min(request.first, len(rows) - count))
+        shown = tuple(rows[first : first + count])
+        totals = sum(row.rate for row in every), sum(row.bytes for row in every)
+        return MessagesPage(shown, first, len(rows), len(every), *totals, self._not_shown, request.order, request.text)
+
+    def build_message(self, request: MessageRequest, now: float, wall: float) -> MessageView | None:
+        """Return the newest message of a kind with its fields."""
+        source = (request.sent, request.system, request.component)
+        kind = self._kinds.get(source, {}).get(request.name)
+        if kind is None:
+            return None
+        return MessageView(
+            request.system, request.component, request.sent, request.name, type(kind.newest).id,
+            kind.meter.rate(now), kind.count, now - kind.at, kind.length, build_fields(kind.newest),
+        )  # fmt: skip
+
+    def _message_rows(self, source: Source, now: float) -> list[MessageRow]:
+        rows: list[MessageRow] = []
+        for name, kind in sorted(self._kinds[source].items()):
+            rate = kind.meter.rate(now)
+            rows.append(_row(source, name, rate, rate * kind.length if rate else 0.0, kind.count, now - kind.at))
+        return rows
+
+    def _arrange(self, request: MessagesRequest, every: list[MessageRow], now: float) -> list[MessageRow]:
+        matches = parse_filter(request.text)
+        rows = [row for row in every if matches(row, type(self._kinds[_source(row)][row.name].newest).fieldnames)]
+        if request.order == "source":
+            return self._tree(rows, request.closed)
+        at, what, order = self._order
+        if what != (request.order, request.text) or now - at >= ORDER_PERIOD:
+            order = [(_source(row), row.name) for row in sorted_rows(rows, request.order)]
+            self._order = now, (request.order, request.text), order
+        found = {(_source(row), row.name): row for row in rows}
+        return [found[key] for key in order if key in found]
+
+    def _tree(self, rows: Sequence[MessageRow], closed: Sequence[tuple[int, int, bool]]) -> list[MessageRow]:
+        """Return the sources, each followed by its messages where it is open."""
+        tree: list[MessageRow] = []
+        for source, group in groupby(rows, _source):
+            messages = list(group)
+            tree.append(self._source_row(source, messages))
+            if (source[1], source[2], source[0]) not in closed:
+                tree += messages
+        return tree
+
+    def _source_row(self, source: Source, messages: Sequence[MessageRow]) -> MessageRow:
+        sent, *ids = source
+        counted = None if sent else self._losses.get((ids[0], ids[1]))
+        frames = counted.received + counted.lost if counted else 0
+        rate, size = sum(row.rate for row in messages), sum(row.bytes for row in messages)
+        return MessageRow(
+            ids[0], ids[1], sent, "", rate, size, sum(row.count for row in messages),
+            min(row.age for row in messages), self._label(source),
+            counted.lost / frames if counted and frames else None, counted.lost if counted else 0,
+        )  # fmt: skip
+
+    def _label(self, source: Source) -> str:
+        sent, system, component = source
+        if sent:
+            return "this station"
+        kind = enum_names("MAV_COMPONENT").get(component, "component").removeprefix("COMP_ID_")
+        return self._labels.get((system, component)) or kind.lower().replace("_", " ")
+
+
+def _row(source: Source, name: str, rate: float, size: float, count: int, age: float) -> MessageRow:
+    sent, system, component = source
+    return MessageRow(system, component, sent, name, rate, size, count, age)
+
+
+def _source(row: MessageRow) -> Source:
+    return row.sent, row.system, row.component
