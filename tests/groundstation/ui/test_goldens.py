@@ -11,6 +11,7 @@ import pytest
 
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents import ACTIONS
+from groundstation.screens import SCREENS
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.display_state import DisplayState
 from groundstation.views import ControlView, LinksView, VehiclesView, View
@@ -149,6 +150,23 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
         file.parent.mkdir(exist_ok=True)
         file.write_text(shown, "utf-8")
     assert shown == file.read_text("utf-8")
+
+
+@pytest.mark.parametrize("name", ["log_80x24", "params_80x24", "links_80x24"])
+async def test_a_screen_looks_the_same_after_all_others_were_open(name: str) -> None:
+    size, picture, keys = FRAMES[name]
+    async with console(size, picture) as screen:
+        for row in SCREENS:
+            await screen.press(row.keys[0])
+        await screen.press("escape", *keys)
+        for view in views_for(name):
+            screen.station.offer_view(view)
+        if "params" in name:
+            await screen.show(picture)
+            await screen.press("down", "enter", "backspace", "0", "enter", "W")
+        await screen.show(picture)
+        await screen.show(picture)
+        assert screen.text == (GOLDEN / f"{name}.txt").read_text("utf-8")
 
 
 @pytest.mark.parametrize("name", FRAMES)
