@@ -46,7 +46,8 @@ def test_a_first_item_that_looks_like_home_is_not_taken_for_it() -> None:
     assert plain(parse_waypoints(format_waypoints(Plan(mission=items)), "x").mission) == plain(items)
 
 
-def test_pymavlink_reads_it(tmp_path: Path) -> None:
+def test_pymavlink_reads_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("MAVLINK20", raising=False)  # set by other tests, after mavutil has chosen its dialect
     file = tmp_path / "plan.waypoints"
     file.write_text(format_waypoints(Plan(mission=(waypoint(0), waypoint(1)), home=Home(47.0, 8.0, 400.0))))
     loader: Any = mavwp.MAVWPLoader()  # type: ignore[no-untyped-call]
