@@ -37,6 +37,8 @@ class Driver:
     """When its newest demand arrived."""
     barred_until: float = -math.inf
     """No demand counts before: another program counts in the same numbering."""
+    clash_reported_at: float = -math.inf
+    """When that was reported last."""
 
     @property
     def name(self) -> str:

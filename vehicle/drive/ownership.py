@@ -34,8 +34,6 @@ class Ownership:
         self.driver: Driver | None = None
         self.takeover_allowed = False
         """Other ground stations may take control without the consent of the owner."""
-        self.clashed_at: float | None = None
-        """When two programs were last found in the numbering of this driver; None if never."""
         self._params = params
         self._texts = texts
         self._boot = boot
@@ -104,12 +102,12 @@ class Ownership:
 
     def setpoint_denial_reason(self, sender: Sender, now: float) -> str | None:
         """Return why a setpoint does not count, or None: only the driver's do, and only fresh ones."""
-        if self.driver is None:
-            return self.denial_reason(sender, now) or "no GCS is in control, arm to take it"
-        reason = self.denial_reason(sender, now)
-        if reason or self.driver.session is None:
-            return reason or ("it repeats old frames" if self.driver.is_copy else None)
-        age = self.driver.session.setpoint_age(Conversation.of(sender), now)
+        reason, driver = self.denial_reason(sender, now), self.driver
+        if reason or driver is None:
+            return reason or "no GCS is in control, arm to take it"
+        if driver.session is None:
+            return "it repeats old frames" if driver.is_copy else None
+        age = driver.session.setpoint_age(Conversation.of(sender), now)
         return "older than OPR_ECHO_MAX on arrival" if age > self._params["OPR_ECHO_MAX"] else None
 
     def _is_excluded(self, sender: Sender) -> bool:
@@ -213,7 +211,6 @@ class Ownership:
         self._memory.begin(conversation)
         is_copy = newcomer is not None and newcomer.is_copy
         self.driver = Driver(conversation, session, now, is_copy=is_copy)
-        self.clashed_at = None
 
     def _hear_newcomer(self, driver: Driver, received: Received, now: float) -> bool:
         """Handle a message of a sender that is not the driver; return True if it has succeeded it."""
@@ -237,7 +234,7 @@ class Ownership:
     def _handle_clash(self, driver: Driver, now: float) -> None:
         """Let no demand count for a while: the driver cannot be told from another program."""
         driver.barred_until = now + CLASH_PAUSE
-        if self.clashed_at is None or now - self.clashed_at > CLASH_REPORT_AGAIN:
+        if now - driver.clash_reported_at > CLASH_REPORT_AGAIN:
+            driver.clash_reported_at = now
             text = f"Two programs count as {driver.name} behind one address: stopped"
             self._texts.send_event(Severity.CRITICAL, text, now)
-            self.clashed_at = now
