@@ -21,14 +21,14 @@ NOT_SELECTABLE = 2
 
 
 @dataclass(frozen=True, slots=True)
-class MessageRequest:
+class RequestedMessage:
     """Parameters 1 and 2 of REQUEST_MESSAGE."""
 
     message: int
     index: int = 0
 
 
-VERSION = MessageRequest(m.AutopilotVersion.id)
+VERSION = RequestedMessage(m.AutopilotVersion.id)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,11 +56,11 @@ class VehicleIdentity:
         self._mode_count: int | None = None
         self._monitor: int | None = None
         self._wants_modes = False
-        self._asked: dict[MessageRequest, int] = {}
+        self._asked: dict[RequestedMessage, int] = {}
         """How often each was requested."""
-        self._exhausted: set[MessageRequest] = set()
+        self._exhausted: set[RequestedMessage] = set()
         """Requested TRIES times in vain."""
-        self._last: MessageRequest | None = None
+        self._last: RequestedMessage | None = None
         self._due = 0.0
 
     @property
@@ -108,7 +108,7 @@ class VehicleIdentity:
                     self._forget_modes()
                 self._monitor = message.seq
 
-    def next_request(self, now: float) -> MessageRequest | None:
+    def next_request(self, now: float) -> RequestedMessage | None:
         """Return the message to request now, or None; call only while no other request is pending."""
         if now < self._due:
             return None
@@ -124,16 +124,16 @@ class VehicleIdentity:
         if self._last is not None:
             self._asked[self._last], self._due = TRIES, 0.0
 
-    def _wanted(self) -> list[MessageRequest]:
+    def _wanted(self) -> list[RequestedMessage]:
         version = [VERSION] if self.version is None else []
         return version + (self._mode_requests() if self._wants_modes and self.modes is None else [])
 
-    def _mode_requests(self) -> list[MessageRequest]:
+    def _mode_requests(self) -> list[RequestedMessage]:
         """Return how to request what is missing: all at once, or the lost ones one by one."""
         if self._mode_count is None:
-            return [MessageRequest(m.AvailableModes.id)]
+            return [RequestedMessage(m.AvailableModes.id)]
         missing = (index for index in range(1, self._mode_count + 1) if index not in self._modes)
-        return [MessageRequest(m.AvailableModes.id, index) for index in missing]
+        return [RequestedMessage(m.AvailableModes.id, index) for index in missing]
 
     def _add_mode(self, message: m.AvailableModes) -> None:
         count, index = message.number_modes, message.mode_index
@@ -143,7 +143,7 @@ class VehicleIdentity:
             self._modes.clear()
             self._mode_count = count
         name = m.printable(message._mode_name_raw.split(b"\0", 1)[0].decode("utf-8", "replace"))
-        if self._last == MessageRequest(m.AvailableModes.id, index):
+        if self._last == RequestedMessage(m.AvailableModes.id, index):
             self._due = 0.0  # the next is requested at once
         self._modes[index] = AvailableMode(name, message.custom_mode, message.standard_mode, message.properties)
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from groundstation.vehicles.requests import RequestBook
 from link.core import Outgoing, Received
-from link.services.log.client import LogClient, LogFile, LogOutcome
+from link.services.log.client import LogClient, LogOutcome, RemoteLog
 
 _Begin = Callable[[float], None]
 
@@ -18,7 +18,7 @@ class LogRequests:
     def __init__(self, client: LogClient, book: RequestBook) -> None:
         self._client = client
         self._book = book
-        self.logs: tuple[LogFile, ...] | None = None
+        self.logs: tuple[RemoteLog, ...] | None = None
         self._jobs: deque[tuple[int, _Begin]] = deque()
         self._number: int | None = None
         """Request under way."""
@@ -29,7 +29,7 @@ class LogRequests:
         if self._book.begin(number, "list logs"):
             self._add(number, self._client.list_logs, now)
 
-    def download(self, number: int, log: LogFile, now: float, have: bytes = b"") -> None:
+    def download(self, number: int, log: RemoteLog, now: float, have: bytes = b"") -> None:
         """Download a log; `have` is its beginning, from an earlier download."""
         if self._book.begin(number, f"download log {log.number}"):
             self._add(number, lambda later: self._client.download(log, later, have), now)

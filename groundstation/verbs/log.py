@@ -10,7 +10,7 @@ from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
 from groundstation.verbs.transfer import download_to
-from link.services.log.client import LogFile
+from link.services.log.client import RemoteLog
 
 LATEST = "latest"
 
@@ -46,14 +46,14 @@ async def get(session: VerbSession, options: argparse.Namespace, output: Output)
     return code_of(report)
 
 
-async def _logs(session: VerbSession) -> tuple[LogFile, ...]:
+async def _logs(session: VerbSession) -> tuple[RemoteLog, ...]:
     report = await session.request(session.services.logs.list_logs)
     if report.state is not RequestState.ACCEPTED or session.services.logs.logs is None:
         raise VerbError(code_of(report), f"{session.vehicle.name}: {report.text}")
     return session.services.logs.logs
 
 
-def _choose(logs: tuple[LogFile, ...], wanted: str) -> LogFile:
+def _choose(logs: tuple[RemoteLog, ...], wanted: str) -> RemoteLog:
     """Return the log of this number, or the newest. Raises VerbError."""
     if wanted == LATEST and logs:
         return max(logs, key=lambda log: (log.begun, log.number))
@@ -64,6 +64,6 @@ def _choose(logs: tuple[LogFile, ...], wanted: str) -> LogFile:
     return found
 
 
-def _begun(log: LogFile) -> str | None:
+def _begun(log: RemoteLog) -> str | None:
     """Return when a log was begun, ISO 8601."""
     return datetime.fromtimestamp(log.begun, UTC).strftime("%Y-%m-%dT%H:%M:%SZ") if log.begun else None

@@ -25,7 +25,7 @@ LAST = 0xFFFF
 
 
 @dataclass(frozen=True, slots=True)
-class LogFile:
+class RemoteLog:
     """One log, as LOG_ENTRY reports it."""
 
     number: int
@@ -42,7 +42,7 @@ class LogOutcome:
     log: int | None
     """Number of the log of a download; None: a list."""
     done: bool
-    logs: tuple[LogFile, ...] = ()
+    logs: tuple[RemoteLog, ...] = ()
     data: bytes = b""
     """Of a download; of one that failed, what arrived without a gap from the start."""
     tries: int = 0
@@ -50,7 +50,7 @@ class LogOutcome:
 
 @dataclass(slots=True)
 class _Listing:
-    logs: dict[int, LogFile] = field(default_factory=dict)
+    logs: dict[int, RemoteLog] = field(default_factory=dict)
     total: int | None = None
 
 
@@ -78,7 +78,7 @@ class LogClient:
         self._job, self._tries = _Listing(), 0
         self._request(now)
 
-    def download(self, log: LogFile, now: float, have: bytes = b"") -> None:
+    def download(self, log: RemoteLog, now: float, have: bytes = b"") -> None:
         """Download a log of the list; `have` is its beginning, from an earlier job."""
         job = _LogDownload(log.number, FileReassembly(min(log.size, MAX_SIZE)))
         job.file.add_piece(0, have[: len(have) // DATA_SIZE * DATA_SIZE])
@@ -143,7 +143,7 @@ class LogClient:
         job.total = min(message.num_logs, MAX_LOGS)
         self._due = now + TIMEOUT
         if message.num_logs and message.id not in job.logs:
-            job.logs[message.id] = LogFile(message.id, message.time_utc, message.size)
+            job.logs[message.id] = RemoteLog(message.id, message.time_utc, message.size)
             self._tries = 0
         if len(job.logs) >= job.total:
             self._finish(done=True)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dialects import messages as m
-from groundstation.vehicles.identity import RETRY_AFTER, TRIES, VERSION, MessageRequest, VehicleIdentity
+from groundstation.vehicles.identity import RETRY_AFTER, TRIES, VERSION, RequestedMessage, VehicleIdentity
 from tests.link.services_world import from_vehicle
 
-ALL_MODES = MessageRequest(m.AvailableModes.id)
+ALL_MODES = RequestedMessage(m.AvailableModes.id)
 
 
 def mode(index: int, count: int = 3) -> m.AvailableModes:
@@ -17,7 +17,7 @@ def version(capabilities: int = 32) -> m.AutopilotVersion:
     return m.AutopilotVersion(capabilities, 0, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, 0)
 
 
-def requests(identity: VehicleIdentity, until: float) -> list[MessageRequest]:
+def requests(identity: VehicleIdentity, until: float) -> list[RequestedMessage]:
     """Return what is requested in 0.1 s steps while nothing answers."""
     asked = (identity.next_request(step / 10) for step in range(round(until * 10)))
     return [request for request in asked if request is not None]
@@ -56,7 +56,7 @@ def test_modes_come_together_and_a_lost_one_is_requested_alone() -> None:
     for index in (3, 1):
         identity.receive(from_vehicle(mode(index)))
     assert identity.modes is None
-    assert identity.next_request(RETRY_AFTER) == MessageRequest(m.AvailableModes.id, 2)
+    assert identity.next_request(RETRY_AFTER) == RequestedMessage(m.AvailableModes.id, 2)
     identity.receive(from_vehicle(mode(2)))
     assert identity.modes is not None
     assert [(each.name, each.custom_mode, each.selectable) for each in identity.modes] == [
@@ -75,7 +75,7 @@ def test_a_vehicle_that_sends_one_mode_at_a_time_is_asked_without_pauses() -> No
     identity.receive(from_vehicle(mode(1)))
     now = RETRY_AFTER
     for index in (2, 3):
-        assert identity.next_request(now) == MessageRequest(m.AvailableModes.id, index)
+        assert identity.next_request(now) == RequestedMessage(m.AvailableModes.id, index)
         identity.receive(from_vehicle(mode(index)))
     assert identity.modes is not None
 

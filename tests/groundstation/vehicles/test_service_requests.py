@@ -11,7 +11,7 @@ from groundstation.vehicles.plan_requests import PlanRequests
 from groundstation.vehicles.requests import RequestBook, RequestState
 from link.services.ftp.client import FtpClient
 from link.services.ftp.files import MemoryFolder
-from link.services.log.client import LogClient, LogFile
+from link.services.log.client import LogClient, RemoteLog
 from link.services.log.server import LogServer
 from link.services.mission.client import MissionClient
 from link.services.pacing import BulkPacer
@@ -108,7 +108,7 @@ def test_logs_are_cancelled_one_by_one() -> None:
         MemoryFolder({"1.bin": DATA}), system=1, component=1, pacer=BulkPacer(lambda peer: 50_000.0)
     )  # fmt: skip
     pair = Pair(server, logs)
-    log = LogFile(0, 0, len(DATA))
+    log = RemoteLog(0, 0, len(DATA))
     logs.download(1, log, pair.now)
     logs.download(2, log, pair.now)
     logs.download(3, log, pair.now)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from link.services.ftp.files import MemoryFolder
-from link.services.log.client import DATA_SIZE, MAX_LOGS, TRIES, LogClient, LogFile, LogOutcome
+from link.services.log.client import DATA_SIZE, MAX_LOGS, TRIES, LogClient, LogOutcome, RemoteLog
 from link.services.log.server import LogServer
 from link.services.pacing import BulkPacer
 from tests.link.services_world import Pair, from_vehicle
@@ -64,7 +64,7 @@ def test_no_logs() -> None:
 def test_a_download_is_resumed_at_a_whole_piece() -> None:
     data = random.Random(1).randbytes(9_000)
     client = LogClient(255, 190, target_system=1)
-    client.download(LogFile(0, 0, len(data)), 0.0, data[:1000])
+    client.download(RemoteLog(0, 0, len(data)), 0.0, data[:1000])
     [outgoing] = client.messages_to_send()
     assert isinstance(outgoing.message, m.LogRequestData)
     assert (outgoing.message.ofs, outgoing.message.count) == (990, 8_010)
@@ -76,7 +76,7 @@ def test_a_log_that_turns_out_shorter() -> None:
     data = random.Random(1).randbytes(1000)
     client = LogClient(255, 190, target_system=1)
     pair = Pair(server({"1.bin": data}), client)
-    client.download(LogFile(0, 0, 5000), pair.now)
+    client.download(RemoteLog(0, 0, 5000), pair.now)
     outcome = ending(client, pair)
     assert (outcome.done, outcome.data) == (True, data)
 
@@ -85,7 +85,7 @@ def test_silence_ends_it_and_keeps_the_beginning() -> None:
     data = random.Random(1).randbytes(50_000)
     client = LogClient(255, 190, target_system=1)
     pair = Pair(server({"1.bin": data}, rate=20_000.0), client)
-    client.download(LogFile(0, 0, len(data)), pair.now)
+    client.download(RemoteLog(0, 0, len(data)), pair.now)
     pair.run_until(lambda: client.progress[0] > 10_000, within=5.0)
     for second in range(60):
         client.tick(pair.now + second)
@@ -98,7 +98,7 @@ def test_silence_ends_it_and_keeps_the_beginning() -> None:
 @given(st.integers(0, 65535), st.integers(0, 2**32 - 1), st.integers(0, 255), st.integers(0, 65535))
 def test_no_message_raises_or_grows_without_bound(number: int, offset: int, count: int, total: int) -> None:
     client = LogClient(255, 190, target_system=1)
-    client.download(LogFile(0, 0, 1000), 0.0)
+    client.download(RemoteLog(0, 0, 1000), 0.0)
     client.receive(from_vehicle(m.LogData(0, offset, count, [7] * DATA_SIZE)), 0.1)
     assert client.progress[0] <= 1000
     client.list_logs(0.2)
