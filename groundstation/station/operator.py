@@ -15,7 +15,8 @@ from dialects.enums import OperatorFlag as Flag
 from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence, boot_ms
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents import LEASE_TIMEOUT, DriveKeyDown, SetKeyGate
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.session import LEASE_TIMEOUT, SetKeyGate
 from groundstation.snapshot import OperatorView
 from groundstation.station.stall import StallMonitor
 from link.protocol.heartbeat import HeartbeatMonitor

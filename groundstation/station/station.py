@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dialects import messages as m
 from dialects.enums import Severity
 from groundstation.input.style import Style
-from groundstation.intents import AnyIntent
+from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
@@ -26,7 +26,11 @@ from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
-from groundstation.views import LogRequest, MessageRequest, MessagesRequest, ParamPageRequest, Program
+from groundstation.views.links import Program
+from groundstation.views.log import LogRequest
+from groundstation.views.messages import MessageRequest, MessagesRequest
+from groundstation.views.params import ParamPageRequest
+from groundstation.views.requests import RequestsRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -79,6 +83,7 @@ class Station:
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
                 ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
+                RequestsRequest: ViewSource(self._services.build_requests, period=0.25),
                 MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
                 MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
                 **self._link_views.sources,

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from groundstation.snapshot import LogLine
 from groundstation.ui.wrap import wrap
-from groundstation.views import LogPage, LogRequest
+from groundstation.views.log import LogPage, LogRequest
 
 KEPT = 2000
 """Lines kept; as many as the station keeps (message_log.MAX_LINES)."""

@@ -9,8 +9,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from groundstation.intents import AnyIntent, CancelRequest, FetchParams, WriteParams
-from groundstation.views import ParamPage, ParamPageRequest, ParamRow, RequestLine
+from groundstation.intents.services import CancelRequest, FetchParams, WriteParams
+from groundstation.intents.union import AnyIntent
+from groundstation.views.params import ParamPage, ParamPageRequest, ParamRow
+from groundstation.views.requests import RequestLine
 
 MAX_UNDO = 100
 ANSWER_WITHIN = 10.0

@@ -9,7 +9,7 @@ from itertools import islice, takewhile
 from dialects.enums import Severity
 from dialects.messages import StatusText, decode_text, printable
 from groundstation.snapshot import LogLine
-from groundstation.views import LogPage, LogRequest
+from groundstation.views.log import LogPage, LogRequest
 
 MAX_LINES = 2000
 MAX_LENGTH = 160

@@ -9,7 +9,7 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Static
 
-from groundstation.intents import StartSimulator
+from groundstation.intents.session import StartSimulator
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.alerts import active_alerts
 from groundstation.ui.display_state import DisplayState

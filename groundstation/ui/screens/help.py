@@ -10,7 +10,7 @@ from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from groundstation.intents import ACTIONS
+from groundstation.actions import ACTIONS
 from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.colours import BLUE, DIM, RED, YELLOW
 from groundstation.ui.keynames import format_key

@@ -8,7 +8,8 @@ from collections.abc import Iterable, Sequence
 from textual import events
 from textual.widget import Widget
 
-from groundstation.intents import ACTIONS, SelectVehicle
+from groundstation.actions import ACTIONS
+from groundstation.intents.vehicle import SelectVehicle
 from groundstation.ui.alerts import handover_text
 from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.key_parser import KeyRepeat
@@ -18,7 +19,8 @@ from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.control_panel import ControlPanel, ControlPanelValue
 from groundstation.ui.widgets.link_table import LinkTable, LinkTableValue
 from groundstation.ui.widgets.vehicle_table import VehicleTable, VehicleTableValue
-from groundstation.views import (
+from groundstation.views.base import View, ViewRequest
+from groundstation.views.links import (
     ControlRequest,
     ControlView,
     LinksRequest,
@@ -26,8 +28,6 @@ from groundstation.views import (
     VehicleRow,
     VehiclesRequest,
     VehiclesView,
-    View,
-    ViewRequest,
 )
 
 CHROME_ROWS = 4

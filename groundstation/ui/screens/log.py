@@ -16,7 +16,8 @@ from groundstation.ui.log_model import LogFilter, LogModel, format_lines
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.alert_list import AlertList, AlertListValue, alert_rows
 from groundstation.ui.widgets.log import PREFIX, LogRows
-from groundstation.views import LogPage, View, ViewRequest
+from groundstation.views.base import View, ViewRequest
+from groundstation.views.log import LogPage
 
 LEAST_ROWS = 4
 """Rows of messages that the alerts leave, where there are many."""

@@ -14,7 +14,8 @@ from groundstation.ui.messages_model import MessagesModel, key_of
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.message_detail import MessageDetail, MessageDetailValue, detail_lines
 from groundstation.ui.widgets.message_table import MessageTable, MessageTableValue, format_age
-from groundstation.views import MESSAGE_ORDERS, MessagesPage, MessageView, View, ViewRequest
+from groundstation.views.base import View, ViewRequest
+from groundstation.views.messages import MESSAGE_ORDERS, MessagesPage, MessageView
 
 TITLES = 1
 """Line of titles in the table."""

@@ -9,12 +9,13 @@ from textual import events
 from textual.widget import Widget
 from textual.widgets import Input
 
-from groundstation.intents import AnyIntent
+from groundstation.intents.union import AnyIntent
 from groundstation.ui.display_state import DisplayState, ScreenKey
 from groundstation.ui.param_model import ParamModel
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.params import ParamTable, PendingList, value_text
-from groundstation.views import ParamPage, View, ViewRequest
+from groundstation.views.base import View, ViewRequest
+from groundstation.views.params import ParamPage
 
 NOTE_TIME = 10.0
 """s for which a note is shown."""

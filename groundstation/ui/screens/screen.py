@@ -11,13 +11,14 @@ from textual.app import ComposeResult
 from textual.screen import Screen
 from textual.widget import Widget
 
+from groundstation.actions import OperatorAction
 from groundstation.input.keymap import Keymap
-from groundstation.intents import AnyIntent, OperatorAction
+from groundstation.intents.union import AnyIntent
 from groundstation.screens import find_screen
 from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.instruments import CHROME, InstrumentRow
 from groundstation.ui.widgets.instrument import Instrument
-from groundstation.views import View, ViewRequest
+from groundstation.views.base import View, ViewRequest
 
 Kept = TypeVar("Kept")
 

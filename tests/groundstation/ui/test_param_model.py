@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from groundstation.intents import FetchParams, WriteParams
+from groundstation.intents.services import FetchParams, WriteParams
 from groundstation.ui.param_model import ANSWER_WITHIN, MAX_UNDO, ParamModel
-from groundstation.views import ParamPage, ParamPageRequest, ParamRow, RequestLine
+from groundstation.views.params import ParamPage, ParamPageRequest, ParamRow
+from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.examples import param_page
 
 

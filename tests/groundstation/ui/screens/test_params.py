@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.intents import STOP_KEY, CancelRequest, FetchParams, SetKeyGate, Stop, Watch, WriteParams
+from groundstation.intents.driving import STOP_KEY, Stop
+from groundstation.intents.services import CancelRequest, FetchParams, WriteParams
+from groundstation.intents.session import SetKeyGate, Watch
 from groundstation.snapshot import Snapshot
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.params import ParamsScreen
-from groundstation.views import ParamPage, ParamPageRequest, RequestLine
+from groundstation.views.params import ParamPage, ParamPageRequest
+from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.examples import param_page, snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
