@@ -10,11 +10,12 @@ import pytest
 from groundstation.actions import ACTIONS
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.services import ServiceIntent
 from groundstation.intents.session import StartSimulator
 from groundstation.ipc import IntentBatch, decode_from_screen, encode
 from groundstation.station.intent_handler import HANDLERS, VEHICLE_COMMANDS
 
-KINDS = Intent.__subclasses__()
+KINDS = [each for base in (Intent, ServiceIntent) for each in base.__subclasses__() if each is not ServiceIntent]
 VALUES: dict[str, Any] = {
     "key": "i", "throttle": 1, "steering": -1, "open": True, "style": "latch", "mode": "HOLD", "system": 3,
     "request": 5, "changes": (("FS_ACTION", 2.0),),
