@@ -121,8 +121,8 @@ def parse_bindings(keys: Mapping[str, object]) -> dict[str, str]:
 
 
 def _suggest(action_id: str) -> str:
-    near = difflib.get_close_matches(action_id, ACTIONS, n=1, cutoff=0.6)
-    return f"{f'did you mean {near[0]}? ' if near else ''}choose {', '.join(ACTIONS)}"
+    near = difflib.get_close_matches(action_id, ACTIONS, n=1, cutoff=0.8)
+    return f"did you mean {near[0]}?" if near else f"choose {', '.join(ACTIONS)}"
 
 
 def parse_key(key: object) -> str:

@@ -64,8 +64,8 @@ class _Place:
         steps = self._steps() if key is None else [*self._steps(), key]
         parents = [each for each in self._walk(steps[:-1]) if isinstance(each, inspect.StructType)]
         tags = [str(each.tag) for each in parents if each.tag_field == steps[-1]]
-        values = [value for each in self._walk(steps) for value in _listed(each)]
-        return tags or [str(value) for value in values]
+        here = [each for each in self._walk(steps) if isinstance(each, inspect.LiteralType)]
+        return tags or [str(value) for each in here for value in each.values]
 
     def _steps(self) -> list[str]:
         return re.findall(r"[^.\[\]]+", self.path)
@@ -89,13 +89,6 @@ def _deeper(kind: inspect.Type, step: str) -> list[inspect.Type]:
     if isinstance(kind, inspect.StructType):
         return [each for field in kind.fields if field.encode_name == step for each in _alternatives(field.type)]
     return _alternatives(kind.item_type) if isinstance(kind, inspect.CollectionType) else []
-
-
-def _listed(kind: inspect.Type) -> Iterable[Any]:
-    """Return the values that a type lists."""
-    if isinstance(kind, inspect.EnumType):
-        return [each.value for each in kind.cls]
-    return kind.values if isinstance(kind, inspect.LiteralType) else ()
 
 
 def _keys(struct: inspect.StructType) -> list[str]:
