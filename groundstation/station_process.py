@@ -18,7 +18,8 @@ import msgspec
 from dialects.enums import Severity
 from dialects.messages import printable
 from groundstation.input.style import Style
-from groundstation.intents import Quit, RenewLease, StartSimulator, Stop
+from groundstation.intents.driving import Stop
+from groundstation.intents.session import Quit, RenewLease, StartSimulator
 from groundstation.ipc import (
     MAX_INTENT_AGE,
     MAX_PACKET,
