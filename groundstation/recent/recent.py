@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import msgspec
@@ -73,6 +74,16 @@ class RecentEndpoints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         name = "".join(filter(str.isprintable, vehicle))[:MAX_TEXT] or (before.vehicle if before else "")
         entry = RecentEndpoint(endpoint, now, name, pinned=before is not None and before.pinned)
         return RecentEndpoints(_shorten((entry, *self._without(endpoint))))
+
+    def add_all(self, endpoints: Sequence[str], now: float, vehicle: str = "") -> RecentEndpoints:
+        """Note that endpoints are used together, so that the first one is `last`.
+
+        The name is kept only if there is one: of several links it is not known which one brings the vehicle.
+        """
+        recent = self
+        for endpoint in reversed(endpoints):
+            recent = recent.add(endpoint, now, vehicle if len(endpoints) == 1 else "")
+        return recent
 
     def pin(self, endpoint: str, pinned: bool = True) -> RecentEndpoints:
         """Pin an endpoint, or unpin it; an unknown one changes nothing."""

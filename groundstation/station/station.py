@@ -22,6 +22,7 @@ from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
+from groundstation.station.operator_log import OperatorLog
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
@@ -107,6 +108,7 @@ class Station:
             self._services,
         )
         self.link_closing = LinkClosing(self.operator, self.fleet, self._links)
+        self._operator_log = OperatorLog(self.log)
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
@@ -158,6 +160,7 @@ class Station:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
         self._driving.update(now)
+        self._log_driving(now)
         self._departure.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
@@ -203,7 +206,9 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._expire_lease(now)
+        self._operator_log.handle(intent, now)
         self._intents.handle(intent, now)
+        self._log_driving(now)
 
     def set_simulator_state(self, state: str | None) -> None:
         """Record the state of the simulator, for the next snapshot."""
@@ -265,6 +270,10 @@ class Station:
         self._driving.drop_demands()
         if any(contact.ours and contact.state.armed for contact in self.fleet):
             self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
+
+    def _log_driving(self, now: float) -> None:
+        selected = self.fleet.selected
+        self._operator_log.tick(self.operator.sent_demand, selected.state.latency if selected else None, now)
 
     def _handle_statustext(self, message: m.StatusText, contact: Contact, now: float) -> None:
         system = contact.state.system
