@@ -63,14 +63,21 @@ class StationProcess:
     """One station, its links, its pipe to the screen, and the simulator if it started one."""
 
     def __init__(
-        self, station: Station, links: Sequence[Link], pipe: socket.socket, watchdog: WatchdogFeed, *, sent: SentFrames
+        self,
+        station: Station,
+        links: Sequence[Link],
+        pipe: socket.socket,
+        watchdog: WatchdogFeed,
+        *,
+        ids: tuple[int, int],
+        sent: SentFrames,
     ) -> None:
         self._station = station
         self._pipe = pipe
         self._watchdog = watchdog
         self._core = CrashNeutral(station)
         self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash, sent=watchdog.record_sent)
-        self.connect = ConnectDesk(self._runner, station, station.ids, sent)
+        self.connect = ConnectDesk(self._runner, station, ids, sent)
         self._last_snapshot = Snapshot()
         self._addresses = LocalAddresses()
         self._lasting_alerts = LastingAlerts()
@@ -131,8 +138,9 @@ class StationProcess:
                     )
             elif isinstance(intent, Quit):
                 self._quit(intent, now)
-            elif not self.connect.handle(intent, now):
+            else:
                 self._station.handle_intent(intent, now)
+                self.connect.handle(intent, now)
 
     async def _send_snapshots(self) -> None:
         """Send snapshots at absolute deadlines, and do what is due for the links."""
@@ -262,7 +270,7 @@ def _run(
     session = secrets.randbits(32)
     style = Style(options.style)
     station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
-    process = StationProcess(station, links, pipe, watchdog, sent=sent)
+    process = StationProcess(station, links, pipe, watchdog, ids=(options.system, COMPONENT), sent=sent)
     if options.sitl:
         process.connect.start_simulator(started)
     gc.collect()

@@ -43,8 +43,8 @@ class ConnectDesk:
         self._listen_until = -math.inf
         station.views.add(ConnectRequest, ViewSource(self._build_view, PERIOD))
 
-    def handle(self, intent: AnyIntent, now: float) -> bool:
-        """Carry out an intent; return False for one that is not for here."""
+    def handle(self, intent: AnyIntent, now: float) -> None:
+        """Carry out an intent, if it is one for here."""
         match intent:
             case AddLink():
                 self._release_port(intent.endpoint)
@@ -53,9 +53,6 @@ class ConnectDesk:
                 self._keeper.close(intent.link, now)
             case StartSimulator():
                 self.start_simulator(now, intent.kind)
-            case _:
-                return False
-        return True
 
     def start_simulator(self, now: float, kind: str = "rover") -> None:
         """Start simulators that send to the first of our links that listens on this machine, or to a new one."""

@@ -84,7 +84,7 @@ class LinkKeeper:
         self._tell()
 
     def close(self, index: int, now: float) -> None:
-        """Close a link: first neutral for the vehicles that it leads to."""
+        """Close a link once the station has sent neutral to the vehicles behind it; see link_closing.py."""
         waiting = next((each for each in self._attempts if each.index == index), None)
         if index < 0 and waiting is not None:
             waiting.closed = True
@@ -92,7 +92,6 @@ class LinkKeeper:
             self._tell()
         elif any(link.channel.index == index for link in self._runner.links):
             self._closing.add(index)
-            self._station.close_link(index, now)
 
     def open_now(self, endpoint: str) -> None:
         """Open a link that needs no name lookup. Raises LinkError."""

@@ -21,6 +21,8 @@ class LinkClosing:
 
     def begin(self, link: int, now: float) -> None:
         """Go neutral for the vehicles behind a link; no demand follows."""
+        if link < 0:  # it is not open
+            return
         self._until.setdefault(link, now + CLOSE_WITHIN)
         for contact in self._behind(link):
             contact.closing = True
@@ -41,7 +43,8 @@ class LinkClosing:
         for contact in behind:
             contact.closing = False
             if contact.state.system not in reached and not contact.state.armed:
-                self._operator.reset_demand(now)
+                if contact is self._fleet.selected:  # another one is selected in its place
+                    self._operator.reset_demand(now)
                 self._fleet.forget(contact.state.system, now)
 
     def _behind(self, link: int) -> list[Contact]:

@@ -65,7 +65,6 @@ class Station:
         self._endpoints = tuple(endpoints)
         self._not_open: tuple[LinkReport, ...] = ()
         self._system = system
-        self.ids = (system, COMPONENT)
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
         self._services = ServiceDesk(self.fleet, self._commander, self.log, system, COMPONENT)
@@ -96,6 +95,7 @@ class Station:
             }
         )
         """Request -> its source."""
+        self.link_closing = LinkClosing(self.operator, self.fleet, self._links)
         self._intents = IntentHandler(
             self.operator,
             self.fleet,
@@ -106,8 +106,8 @@ class Station:
             self.log,
             self.views,
             self._services,
+            self.link_closing,
         )
-        self.link_closing = LinkClosing(self.operator, self.fleet, self._links)
         self._operator_log = OperatorLog(self.log)
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
@@ -215,14 +215,8 @@ class Station:
         self._simulator_state = state
 
     def set_endpoints(self, endpoints: Sequence[str], not_open: Sequence[LinkReport]) -> None:
-        """Record the endpoints of all links, and the reports of those that cannot be opened."""
+        """Record the endpoints of all links, and the reports of those that are not open."""
         self._endpoints, self._not_open = tuple(endpoints), tuple(not_open)
-
-    def close_link(self, link: int, now: float) -> None:
-        """Go neutral for the vehicles behind a link that the operator closes; see link_closing."""
-        self._expire_lease(now)
-        self.link_closing.begin(link, now)
-        self._driving.update(now)
 
     def set_addresses(self, addresses: tuple[str, ...]) -> None:
         """Record the addresses of this machine, for the next snapshot."""

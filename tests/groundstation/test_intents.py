@@ -10,7 +10,7 @@ import pytest
 from groundstation.actions import ACTIONS
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown
-from groundstation.intents.links import AddLink, CloseLink
+from groundstation.intents.links import AddLink
 from groundstation.intents.services import ServiceIntent
 from groundstation.intents.session import StartSimulator
 from groundstation.ipc import IntentBatch, decode_from_screen, encode
@@ -36,7 +36,7 @@ def test_every_intent_travels_through_the_pipe(kind: type[Intent]) -> None:
 
 
 def test_every_intent_has_a_handler() -> None:
-    assert {*HANDLERS, *VEHICLE_COMMANDS, StartSimulator, AddLink, CloseLink} == set(KINDS)
+    assert {*HANDLERS, *VEHICLE_COMMANDS, StartSimulator, AddLink} == set(KINDS)
     assert not set(HANDLERS) & set(VEHICLE_COMMANDS)
 
 
