@@ -16,6 +16,8 @@ from typing import Any
 import msgspec
 
 from dialects.enums import Severity
+from dialects.extra.errors import DialectError
+from dialects.extra.option import Note, use_dialect
 from dialects.messages import printable
 from groundstation.input.style import Style
 from groundstation.intents import Quit, RenewLease, StartSimulator, Stop
@@ -93,7 +95,7 @@ class StationProcess:
         """Start a simulator that sends to the first of our links that listens on this machine."""
         error = self._simulator.start([link.endpoint for link in self._links])
         if error is not None:
-            self._log_warning(now, error)
+            self.add_to_log(now, error)
 
     # ---- the pipe ----
 
@@ -108,7 +110,7 @@ class StationProcess:
                 break
             self._handle_packet(packet, now)
         self._runner.flush()
-        self._send_views(now)
+        self._station.views.send_due(self._send, now, time.time())
 
     def _packet(self) -> bytes | None:
         try:
@@ -128,7 +130,7 @@ class StationProcess:
         for intent in batch.intents:
             if late and not intent.valid_when_late:
                 if not isinstance(intent, RenewLease):
-                    self._log_warning(
+                    self.add_to_log(
                         now, f"{type(intent).__name__} arrived {now - batch.time:.1f} s late and was dropped"
                     )
             elif isinstance(intent, StartSimulator):
@@ -153,7 +155,7 @@ class StationProcess:
     def _report(self, now: float) -> None:
         """Tell the watchdog that the station runs."""
         if not self._watchdog.report(self._station.report_to_watchdog(now), now):
-            self._log_warning(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
+            self.add_to_log(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
 
     def _send_snapshot(self, now: float) -> None:
         self._report(now)
@@ -163,9 +165,6 @@ class StationProcess:
         for text in self._lasting_alerts.new_in(self._last_snapshot):
             log.warning(text)
         self._send(self._last_snapshot)
-        self._send_views(now)
-
-    def _send_views(self, now: float) -> None:
         self._station.views.send_due(self._send, now, time.time())
 
     def _send(self, message: msgspec.Struct) -> bool:
@@ -184,13 +183,14 @@ class StationProcess:
         exited = self._simulator.pop_exit()
         if exited is not None:
             text, output = exited
-            self._log_warning(now, text)
+            self.add_to_log(now, text)
             log.error("output of the simulator:\n%s", output)
         self._station.set_simulator_state(self._simulator.state)
 
-    def _log_warning(self, now: float, text: str) -> None:
-        log.warning(text)
-        self._station.log.add(now, "station", text, Severity.WARNING)
+    def add_to_log(self, now: float, text: str, severity: Severity = Severity.WARNING) -> None:
+        """Write a line to the log on the screen and to the log file."""
+        log.log(logging.WARNING if severity <= Severity.WARNING else logging.INFO, text)
+        self._station.log.add(now, "station", text, severity)
 
     # ---- shutdown ----
 
@@ -252,13 +252,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     endpoints = [*options.endpoints, *([f"udpin:127.0.0.1:{free_port()}"] if options.sitl else [])]
     try:
         log_to(options.log_file)
+        notes = use_dialect(options.dialect)
         links = open_links(endpoints, system=options.system, component=COMPONENT)
         known = tuple(parse_endpoint(text).text for text in endpoints)
-    except (EndpointError, LinkError, OSError) as error:
+    except (DialectError, EndpointError, LinkError, OSError) as error:
         pipe.send(encode(StationFailed(_one_line(error))))
         return 2
     pipe.send(encode(StationReady(known)))
-    return _run(options, known, links, pipe, watchdog)
+    return _run(options, known, links, pipe, watchdog, notes)
 
 
 def _run(
@@ -267,12 +268,15 @@ def _run(
     links: list[Link],
     pipe: socket.socket,
     watchdog: WatchdogFeed,
+    notes: Sequence[Note],
 ) -> int:
     started = time.monotonic()  # the loop's clock
     session = secrets.randbits(32)
     style = Style(options.style)
     station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
     process = StationProcess(station, links, pipe, watchdog)
+    for note in notes:
+        process.add_to_log(started, note.text, note.severity)
     if options.sitl:
         process.start_simulator(started)
     gc.collect()

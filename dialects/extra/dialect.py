@@ -11,6 +11,7 @@ import pymavlink
 from dialects.extra.definition_file import read_definitions
 from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, MessageDefinition, Place
 from dialects.extra.errors import DialectError
+from dialects.messages import printable
 
 SHIPPED = Path(pymavlink.__file__).resolve().parent / "dialects" / "v20"
 """The definitions of the installed pymavlink, such as common.xml and ardupilotmega.xml."""
@@ -79,7 +80,7 @@ class _Files:
         for folder in self._folders(place):
             try:
                 if text and (folder / text).exists():
-                    return (folder / text).resolve(), text if place is None else str(folder / text)
+                    return (folder / text).resolve(), printable(text if place is None else str(folder / text))
             except (OSError, ValueError, RuntimeError):  # too long, a zero byte, a circle of links
                 continue
         raise DialectError(_missing(text, place))
@@ -94,7 +95,7 @@ class _Files:
 def _missing(text: str, place: Place | None) -> str:
     if place is None:
         near = " did you mean " + f"{text}.xml?" if (SHIPPED / f"{text}.xml").is_file() else ""
-        return f"{text}: no such file:{near or ' name the XML file of the dialect'}"
+        return f"{printable(text)}: no such file:{near or ' name the XML file of the dialect'}"
     return f"{place}: include {text[:80]!a} is neither beside this file nor among pymavlink's: copy it there"
 
 

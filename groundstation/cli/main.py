@@ -39,6 +39,7 @@ examples:
   groundstation --style latch --speed 0.3  a key drives until the next key, slowly
   groundstation --keys teleop              the keys of teleop_twist_keyboard
   groundstation --keys my.toml             your own keys; see below
+  groundstation --dialect mine.xml         name the messages of your vehicle's dialect; see below
 
 first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
 one press of `r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
@@ -55,6 +56,9 @@ key map file (--keys my.toml): replaces the keys of the actions it names
   base = "standard"            # or "teleop"
   [keys]
   "drive.forward" = ["e", "up"]
+
+dialect file (--dialect mine.xml): MAVLink definitions in XML, read at each start and not compiled. It may include
+the definitions that come with pymavlink, such as common.xml; --dialect ardupilotmega.xml names one of them.
 
 status line: link: four bars up to 2 % loss, three up to 10 %, two up to 25 %; loss: lost frames of the last 5 s;
 rtt: round trip to the vehicle; sent: demands per second; cmd: age of the demand that the motors obey;
@@ -111,6 +115,7 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         speed=options.speed,
         sitl=options.sitl,
         log_file=log_file,
+        dialect=options.dialect,
         terminal=_terminal_path(),
         meanwhile=_import_screen,
     )
@@ -235,6 +240,7 @@ def _parser() -> tuple[CommandLineParser, list[str]]:
             help="limit of the sticks, 0.1 to 1 (default: 0.6)"),
         add("--system", type=_system_id, default=255, metavar="ID", help="our MAVLink system id (default: 255)"),
         add("--log-file", type=Path, metavar="FILE", help=f"default: {user_log_path('mavhelm') / 'groundstation.log'}"),
+        add("--dialect", metavar="FILE.xml", help="definitions of a vehicle that sends messages of its own"),
         add("--ascii", action=argparse.BooleanOptionalAction, default=None,
             help="draw with ASCII characters only (default: where the locale is not UTF-8, and with TERM=linux)"),
         add("--version", action=_Version, nargs=0, help="show the version and exit"),

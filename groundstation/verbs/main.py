@@ -10,6 +10,8 @@ import signal
 import sys
 from collections.abc import Sequence
 
+from dialects.extra.errors import DialectError
+from dialects.extra.option import use_dialect
 from groundstation.formats.errors import FileFormatError
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
@@ -43,9 +45,10 @@ def run(arguments: Sequence[str]) -> int:
     logging.basicConfig(handlers=[logging.NullHandler()])  # what is worth knowing is printed
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a transfer ends in order, and can be resumed
     try:
+        use_dialect(options.dialect)
         code = run_loop(_run(VERBS[arguments[0]][options.action], options, output))
         sys.stdout.flush()
-    except (VerbError, FileFormatError, EndpointError, LinkError) as error:
+    except (VerbError, FileFormatError, DialectError, EndpointError, LinkError) as error:
         output.error(str(error))
         return int(error.code if isinstance(error, VerbError) else ExitCode.USAGE)
     except KeyboardInterrupt:
@@ -108,6 +111,7 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     add("--wait", type=_seconds, default=10.0, metavar="S", help="for the vehicle's heartbeat (default: 10)")
     add("--timeout", type=_seconds, metavar="S", help="end after this time in any case")
     add("--system", type=_system_id, default=SYSTEM, metavar="ID", help=f"our system id (default: {SYSTEM})")
+    add("--dialect", metavar="FILE.xml", help="definitions of a vehicle that sends messages of its own")
     add("--json", action="store_true", help="print one JSON object a line")
     add("-q", "--quiet", action="store_true", help="print no progress and no notes")  # fmt: skip
 
