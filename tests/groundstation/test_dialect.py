@@ -44,8 +44,10 @@ def sending(module: Any, endpoint: str) -> Iterator[None]:
             while not ended.wait(0.05):
                 beat = peer.heartbeat_encode(10, 0, 0, 0, 4)
                 status = peer.gripper_status_encode(1, 12100, 3, b"left", [1.5, -2.0, 0.25], 77_000)
-                for data in (beat.pack(peer), status.pack(peer), unknown):
-                    sock.sendto(data, (host, int(port)))
+                for message in (beat, status):
+                    sock.sendto(message.pack(peer), (host, int(port)))
+                    peer.seq = (peer.seq + 1) & 0xFF
+                sock.sendto(unknown, (host, int(port)))
 
     thread = threading.Thread(target=run)
     thread.start()

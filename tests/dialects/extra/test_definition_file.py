@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from dialects.extra.definition_file import DEPTH_MAX, FILE_MAX, read_definitions
 from dialects.extra.definitions import DefinitionFile
 from dialects.extra.errors import DialectError
-from tests.dialects.extra.xml_texts import GRIPPER, with_entries, with_message
+from tests.dialects.extra.xml_texts import GRIPPER, mutated, with_entries, with_message
 
 FIELD = '<field type="uint8_t" name="a">b</field>\n'
 LAUGHS = """<!DOCTYPE mavlink [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>
@@ -169,25 +169,6 @@ def test_no_expression_of_a_file_is_executed(tmp_path: Path) -> None:
     evil = f"__import__('pathlib').Path('{tmp_path}/made').touch()"
     assert "is no value" in refusal(with_entries(f'<enum name="E"><entry name="A" value="{evil}"/></enum>'), tmp_path)
     assert not (tmp_path / "made").exists()
-
-
-PIECES = (
-    "<message ", "</message>", "<field ", "<enum>", "</enums>", "<include>a</include>", "<extensions/>", "&a;", "<!--",
-    'id="', 'type="uint64_t[255]"', 'name="', 'value="', "\0", "\x9b", "<!DOCTYPE a>", "9" * 30, "char[", "\udcff",
-    "]]>", ">", '"',
-)  # fmt: skip
-
-
-@st.composite
-def mutated(draw: st.DrawFn) -> bytes:
-    """Return GRIPPER with some parts left out, doubled, or replaced."""
-    text = GRIPPER
-    for _ in range(draw(st.integers(1, 4))):
-        start = draw(st.integers(0, len(text)))
-        end = min(len(text), start + draw(st.integers(0, 60)))
-        new = draw(st.one_of(st.sampled_from(PIECES), st.just(text[start:end] * 2), st.text(max_size=5)))
-        text = text[:start] + new + text[end:]
-    return text.encode("utf-8", "surrogateescape")
 
 
 @given(st.one_of(mutated(), st.binary(max_size=80)))

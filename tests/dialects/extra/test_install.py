@@ -10,6 +10,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from hypothesis import given
 
 from dialects import codec, targets
 from dialects import messages as m
@@ -17,7 +18,7 @@ from dialects.enum_names import enum_names, flag_names
 from dialects.enums import Severity
 from dialects.extra.errors import DialectError
 from dialects.extra.option import Note, use_dialect
-from tests.dialects.extra.xml_texts import GRIPPER, TABLES, scope, with_message
+from tests.dialects.extra.xml_texts import GRIPPER, TABLES, mutated, scope, with_message
 
 DEBUG_VECT = 250
 FIELD = '<field type="uint8_t" name="a"/>\n'
@@ -144,3 +145,21 @@ def raw_value(message: Any, name: str) -> Any:
     """Return a value as our decoder gives it: pymavlink makes str of texts."""
     raw = getattr(message, f"_{name}_raw", None)
     return getattr(message, name) if raw is None else raw.rstrip(b"\0")
+
+
+@given(mutated())
+def test_any_file_is_used_or_refused_in_one_clear_line(tmp_path_factory: pytest.TempPathFactory, text: bytes) -> None:
+    file = tmp_path_factory.getbasetemp() / "any.xml"
+    file.write_bytes(text)
+    with scope():
+        try:
+            notes = use_dialect(str(file))
+        except DialectError as error:
+            line = str(error)
+            assert line.startswith(f"{file}:")
+            assert line.isprintable()
+        else:
+            assert all(note.text.isprintable() for note in notes)
+            for number, kind in m.MESSAGES.items():
+                if issubclass(kind, m.ExtraMessage):
+                    assert codec.encode_payload(codec.decode(number, b"\1")) == b"\1"

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from hypothesis import strategies as st
+
 from dialects import codec, enum_names, messages, targets
 
 TABLES: tuple[dict[Any, Any], ...] = (
@@ -61,6 +63,25 @@ def with_message(fields: str, *, head: str = 'id="51000" name="A"', include: str
 def with_entries(*enums: str) -> str:
     """Return a definition of enums, each from line 3 on in a line of its own."""
     return "<mavlink><enums>\n\n" + "\n".join(enums) + "</enums><messages/></mavlink>"
+
+
+PIECES = (
+    "<message ", "</message>", "<field ", "<enum>", "</enums>", "<include>a</include>", "<extensions/>", "&a;", "<!--",
+    'id="', 'type="uint64_t[255]"', 'name="', 'value="', "\0", "\x9b", "<!DOCTYPE a>", "9" * 30, "char[", "\udcff",
+    "]]>", ">", '"',
+)  # fmt: skip
+
+
+@st.composite
+def mutated(draw: st.DrawFn) -> bytes:
+    """Return GRIPPER with some parts left out, doubled, or replaced."""
+    text = GRIPPER
+    for _ in range(draw(st.integers(1, 4))):
+        start = draw(st.integers(0, len(text)))
+        end = min(len(text), start + draw(st.integers(0, 60)))
+        new = draw(st.one_of(st.sampled_from(PIECES), st.just(text[start:end] * 2), st.text(max_size=5)))
+        text = text[:start] + new + text[end:]
+    return text.encode("utf-8", "surrogateescape")
 
 
 @contextmanager
