@@ -41,10 +41,8 @@ def read_name(attributes: Attributes, element: str, place: Place) -> str:
     """Return the name of an element: an identifier, so that it may stand on the screen and in a filter."""
     name = required(attributes, "name", element, place)
     if not _NAME.fullmatch(name):
-        raise DialectError(
-            f"{place}: {_shown(name)} is no name for a {element}: use at most {NAME_MAX} letters, digits and _, "
-            "and no digit first"
-        )
+        what = f"use at most {NAME_MAX} letters, digits and _, no digit first"
+        raise DialectError(f"{place}: {_shown(name)} is no {element} name: {what}")
     return name
 
 

@@ -13,6 +13,7 @@ from xml.parsers import expat
 from dialects.extra.attributes import Attributes, read_entry, read_field, read_id, read_name
 from dialects.extra.definitions import DefinitionFile, Entry, EnumDefinition, Field, MessageDefinition, Place
 from dialects.extra.errors import DialectError
+from dialects.messages import printable
 
 FILE_MAX = 4 << 20
 """Bytes of a file; common.xml has 0.6 MB."""
@@ -67,7 +68,7 @@ class _Parser:
         """Number of fields before the extensions, once those begin."""
         self._entries: list[Entry] = []
         self._highest = 0
-        """Value of those entries, or 0."""
+        """Highest value of those entries, at least 0."""
         self._xml = expat.ParserCreate()
         self._xml.StartElementHandler = self._start
         self._xml.EndElementHandler = self._end
@@ -107,7 +108,7 @@ class _Parser:
         if len(self._open) > DEPTH_MAX:
             raise DialectError(f"{place}: more than {DEPTH_MAX} elements inside each other: no MAVLink definition")
         if allowed is not None and element not in allowed:
-            raise DialectError(f"{place}: <{element[:40]}> is not known here: {_expected(parent, allowed)}")
+            raise DialectError(f"{place}: <{printable(element[:40])}> is not known here: {_expected(parent, allowed)}")
         self._open.append(element if allowed is not None else "documentation")
         if allowed is not None and element in self._begin:
             self._begin[element](attributes, place)

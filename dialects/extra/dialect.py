@@ -64,7 +64,9 @@ class _Files:
         """Read a file, unless it was read, and those that it includes. `place`: the include, None for the first."""
         path, name = self._find(text, place)
         if path in self._open:
-            raise DialectError(f"{place}: {text} includes itself, over {len(self._open)} files: delete one <include>")
+            raise DialectError(
+                f"{place}: {printable(text)} includes itself, over {len(self._open)} files: delete one <include>"
+            )
         if path in self.parts:
             return
         if len(self.parts) >= FILES_MAX:
@@ -78,11 +80,8 @@ class _Files:
     def _find(self, text: str, place: Place | None) -> tuple[Path, str]:
         """Return the path of a file, and its name for error messages."""
         for folder in self._folders(place):
-            try:
-                if text and (folder / text).exists():
-                    return (folder / text).resolve(), printable(text if place is None else str(folder / text))
-            except (OSError, ValueError, RuntimeError):  # too long, a zero byte, a circle of links
-                continue
+            if text and _is_there(folder / text):
+                return (folder / text).resolve(), printable(text if place is None else str(folder / text))
         raise DialectError(_missing(text, place))
 
     def _folders(self, place: Place | None) -> tuple[Path, ...]:
@@ -92,10 +91,18 @@ class _Files:
         return (self.home, SHIPPED) if beside == SHIPPED else (beside, self.home, SHIPPED)
 
 
+def _is_there(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # a name that is too long, a folder that may not be read
+        return False
+
+
 def _missing(text: str, place: Place | None) -> str:
     if place is None:
-        near = " did you mean " + f"{text}.xml?" if (SHIPPED / f"{text}.xml").is_file() else ""
-        return f"{printable(text)}: no such file:{near or ' name the XML file of the dialect'}"
+        shipped = bool(text) and _is_there(SHIPPED / f"{text}.xml")
+        what = f"did you mean {text}.xml?" if shipped else "name the XML file of the dialect"
+        return f"{printable(text)}: no such file: {what}"
     return f"{place}: include {text[:80]!a} is neither beside this file nor among pymavlink's: copy it there"
 
 

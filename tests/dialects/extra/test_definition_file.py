@@ -56,7 +56,7 @@ def test_values_have_the_forms_of_mavlink(value: str, number: int, tmp_path: Pat
     assert file.enums[0].entries[0].value == number
 
 
-NAME = "use at most 100 letters, digits and _, and no digit first"
+NAME = "use at most 100 letters, digits and _, no digit first"
 VALUE = "use a number of at most 64 bits, 0x..., 0b... or 2**n"
 IDS = "use a number from 0 to 16777215"
 TYPES = (
@@ -103,9 +103,9 @@ def test_a_document_that_is_no_definition(text: str, line: str, tmp_path: Path) 
         ('id="16777216" name="A"', f"'16777216' is no message id: {IDS}"),
         ('id="-1" name="A"', f"'-1' is no message id: {IDS}"),
         ('id="1_0" name="A"', f"'1_0' is no message id: {IDS}"),
-        ('id="1" name="A B"', f"'A B' is no name for a message: {NAME}"),
-        ('id="1" name="A\N{LATIN SMALL LETTER E WITH ACUTE}"', f"'A\\xe9' is no name for a message: {NAME}"),
-        ('id="1" name="1A"', f"'1A' is no name for a message: {NAME}"),
+        ('id="1" name="A B"', f"'A B' is no message name: {NAME}"),
+        ('id="1" name="A\N{LATIN SMALL LETTER E WITH ACUTE}"', f"'A\\xe9' is no message name: {NAME}"),
+        ('id="1" name="1A"', f"'1A' is no message name: {NAME}"),
     ],
 )
 def test_a_message_without_a_usable_id_or_name(head: str, what: str, tmp_path: Path) -> None:
@@ -115,7 +115,7 @@ def test_a_message_without_a_usable_id_or_name(head: str, what: str, tmp_path: P
 @pytest.mark.parametrize(
     ("attributes", "what"),
     [
-        ('type="char" name="a;import os"', f"'a;import os' is no name for a field: {NAME}"),
+        ('type="char" name="a;import os"', f"'a;import os' is no field name: {NAME}"),
         ('name="a"', '<field> has no type: add type="..."'),
         ('type="uint8" name="a"', "field a: unknown type 'uint8': did you mean uint8_t?"),
         ('type="bool" name="a"', f"field a: unknown type 'bool': {TYPES}"),

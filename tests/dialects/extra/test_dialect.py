@@ -92,6 +92,7 @@ def test_a_file_that_is_missing_may_be_one_of_pymavlinks() -> None:
     assert refusal("nowhere.xml") == "nowhere.xml: no such file: name the XML file of the dialect"
     assert refusal("ardupilotmega") == "ardupilotmega: no such file: did you mean ardupilotmega.xml?"
     assert refusal("a\nb") == "a\N{REPLACEMENT CHARACTER}b: no such file: name the XML file of the dialect"
+    assert refusal("x" * 300) == f"{'x' * 300}: no such file: name the XML file of the dialect"
     assert refusal("") == ": no such file: name the XML file of the dialect"
     assert "HEARTBEAT" in names(load("ardupilotmega.xml"))
 
