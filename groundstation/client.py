@@ -12,7 +12,8 @@ from pathlib import Path
 
 import msgspec
 
-from groundstation.intents import AnyIntent, Quit
+from groundstation.intents.session import Quit
+from groundstation.intents.union import AnyIntent
 from groundstation.ipc import (
     MAX_PACKET,
     SOCKET_BUFFER,
@@ -25,7 +26,7 @@ from groundstation.ipc import (
 )
 from groundstation.processes import end_process, start_module
 from groundstation.snapshot import Snapshot, StationOutage
-from groundstation.views import View
+from groundstation.views.base import View
 
 START_TIMEOUT = 15.0
 """s for the station to open its links: Python's start on a slow Pi (3 s) and a host name to resolve (10 s)."""

@@ -6,9 +6,10 @@ import time
 
 import msgspec
 
-from groundstation.intents import LEASE_TIMEOUT, AnyIntent
+from groundstation.intents.session import LEASE_TIMEOUT
+from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, StationOutage
-from groundstation.views import AnyView
+from groundstation.views.union import AnyView
 
 SOCKET_BUFFER = 1 << 20
 """Bytes requested each way, so that a snapshot (< 60 kB) or a second of keys fits; the kernel may grant less."""

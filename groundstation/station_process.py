@@ -20,7 +20,8 @@ from dialects.extra.errors import DialectError
 from dialects.extra.option import Note, use_dialect
 from dialects.messages import printable
 from groundstation.input.style import Style
-from groundstation.intents import Quit, RenewLease, StartSimulator, Stop
+from groundstation.intents.driving import Stop
+from groundstation.intents.session import Quit, RenewLease, StartSimulator
 from groundstation.ipc import (
     MAX_INTENT_AGE,
     MAX_PACKET,

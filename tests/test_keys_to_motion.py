@@ -15,10 +15,11 @@ import pytest
 from dialects.axes import NEUTRAL, Axes, axis_map, build_manual_control
 from dialects.enums import Autopilot, DriveType
 from dialects.messages import ManualControl
+from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents import ACTIONS, DriveKeyDown
+from groundstation.intents.driving import DriveKeyDown
 from tests.vehicle.field import Field
 
 KEYS = {

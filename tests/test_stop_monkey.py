@@ -16,7 +16,10 @@ from hypothesis import strategies as st
 from dialects.axes import FULL_DEFLECTION
 from dialects.messages import ManualControl, RoverOperatorPresence
 from dialects.modes import Mode
-from groundstation import intents as i
+from groundstation.intents.driving import Stop
+from groundstation.intents.session import SetKeyGate
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import Arm, Disarm, SetMode
 from tests.test_stops import NEUTRAL_WITHIN, REPEAT, Drive
 
 SLACK = 0.04
@@ -49,7 +52,7 @@ class Monkey(Drive):
 
     def stop_key(self, _: bool) -> None:
         self.held = None
-        self._ask(i.Stop())
+        self._ask(Stop())
 
     def screen(self, lives: bool) -> None:
         self.screen_lives = lives
@@ -57,7 +60,7 @@ class Monkey(Drive):
     def gate(self, is_open: bool) -> None:
         if not self.world.near.frozen:
             self.gate_closed_at = math.inf if is_open else self.world.now
-        self._ask(i.SetKeyGate(is_open))
+        self._ask(SetKeyGate(is_open))
 
     def station_runs(self, runs: bool) -> None:
         self.world.near.frozen = not runs
@@ -73,10 +76,10 @@ class Monkey(Drive):
         self.world.up.loss = self.world.down.loss = share
 
     def mode(self, mode: Mode) -> None:
-        self._ask(i.SetMode(mode.name))
+        self._ask(SetMode(mode.name))
 
     def arm(self, arms: bool) -> None:
-        self._ask(i.Arm(held=1.0) if arms else i.Disarm())
+        self._ask(Arm(held=1.0) if arms else Disarm())
 
     # ---- what holds ----
 
@@ -102,7 +105,7 @@ class Monkey(Drive):
                 assert self._style == "latch" or at - self.last_key <= REPEAT_WITHIN + REPEAT + SLACK
         self._seen = len(sent)
 
-    def _ask(self, intent: i.AnyIntent) -> None:
+    def _ask(self, intent: AnyIntent) -> None:
         if not self.world.near.frozen:
             self.tell(intent)
 

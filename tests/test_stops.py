@@ -13,7 +13,10 @@ from hypothesis import strategies as st
 
 from dialects.messages import SetPositionTargetLocalNed
 from dialects.modes import Mode
-from groundstation import intents as i
+from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, EmergencyStop, SetStyle, Stop
+from groundstation.intents.session import RenewLease, SetKeyGate
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import Arm, Disarm, SetMode
 from groundstation.station.station import Station
 from link.core import Outgoing
 from link.transport.memory import LossyPipe
@@ -63,14 +66,14 @@ class Drive:
         self.screen_lives = True
         self.moved: list[tuple[float, float]] = []
         self._key_due = self._lease_due = 0.0
-        self.tell(i.SetStyle(style), i.SetKeyGate(True))
+        self.tell(SetStyle(style), SetKeyGate(True))
 
     @property
     def power(self) -> float:
         """The largest motor output now."""
         return max(map(abs, self.motors.outputs), default=0.0)
 
-    def tell(self, *intents: i.AnyIntent) -> None:
+    def tell(self, *intents: AnyIntent) -> None:
         for intent in intents:
             self.station.handle_intent(intent, self.world.now)
         self.world.settle()
@@ -88,17 +91,17 @@ class Drive:
     def _each(self, now: float) -> None:
         if self.screen_lives and now >= self._lease_due:
             self._lease_due = now + 0.1
-            self.station.handle_intent(i.RenewLease(), now)
+            self.station.handle_intent(RenewLease(), now)
         if self.screen_lives and self.held and now >= self._key_due:
             self._key_due = now + self.repeat
-            self.station.handle_intent(i.DriveKeyDown(self.held, 1, 0), now)
+            self.station.handle_intent(DriveKeyDown(self.held, 1, 0), now)
         self.moved.append((now, self.power))
 
     def get_going(self) -> None:
         """Arm, press the key, and wait until the wheels turn at the full demand."""
         self.until(lambda: self.station.snapshot(self.world.now, 0).vehicle is not None)
         self.run(2.0)
-        self.tell(i.Arm(held=1.0))
+        self.tell(Arm(held=1.0))
         self.until(lambda: self.rover.state is SafetyState.ARMED)
         self.run(1.5)
         self.held = "i"
@@ -127,7 +130,7 @@ def test_stop_key() -> None:
     drive = Drive()
     drive.get_going()
     drive.held = None
-    drive.tell(i.Stop())
+    drive.tell(Stop())
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.5)
 
 
@@ -137,7 +140,7 @@ def test_latched_drive_goes_on_and_ends_with_the_stop_key() -> None:
     drive.held = None
     drive.run(3.0)
     assert drive.power > 0.5
-    drive.tell(i.Stop())
+    drive.tell(Stop())
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.5)
 
 
@@ -153,7 +156,7 @@ def test_frozen_screen(style: str) -> None:
 def test_closed_gate(style: str) -> None:
     drive = Drive(style=style)
     drive.get_going()
-    drive.tell(i.SetKeyGate(False, "help is open"))
+    drive.tell(SetKeyGate(False, "help is open"))
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.5)
 
 
@@ -163,10 +166,10 @@ def test_a_key_held_over_another_screen_never_drives(style: str, away: float, ga
     """Without reported releases. A gap of 0.7 s between repeats is a slow keyboard, or a line that stalls."""
     drive = Drive(style=style)
     drive.get_going()
-    drive.tell(i.SetKeyGate(False, "another screen is open"))
+    drive.tell(SetKeyGate(False, "another screen is open"))
     drive.repeat = gap
     drive.run(away)
-    drive.tell(i.SetKeyGate(True))
+    drive.tell(SetKeyGate(True))
     drive.until(lambda: drive.power == 0.0, within=NEUTRAL_WITHIN)
     drive.moved.clear()
     drive.run(5.0)
@@ -175,7 +178,7 @@ def test_a_key_held_over_another_screen_never_drives(style: str, away: float, ga
     assert drive.station.snapshot(drive.world.now, 0).operator.held_over
     drive.held = None
     drive.run(0.76)
-    drive.tell(i.SetMode("MANUAL"))  # 1.5 s without a demand are HOLD
+    drive.tell(SetMode("MANUAL"))  # 1.5 s without a demand are HOLD
     drive.run(0.5)
     drive.held = "i"
     drive.until(lambda: drive.power > 0.1)
@@ -213,7 +216,7 @@ def test_after_a_cut_the_driver_can_go_on() -> None:
     drive.run(2.0)
     drive.held = None
     drive.run(1.0)
-    drive.tell(i.SetMode(Mode.MANUAL.name))
+    drive.tell(SetMode(Mode.MANUAL.name))
     drive.run(1.0)
     drive.held = "i"
     drive.until(lambda: drive.power > 0.5, within=2.0)
@@ -251,7 +254,7 @@ def test_thirty_percent_loss_never_moves_late(seed: int) -> None:
     drive = Drive(loss=0.30, delay=0.010, seed=seed)
     drive.until(lambda: drive.station.snapshot(drive.world.now, 0).vehicle is not None)
     for _ in range(8):
-        drive.tell(i.Arm(held=1.0))
+        drive.tell(Arm(held=1.0))
         drive.run(2.0)
         drive.held = "i"
         drive.run(3.0)
@@ -265,14 +268,14 @@ def test_thirty_percent_loss_never_moves_late(seed: int) -> None:
 def test_emergency_stop_is_at_once_and_stays() -> None:
     drive = Drive()
     drive.get_going()
-    drive.tell(i.EmergencyStop())
+    drive.tell(EmergencyStop())
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.05)
     assert drive.rover.state is SafetyState.ESTOP
-    drive.tell(i.Arm(held=1.0))
+    drive.tell(Arm(held=1.0))
     drive.run(3.0)
     assert drive.rover.state is SafetyState.ESTOP
     drive.held = None
-    drive.tell(i.ClearEmergencyStop(held=1.0))
+    drive.tell(ClearEmergencyStop(held=1.0))
     drive.run(2.0)
     drive.get_going()
 
@@ -284,17 +287,17 @@ def test_the_stop_key_stops_a_rover_that_drives_itself() -> None:
     drive.get_going()
     drive.held = None
     drive.run(2.0)
-    drive.tell(i.SetMode(Mode.GUIDED.name))
+    drive.tell(SetMode(Mode.GUIDED.name))
     drive.run(1.0)
     for _ in range(100):
         drive.station._outbox.append(Outgoing(AHEAD_IN_GUIDED))
         drive.run(0.05)
     assert drive.power > 0.2
-    drive.tell(i.SetKeyGate(False, "help is open"), i.Stop("help is open"))
+    drive.tell(SetKeyGate(False, "help is open"), Stop("help is open"))
     drive.station._outbox.append(Outgoing(AHEAD_IN_GUIDED))
     drive.run(0.2)
     assert drive.power > 0.1
-    drive.tell(i.SetKeyGate(True), i.Stop())
+    drive.tell(SetKeyGate(True), Stop())
     drive.until(lambda: drive.power == 0.0, within=NEUTRAL_WITHIN)
     drive.run(0.5)
     vehicle = drive.station.snapshot(drive.world.now, 0).vehicle
@@ -305,7 +308,7 @@ def test_the_stop_key_stops_a_rover_that_drives_itself() -> None:
 def test_disarm_is_at_once() -> None:
     drive = Drive()
     drive.get_going()
-    drive.tell(i.Disarm())
+    drive.tell(Disarm())
     drive.assert_stops(drive.world.now, falls=0.05, neutral=0.05)
 
 
@@ -314,7 +317,7 @@ def test_a_key_pressed_right_after_arming_drives(wait: float) -> None:
     """The vehicle needs a neutral demand first; the station sends it before it lets the first key through."""
     drive = Drive()
     drive.run(2.0)
-    drive.tell(i.Arm(held=1.0))
+    drive.tell(Arm(held=1.0))
     drive.until(lambda: drive.station.snapshot(drive.world.now, 0).operator.gate_open)
     drive.run(wait)
     drive.held = "i"
@@ -326,7 +329,7 @@ def test_arming_with_a_key_held_does_not_drive_off() -> None:
     drive.run(2.0)
     drive.held = "i"
     drive.run(1.0)
-    drive.tell(i.Arm(held=1.0))
+    drive.tell(Arm(held=1.0))
     drive.run(5.0)
     assert drive.rover.state is SafetyState.ARMED
     assert max(power for _, power in drive.moved) == 0.0

@@ -13,9 +13,11 @@ from dataclasses import dataclass
 
 import msgspec
 
+from groundstation.actions import OperatorAction
 from groundstation.input.key_repeat import LONGEST_DELAY, REPEAT_GAP, REPEAT_WINDOW_MAX, REPEAT_WINDOW_MIN
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents import HOLD_TIME, AnyIntent, OperatorAction
+from groundstation.intents.driving import HOLD_TIME
+from groundstation.intents.union import AnyIntent
 
 MIN_REPEATS = 5
 """Repeats at most REPEAT_GAP apart that a hold needs, so that quick taps of a finger never count as one."""

@@ -1,6 +1,6 @@
 """The key maps, and what one read of key events means. What the intents then do is station/intent_handler.py's matter.
 
-The actions and their usual keys are in groundstation/intents.py. Key names are Textual's ("i", "comma", "ctrl+q").
+The actions and their usual keys are in groundstation/actions.py. Key names are Textual's ("i", "comma", "ctrl+q").
 """
 
 from __future__ import annotations
@@ -10,17 +10,9 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from groundstation.intents import (
-    ACTIONS,
-    AnyIntent,
-    DriveKeyDown,
-    DriveKeyUp,
-    EmergencyStop,
-    OperatorAction,
-    ScaleLimits,
-    SetStyle,
-    Stop,
-)
+from groundstation.actions import ACTIONS, OperatorAction
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, ScaleLimits, SetStyle, Stop
+from groundstation.intents.union import AnyIntent
 
 
 class KeymapError(ValueError):

@@ -7,8 +7,8 @@ import re
 from collections.abc import Mapping, Set
 from pathlib import Path
 
+from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, Keymap, KeymapError
-from groundstation.intents import ACTIONS
 from link.runtime.toml_file import TomlError, read_toml
 
 PUNCTUATION = {

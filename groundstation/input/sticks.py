@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from dialects.axes import NEUTRAL, Axes
 from groundstation.input.key_repeat import PRESS_WINDOW, REPEAT_GAP, KeyTrace, RepeatWindows
 from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
-from groundstation.intents import DriveKeyDown, ScaleLimits
+from groundstation.intents.driving import DriveKeyDown, ScaleLimits
 
 STEP = 0.1
 """What one press adds in the style "step", as a fraction of full deflection."""

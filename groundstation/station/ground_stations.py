@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects.enums import VehicleType
 from dialects.messages import Heartbeat
-from groundstation.views import StationRow
+from groundstation.views.links import StationRow
 from link.core import Received
 
 MAX_STATIONS = 32

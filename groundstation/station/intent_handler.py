@@ -1,7 +1,7 @@
 """Carries out the operator's intents: one table row for each kind of intent.
 
-A new intent is a class in groundstation/intents.py and a row here: in VEHICLE_COMMANDS if it is a command to the
-selected vehicle, else in HANDLERS.
+A new intent is a class in groundstation/intents and a row here: in VEHICLE_COMMANDS if it is a command to the
+selected vehicle, in SERVICE_CALLS (service_calls.py) if it is a request to one of its services, else in HANDLERS.
 """
 
 from __future__ import annotations
@@ -13,12 +13,38 @@ from typing import Any
 
 from dialects.enums import Severity
 from dialects.modes import Mode
-from groundstation import intents as i
+from groundstation.intents.base import Intent
+from groundstation.intents.driving import (
+    HOLD_TIME,
+    STOP_KEY,
+    ClearEmergencyStop,
+    DriveKeyDown,
+    DriveKeyUp,
+    EmergencyStop,
+    ScaleLimits,
+    SetStyle,
+    Stop,
+)
+from groundstation.intents.services import CancelRequest, ServiceIntent
+from groundstation.intents.session import Quit, RenewLease, ReportKeyReleases, SetKeyGate, Watch
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import (
+    Arm,
+    Disarm,
+    GiveControl,
+    KeepControl,
+    ReleaseControl,
+    RequestControl,
+    SelectNextVehicle,
+    SelectVehicle,
+    SetMode,
+)
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
 from groundstation.station.handover import Handover
 from groundstation.station.operator import OperatorSession
+from groundstation.station.service_calls import SERVICE_CALLS
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewFeed
 from groundstation.vehicles.fleet import Fleet
@@ -67,7 +93,7 @@ class IntentHandler:
         self._services = services
         self._emergency_at = -math.inf
 
-    def handle(self, intent: i.AnyIntent, now: float) -> None:
+    def handle(self, intent: AnyIntent, now: float) -> None:
         """Carry out an intent; its messages are ready to be sent when this returns."""
         if intent.is_input:
             self._operator.record_input(now)
@@ -80,7 +106,7 @@ class IntentHandler:
             handler(self, intent, now)
         self._driving.update(now)
 
-    def _send_command(self, command: VehicleCommand, intent: i.AnyIntent, now: float) -> None:
+    def _send_command(self, command: VehicleCommand, intent: AnyIntent, now: float) -> None:
         vehicle = self._selected_vehicle(now)
         if vehicle is None:
             return
@@ -99,23 +125,23 @@ class IntentHandler:
 
     def _unconfirmed_reason(self, intent: Any, now: float) -> str | None:
         """Return why an intent that needs a held key is refused: a screen that is frozen or hidden confirms nothing."""
-        if not intent.held >= i.HOLD_TIME:
-            return f"the key was not held for {i.HOLD_TIME:.0f} s"
+        if not intent.held >= HOLD_TIME:
+            return f"the key was not held for {HOLD_TIME:.0f} s"
         return self._operator.blocked_reason(now)
 
-    def _press(self, intent: i.DriveKeyDown, now: float) -> None:
+    def _press(self, intent: DriveKeyDown, now: float) -> None:
         self._operator.press(intent, now)
 
-    def _release(self, intent: i.DriveKeyUp, now: float) -> None:
+    def _release(self, intent: DriveKeyUp, now: float) -> None:
         self._operator.sticks.release(intent.key)
 
-    def _stop(self, intent: i.Stop, now: float) -> None:
+    def _stop(self, intent: Stop, now: float) -> None:
         self._operator.sticks.stop()
         selected = self._fleet.selected
-        if intent.reason == i.STOP_KEY and selected is not None and selected.state.drives_itself:
+        if intent.reason == STOP_KEY and selected is not None and selected.state.drives_itself:
             self._commander.set_mode(selected.state, Mode.HOLD.name, now)  # neutral sticks do not stop a mission
 
-    def _emergency_stop(self, intent: i.EmergencyStop, now: float) -> None:
+    def _emergency_stop(self, intent: EmergencyStop, now: float) -> None:
         """Stop the selected vehicle and those that we armed or drove; the second request in a row stops all."""
         self._operator.sticks.block(now)
         everything, self._emergency_at = now - self._emergency_at <= SECOND_STOP_WITHIN, now
@@ -128,102 +154,98 @@ class IntentHandler:
         if self._fleet.selected is None:
             self._log.add(now, "station", "no vehicle yet", Severity.WARNING)
 
-    def _scale_limits(self, intent: i.ScaleLimits, now: float) -> None:
+    def _scale_limits(self, intent: ScaleLimits, now: float) -> None:
         self._operator.sticks.scale_limits(intent)
 
-    def _set_style(self, intent: i.SetStyle, now: float) -> None:
+    def _set_style(self, intent: SetStyle, now: float) -> None:
         if self._operator.sticks.set_style(intent.style):
             self._log.add(now, "station", f"drive style {self._operator.sticks.style}", Severity.NOTICE)
 
-    def _set_reports_releases(self, intent: i.ReportKeyReleases, now: float) -> None:
+    def _set_reports_releases(self, intent: ReportKeyReleases, now: float) -> None:
         self._operator.sticks.set_reports_releases()
 
-    def _set_gate(self, intent: i.SetKeyGate, now: float) -> None:
+    def _set_gate(self, intent: SetKeyGate, now: float) -> None:
         self._operator.set_gate(intent, now)
 
-    def _renew_lease(self, intent: i.RenewLease, now: float) -> None:
+    def _renew_lease(self, intent: RenewLease, now: float) -> None:
         self._operator.renew_lease(now)
 
-    def _select(self, intent: i.SelectVehicle, now: float) -> None:
+    def _select(self, intent: SelectVehicle, now: float) -> None:
         self._operator.reset_demand(now)
         self._fleet.select(intent.system, now)
 
-    def _select_next(self, intent: i.SelectNextVehicle, now: float) -> None:
+    def _select_next(self, intent: SelectNextVehicle, now: float) -> None:
         self._operator.reset_demand(now)
         self._fleet.select_next(now)
 
-    def _watch(self, intent: i.Watch, now: float) -> None:
+    def _watch(self, intent: Watch, now: float) -> None:
         self._views.watch(intent.requests)
 
-    def _request_control(self, intent: i.RequestControl, now: float) -> None:
+    def _request_control(self, intent: RequestControl, now: float) -> None:
         if (vehicle := self._selected_vehicle(now)) is not None:
             self._handover.request(vehicle, now)
 
-    def _release_control(self, intent: i.ReleaseControl, now: float) -> None:
+    def _release_control(self, intent: ReleaseControl, now: float) -> None:
         self._operator.sticks.block(now)
         if intent.all:
             self._handover.release_all(now)
         elif (vehicle := self._selected_vehicle(now)) is not None:
             self._handover.release(vehicle, now)
 
-    def _give_control(self, intent: i.GiveControl, now: float) -> None:
+    def _give_control(self, intent: GiveControl, now: float) -> None:
         self._operator.sticks.block(now)
         self._handover.give(now)
 
-    def _keep_control(self, intent: i.KeepControl, now: float) -> None:
+    def _keep_control(self, intent: KeepControl, now: float) -> None:
         self._handover.keep(now)
 
-    def _fetch_params(self, intent: i.FetchParams, now: float) -> None:
-        self._services.fetch_params(intent.request, now)
+    def _start_request(self, intent: ServiceIntent, now: float) -> None:
+        self._services.start(intent, now)
 
-    def _write_params(self, intent: i.WriteParams, now: float) -> None:
-        self._services.write_params(intent.request, intent.system, intent.changes, now)
-
-    def _cancel_request(self, intent: i.CancelRequest, now: float) -> None:
+    def _cancel_request(self, intent: CancelRequest, now: float) -> None:
         self._services.cancel(intent.request, now)
 
-    def _quit(self, intent: i.Quit, now: float) -> None:
+    def _quit(self, intent: Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
         self._departure.begin(now, disarm=intent.disarm)
 
 
-def _set_mode(commander: Commander, vehicle: VehicleState, intent: i.SetMode, now: float) -> None:
+def _set_mode(commander: Commander, vehicle: VehicleState, intent: SetMode, now: float) -> None:
     commander.set_mode(vehicle, intent.mode, now)
 
 
-VEHICLE_COMMANDS: dict[type[i.Intent], VehicleCommand] = {
-    i.Arm: VehicleCommand(lambda commander, vehicle, _, now: commander.arm(vehicle, now), confirmed="arming"),
-    i.Disarm: VehicleCommand(lambda commander, vehicle, _, now: commander.disarm(vehicle, now)),
-    i.ClearEmergencyStop: VehicleCommand(
+VEHICLE_COMMANDS: dict[type[Intent], VehicleCommand] = {
+    Arm: VehicleCommand(lambda commander, vehicle, _, now: commander.arm(vehicle, now), confirmed="arming"),
+    Disarm: VehicleCommand(lambda commander, vehicle, _, now: commander.disarm(vehicle, now)),
+    ClearEmergencyStop: VehicleCommand(
         lambda commander, vehicle, _, now: commander.clear_emergency_stop(vehicle, now),
         confirmed="release of the emergency stop",
     ),
-    i.SetMode: VehicleCommand(_set_mode, neutral=False),
+    SetMode: VehicleCommand(_set_mode, neutral=False),
 }
 """Intent -> command to the selected vehicle. Neutral comes first where the command stops the vehicle, and before
 arming, which must not start with a key held."""
 
-HANDLERS: dict[type[i.Intent], Callable[[IntentHandler, Any, float], None]] = {
-    i.DriveKeyDown: IntentHandler._press,
-    i.DriveKeyUp: IntentHandler._release,
-    i.Stop: IntentHandler._stop,
-    i.EmergencyStop: IntentHandler._emergency_stop,
-    i.ScaleLimits: IntentHandler._scale_limits,
-    i.SetStyle: IntentHandler._set_style,
-    i.ReportKeyReleases: IntentHandler._set_reports_releases,
-    i.SetKeyGate: IntentHandler._set_gate,
-    i.RenewLease: IntentHandler._renew_lease,
-    i.SelectVehicle: IntentHandler._select,
-    i.SelectNextVehicle: IntentHandler._select_next,
-    i.Watch: IntentHandler._watch,
-    i.RequestControl: IntentHandler._request_control,
-    i.ReleaseControl: IntentHandler._release_control,
-    i.GiveControl: IntentHandler._give_control,
-    i.KeepControl: IntentHandler._keep_control,
-    i.FetchParams: IntentHandler._fetch_params,
-    i.WriteParams: IntentHandler._write_params,
-    i.CancelRequest: IntentHandler._cancel_request,
-    i.Quit: IntentHandler._quit,
+HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
+    DriveKeyDown: IntentHandler._press,
+    DriveKeyUp: IntentHandler._release,
+    Stop: IntentHandler._stop,
+    EmergencyStop: IntentHandler._emergency_stop,
+    ScaleLimits: IntentHandler._scale_limits,
+    SetStyle: IntentHandler._set_style,
+    ReportKeyReleases: IntentHandler._set_reports_releases,
+    SetKeyGate: IntentHandler._set_gate,
+    RenewLease: IntentHandler._renew_lease,
+    SelectVehicle: IntentHandler._select,
+    SelectNextVehicle: IntentHandler._select_next,
+    Watch: IntentHandler._watch,
+    RequestControl: IntentHandler._request_control,
+    ReleaseControl: IntentHandler._release_control,
+    GiveControl: IntentHandler._give_control,
+    KeepControl: IntentHandler._keep_control,
+    CancelRequest: IntentHandler._cancel_request,
+    Quit: IntentHandler._quit,
+    **dict.fromkeys(SERVICE_CALLS, IntentHandler._start_request),
 }
 """Intent -> method, for all that are not commands to a vehicle. StartSimulator is handled in station_process.py."""

@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from groundstation.snapshot import LinkView
-from groundstation.views import LinkRow
+from groundstation.views.links import LinkRow
 from link.core import LinkReport, Peer, SourceCount
 from link.protocol.link_events import link_problem
 

@@ -15,7 +15,8 @@ from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.control_report import ControlReport
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.vehicle_details import Place, find_way
-from groundstation.views import (
+from groundstation.views.base import ViewRequest
+from groundstation.views.links import (
     ControlRequest,
     ControlView,
     LinksRequest,
@@ -24,7 +25,6 @@ from groundstation.views import (
     VehicleRow,
     VehiclesRequest,
     VehiclesView,
-    ViewRequest,
 )
 from link.services.timesync import TimesyncClient
 

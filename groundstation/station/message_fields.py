@@ -8,7 +8,7 @@ from typing import Any
 
 from dialects.enum_names import enum_names, flag_names
 from dialects.messages import ExtraMessage, Message, StatusText, SysStatus, decode_text, printable
-from groundstation.views import MessageField
+from groundstation.views.messages import MessageField
 
 MAX_TEXT = 200
 """Characters kept of a value."""

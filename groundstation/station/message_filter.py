@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 
-from groundstation.views import MessageRow
+from groundstation.views.messages import MessageRow
 
 _NUMBER = re.compile(r"(?P<what>|age)(?P<sign>[<>])(?P<limit>\d+(?:\.\d+)?)(?:hz|s)?")
 

@@ -13,7 +13,7 @@ from groundstation.snapshot import MessageRate
 from groundstation.station.message_fields import build_fields
 from groundstation.station.message_filter import parse_filter, sorted_rows
 from groundstation.station.unknown_messages import UnknownMessages
-from groundstation.views import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
+from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
 from link.core import LinkReport, SourceCount
 from link.protocol.rate import RateMeter
 

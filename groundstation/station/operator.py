@@ -15,7 +15,8 @@ from dialects.enums import OperatorFlag as Flag
 from dialects.messages import INVALID_AXIS, ManualControl, RoverOperatorPresence, boot_ms
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents import LEASE_TIMEOUT, DriveKeyDown, SetKeyGate
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.session import LEASE_TIMEOUT, SetKeyGate
 from groundstation.snapshot import OperatorView
 from groundstation.station.stall import StallMonitor
 from link.protocol.heartbeat import HeartbeatMonitor
@@ -146,6 +147,11 @@ class OperatorSession:
         if not self._driving_allowed or now - self._allowed_at < NEUTRAL_LEAD:
             return NEUTRAL
         return self.sticks.axes(now)
+
+    @property
+    def sent_demand(self) -> Axes:
+        """The last demand sent to the selected vehicle."""
+        return self._sent_demand
 
     def record_demand(self, axes: Axes) -> bool:
         """Record the demand sent to the selected vehicle. Returns whether it differs from the one before."""

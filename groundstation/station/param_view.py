@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from groundstation.vehicles.fleet import Contact
 from groundstation.vehicles.param_requests import param_type_name
-from groundstation.vehicles.requests import RequestReport
-from groundstation.views import ParamPage, ParamPageRequest, ParamRow, RequestLine
+from groundstation.views.params import ParamPage, ParamPageRequest, ParamRow
+from groundstation.views.requests import RequestsView
 from link.services.param.client import Param
 from link.services.param.values import same_float32
 
@@ -13,13 +13,12 @@ MAX_ROWS = 200
 """Rows of one page: more than the largest terminal shows."""
 
 
-def build_param_page(contact: Contact, request: ParamPageRequest, ended: tuple[RequestLine, ...]) -> ParamPage:
-    """Return the page that a screen requests, of one vehicle."""
+def build_param_page(contact: Contact, request: ParamPageRequest, requests: RequestsView) -> ParamPage:
+    """Return the page that a screen requests, of one vehicle; `requests` are those for parameters."""
     services = contact.services
     params = services.params.client.params if services else {}
     chosen = [param for name, param in sorted(params.items()) if _matches(param, request)]
     first = max(0, min(request.first, len(chosen) - 1))
-    running = services.book.running if services else ()
     return ParamPage(
         system=contact.state.system,
         rows=tuple(map(_row, chosen[first : first + min(request.rows, MAX_ROWS)])),
@@ -28,8 +27,8 @@ def build_param_page(contact: Contact, request: ParamPageRequest, ended: tuple[R
         known=len(params),
         total=services.params.client.total if services else None,
         has_defaults=any(param.default is not None for param in params.values()),
-        running=tuple(request_line(report) for report in running if report.number >= 0),
-        ended=ended,
+        running=requests.running,
+        ended=requests.ended,
     )
 
 
@@ -54,12 +53,3 @@ def _row(param: Param) -> ParamRow:
         default=param.default,
         changed=is_changed(param),
     )
-
-
-def request_line(report: RequestReport) -> RequestLine:
-    """Return a report for a screen; one that has a reason of the vehicle shows it last."""
-    detail = f"{report.detail}: {report.reason}" if report.reason else report.detail
-    return RequestLine(
-        number=report.number, state=report.state.value, what=report.what, detail=detail, done=report.done,
-        total=report.total,
-    )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Requests of the operator to the services of a vehicle, such as its parameters, and how they end.
+"""Requests of the operator to the services of vehicles, such as their parameters, and how they end.
 
 The services of a vehicle exist from the first request on: a vehicle that is only driven costs nothing.
 """
@@ -8,18 +8,20 @@ from __future__ import annotations
 from collections import deque
 
 from dialects.enums import Command, Severity
+from groundstation.intents.services import ServiceIntent
 from groundstation.station.commander import Commander
-from groundstation.station.param_view import build_param_page, request_line
+from groundstation.station.param_view import build_param_page
+from groundstation.station.service_calls import SERVICE_CALLS
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
-from groundstation.vehicles.param_writer import ParamWriter
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
-from groundstation.views import ParamPage, ParamPageRequest, RequestLine
+from groundstation.views.params import ParamPage, ParamPageRequest
+from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from link.core import Outgoing, Received
 
 KEPT_REPORTS = 16
-"""Requests whose end a screen can still read."""
+"""Requests of one service whose end a screen can still read."""
 
 _SEVERITIES = {RequestState.REFUSED: Severity.WARNING, RequestState.NO_ANSWER: Severity.WARNING}
 
@@ -32,32 +34,29 @@ class ServiceDesk:
         self._commander = commander
         self._log = log
         self._ids = (system, component)
-        self._writers: dict[int, ParamWriter] = {}
-        self._ended: deque[RequestLine] = deque(maxlen=KEPT_REPORTS)
+        self._service_of: dict[int, str] = {}
+        """Number of a request -> name of its service."""
+        self._ended: dict[str, deque[RequestLine]] = {}
 
     # ---- requests ----
 
-    def fetch_params(self, number: int, now: float) -> None:
-        """Fetch all parameters of the selected vehicle."""
-        selected = self._fleet.selected
-        services = self._services(selected, number, "fetch parameters", now)
-        if services is not None:
-            services.params.fetch(number, now)
-            self._collect(now)
-
-    def write_params(self, number: int, system: int, changes: tuple[tuple[str, float], ...], now: float) -> None:
-        """Set parameters of this vehicle, one after the other; stop at the first that is not set."""
-        contact = self._fleet.get(system)
-        if self._services(contact, number, "set parameters", now) is not None:
-            self._writers[system].write(number, changes, now)
-            self._collect(now)
+    def start(self, intent: ServiceIntent, now: float) -> None:
+        """Make a request; without its vehicle it ends at once."""
+        call = SERVICE_CALLS[type(intent)]
+        self._service_of[intent.request] = call.service
+        contact = self._fleet.get(intent.system) if intent.system else self._fleet.selected
+        if contact is None:
+            report = RequestReport(intent.request, call.what, RequestState.REFUSED, "no vehicle yet")
+            self._end(report, 0, "station", now)
+            return
+        call.make(self._services(contact), intent, now)
+        self._collect(now)
 
     def cancel(self, number: int, now: float) -> None:
         """Cancel a request to any vehicle."""
         for contact in self._fleet:
             if contact.services is not None:
                 contact.services.cancel(number, now)
-                self._writers[contact.state.system].cancel(number)
         self._collect(now)
 
     # ---- core ----
@@ -92,35 +91,63 @@ class ServiceDesk:
 
     # ---- views ----
 
+    def build_requests(self, request: RequestsRequest, now: float, wall: float) -> RequestsView:
+        """Build the view of all requests."""
+        return RequestsView(tuple(self._running()), tuple(line for lines in self._ended.values() for line in lines))
+
     def build_param_page(self, request: ParamPageRequest, now: float, wall: float) -> ParamPage | None:
         """Build the page of the selected vehicle; None without a vehicle."""
         selected = self._fleet.selected
-        return build_param_page(selected, request, tuple(self._ended)) if selected else None
+        if selected is None:
+            return None
+        running = tuple(
+            line for line in self._running() if line.service == "params" and line.system == selected.state.system
+        )
+        return build_param_page(selected, request, RequestsView(running, tuple(self._ended.get("params", ()))))
 
     # ---- parts ----
 
-    def _services(self, contact: Contact | None, number: int, what: str, now: float) -> VehicleServices | None:
-        """Return the services of a vehicle; without a vehicle the request ends at once."""
-        if contact is None:
-            self._end(RequestReport(number, what, RequestState.REFUSED, "no vehicle yet"), "station", now)
-            return None
+    def _running(self) -> list[RequestLine]:
+        """Return the requests under way; steps of a request have numbers below 0."""
+        return [
+            self._line(report, contact.state.system)
+            for contact in self._fleet
+            if contact.services is not None
+            for report in contact.services.book.running
+            if report.number >= 0
+        ]
+
+    def _services(self, contact: Contact) -> VehicleServices:
         if contact.services is None:
-            target = (contact.state.system, contact.state.component)
-            contact.services = VehicleServices(*self._ids, target)
-            contact.services.autopilot = contact.state.autopilot
-            self._writers[target[0]] = ParamWriter(contact.services.params, contact.services.book)
+            contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component))
+            contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
         return contact.services
 
     def _collect(self, now: float) -> None:
-        """Log what has ended, and let the writers go on."""
+        """Log what has ended."""
         for contact in self._fleet:
-            while contact.services is not None and (reports := contact.services.book.pop_changes()):
-                for report in reports:
-                    if report.state.ended:
-                        self._end(report, contact.state.name, now)
-                    self._writers[contact.state.system].handle_report(report, now)
+            if contact.services is None:
+                continue
+            for report in contact.services.pop_reports(now):
+                if report.state.ended:
+                    self._end(report, contact.state.system, contact.state.name, now)
 
-    def _end(self, report: RequestReport, name: str, now: float) -> None:
+    def _end(self, report: RequestReport, system: int, name: str, now: float) -> None:
         self._log.add(now, "ack", f"{name}: {report.text}", _SEVERITIES.get(report.state, Severity.INFO))
         if report.number >= 0:
-            self._ended.append(request_line(report))
+            line = self._line(report, system)
+            self._ended.setdefault(line.service, deque(maxlen=KEPT_REPORTS)).append(line)
+            self._service_of.pop(report.number, None)
+
+    def _line(self, report: RequestReport, system: int) -> RequestLine:
+        """Return a report for a screen; one that has a reason of the vehicle shows it last."""
+        return RequestLine(
+            number=report.number,
+            state=report.state.value,
+            what=report.what,
+            detail=f"{report.detail}: {report.reason}" if report.reason else report.detail,
+            done=report.done,
+            total=report.total,
+            service=self._service_of.get(report.number, ""),
+            system=system,
+        )

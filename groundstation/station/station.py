@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dialects import messages as m
 from dialects.enums import Severity
 from groundstation.input.style import Style
-from groundstation.intents import AnyIntent
+from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
@@ -21,12 +21,17 @@ from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
+from groundstation.station.operator_log import OperatorLog
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
-from groundstation.views import LogRequest, MessageRequest, MessagesRequest, ParamPageRequest, Program
+from groundstation.views.links import Program
+from groundstation.views.log import LogRequest
+from groundstation.views.messages import MessageRequest, MessagesRequest
+from groundstation.views.params import ParamPageRequest
+from groundstation.views.requests import RequestsRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -79,6 +84,7 @@ class Station:
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
                 ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
+                RequestsRequest: ViewSource(self._services.build_requests, period=0.25),
                 MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
                 MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
                 **self._link_views.sources,
@@ -96,6 +102,7 @@ class Station:
             self.views,
             self._services,
         )
+        self._operator_log = OperatorLog(self.log)
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
@@ -147,6 +154,7 @@ class Station:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
         self._driving.update(now)
+        self._log_driving(now)
         self._departure.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
@@ -191,7 +199,9 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._expire_lease(now)
+        self._operator_log.handle(intent, now)
         self._intents.handle(intent, now)
+        self._log_driving(now)
 
     def set_simulator_state(self, state: str | None) -> None:
         """Record the state of the simulator, for the next snapshot."""
@@ -243,6 +253,10 @@ class Station:
         self._driving.drop_demands()
         if any(contact.ours and contact.state.armed for contact in self.fleet):
             self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
+
+    def _log_driving(self, now: float) -> None:
+        selected = self.fleet.selected
+        self._operator_log.tick(self.operator.sent_demand, selected.state.latency if selected else None, now)
 
     def _handle_statustext(self, message: m.StatusText, contact: Contact, now: float) -> None:
         system = contact.state.system

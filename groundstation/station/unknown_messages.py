@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from groundstation.views import MessageRequest, MessageRow, MessageView
+from groundstation.views.messages import MessageRequest, MessageRow, MessageView
 from link.core import LinkReport
 from link.protocol.rate import RateMeter
 

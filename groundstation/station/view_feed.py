@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from groundstation.views import View, ViewRequest
+from groundstation.views.base import View, ViewRequest
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from groundstation.intents import HOLD_TIME
+from groundstation.intents.driving import HOLD_TIME
 from groundstation.snapshot import EmergencyProgress, VehicleView
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD

@@ -16,8 +16,11 @@ from textual.driver import Driver
 from textual.filter import LineFilter
 from textual.screen import Screen
 
+from groundstation.actions import OperatorAction
 from groundstation.input.keymap import KeyEvent, Keymap
-from groundstation.intents import AnyIntent, OperatorAction, Quit, ReleaseControl, RenewLease, Watch
+from groundstation.intents.session import Quit, RenewLease, Watch
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import ReleaseControl
 from groundstation.snapshot import Snapshot
 from groundstation.ui import garbage
 from groundstation.ui.ascii import AsciiFilter
@@ -36,7 +39,7 @@ from groundstation.ui.terminal import PING, ConsoleDriver, TerminalClosed
 from groundstation.ui.tmux import TmuxSession
 from groundstation.ui.tty_output import TerminalFile
 from groundstation.ui.tty_ping import PERIOD
-from groundstation.views import ViewRequest
+from groundstation.views.base import ViewRequest
 
 TICK = 0.1
 """s between renewals of the lease: a third of LEASE_TIMEOUT, what the station allows."""

@@ -11,20 +11,14 @@ from typing import Protocol
 
 from groundstation.input.hold_to_confirm import HoldProgress, HoldToConfirm
 from groundstation.input.keymap import SPLIT, KeyEvent, Keymap
-from groundstation.intents import (
-    AnyIntent,
-    DriveKeyDown,
-    DriveKeyUp,
-    EmergencyStop,
-    ReportKeyReleases,
-    SetKeyGate,
-    Stop,
-)
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
+from groundstation.intents.session import ReportKeyReleases, SetKeyGate
+from groundstation.intents.union import AnyIntent
 from groundstation.screens import SCREENS
 from groundstation.snapshot import Snapshot, StationOutage
 from groundstation.ui.keynames import is_character
 from groundstation.ui.tty_ping import TerminalPing
-from groundstation.views import View
+from groundstation.views.base import View
 
 
 class StationConnection(Protocol):

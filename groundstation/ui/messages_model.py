@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from groundstation.views import MESSAGE_ORDERS, MessageRequest, MessageRow, MessagesPage, MessagesRequest
+from groundstation.views.messages import MESSAGE_ORDERS, MessageRequest, MessageRow, MessagesPage, MessagesRequest
 
 RowKey = tuple[int, int, bool, str]
 """System, component, sent, name of the message."""

@@ -13,7 +13,7 @@ from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD, GateClosure
 from groundstation.ui.screens.goto import BEFORE, GoToMenu
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
-from groundstation.views import ViewRequest
+from groundstation.views.base import ViewRequest
 
 ROOT = SCREENS[0]
 """The Drive screen: always open, at the bottom."""

@@ -8,7 +8,8 @@ from functools import partial
 from textual.app import SystemCommand
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from groundstation.intents import ACTIONS, DriveKeyDown, OperatorAction
+from groundstation.actions import ACTIONS, OperatorAction
+from groundstation.intents.driving import DriveKeyDown
 
 
 def action_commands(choose: Callable[[OperatorAction], None]) -> Iterator[SystemCommand]:

@@ -12,8 +12,9 @@ from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.log_requests import LogRequests
 from groundstation.vehicles.mode_requests import ModeRequests
 from groundstation.vehicles.param_requests import ParamRequests
+from groundstation.vehicles.param_writer import ParamWriter
 from groundstation.vehicles.plan_requests import PlanRequests
-from groundstation.vehicles.requests import RequestBook
+from groundstation.vehicles.requests import RequestBook, RequestReport
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient
 from link.services.ftp.client import FtpClient
@@ -40,6 +41,7 @@ class VehicleServices:
         self.logs = LogRequests(LogClient(system, component, target_system=to, target_component=at), self.book)
         params = ParamClient(system, component, target_system=to, target_component=at)
         self.params = ParamRequests(params, self.files, self.identity, self.book, lambda: self.autopilot)
+        self.param_writer = ParamWriter(self.params, self.book)
         self._services = (self.commands, self.files, self.logs, self.plans, self.params)
         self._used = False
 
@@ -59,6 +61,7 @@ class VehicleServices:
         """Cancel a request."""
         for service in self._services:
             service.cancel(number, now)
+        self.param_writer.cancel(number)
 
     def tick(self, now: float, *, may_query: bool = True) -> None:
         """Repeat what is overdue, report progress, give up at last.
@@ -73,6 +76,15 @@ class VehicleServices:
         if self._used and may_query:
             self._query_identity(now)
         self.book.tick(now)
+
+    def pop_reports(self, now: float) -> list[RequestReport]:
+        """Return the newest report of each request that has changed since the last call."""
+        found: dict[int, RequestReport] = {}
+        while reports := self.book.pop_changes():  # a request of several steps goes on when one has ended
+            for report in reports:
+                self.param_writer.handle_report(report, now)
+                found[report.number] = report
+        return list(found.values())
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from dialects import messages as m
 from dialects.enums import ControlFlag, type_name
 from groundstation.vehicles.track import METRES_PER_DEGREE
-from groundstation.views import ComponentRow
+from groundstation.views.links import ComponentRow
 from link.core import Received
 
 MAX_COMPONENTS = 16

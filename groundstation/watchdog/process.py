@@ -16,7 +16,7 @@ import time
 
 import msgspec
 
-from groundstation.intents import Quit
+from groundstation.intents.session import Quit
 from groundstation.ipc import MAX_PACKET, decode_from_screen, encode
 from groundstation.snapshot import StationOutage
 from groundstation.watchdog.outlets import Outlets

@@ -15,10 +15,11 @@ from hypothesis import strategies as st
 from dialects.axes import AXIS_MAPS, NEUTRAL, PX4_FRAMES, Axes, axis_map, build_manual_control, parse_manual_control
 from dialects.enums import Autopilot
 from dialects.messages import INVALID_AXIS, ManualControl
+from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents import ACTIONS, DriveKeyDown
+from groundstation.intents.driving import DriveKeyDown
 
 unit = st.floats(-1.0, 1.0)
 

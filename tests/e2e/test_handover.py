@@ -8,15 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.intents import (
-    AnyIntent,
-    DriveKeyUp,
-    GiveControl,
-    KeepControl,
-    ReportKeyReleases,
-    RequestControl,
-    SetMode,
-)
+from groundstation.intents.driving import DriveKeyUp
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import GiveControl, KeepControl, RequestControl, SetMode
 from groundstation.snapshot import Snapshot
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import FORWARD, Screen, until

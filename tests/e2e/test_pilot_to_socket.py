@@ -12,7 +12,7 @@ import pytest
 from groundstation import client as client_module
 from groundstation.client import StationClient
 from groundstation.input.keymap import KEYMAPS, Keymap
-from groundstation.intents import SetStyle
+from groundstation.intents.driving import SetStyle
 from groundstation.processes import start_module
 from groundstation.ui.app import ConsoleApp
 from tests.groundstation.crashing_station import ORDER

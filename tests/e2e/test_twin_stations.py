@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.intents import DriveKeyUp, ReportKeyReleases, Stop
+from groundstation.intents.driving import DriveKeyUp, Stop
+from groundstation.intents.session import ReportKeyReleases
 from groundstation.snapshot import Snapshot
 from tests.e2e.programs import Vehicle
 from tests.groundstation.screen import FORWARD, Screen, until

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.intents import Arm, DriveKeyDown, ReportKeyReleases
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.vehicle import Arm
 from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 
 FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)

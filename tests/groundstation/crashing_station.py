@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from groundstation import station_process
-from groundstation.intents import AnyIntent, SetStyle
+from groundstation.intents.driving import SetStyle
+from groundstation.intents.union import AnyIntent
 from groundstation.station.station import Station
 
 ORDER = "fail in "

@@ -9,7 +9,8 @@ from dialects import messages as m
 from dialects.enums import Autopilot, Command, ModeFlag, Result, SystemState, VehicleType
 from dialects.messages import boot_ms
 from dialects.modes import Mode, base_mode
-from groundstation.intents import AnyIntent, RenewLease, SetKeyGate
+from groundstation.intents.session import RenewLease, SetKeyGate
+from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import OperatorView, Snapshot, VehicleView
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from groundstation.intents import RenewLease, SetKeyGate, Watch
+from groundstation.intents.session import RenewLease, SetKeyGate, Watch
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
-from groundstation.views import View, ViewRequest
+from groundstation.views.base import View, ViewRequest
 from link.protocol.channel import Channel
 from tests.groundstation.fake_vehicle import FakeVehicle
 from tests.world import Host

@@ -12,7 +12,9 @@ from types import TracebackType
 from typing import Any
 
 from groundstation.client import StationClient
-from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
+from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.vehicle import Arm
 from groundstation.snapshot import Snapshot
 from tests.groundstation.udp_vehicle import UdpVehicle
 from tests.ports import free_port

@@ -7,7 +7,10 @@ from typing import Any
 import msgspec
 import pytest
 
-from groundstation.intents import ACTIONS, DriveKeyDown, Intent, StartSimulator
+from groundstation.actions import ACTIONS
+from groundstation.intents.base import Intent
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.session import StartSimulator
 from groundstation.ipc import IntentBatch, decode_from_screen, encode
 from groundstation.station.intent_handler import HANDLERS, VEHICLE_COMMANDS
 

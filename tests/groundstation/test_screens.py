@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.input.keymap_file import parse_keymap
-from groundstation.intents import ACTIONS
 from groundstation.screens import SCREENS, ScreenRow
 
 

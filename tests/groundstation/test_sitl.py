@@ -7,7 +7,7 @@ import signal
 
 import pytest
 
-from groundstation.intents import RenewLease, StartSimulator
+from groundstation.intents.session import RenewLease, StartSimulator
 from groundstation.sitl import SimulatorControl
 from link.endpoint import parse_endpoint
 from tests.groundstation.screen import Screen, running, simulators, until

@@ -12,11 +12,13 @@ from pathlib import Path
 import pytest
 
 from dialects import messages as m
-from groundstation.intents import Arm, DriveKeyDown, DriveKeyUp, Quit, SetKeyGate, Watch
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
+from groundstation.intents.session import Quit, SetKeyGate, Watch
+from groundstation.intents.vehicle import Arm
 from groundstation.ipc import IntentBatch, encode
 from groundstation.snapshot import LogLine, Snapshot
 from groundstation.station_options import LOG_SIZE
-from groundstation.views import LogPage, LogRequest
+from groundstation.views.log import LogPage, LogRequest
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.screen import FORWARD, Screen, running, until
 from tests.groundstation.udp_vehicle import UdpVehicle

@@ -1,4 +1,4 @@
-"""Recipe: an action of the operator, in two files: its intent with its row in ACTIONS, and its handler."""
+"""Recipe: an action of the operator, in three files: its intent, its row in ACTIONS, and its handler."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ INTENT = '''class SoundHorn(Intent, frozen=True):
 
 ROW = '    OperatorAction("vehicle.horn", "Horn", "Sound the horn", "vehicle", SoundHorn(), ("h",)),'
 
-HANDLER = """    i.SoundHorn: VehicleCommand(
+HANDLER = """    SoundHorn: VehicleCommand(
         lambda commander, vehicle, _, now: commander.send(vehicle, "horn", Command.DO_SET_RELAY, 0, 1, now=now)
     ),"""
 
 PRESS_IT = """
 import asyncio
-from groundstation.intents import SoundHorn
+from groundstation.intents.vehicle import SoundHorn
 from tests.groundstation.ui.pilots import console
 
 async def press():
@@ -38,7 +38,7 @@ asyncio.run(press())
 SEND_IT = """
 from dialects import messages as m
 from dialects.enums import Command
-from groundstation.intents import SoundHorn
+from groundstation.intents.vehicle import SoundHorn
 from tests.test_stops import Drive
 
 drive = Drive()
@@ -51,12 +51,14 @@ assert Command.DO_SET_RELAY in sent, sent
 
 
 def test_an_action_of_the_operator(tree: Tree) -> None:
-    tree.insert_before("groundstation/intents.py", "class SelectVehicle(Intent", INTENT)
-    tree.insert_before("groundstation/intents.py", 'OperatorAction("app.simulator"', ROW)
+    tree.insert_before("groundstation/intents/vehicle.py", "class SelectVehicle(Intent", INTENT)
+    tree.insert_before("groundstation/actions.py", 'OperatorAction("app.simulator"', ROW)
     tree.insert_after(
-        "groundstation/station/intent_handler.py", "VEHICLE_COMMANDS: dict[type[i.Intent], VehicleCommand] = {", HANDLER
+        "groundstation/station/intent_handler.py", "VEHICLE_COMMANDS: dict[type[Intent], VehicleCommand] = {", HANDLER
     )
     tree.replace("groundstation/station/intent_handler.py", "import Severity", "import Command, Severity")
+    tree.replace("groundstation/station/intent_handler.py", "    SetMode,\n)", "    SetMode,\n    SoundHorn,\n)")
+    tree.replace("groundstation/actions.py", "    SetMode,\n)", "    SetMode,\n    SoundHorn,\n)")
     tree.check_recipe("an action of the operator")
     tree.run_script(PRESS_IT)
     tree.run_script(SEND_IT)

@@ -10,7 +10,7 @@ from textual.content import Content
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
-from groundstation.intents import ACTIONS, OperatorAction
+from groundstation.actions import ACTIONS, OperatorAction
 from groundstation.screens import SCREENS
 from groundstation.ui.colours import DIM, YELLOW
 from groundstation.ui.key_parser import KeyRepeat

@@ -10,7 +10,7 @@ from textual.strip import Strip
 from groundstation.ui.colours import AMBER, DIM, GREEN, RED, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.widgets.vehicle_table import age_text
-from groundstation.views import ControlView, Program
+from groundstation.views.links import ControlView, Program
 
 OLD_REPORT = 3.0
 """s since the vehicle reported who is in control from which on the age is shown: it reports once a second."""

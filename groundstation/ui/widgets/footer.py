@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
+from groundstation.actions import ACTIONS
 from groundstation.input.keymap import Keymap
-from groundstation.intents import ACTIONS
 from groundstation.ui.colours import DIM, PANEL, RED, TEXT, YELLOW, style
 from groundstation.ui.display_state import DRIVE_INFO, DisplayState, ScreenInfo
 from groundstation.ui.keynames import format_key, is_character, main_key

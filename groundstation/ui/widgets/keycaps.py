@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
-from groundstation.intents import DriveKeyDown, Stop
+from groundstation.intents.driving import DriveKeyDown, Stop
 from groundstation.ui.colours import AMBER, DEEP_RED, DIM, FAINT, GREEN, MUTED, RED, TEXT, YELLOW, badge, style
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.keynames import format_key, main_key

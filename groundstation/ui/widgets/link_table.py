@@ -12,7 +12,7 @@ from groundstation.ui.colours import AMBER, DIM, GREEN, RED, TEXT, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 from groundstation.ui.wrap import wrap
-from groundstation.views import LinkRow, LinksView
+from groundstation.views.links import LinkRow, LinksView
 
 COLUMNS = (
     Column("", 1),

@@ -11,7 +11,7 @@ from textual.strip import Strip
 from groundstation.ui.colours import AMBER, DIM, GREEN, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.wrap import clean, wrap
-from groundstation.views import MessageField, MessageView
+from groundstation.views.messages import MessageField, MessageView
 
 WIDE = 70
 """Cells from which on value, unit and meaning have columns of their own."""

@@ -10,7 +10,7 @@ from textual.strip import Strip
 from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.ui.wrap import clean
-from groundstation.views import MessageRow
+from groundstation.views.messages import MessageRow
 
 WIDE = 60
 """Cells from which on all columns are shown."""

@@ -8,7 +8,7 @@ from groundstation.ui.colours import AMBER, DIM, FAINT, TEXT, WHITE, style
 from groundstation.ui.param_model import ParamTableValue, PendingChange
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.wrap import clean
-from groundstation.views import ParamRow
+from groundstation.views.params import ParamRow
 
 NAME, VALUE, KIND = 17, 14, 7
 """Widths of the columns."""

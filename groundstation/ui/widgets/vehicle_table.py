@@ -10,7 +10,7 @@ from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN,
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 from groundstation.ui.wrap import clean
-from groundstation.views import VehicleRow, VehiclesView
+from groundstation.views.links import VehicleRow, VehiclesView
 
 COLUMNS = (
     Column("", 2),

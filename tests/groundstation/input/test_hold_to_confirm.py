@@ -9,9 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import MAX_EVENTS, MIN_REPEATS, HoldToConfirm
 from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
-from groundstation.intents import ACTIONS, HOLD_TIME, AnyIntent, Arm, ClearEmergencyStop, Disarm
+from groundstation.intents.driving import HOLD_TIME, ClearEmergencyStop
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import Arm, Disarm
 from tests.groundstation.held_key import event_times
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])

@@ -6,20 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
-from groundstation.intents import (
-    ACTIONS,
-    AnyIntent,
-    Disarm,
-    DriveKeyDown,
-    DriveKeyUp,
-    EmergencyStop,
-    RequestControl,
-    ScaleLimits,
-    SetMode,
-    SetStyle,
-    Stop,
-)
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, ScaleLimits, SetStyle, Stop
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import Disarm, RequestControl, SetMode
 
 STANDARD = Keymap("standard", KEYMAPS["standard"])
 TELEOP = Keymap("teleop", KEYMAPS["teleop"])

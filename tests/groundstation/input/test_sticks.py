@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from dialects.axes import NEUTRAL, Axes
 from groundstation.input.sticks import Sticks
 from groundstation.input.style import Style
-from groundstation.intents import DriveKeyDown, ScaleLimits
+from groundstation.intents.driving import DriveKeyDown, ScaleLimits
 
 I = DriveKeyDown(key="i", throttle=1, steering=0)  # noqa: E741
 COMMA = DriveKeyDown(key="comma", throttle=-1, steering=0)

@@ -5,11 +5,8 @@ from __future__ import annotations
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result
 from dialects.modes import Mode
-from groundstation.intents import (
-    Arm,
-    Disarm,
-    EmergencyStop,
-)
+from groundstation.intents.driving import EmergencyStop
+from groundstation.intents.vehicle import Arm, Disarm
 from tests.groundstation.cockpits import armed_cockpit, cockpit_with
 from tests.groundstation.fake_vehicle import OURS, FakeVehicle
 

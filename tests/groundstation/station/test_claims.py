@@ -5,7 +5,9 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from groundstation.intents import Arm, Disarm, DriveKeyUp, ReportKeyReleases, RequestControl
+from groundstation.intents.driving import DriveKeyUp
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.vehicle import Arm, Disarm, RequestControl
 from groundstation.station.arming import CONFIRM_WITHIN
 from groundstation.station.claims import Claims
 from groundstation.vehicles.vehicle_state import VehicleState

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dialects import messages as m
 from dialects.enums import Command, Result, Sensor
-from groundstation.intents import Arm
+from groundstation.intents.vehicle import Arm
 from groundstation.station.command_results import SHOWN_FOR
 from tests.groundstation.cockpits import cockpit_with
 from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle

@@ -6,13 +6,9 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Command, Result
-from groundstation.intents import (
-    Disarm,
-    DriveKeyUp,
-    ReportKeyReleases,
-    RequestControl,
-    SetMode,
-)
+from groundstation.intents.driving import DriveKeyUp
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.vehicle import Disarm, RequestControl, SetMode
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, cockpit_with
 from tests.groundstation.fake_vehicle import FakeVehicle
 

@@ -11,7 +11,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Autopilot
 from groundstation import client
-from groundstation.intents import Arm, DriveKeyDown, RenewLease, ReportKeyReleases, SetKeyGate, SetStyle
+from groundstation.intents.driving import DriveKeyDown, SetStyle
+from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.vehicle import Arm
 from groundstation.processes import start_module
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station

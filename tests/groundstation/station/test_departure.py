@@ -6,7 +6,7 @@ import pytest
 
 from dialects.enums import Command
 from dialects.modes import Mode
-from groundstation.intents import Quit
+from groundstation.intents.session import Quit
 from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
 from tests.groundstation.cockpits import armed_cockpit, cockpit_with, driving_cockpit
 from tests.groundstation.fake_ardupilot import FakeArduPilot

@@ -7,14 +7,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Autopilot
 from dialects.modes import Mode
-from groundstation.intents import (
-    Arm,
-    Disarm,
-    DriveKeyUp,
-    ReportKeyReleases,
-    RequestControl,
-    Stop,
-)
+from groundstation.intents.driving import DriveKeyUp, Stop
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.vehicle import Arm, Disarm, RequestControl
 from tests.groundstation.cockpits import FORWARD, LEFT, armed_cockpit, driving_cockpit
 from tests.groundstation.fake_vehicle import OURS, Cockpit, FakeVehicle
 

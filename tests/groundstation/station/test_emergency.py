@@ -5,12 +5,9 @@ from __future__ import annotations
 import pytest
 
 from dialects.enums import Command, Result
-from groundstation.intents import (
-    Arm,
-    ClearEmergencyStop,
-    EmergencyStop,
-    ReportKeyReleases,
-)
+from groundstation.intents.driving import ClearEmergencyStop, EmergencyStop
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.vehicle import Arm
 from groundstation.snapshot import EmergencyProgress
 from groundstation.station.emergency import FORCE_DISARM
 from tests.groundstation.cockpits import FORWARD, armed_cockpit

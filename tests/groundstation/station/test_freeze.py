@@ -11,7 +11,9 @@ from dialects import messages as m
 from dialects.enums import Autopilot, SystemState, VehicleType
 from dialects.modes import Mode, base_mode
 from groundstation.input.style import Style
-from groundstation.intents import AnyIntent, DriveKeyDown, DriveKeyUp, RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
+from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.union import AnyIntent
 from groundstation.station.operator import OperatorSession
 from groundstation.station.station import Station
 from link.core import Peer, Received

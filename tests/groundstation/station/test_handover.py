@@ -6,15 +6,9 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Command, Result
-from groundstation.intents import (
-    Disarm,
-    DriveKeyUp,
-    GiveControl,
-    KeepControl,
-    ReleaseControl,
-    ReportKeyReleases,
-    RequestControl,
-)
+from groundstation.intents.driving import DriveKeyUp
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.vehicle import Disarm, GiveControl, KeepControl, ReleaseControl, RequestControl
 from groundstation.snapshot import HandoverNotice
 from groundstation.station.handover import ANSWER_WITHIN
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, cockpit_with, driving_cockpit

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dialects import messages as m
 from dialects.enums import SystemState
-from groundstation.intents import (
-    RenewLease,
-)
+from groundstation.intents.session import RenewLease
 from groundstation.station.station import Station
 from link.core import Peer, Received
 from tests.groundstation.fake_vehicle import Cockpit

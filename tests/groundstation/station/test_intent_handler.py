@@ -8,19 +8,10 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Command
-from groundstation.intents import (
-    ACTIONS,
-    Arm,
-    ClearEmergencyStop,
-    DriveKeyDown,
-    Quit,
-    ReportKeyReleases,
-    ScaleLimits,
-    SelectVehicle,
-    SetKeyGate,
-    SetStyle,
-    Stop,
-)
+from groundstation.actions import ACTIONS
+from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, ScaleLimits, SetStyle, Stop
+from groundstation.intents.session import Quit, ReportKeyReleases, SetKeyGate
+from groundstation.intents.vehicle import Arm, SelectVehicle
 from groundstation.station.intent_handler import VEHICLE_COMMANDS
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
 from tests.groundstation.fake_vehicle import Cockpit

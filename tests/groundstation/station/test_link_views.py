@@ -8,9 +8,12 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Command, ControlFlag, Result, VehicleType
-from groundstation.intents import DriveKeyDown, ReportKeyReleases, SelectVehicle
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.vehicle import SelectVehicle
 from groundstation.ipc import MAX_PACKET, encode
-from groundstation.views import (
+from groundstation.views.base import ViewRequest
+from groundstation.views.links import (
     ControlRequest,
     ControlView,
     LinksRequest,
@@ -18,7 +21,6 @@ from groundstation.views import (
     Program,
     VehiclesRequest,
     VehiclesView,
-    ViewRequest,
 )
 from link.core import Received
 from link.protocol.channel import Channel

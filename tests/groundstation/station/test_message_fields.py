@@ -10,7 +10,7 @@ from dialects import codec
 from dialects import messages as m
 from dialects.messages import MESSAGES
 from groundstation.station.message_fields import build_fields
-from groundstation.views import MessageField
+from groundstation.views.messages import MessageField
 
 
 def field(message: m.Message, name: str) -> MessageField:

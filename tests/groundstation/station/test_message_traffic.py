@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from groundstation.intents import Watch
+from groundstation.intents.session import Watch
 from groundstation.ipc import MAX_PACKET, encode
 from groundstation.station.message_traffic import MAX_KINDS, MAX_ROWS, MessageTraffic
-from groundstation.views import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView, View
+from groundstation.views.base import View
+from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
 from link.core import LinkReport, SourceCount
 from tests.groundstation.fake_vehicle import Cockpit
 

@@ -6,13 +6,8 @@ import pytest
 
 from dialects import messages as m
 from dialects.enums import Autopilot
-from groundstation.intents import (
-    DriveKeyDown,
-    DriveKeyUp,
-    RenewLease,
-    ReportKeyReleases,
-    SetKeyGate,
-)
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
+from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
 from tests.groundstation.cockpits import FORWARD, armed_cockpit, driving_cockpit
 from tests.groundstation.fake_vehicle import FakeVehicle
 

@@ -12,7 +12,7 @@ from pymavlink.dialects.v20 import ardupilotmega
 
 from dialects.messages import MESSAGES
 from groundstation.station.message_traffic import MessageTraffic
-from groundstation.views import MessageRequest, MessagesRequest
+from groundstation.views.messages import MessageRequest, MessagesRequest
 from link.protocol.channel import Channel
 from link.tlog.tlog import read_records
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from groundstation import intents as i
-from groundstation.views import ParamPage, ParamPageRequest, RequestLine
+from groundstation.intents.services import CancelRequest, FetchParams, WriteParams
+from groundstation.intents.session import Watch
+from groundstation.views.params import ParamPage, ParamPageRequest
+from groundstation.views.requests import RequestLine
 from tests.test_stops import Drive
 from vehicle.params import PARAMETERS
 
@@ -22,7 +24,7 @@ def connected(loss: float = 0.0) -> Drive:
 
 def page(drive: Drive, request: ParamPageRequest = ALL) -> ParamPage:
     views: list[ParamPage] = []
-    drive.tell(i.Watch((request,)))
+    drive.tell(Watch((request,)))
 
     def take(view: object) -> bool:
         assert isinstance(view, ParamPage)
@@ -30,7 +32,7 @@ def page(drive: Drive, request: ParamPageRequest = ALL) -> ParamPage:
         return True
 
     drive.station.views.send_due(take, drive.world.now + 10.0, 0.0)
-    drive.tell(i.Watch(()))
+    drive.tell(Watch(()))
     return views[-1]
 
 
@@ -57,7 +59,7 @@ def texts(drive: Drive) -> list[str]:
 def test_parameters_are_fetched_with_their_defaults_and_sent_page_by_page(loss: float) -> None:
     drive = connected(loss)
     assert page(drive).known == 0
-    drive.tell(i.FetchParams(1))
+    drive.tell(FetchParams(1))
     assert end_of(drive, 1).detail == f"{len(PARAMETERS)} parameters"
     whole = page(drive)
     assert names(whole) == sorted(PARAMETERS)
@@ -71,9 +73,9 @@ def test_parameters_are_fetched_with_their_defaults_and_sent_page_by_page(loss: 
 
 def test_parameters_are_set_one_after_the_other() -> None:
     drive = connected()
-    drive.tell(i.FetchParams(1))
+    drive.tell(FetchParams(1))
     end_of(drive, 1)
-    drive.tell(i.WriteParams(2, 1, (("FS_TIMEOUT", 2.0), ("FS_DISARM_T", 20.0))))
+    drive.tell(WriteParams(2, 1, (("FS_TIMEOUT", 2.0), ("FS_DISARM_T", 20.0))))
     assert (end_of(drive, 2).what, end_of(drive, 2).state) == ("set 2 parameters", "accepted")
     changed = page(drive, ParamPageRequest(changed_only=True, rows=10))
     assert [(row.name, row.value, row.default) for row in changed.rows] == [
@@ -87,7 +89,7 @@ def test_parameters_are_set_one_after_the_other() -> None:
 def test_a_write_stops_at_the_first_refusal_with_the_vehicles_words() -> None:
     drive = connected()
     changes = (("FS_DISARM_T", 20.0), ("FS_TIMEOUT", 99.0), ("FS_GCS_TIMEOUT", 6.0))
-    drive.tell(i.WriteParams(7, 1, changes))
+    drive.tell(WriteParams(7, 1, changes))
     line = end_of(drive, 7)
     assert line.state == "refused"
     assert line.detail == "FS_TIMEOUT not changed: 99 is not in 0.5 to 10 (1 of 3 set)"
@@ -98,7 +100,7 @@ def test_a_write_stops_at_the_first_refusal_with_the_vehicles_words() -> None:
 def test_while_armed_the_vehicle_refuses_and_drives_on() -> None:
     drive = connected()
     drive.get_going()
-    drive.tell(i.FetchParams(1), i.WriteParams(2, 1, (("FS_TIMEOUT", 3.0),)))
+    drive.tell(FetchParams(1), WriteParams(2, 1, (("FS_TIMEOUT", 3.0),)))
     assert "FS_TIMEOUT not changed: disarm first" in end_of(drive, 2).detail
     assert end_of(drive, 1).state == "accepted"
     assert drive.power > 0.5, "requests do not disturb the demand"
@@ -108,12 +110,12 @@ def test_while_armed_the_vehicle_refuses_and_drives_on() -> None:
 
 def test_nothing_is_sent_for_a_screen_that_is_frozen() -> None:
     drive = connected()
-    drive.tell(i.FetchParams(1))
+    drive.tell(FetchParams(1))
     end_of(drive, 1)
     drive.screen_lives = False
     drive.run(1.0)
     sent = len(drive.world.near.sent)
-    drive.tell(i.FetchParams(2))
+    drive.tell(FetchParams(2))
     drive.run(3.0)
     assert len(drive.world.near.sent) == sent
     drive.screen_lives = True
@@ -122,10 +124,10 @@ def test_nothing_is_sent_for_a_screen_that_is_frozen() -> None:
 
 def test_a_request_without_the_vehicle_ends_at_once() -> None:
     drive = Drive()
-    drive.tell(i.FetchParams(1))
+    drive.tell(FetchParams(1))
     assert "station: fetch parameters: refused, no vehicle yet" in texts(drive)
     drive = connected()
-    drive.tell(i.WriteParams(2, 99, (("FS_TIMEOUT", 3.0),)))
+    drive.tell(WriteParams(2, 99, (("FS_TIMEOUT", 3.0),)))
     assert end_of(drive, 2).detail == "no vehicle yet"
     drive.run(1.0)
     assert not any(isinstance(message, m.ParamSet) for _, message in drive.world.near.sent)
@@ -133,7 +135,7 @@ def test_a_request_without_the_vehicle_ends_at_once() -> None:
 
 def test_two_requests_at_once() -> None:
     drive = connected()
-    drive.tell(i.FetchParams(1), i.FetchParams(2), i.WriteParams(3, 1, ()), i.FetchParams(1))
+    drive.tell(FetchParams(1), FetchParams(2), WriteParams(3, 1, ()), FetchParams(1))
     assert end_of(drive, 2).detail == "parameters are being fetched already"
     assert "there is nothing to set" in end_of(drive, 3).detail
     drive.until(lambda: not page(drive).running)
@@ -150,15 +152,15 @@ def test_a_vehicle_that_is_only_driven_has_no_services() -> None:
 
 def test_a_request_can_be_cancelled() -> None:
     drive = connected()
-    drive.tell(i.FetchParams(1))
+    drive.tell(FetchParams(1))
     drive.run(0.05)
-    drive.tell(i.CancelRequest(1))
+    drive.tell(CancelRequest(1))
     assert end_of(drive, 1, within=0.1).state == "cancelled"
-    drive.tell(i.FetchParams(2))
+    drive.tell(FetchParams(2))
     assert end_of(drive, 2).state == "accepted"
     changes = tuple((name, PARAMETERS[name].default * 0.9) for name in ("WP_SPEED", "WP_RADIUS", "SPEED_MAX"))
-    drive.tell(i.WriteParams(3, 1, changes))
-    drive.tell(i.CancelRequest(3))
+    drive.tell(WriteParams(3, 1, changes))
+    drive.tell(CancelRequest(3))
     assert end_of(drive, 3).state == "cancelled"
     drive.run(2.0)
     assert drive.params["SPEED_MAX"] == PARAMETERS["SPEED_MAX"].default
@@ -166,12 +168,12 @@ def test_a_request_can_be_cancelled() -> None:
 
 def test_after_a_lost_link_the_values_are_forgotten() -> None:
     drive = connected()
-    drive.tell(i.FetchParams(1))
+    drive.tell(FetchParams(1))
     end_of(drive, 1)
     drive.world.cut()
     drive.run(4.0)
     assert page(drive).known == len(PARAMETERS)
     drive.world.cut(False)
     drive.until(lambda: page(drive).known == 0)
-    drive.tell(i.FetchParams(2))
+    drive.tell(FetchParams(2))
     assert end_of(drive, 2).state == "accepted"

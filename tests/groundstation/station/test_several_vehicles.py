@@ -7,21 +7,10 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Command
 from groundstation.input.keymap import KEYMAPS, KeyEvent, Keymap
-from groundstation.intents import (
-    AnyIntent,
-    Arm,
-    Disarm,
-    DriveKeyDown,
-    DriveKeyUp,
-    EmergencyStop,
-    RenewLease,
-    ReportKeyReleases,
-    SelectNextVehicle,
-    SelectVehicle,
-    SetKeyGate,
-    SetMode,
-    Stop,
-)
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
+from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import Arm, Disarm, SelectNextVehicle, SelectVehicle, SetMode
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from groundstation.station.view_feed import ViewFeed, ViewSource
-from groundstation.views import LogPage, LogRequest, View
+from groundstation.views.base import View
+from groundstation.views.log import LogPage, LogRequest
 
 
 class Pipe:

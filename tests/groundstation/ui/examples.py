@@ -9,7 +9,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from groundstation.intents import AnyIntent, RenewLease, SetKeyGate
+from groundstation.intents.session import RenewLease, SetKeyGate
+from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import (
     LinkView,
     LogLine,
@@ -20,17 +21,11 @@ from groundstation.snapshot import (
     StationOutage,
     VehicleView,
 )
-from groundstation.views import (
-    LogPage,
-    MessageField,
-    MessageRow,
-    MessagesPage,
-    MessageView,
-    ParamPage,
-    ParamRow,
-    RequestLine,
-    View,
-)
+from groundstation.views.base import View
+from groundstation.views.log import LogPage
+from groundstation.views.messages import MessageField, MessageRow, MessagesPage, MessageView
+from groundstation.views.params import ParamPage, ParamRow
+from groundstation.views.requests import RequestLine
 
 NOON = 1_700_000_000.0
 """A wall clock for log lines; the tests run in UTC."""

@@ -7,7 +7,8 @@ from typing import Any
 import msgspec
 
 from groundstation.snapshot import Snapshot
-from groundstation.views import (
+from groundstation.views.base import View
+from groundstation.views.links import (
     ComponentRow,
     ControlView,
     LinkRow,
@@ -16,7 +17,6 @@ from groundstation.views import (
     StationRow,
     VehicleRow,
     VehiclesView,
-    View,
 )
 from tests.groundstation.ui.examples import snapshot
 

@@ -14,7 +14,8 @@ from pathlib import Path
 
 from textual.drivers.linux_driver import LinuxDriver
 
-from groundstation.intents import AnyIntent, RenewLease
+from groundstation.intents.session import RenewLease
+from groundstation.intents.union import AnyIntent
 from groundstation.ui.run import run
 from groundstation.ui.terminal import ConsoleDriver
 from tests.groundstation.ui.examples import Recorder, snapshot

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import HoldProgress
-from groundstation.intents import ACTIONS
 from groundstation.snapshot import EmergencyProgress, HandoverNotice, LinkView, Snapshot
 from groundstation.ui.alerts import LIMITS, AlertLevel, active_alerts, hint
 from groundstation.ui.display_state import DisplayState, ScreenInfo

@@ -5,7 +5,10 @@ from __future__ import annotations
 import pytest
 from textual import events
 
-from groundstation.intents import ACTIONS, Arm, Disarm, DriveKeyDown, EmergencyStop, Quit, RenewLease, SetKeyGate, Stop
+from groundstation.actions import ACTIONS
+from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
+from groundstation.intents.session import Quit, RenewLease, SetKeyGate
+from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.snapshot import StationOutage
 from groundstation.ui.key_parser import KeyRepeat
 from tests.groundstation.ui.examples import snapshot, vehicle

@@ -9,8 +9,8 @@ import pytest
 from rich.color import Color, ColorSystem
 from rich.segment import Segment
 
+from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import HoldProgress
-from groundstation.intents import ACTIONS
 from groundstation.snapshot import Snapshot
 from groundstation.ui.colours import FAINT, GROUND, MUTED, badge
 from groundstation.ui.display_state import DisplayState

@@ -11,16 +11,10 @@ from textual import events
 from textual.message import Message
 
 from groundstation.input.keymap import KeyEvent
-from groundstation.intents import (
-    AnyIntent,
-    DriveKeyDown,
-    DriveKeyUp,
-    EmergencyStop,
-    ReportKeyReleases,
-    SetKeyGate,
-    SetMode,
-    Stop,
-)
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
+from groundstation.intents.session import ReportKeyReleases, SetKeyGate
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import SetMode
 from groundstation.ui.escape_sequences import MAX_LENGTH, OPEN_TIME, Piece, SequenceAssembler
 from groundstation.ui.key_gate import KeyGate
 from groundstation.ui.key_parser import KeyEventParser

@@ -9,12 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import HoldProgress
-from groundstation.intents import ACTIONS
 from groundstation.screens import SCREENS
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.display_state import DisplayState
-from groundstation.views import ControlView, LinksView, VehiclesView, View
+from groundstation.views.base import View
+from groundstation.views.links import ControlView, LinksView, VehiclesView
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import (
     LOG_PAGE,

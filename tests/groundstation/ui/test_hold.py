@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.intents import Arm, Disarm
+from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.ui.key_gate import KeyGate
 from groundstation.ui.key_parser import KeyEventParser
 from tests.groundstation.held_key import hold_until

@@ -7,19 +7,9 @@ from collections.abc import Iterator
 import pytest
 
 from groundstation.input.keymap import KeyEvent
-from groundstation.intents import (
-    HOLD_TIME,
-    Arm,
-    Disarm,
-    DriveKeyDown,
-    DriveKeyUp,
-    EmergencyStop,
-    ReportKeyReleases,
-    ScaleLimits,
-    SetKeyGate,
-    SetMode,
-    Stop,
-)
+from groundstation.intents.driving import HOLD_TIME, DriveKeyDown, DriveKeyUp, EmergencyStop, ScaleLimits, Stop
+from groundstation.intents.session import ReportKeyReleases, SetKeyGate
+from groundstation.intents.vehicle import Arm, Disarm, SetMode
 from groundstation.ui.key_gate import OPENING_TIMEOUT, OTHER_SCREEN, TEXT_FIELD, GateClosure, KeyGate
 from tests.groundstation.held_key import event_times
 from tests.groundstation.ui.examples import Recorder

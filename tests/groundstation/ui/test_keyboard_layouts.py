@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from groundstation.intents import Arm, DriveKeyDown
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.vehicle import Arm
 from groundstation.ui.app import ConsoleApp
 from groundstation.ui.key_parser import find_latin_sequence
 from tests.groundstation.held_key import hold_until

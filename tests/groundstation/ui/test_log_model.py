@@ -10,7 +10,7 @@ from groundstation.snapshot import LogLine
 from groundstation.ui.log_model import KEPT, LogFilter, LogModel, format_lines
 from groundstation.ui.wrap import wrap
 from groundstation.vehicles.message_log import MAX_LINES
-from groundstation.views import LogPage, LogRequest
+from groundstation.views.log import LogPage, LogRequest
 
 HEIGHT = 5
 

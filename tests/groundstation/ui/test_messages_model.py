@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from groundstation.ui.messages_model import MARGIN, MessagesModel
-from groundstation.views import MessageRequest, MessageRow, MessagesPage
+from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage
 
 HEIGHT = 10
 

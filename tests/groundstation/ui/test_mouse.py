@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.input.keymap import KeyEvent
-from groundstation.intents import DriveKeyDown, SetMode, Stop
+from groundstation.intents.driving import DriveKeyDown, Stop
+from groundstation.intents.vehicle import SetMode
 from groundstation.ui.escape_sequences import MAX_LENGTH, OPEN_TIME, Piece, SequenceAssembler
 from groundstation.ui.key_parser import KeyEventParser
 from groundstation.ui.mouse import CAPTURE_MOUSE, RELEASE_MOUSE

@@ -4,17 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.intents import (
-    ACTIONS,
-    Disarm,
-    DriveKeyDown,
-    EmergencyStop,
-    RequestControl,
-    SelectNextVehicle,
-    SetKeyGate,
-    SetMode,
-    Stop,
-)
+from groundstation.actions import ACTIONS
+from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
+from groundstation.intents.session import SetKeyGate
+from groundstation.intents.vehicle import Disarm, RequestControl, SelectNextVehicle, SetMode
 from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.navigation import ROOT, load_screen
 from groundstation.ui.screens.drive import DriveScreen

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from groundstation.intents import ACTIONS, Disarm
+from groundstation.actions import ACTIONS
+from groundstation.intents.vehicle import Disarm
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import until

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 
-from groundstation.intents import DriveKeyDown, DriveKeyUp, EmergencyStop, ReportKeyReleases, SetKeyGate, Stop
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, Stop
+from groundstation.intents.session import ReportKeyReleases, SetKeyGate
 from groundstation.ui.key_gate import GateClosure
 from tests.groundstation.ui.ptys import PRESS_W, RELEASE_W, REPEAT_W, app_on_a_pty, until
 

@@ -12,7 +12,8 @@ from collections.abc import Awaitable, Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from groundstation.intents import Arm, ClearEmergencyStop
+from groundstation.intents.driving import ClearEmergencyStop
+from groundstation.intents.vehicle import Arm
 from groundstation.ui.app import ConsoleApp
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui.examples import Recorder, snapshot, vehicle
@@ -36,7 +37,7 @@ def corpus() -> str:
     files = (
         FOLDER / "README.md",
         FOLDER / "docs" / "safety.md",
-        FOLDER / "groundstation" / "intents.py",
+        FOLDER / "groundstation" / "actions.py",
         Path(__file__),
     )
     text = "".join(PAIRS + file.read_text("utf-8") for file in files)

@@ -12,18 +12,9 @@ import pytest
 from dialects import messages as m
 from dialects.enums import Autopilot, Command
 from dialects.modes import Mode
-from groundstation.intents import (
-    Arm,
-    Disarm,
-    DriveKeyDown,
-    DriveKeyUp,
-    EmergencyStop,
-    Quit,
-    ReportKeyReleases,
-    SetKeyGate,
-    SetStyle,
-    Stop,
-)
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp, EmergencyStop, SetStyle, Stop
+from groundstation.intents.session import Quit, ReportKeyReleases, SetKeyGate
+from groundstation.intents.vehicle import Arm, Disarm
 from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
 from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 

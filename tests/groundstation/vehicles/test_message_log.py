@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dialects.messages import StatusText
 from groundstation.ipc import MAX_PACKET, encode
 from groundstation.vehicles.message_log import MAX_LENGTH, MAX_LINES, NEWEST, PAGE, STATE, MessageLog
-from groundstation.views import LogPage, LogRequest
+from groundstation.views.log import LogPage, LogRequest
 
 
 def said(text: bytes, number: int = 0, chunk: int = 0, severity: int = 6) -> StatusText:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from dialects import messages as m
-from groundstation.intents import Arm, ReportKeyReleases
+from groundstation.intents.session import ReportKeyReleases
+from groundstation.intents.vehicle import Arm
 from tests.groundstation.cockpits import FORWARD
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.fake_vehicle import Cockpit

@@ -9,7 +9,8 @@ import pytest
 from dialects.axes import AXIS_MAPS, NEUTRAL, PX4_FRAMES
 from dialects.enums import Autopilot
 from dialects.messages import ManualControl, ParamRequestRead, ParamValue
-from groundstation.intents import DriveKeyDown, DriveKeyUp, ReportKeyReleases
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
+from groundstation.intents.session import ReportKeyReleases
 from groundstation.vehicles.px4_checks import PX4
 from groundstation.vehicles.settings_check import SettingsCheck
 from link.core import Peer, Received

@@ -16,11 +16,11 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega
 
 from dialects.messages import MESSAGES
-from groundstation.intents import RenewLease, SetKeyGate
+from groundstation.intents.session import RenewLease, SetKeyGate
 from groundstation.ipc import encode
 from groundstation.snapshot import LogLine, Snapshot
 from groundstation.station.station import COMPONENT, Station
-from groundstation.views import LogRequest
+from groundstation.views.log import LogRequest
 from link.core import LinkReport
 from link.protocol.channel import Channel
 from link.tlog.tlog import Record, read_records

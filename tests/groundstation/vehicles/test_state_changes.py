@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dialects.modes import Mode
-from groundstation.intents import Arm, RequestControl, SetMode
+from groundstation.intents.vehicle import Arm, RequestControl, SetMode
 from groundstation.vehicles.message_log import STATE
-from groundstation.views import LogRequest
+from groundstation.views.log import LogRequest
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.fake_vehicle import Cockpit
 

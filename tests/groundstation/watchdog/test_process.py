@@ -10,7 +10,8 @@ from contextlib import ExitStack
 
 import pytest
 
-from groundstation.intents import DriveKeyDown, DriveKeyUp, Quit
+from groundstation.intents.driving import DriveKeyDown, DriveKeyUp
+from groundstation.intents.session import Quit
 from tests.groundstation.fake_ardupilot import LATCH, FakeArduPilot
 from tests.groundstation.line_vehicle import LINES, LineVehicle
 from tests.groundstation.screen import FORWARD, Screen, children, running, until

@@ -11,7 +11,8 @@ from dialects import codec
 from dialects import messages as m
 from dialects.enums import Autopilot, ModeFlag, OperatorFlag, SystemState, VehicleType
 from dialects.modes import Mode, base_mode
-from groundstation.intents import DriveKeyDown, RenewLease, ReportKeyReleases, SetKeyGate
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyGate
 from groundstation.snapshot import StationOutage
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.stall import STALL_TIMEOUT

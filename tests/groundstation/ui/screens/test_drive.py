@@ -7,16 +7,9 @@ import time
 
 import pytest
 
-from groundstation.intents import (
-    HOLD_TIME,
-    Arm,
-    ClearEmergencyStop,
-    Disarm,
-    DriveKeyDown,
-    EmergencyStop,
-    SetKeyGate,
-    StartSimulator,
-)
+from groundstation.intents.driving import HOLD_TIME, ClearEmergencyStop, DriveKeyDown, EmergencyStop
+from groundstation.intents.session import SetKeyGate, StartSimulator
+from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.snapshot import EmergencyProgress, LinkView
 from groundstation.ui.alerts import LIMITS
 from tests.groundstation.held_key import hold_until

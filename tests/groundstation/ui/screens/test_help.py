@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.intents import ACTIONS
+from groundstation.actions import ACTIONS
 from tests.groundstation.ui.pilots import console, helps, helps_pushed, type_in
 from tests.groundstation.ui.ptys import until
 

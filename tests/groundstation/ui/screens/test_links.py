@@ -7,37 +7,26 @@ from functools import partial
 import msgspec
 import pytest
 
-from groundstation.intents import (
-    ACTIONS,
+from groundstation.actions import ACTIONS, OperatorAction
+from groundstation.intents.base import Intent
+from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
+from groundstation.intents.session import SetKeyGate, Watch
+from groundstation.intents.vehicle import (
     Arm,
     Disarm,
-    DriveKeyDown,
-    EmergencyStop,
     GiveControl,
-    Intent,
     KeepControl,
-    OperatorAction,
     ReleaseControl,
     RequestControl,
     SelectNextVehicle,
     SelectVehicle,
-    SetKeyGate,
     SetMode,
-    Stop,
-    Watch,
 )
 from groundstation.snapshot import HandoverNotice, Snapshot
 from groundstation.ui.key_gate import OTHER_SCREEN
 from groundstation.ui.screens.links import LinksScreen
-from groundstation.views import (
-    ControlRequest,
-    ControlView,
-    LinkRow,
-    LinksRequest,
-    LinksView,
-    VehiclesRequest,
-    View,
-)
+from groundstation.views.base import View
+from groundstation.views.links import ControlRequest, ControlView, LinkRow, LinksRequest, LinksView, VehiclesRequest
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.link_examples import CONTROL, FLEET, LINKS, OURS, SIX, VIEWS, fleet, many
 from tests.groundstation.ui.pilots import Console, console

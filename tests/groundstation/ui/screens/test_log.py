@@ -6,11 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.intents import DriveKeyDown, EmergencyStop, SetKeyGate, Stop, Watch
+from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
+from groundstation.intents.session import SetKeyGate, Watch
 from groundstation.snapshot import LogLine
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.log import LogScreen, short_path
-from groundstation.views import LogPage, LogRequest
+from groundstation.views.log import LogPage, LogRequest
 from tests.groundstation.ui.examples import LOG_PAGE, NOON, snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until

@@ -5,10 +5,12 @@ from __future__ import annotations
 import msgspec
 import pytest
 
-from groundstation.intents import ACTIONS, DriveKeyDown, EmergencyStop, OperatorAction, SetKeyGate, Stop, Watch
+from groundstation.actions import ACTIONS, OperatorAction
+from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
+from groundstation.intents.session import SetKeyGate, Watch
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.messages import MessagesScreen
-from groundstation.views import MessageField, MessageRequest, MessageRow, MessagesPage, MessagesRequest
+from groundstation.views.messages import MessageField, MessageRequest, MessageRow, MessagesPage, MessagesRequest
 from tests.groundstation.ui.examples import MESSAGES_PAGE, SYS_STATUS_VIEW, snapshot
 from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.groundstation.ui.ptys import STANDARD, until

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from groundstation.intents import STOP_KEY, CancelRequest, FetchParams, SetKeyGate, Stop, Watch, WriteParams
+from groundstation.intents.driving import STOP_KEY, Stop
+from groundstation.intents.services import CancelRequest, FetchParams, WriteParams
+from groundstation.intents.session import SetKeyGate, Watch
 from groundstation.snapshot import Snapshot
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.params import ParamsScreen
-from groundstation.views import ParamPage, ParamPageRequest, RequestLine
+from groundstation.views.params import ParamPage, ParamPageRequest
+from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.examples import param_page, snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
@@ -91,9 +94,9 @@ async def test_a_change_is_sent_after_the_question_only() -> None:
         await change(screen, "0")
         await until(lambda: "2 → 0" in screen.text)
         await screen.press("W")
-        await until(lambda: "write 1 change to the vehicle, which is ARMED · y writes" in screen.text)
+        await until(lambda: "write 1 change to the vehicle, which is ARMED · y does it" in screen.text)
         await screen.press("n")
-        await until(lambda: "y writes" not in screen.text)
+        await until(lambda: "y does it" not in screen.text)
         await screen.press("y")
         assert screen.station.of(WriteParams) == []
         await screen.press("W", "y")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from groundstation.ui.colours import DIM, TEXT, style
 from groundstation.ui.widgets.message_detail import MessageDetail, MessageDetailValue
 from groundstation.ui.widgets.message_table import MessageTable, MessageTableValue
-from groundstation.views import MessageRow, MessageView
+from groundstation.views.messages import MessageRow, MessageView
 from tests.groundstation.ui.frames import texts
 
 UNKNOWN = MessageRow(1, 1, False, "#51000", 4.0, 124.0, 40, 0.2, label="31 B", unknown=True)

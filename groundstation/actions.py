@@ -1,0 +1,111 @@
+"""ACTIONS: everything that an operator can do with a key or in the command palette.
+
+A new action is a row here. One that the station carries out has an intent (groundstation/intents).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from groundstation.intents.driving import ClearEmergencyStop, DriveKeyDown, EmergencyStop, ScaleLimits, SetStyle, Stop
+from groundstation.intents.session import StartSimulator
+from groundstation.intents.union import AnyIntent
+from groundstation.intents.vehicle import (
+    Arm,
+    Disarm,
+    GiveControl,
+    KeepControl,
+    ReleaseControl,
+    RequestControl,
+    SelectNextVehicle,
+    SetMode,
+)
+from groundstation.screens import SCREENS
+
+FASTER, SLOWER = 1.1, 0.9
+"""Factors of one press of a speed key, those of teleop_twist_keyboard."""
+
+
+@dataclass(frozen=True, slots=True)
+class OperatorAction:
+    """Something an operator can ask for with a key or in the command palette."""
+
+    id: str
+    label: str
+    """One or two words for the footer."""
+    help: str
+    group: str
+    """"drive", "stop", "speed", "vehicle" or "app"."""
+    intent: AnyIntent | None = None
+    """Sent to the station; None where the screen acts itself. The key's name is added to a DriveKeyDown."""
+    keys: tuple[str, ...] = ()
+    """Keys in every key map, by Textual's names ("i", "comma", "up", "ctrl+q"). KEYMAPS (input/keymap.py) adds more."""
+    confirm: bool = False
+    """The key must be held for HOLD_TIME; then `intent` is sent, with that time in its field `held` if it has one."""
+    when_armed: AnyIntent | None = None
+    """Sent in place of `intent`, without confirmation, while the vehicle is armed."""
+
+
+def _drive(name: str, label: str, text: str, throttle: int, steering: int, *keys: str) -> OperatorAction:
+    intent = DriveKeyDown(key="", throttle=throttle, steering=steering)
+    return OperatorAction(f"drive.{name}", label, text, "drive", intent, keys)
+
+
+def _speed(name: str, label: str, text: str, throttle: float, steering: float) -> OperatorAction:
+    return OperatorAction(f"speed.{name}", label, text, "speed", ScaleLimits(throttle=throttle, steering=steering))
+
+
+_ROWS = (
+    _drive("forward", "Forward", "Drive forward while held", 1, 0, "up", "i"),
+    _drive("backward", "Backward", "Drive backward while held", -1, 0, "down", "comma"),
+    _drive("left", "Left", "Turn left (in place where the vehicle can)", 0, -1, "left", "j"),
+    _drive("right", "Right", "Turn right", 0, 1, "right", "l"),
+    _drive("forward_left", "Fwd left", "Drive forward and turn left", 1, -1, "u"),
+    _drive("forward_right", "Fwd right", "Drive forward and turn right", 1, 1, "o"),
+    # Backward curves negate the turn, as in teleop_twist_keyboard: the vehicle goes back on the arc that it would have
+    # driven forward, as a car does with its wheels held. A chord of two keys does not: left always turns the nose left.
+    _drive("backward_left", "Back left", "Back up to the left, as a car does", -1, 1, "m"),
+    _drive("backward_right", "Back right", "Back up to the right, as a car does", -1, -1, "full_stop"),
+    OperatorAction("drive.stop", "Stop", "Neutral at once; ends latched driving", "stop", Stop(),
+                   ("k", "space", "ctrl+k")),
+    OperatorAction("stop.emergency", "EMERGENCY STOP", "Motors off and locked, from every screen", "stop",
+                   EmergencyStop(), ("exclamation_mark", "f9")),
+    OperatorAction("stop.clear", "Clear e-stop", "Release the emergency stop; arming is a separate step", "stop",
+                   ClearEmergencyStop(), ("t",), confirm=True),
+    _speed("faster", "Faster", "Raise both limits by 10 %; never moves the vehicle", FASTER, FASTER),
+    _speed("slower", "Slower", "Lower both limits by 10 %", SLOWER, SLOWER),
+    _speed("throttle_faster", "Throttle +", "Raise the throttle limit by 10 %", FASTER, 1.0),
+    _speed("throttle_slower", "Throttle -", "Lower the throttle limit by 10 %", SLOWER, 1.0),
+    _speed("steering_faster", "Steering +", "Raise the steering limit by 10 %", 1.0, FASTER),
+    _speed("steering_slower", "Steering -", "Lower the steering limit by 10 %", 1.0, SLOWER),
+    OperatorAction("drive.style", "Style", "Next drive style: hold, latch, step", "drive", SetStyle(style="next"),
+                   ("tab",)),
+    OperatorAction("vehicle.arm", "Arm", "Arm; when armed, one press disarms", "vehicle", Arm(), ("r",), confirm=True,
+                   when_armed=Disarm()),
+    OperatorAction("vehicle.disarm", "Disarm", "Disarm", "vehicle", Disarm()),
+    OperatorAction("vehicle.manual", "MANUAL", "Mode MANUAL: the keys drive", "vehicle", SetMode(mode="MANUAL"),
+                   ("1",)),
+    OperatorAction("vehicle.hold", "HOLD", "Mode HOLD: the vehicle stays stopped", "vehicle", SetMode(mode="HOLD"),
+                   ("2",)),
+    OperatorAction("vehicle.control", "Take control", "Request control of the vehicle", "vehicle", RequestControl(),
+                   ("g",)),
+    OperatorAction("vehicle.release", "Release control", "Stop, and release control of the vehicle", "vehicle",
+                   ReleaseControl(), ("G",)),
+    OperatorAction("vehicle.give", "Give control", "Give control to the ground station that asks for it", "vehicle",
+                   GiveControl(), ("Y",)),
+    OperatorAction("vehicle.keep", "Keep control", "Refuse the request of another ground station for control",
+                   "vehicle", KeepControl(), ("N",)),
+    OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and select the next one", "vehicle",
+                   SelectNextVehicle(), ("n",)),
+    OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator(), ("f5",)),
+    *(OperatorAction(screen.action, screen.title, screen.help, "app", keys=screen.keys) for screen in SCREENS),
+    OperatorAction("app.goto", "Go to", "Menu of the screens; then the digit of one", "app", keys=("ctrl+g",)),
+    OperatorAction("app.next_screen", "Next screen", "Screen to the right in the tab bar", "app",
+                   keys=("right_square_bracket",)),
+    OperatorAction("app.previous_screen", "Previous screen", "Screen to the left in the tab bar", "app",
+                   keys=("left_square_bracket",)),
+    OperatorAction("app.quit", "Quit", "Stop the vehicle and quit", "app", keys=("ctrl+q", "ctrl+c")),
+)  # fmt: skip
+
+ACTIONS: dict[str, OperatorAction] = {action.id: action for action in _ROWS}
+"""Every action by id, in the order of the help screen."""

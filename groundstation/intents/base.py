@@ -1,0 +1,17 @@
+"""Base class of all intents."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import msgspec
+
+
+class Intent(msgspec.Struct, frozen=True, tag=True):
+    """Base class of all intents."""
+
+    is_input: ClassVar[bool] = True
+    """The operator did something. False for what the screen sends on its own."""
+
+    valid_when_late: ClassVar[bool] = False
+    """Handled even when older than ipc.MAX_INTENT_AGE: the intent only ever stops, or reports a state."""

@@ -1,0 +1,61 @@
+"""Intents that drive, stop, and set how keys drive."""
+
+from __future__ import annotations
+
+from groundstation.intents.base import Intent
+
+HOLD_TIME = 1.0
+"""s for which the key of an action with `confirm` must be held (input/hold_to_confirm.py); the station checks it."""
+
+STOP_KEY = "stop key"
+"""The reason of a Stop that the operator requested with a key; other reasons mean that the screen cannot drive now."""
+
+
+class DriveKeyDown(Intent, frozen=True):
+    """A drive key went down, or repeats; -1, 0 or +1 for each axis."""
+
+    key: str
+    throttle: int
+    steering: int
+    repeat: bool = False
+    """The terminal reports an auto-repeat (only terminals that report key releases do)."""
+
+
+class DriveKeyUp(Intent, frozen=True):
+    """A drive key went up. Only some terminals report it; elsewhere the sticks return to neutral by a timer."""
+
+    valid_when_late = True
+    key: str
+
+
+class Stop(Intent, frozen=True):
+    """Neutral at once; also ends latched driving. A stop key puts a vehicle in an autonomous mode into HOLD as well."""
+
+    valid_when_late = True
+    reason: str = STOP_KEY
+
+
+class EmergencyStop(Intent, frozen=True):
+    """Motors off at once and locked: a command, repeated until acknowledged."""
+
+    valid_when_late = True
+
+
+class ClearEmergencyStop(Intent, frozen=True):
+    """Release the emergency stop; arming is a separate step."""
+
+    held: float = 0.0
+    """s for which the key was held; refused below HOLD_TIME."""
+
+
+class ScaleLimits(Intent, frozen=True):
+    """Scale the limits of the sticks; never moves the vehicle. Factors above 0, e.g. 1.1."""
+
+    throttle: float = 1.0
+    steering: float = 1.0
+
+
+class SetStyle(Intent, frozen=True):
+    """Set the drive style: "hold", "latch" or "step"; "next" selects the one after the current style."""
+
+    style: str

@@ -1,0 +1,36 @@
+"""Intents that are requests to the services of a vehicle. Views report by their number how they stand.
+
+A new one is a class here and its row in SERVICE_CALLS (station/service_calls.py).
+"""
+
+from __future__ import annotations
+
+from groundstation.intents.base import Intent
+
+
+class ServiceIntent(Intent, frozen=True, tag=False):
+    """Base class of the requests."""
+
+    request: int
+    """Number by which views report how it stands; see ui/request_numbers.py."""
+    system: int = 0
+    """The vehicle that the operator saw: another one that is selected meanwhile must not get the request.
+
+    0: the selected one."""
+
+
+class FetchParams(ServiceIntent, frozen=True, tag=True):
+    """Fetch all parameters."""
+
+
+class WriteParams(ServiceIntent, frozen=True, tag=True):
+    """Set parameters, one after the other; stops at the first that is not set."""
+
+    changes: tuple[tuple[str, float], ...] = ()
+    """Names and values."""
+
+
+class CancelRequest(Intent, frozen=True):
+    """Cancel a request; what was set or sent before stays."""
+
+    request: int

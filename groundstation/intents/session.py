@@ -1,0 +1,53 @@
+"""Intents of the session of a screen: its keys, its lease, what it watches, its end."""
+
+from __future__ import annotations
+
+from groundstation.intents.base import Intent
+from groundstation.views.union import AnyRequest
+
+LEASE_TIMEOUT = 0.3
+"""s without a renewal after which the screen counts as frozen: three renewals at its 10 Hz, and longer than its longest
+drawing (0.1 s). A frozen screen then means neutral well within 0.5 s."""
+
+
+class ReportKeyReleases(Intent, frozen=True):
+    """The terminal has proved that it reports key releases: no timers are needed any more."""
+
+    is_input = False
+    valid_when_late = True
+
+
+class SetKeyGate(Intent, frozen=True):
+    """Open or close the key gate. It is closed under another screen, without focus and without a terminal."""
+
+    is_input = False
+    valid_when_late = True
+    open: bool
+    reason: str = ""
+
+
+class RenewLease(Intent, frozen=True):
+    """The screen's event loop runs. Without renewals the station sends neutral, then nothing."""
+
+    is_input = False
+
+
+class Watch(Intent, frozen=True):
+    """Send these views from now on, and no others: what the screen on top needs beside the snapshot."""
+
+    is_input = False
+    valid_when_late = True
+    requests: tuple[AnyRequest, ...] = ()
+
+
+class StartSimulator(Intent, frozen=True):
+    """Start a simulated rover as a child of the station process and let it connect to us."""
+
+
+class Quit(Intent, frozen=True):
+    """Send neutral several times and exit."""
+
+    is_input = False
+    valid_when_late = True
+    disarm: bool = False
+    """Disarm before the exit what this station armed; another Quit without it meanwhile leaves that armed."""
