@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -80,7 +81,7 @@ class _Files:
     def _find(self, text: str, place: Place | None) -> tuple[Path, str]:
         """Return the path of a file, and its name for error messages."""
         for folder in self._folders(place):
-            if text and _is_there(folder / text):
+            if text and os.path.exists(folder / text):  # Path.exists raises for a long name
                 return (folder / text).resolve(), printable(text if place is None else str(folder / text))
         raise DialectError(_missing(text, place))
 
@@ -91,16 +92,9 @@ class _Files:
         return (self.home, SHIPPED) if beside == SHIPPED else (beside, self.home, SHIPPED)
 
 
-def _is_there(path: Path) -> bool:
-    try:
-        return path.exists()
-    except OSError:  # a name that is too long, a folder that may not be read
-        return False
-
-
 def _missing(text: str, place: Place | None) -> str:
     if place is None:
-        shipped = bool(text) and _is_there(SHIPPED / f"{text}.xml")
+        shipped = bool(text) and os.path.exists(SHIPPED / f"{text}.xml")
         what = f"did you mean {text}.xml?" if shipped else "name the XML file of the dialect"
         return f"{printable(text)}: no such file: {what}"
     return f"{place}: include {text[:80]!a} is neither beside this file nor among pymavlink's: copy it there"
