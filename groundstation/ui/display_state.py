@@ -67,6 +67,8 @@ class DisplayState:
     screen: ScreenInfo = DRIVE_INFO
     ascii: bool = False
     """The terminal shows ASCII characters only."""
+    still: bool = False
+    """Nothing may move by itself."""
 
     def key(self, action: str) -> str:
         """Return the main key of an action as it is printed, "?" where it has none."""
