@@ -166,6 +166,8 @@ class LinkView(msgspec.Struct, frozen=True, kw_only=True):
     """Messages that could not be sent: no room, or the other end refused them."""
     systems: tuple[int, ...] = ()
     """System ids heard, of ground stations too."""
+    watch_only: bool = False
+    """Nothing is ever sent on it."""
     problem: str | None = None
     """e.g. "messages arrive with another dialect's checksum: HEARTBEAT"."""
 

@@ -79,6 +79,7 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         speed=settings.speed,
         sitl=options.sitl,
         log_file=log_file,
+        dialect=os.path.expanduser(settings.dialect) if settings.dialect else None,
         terminal=_terminal_path(),
         meanwhile=_import_screen,
     )

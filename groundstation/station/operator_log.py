@@ -8,6 +8,7 @@ from typing import Any
 from dialects.axes import Axes
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import STOP_KEY, ClearEmergencyStop, DriveKeyDown, EmergencyStop, SetStyle, Stop
+from groundstation.intents.links import AddLink, CloseLink
 from groundstation.intents.session import Quit, StartSimulator
 from groundstation.intents.vehicle import (
     Arm,
@@ -45,6 +46,8 @@ TEXTS: dict[type[Intent], Callable[[Any], str]] = {
     SelectVehicle: lambda intent: f"select vehicle {intent.system}",
     SelectNextVehicle: lambda _: "select the next vehicle",
     StartSimulator: lambda _: "start the simulator",
+    AddLink: lambda intent: f"open {intent.endpoint}{' to watch only' if intent.watch_only else ''}",
+    CloseLink: lambda _: "close a link",
     Quit: lambda intent: "quit, disarm first" if intent.disarm else "quit",
 }
 """Intent -> its text; "" for none."""

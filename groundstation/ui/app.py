@@ -84,6 +84,7 @@ class ConsoleApp(App[int]):
         self._appearance = Appearance(self, look)
         self._watched: tuple[ViewRequest, ...] = ()
         context = ScreenContext(keymap, self._send, self.perform_action, self._display_state, folder)
+        self._kept = context.kept
         self.drive = DriveScreen(context)
         self._navigator = ScreenNavigator(self, context)
         self._actions = {"app.quit": self.request_quit, **self._navigator.actions}
@@ -204,6 +205,7 @@ class ConsoleApp(App[int]):
             terminal_round_trip=self.gate.ping.round_trip,
             ascii=self._appearance.look.ascii,
             still=self._appearance.look.reduce_motion,
+            kept=self._kept,
         )
 
     def get_line_filters(self) -> Sequence[LineFilter]:

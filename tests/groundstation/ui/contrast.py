@@ -41,13 +41,17 @@ LINUX_16 = Palette(
 """What the Linux console shows."""
 
 
+PALETTES = {"xterm": XTERM_16, "linux": LINUX_16}
+"""Terminals with 16 colours."""
+
+
 def shown(colour: str, depth: str) -> tuple[int, int, int]:
     """Return what a terminal shows for a colour."""
     parsed = Color.parse(colour)
-    if depth == "all":
-        return tuple(parsed.get_truecolor())
-    if depth == "256":
-        return tuple(parsed.downgrade(ColorSystem.EIGHT_BIT).get_truecolor())
-    number = parsed.downgrade(ColorSystem.STANDARD).number
-    assert number is not None
-    return tuple((XTERM_16 if depth == "xterm" else LINUX_16)[number])
+    if depth in PALETTES:
+        number = parsed.downgrade(ColorSystem.STANDARD).number
+        assert number is not None
+        red, green, blue = PALETTES[depth][number]
+    else:
+        red, green, blue = (parsed.downgrade(ColorSystem.EIGHT_BIT) if depth == "256" else parsed).get_truecolor()
+    return red, green, blue
