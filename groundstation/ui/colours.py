@@ -59,17 +59,18 @@ def style(colour: str = TEXT, on: str = BACKGROUND, *, bold: bool = False) -> St
 
 
 _BADGES = frozenset({Role.DANGER, Role.BAD, Role.CAUTION, Role.KEY, Role.GOOD, Role.INFO, Role.EARTH})
-"""Grounds that are drawn in reverse without colours."""
+"""Grounds that are drawn in reverse without colours, for badges and for the part of a bar in one cell."""
 
 _LOUD = frozenset({Role.BAD, Role.CAUTION, Role.KEY, Role.STRONG})
 """Text that is bold without colours."""
 
 
 def _attributes(ink: Role, ground: Role, bold: bool) -> Style:
-    """Return the style without colours: badges in reverse, the selected row and what is bad underlined."""
+    """Return the style without colours: loud badges in reverse, the selected row and what is bad underlined."""
+    quiet = ink is Role.ON_BADGE and ground in (Role.INFO, Role.GOOD)  # beside ARMED, which must stand out
     return Style(
-        bold=bold or ink in _LOUD or ground is Role.DANGER or None,
-        reverse=ground in _BADGES or None,
+        bold=bold or quiet or ink in _LOUD or ground is Role.DANGER or None,
+        reverse=(ground in _BADGES and not quiet) or None,
         underline=ground in (Role.SELECTED, Role.BAD) or ink is Role.BAD or None,
     )
 

@@ -56,7 +56,7 @@ _LIGHT = {
 _LIGHT_16 = {
     Role.PANEL: "#ffffff", Role.SELECTED: "#0000aa", Role.NOTE: "#ffffff", Role.DANGER: "#aa0000",
     Role.LINE: "#555555", Role.TEXT: "#000000", Role.DIM: "#000000", Role.MUTED: "#000000", Role.INFO: "#0000aa",
-    Role.KEY: "#0000aa", Role.GOOD: "#0000aa", Role.CAUTION: "#aa00aa", Role.BAD: "#aa0000", Role.SKY: "#55ffff",
+    Role.KEY: "#000000", Role.GOOD: "#0000aa", Role.CAUTION: "#aa00aa", Role.BAD: "#aa0000", Role.SKY: "#55ffff",
     Role.EARTH: "#ffffff",
 }  # fmt: skip
 

@@ -77,7 +77,7 @@ class ConsoleScreen(Screen[None]):
         border-subtitle-color: $dim;
         background: $background;
     }
-    ConsoleScreen .panel.-chosen { border: round $primary; }
+    ConsoleScreen .panel.-chosen { border: round $primary; border-title-style: bold reverse; }
     """
     ROWS: ClassVar[tuple[InstrumentRow, ...]] = CHROME
     """Instruments that the screen builds by their place, and shows."""
