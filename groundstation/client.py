@@ -71,6 +71,7 @@ class StationClient:
         speed: float = 0.6,
         sitl: bool = False,
         log_file: Path | None = None,
+        param_docs: Path | None = None,
         terminal: str | None = None,
         meanwhile: Callable[[], object] = lambda: None,
     ) -> StationClient:
@@ -82,6 +83,8 @@ class StationClient:
         options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
         if log_file is not None:
             options.append(f"--log-file={log_file}")
+        if param_docs is not None:
+            options.append(f"--param-docs={param_docs}")
         if terminal is not None:
             options.append(f"--terminal={terminal}")
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

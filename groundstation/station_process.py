@@ -36,6 +36,7 @@ from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.lasting_alerts import LastingAlerts
 from groundstation.station.station import COMPONENT, Station
 from groundstation.station_options import log_to, station_parser
+from groundstation.texts_folder import load_texts
 from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, parse_endpoint
 from link.runner import Runner, open_links
@@ -271,8 +272,18 @@ def _run(
 ) -> int:
     started = time.monotonic()  # the loop's clock
     session = secrets.randbits(32)
-    style = Style(options.style)
-    station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
+    texts = load_texts(options.param_docs)
+    station = Station(
+        endpoints,
+        system=options.system,
+        style=Style(options.style),
+        speed=options.speed,
+        session=session,
+        texts=texts,
+        now=started,
+    )
+    for problem in texts.problems:
+        station.log.add(started, "station", problem, Severity.WARNING)
     process = StationProcess(station, links, pipe, watchdog)
     if options.sitl:
         process.start_simulator(started)

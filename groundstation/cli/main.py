@@ -111,6 +111,7 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         speed=options.speed,
         sitl=options.sitl,
         log_file=log_file,
+        param_docs=_docs_file(options.param_docs),
         terminal=_terminal_path(),
         meanwhile=_import_screen,
     )
@@ -189,6 +190,17 @@ def _log_file(requested: Path | None) -> Path | None:
         raise UsageError(f"log file {path}: {error.strerror}") from error
 
 
+def _docs_file(requested: Path | None) -> Path | None:
+    """Return the file with texts of parameters. Raises UsageError if it cannot be read."""
+    if requested is None:
+        return None
+    try:
+        with requested.open("rb"):
+            return requested.absolute()
+    except OSError as error:
+        raise UsageError(f"--param-docs {requested}: {error.strerror}") from error
+
+
 def _system_id(text: str) -> int:
     if not (text.isascii() and text.isdigit() and 1 <= int(text) <= 255):
         raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 255")
@@ -235,6 +247,9 @@ def _parser() -> tuple[CommandLineParser, list[str]]:
             help="limit of the sticks, 0.1 to 1 (default: 0.6)"),
         add("--system", type=_system_id, default=255, metavar="ID", help="our MAVLink system id (default: 255)"),
         add("--log-file", type=Path, metavar="FILE", help=f"default: {user_log_path('mavhelm') / 'groundstation.log'}"),
+        add("--param-docs", type=Path, metavar="FILE",
+            help="texts of parameters: apm.pdef.xml, apm.pdef.json or PX4's parameters.json "
+            "(default: these in the configuration folder)"),
         add("--ascii", action=argparse.BooleanOptionalAction, default=None,
             help="draw with ASCII characters only (default: where the locale is not UTF-8, and with TERM=linux)"),
         add("--version", action=_Version, nargs=0, help="show the version and exit"),

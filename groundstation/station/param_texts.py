@@ -16,3 +16,8 @@ class ParamTexts:
     """Files of the user; the first that fits counts."""
     cache: MutableMapping[int, bytes] = field(default_factory=dict)
     """Files that vehicles have served, by the checksum of the general file beside them."""
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What is wrong with files of the user, a line each."""
+        return tuple(file.problem for file in self.files if file.problem)
