@@ -46,8 +46,9 @@ def parse_parameters(data: bytes, where: str) -> ParamDocs:
 
 def load_json(data: bytes, where: str) -> Any:
     """Return the content of a JSON file, compressed or not. Raises FileFormatError."""
+    plain = _decompressed(data, where) if data.startswith(XZ) else data
     try:
-        return json.loads(_decompressed(data, where) if data.startswith(XZ) else data)
+        return json.loads(plain)
     except (ValueError, RecursionError) as error:
         line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
         what = error.msg if isinstance(error, json.JSONDecodeError) else type(error).__name__
@@ -71,7 +72,7 @@ def _doc(entry: dict[str, Any]) -> ParamDoc:
     return ParamDoc(
         name=text_of(entry.get("name")),
         title=title,
-        text="" if text == title else text,
+        text=text.removeprefix(title).lstrip(". "),
         unit=text_of(entry.get("units")),
         low=number_of(entry.get("min")),
         high=number_of(entry.get("max")),

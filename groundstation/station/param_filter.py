@@ -46,25 +46,23 @@ def count_groups(params: Mapping[str, Param], groups: Mapping[str, str]) -> tupl
 def choose(
     params: Mapping[str, Param], docs: ParamDocs, groups: Mapping[str, str], request: ParamPageRequest
 ) -> list[Param]:
-    """Return the parameters of a request in the order of the table: those whose name matches come first."""
+    """Return the parameters of a request, the best matches first, else by name."""
     words = [_Word(word) for word in request.filter.upper().split()]
     wanted = None if request.names is None else set(request.names)
-    by_name: list[Param] = []
-    by_text: list[Param] = []
+    found: tuple[list[Param], ...] = ([], [], [])
     for name, param in sorted(params.items()):
         if request.group and groups[name] != request.group:
             continue
         if (wanted is not None and name not in wanted) or (request.changed_only and not is_changed(param)):
             continue
-        if not words or any(word.in_name(name) for word in words):
-            by_name.append(param)
-        elif any(word.in_text(docs.search_text(name)) for word in words):
-            by_text.append(param)
-    return by_name + by_text
+        rank = min((word.rank(name, docs) for word in words), default=0)
+        if rank < len(found):
+            found[rank].append(param)
+    return [param for each in found for param in each]
 
 
 class _Word:
-    """A word of a filter, in capitals. It is in a name as a part of it, or as beginnings of its parts (RCOV)."""
+    """A word of a filter, in capitals."""
 
     def __init__(self, word: str) -> None:
         self._word = word
@@ -72,10 +70,11 @@ class _Word:
         jump = r"(?:[^_]*_(?:.*_)?)?"
         self._short = re.compile("(?:^|_)" + jump.join(map(re.escape, letters))) if len(letters) > 1 else None
 
-    def in_name(self, name: str) -> bool:
+    def rank(self, name: str, docs: ParamDocs) -> int:
+        """Return 0 for a part of a name, 1 for the beginnings of its parts (RCOV), 2 for a text, 3 for no match."""
         upper = name.upper()
-        return self._word in upper or bool(self._short and self._short.search(upper))
-
-    def in_text(self, text: str) -> bool:
-        """Return whether a word of the text begins with it."""
-        return len(self._word) >= MIN_TEXT_WORD and f" {self._word}" in text
+        if self._word in upper:
+            return 0
+        if self._short and self._short.search(upper):
+            return 1
+        return 2 if len(self._word) >= MIN_TEXT_WORD and f" {self._word}" in docs.search_text(name) else 3

@@ -9,7 +9,7 @@ from groundstation.views.requests import RequestLine
 
 
 class ParamPageRequest(ViewRequest, frozen=True):
-    """Parameters of the selected vehicle, sorted by name; those whose name matches come before those with a text."""
+    """Parameters of the selected vehicle, sorted by name; the best matches of a filter come first."""
 
     filter: str = ""
     """Words, one of which must be in the name or the texts; upper or lower case. Empty: all."""

@@ -278,4 +278,4 @@ class ParamModel:
     @property
     def status(self) -> str:
         """How the requests stand, one line."""
-        return status_text(self.page, self.last_write)
+        return status_text(self.page, self.last_write, edited=bool(self.pending))

@@ -15,8 +15,8 @@ MAX_NAMES = 4
 """Names of a write that are listed."""
 
 
-def status_text(page: ParamPage | None, last_write: str) -> str:
-    """Return what runs, else what is missing, else how the last request ended."""
+def status_text(page: ParamPage | None, last_write: str, *, edited: bool) -> str:
+    """Return what runs, else what is missing, else how the last request ended; `edited`: only a failure."""
     if page is None:
         return ""
     if page.running:
@@ -26,6 +26,8 @@ def status_text(page: ParamPage | None, last_write: str) -> str:
     if not page.ended:
         return ""
     last = page.ended[-1]
+    if edited and last.state == "accepted":
+        return ""
     return last_write if last_write and last.what.startswith("set ") else _ended_text(last)
 
 

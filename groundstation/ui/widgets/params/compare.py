@@ -63,10 +63,11 @@ def _rows(value: CompareValue, width: int) -> list[list[Part]]:
     rows: list[list[Part]] = []
     half = max(5, (width - NAME - 7) // 2)
     for at, (name, here, there) in enumerate(diff.different):
-        ground = FAINT if value.chosen and at == value.cursor else BACKGROUND
+        at_cursor = value.chosen and at == value.cursor
+        ground, lead = (FAINT, "›") if at_cursor else (BACKGROUND, " ")
         mark = "✎" if name in value.pending else " "
         rows.append([
-            (f" {mark} {clean(name):<{NAME}}", style(TEXT, ground)),
+            (f"{lead}{mark} {clean(name):<{NAME}}", style(TEXT, ground)),
             (f"{shortened(value_text(here), half):>{half}} → ", style(DIM, ground)),
             (f"{shortened(value_text(there), half):<{half}}", style(AMBER, ground)),
         ])  # fmt: skip

@@ -135,7 +135,7 @@ def _labelled(label: str, text: str, colour: str) -> list[Part]:
 
 
 def _list(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Part]]:
-    """Yield the list of values, or of bits: ▲ what is set or will be."""
+    """Yield the list of values, or of bits: ✓ what is set or will be."""
     now = info.value if value.new is None else value.new
     if info.values:
         choices = info.values if value.choices is None else value.choices
@@ -156,11 +156,11 @@ def _list(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Part
 
 def _choice(text: str, chosen: bool, at_cursor: bool, width: int) -> list[Part]:
     ground = FAINT if at_cursor else BACKGROUND
-    mark = ("✓" if chosen else " ", style(GREEN, ground))
+    mark = (f"{'›' if at_cursor else ' '}{'✓' if chosen else ' '}", style(GREEN, ground))
     return [
         mark,
         (
-            clean(text)[: width - 1].ljust(width - 1 if at_cursor else 0),
+            clean(text)[: width - 2].ljust(width - 2 if at_cursor else 0),
             style(WHITE if chosen else TEXT, ground, bold=chosen),
         ),
     ]

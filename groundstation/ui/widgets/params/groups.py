@@ -25,10 +25,12 @@ class GroupListValue:
     rows: tuple[ScopeRow, ...] = ()
     cursor: int = 0
     shown: ParamScope = ALL
+    chosen: bool = False
+    """The panel has the arrows."""
 
 
 class GroupList(Instrument[GroupListValue]):
-    """A line for each group: its marks and how many parameters it has."""
+    """A line for each group: ✓ the one in the table, its marks, and how many parameters it has."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the rows around the cursor; the last line counts those below."""
@@ -42,16 +44,16 @@ class GroupList(Instrument[GroupListValue]):
         return lines
 
     def _line(self, each: ScopeRow, chosen: bool, width: int) -> Strip:
+        chosen = chosen and self.value.chosen
         ground = FAINT if chosen else BACKGROUND
-        lead, colour = _MARKS.get(each.scope.kind, ("›" if each.scope == self.value.shown else " ", DIM))
-        if each.scope == self.value.shown:
-            lead = "›"
+        lead, colour = ("✓", TEXT) if each.scope == self.value.shown else _MARKS.get(each.scope.kind, (" ", DIM))
         mark, tint = ("✎", BLUE) if each.pending else ("●", AMBER) if each.changed else (" ", DIM)
         count = f"{each.count:>5} "
         name = f" {clean(each.scope.label)}"[: width - len(count) - 4]
         gap = max(0, width - len(name) - len(count) - 4)
         return strip(
-            (f" {lead}", style(colour, ground)),
+            ("›" if chosen else " ", style(TEXT, ground)),
+            (lead, style(colour, ground)),
             (name, style(TEXT, ground, bold=each.scope == self.value.shown)),
             (" " * gap, style(TEXT, ground)),
             (f"{mark} ", style(tint, ground)),

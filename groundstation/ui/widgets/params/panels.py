@@ -47,7 +47,7 @@ class ParamWidgets:
         for name, widget in self._by_name.items():
             widget.set_class(panels.chosen == name, "-chosen")
         self._show_table(model)
-        self.groups.show(GroupListValue(model.scopes, panels.group, model.scope))
+        self.groups.show(GroupListValue(model.scopes, panels.group, model.scope, panels.chosen == "groups"))
         self._show_detail(model, panels)
         self._show_compare(model, panels)
         self._show_pending(model, armed=armed, room=room)

@@ -17,10 +17,10 @@ from link.services.param.float32 import value_text
 
 COLUMNS = (
     Column("", 1),
-    Column("name", 16, most=20),
-    Column("value", 11, right=True, most=16),
+    Column("name", 16),
+    Column("value", 11, right=True, most=13),
     Column("unit", 4, weight=2, most=6),
-    Column("default", 7, weight=1, right=True, most=10),
+    Column("default", 7, weight=1, right=True, most=8),
     Column("means", 10, weight=3, most=60),
 )
 
@@ -50,7 +50,7 @@ class ParamTable(Instrument[ParamTableValue]):
         if not self.value.rows:
             return [strip((f" {self.value.note}", style(DIM)))]
         widths = fit(COLUMNS, width - 2)
-        lines = [_framed(header(COLUMNS, widths), width, BACKGROUND)]
+        lines = [_framed(header(COLUMNS, widths), width)]
         for index, each in enumerate(self.value.rows[: height - TITLES]):
             ground = FAINT if index == self.value.selected else BACKGROUND
             cells = self._cells(each, widths, ground, selected=index == self.value.selected)
@@ -94,8 +94,9 @@ def shortened(text: str, width: int) -> str:
     return text if len(text) <= width else f"{text[: max(0, width - 1)]}…"
 
 
-def _framed(line: Strip, width: int, ground: str) -> Strip:
-    """Return a line with a space at each side, filled to its width."""
+def _framed(line: Strip, width: int, ground: str = BACKGROUND) -> Strip:
+    """Return a line with a space at each side, filled to its width; the selected one begins with a mark."""
     space = style(TEXT, ground)
     rest = max(1, width - 1 - line.cell_length)
-    return Strip([*strip((" ", space)), *line, *strip((" " * rest, space))]).crop(0, width)
+    mark = " " if ground == BACKGROUND else "›"
+    return Strip([*strip((mark, space)), *line, *strip((" " * rest, space))]).crop(0, width)
