@@ -32,11 +32,17 @@ class ValueCheck:
 
     level: Level
     text: str
+    limits: str = ""
+    """The range that was checked."""
 
     @property
     def shown(self) -> str:
-        """The text with its mark."""
-        return f"{self.text} {self.level.value}".rstrip()
+        """The text with its range and its mark."""
+        return " ".join(part for part in (self.text, self.limits, self.level.value) if part)
+
+    def fitted(self, width: int) -> str:
+        """Return the text with its mark; with the range only if that is not cut."""
+        return self.shown if len(self.shown) <= width else f"{self.text} {self.level.value}".rstrip()
 
 
 def check_value(info: ParamInfo | None, value: float) -> ValueCheck:
@@ -66,8 +72,8 @@ def _check_range(info: ParamInfo, value: float) -> ValueCheck:
     below = info.low is not None and value < shortest_float32(info.low)
     above = info.high is not None and value > shortest_float32(info.high)
     if below or above:
-        return ValueCheck(Level.WARNING, f"outside {range_text(info)}")
-    return ValueCheck(Level.GOOD, f"in range {range_text(info)}")
+        return ValueCheck(Level.WARNING, "outside", range_text(info))
+    return ValueCheck(Level.GOOD, "in range", range_text(info))
 
 
 def range_text(info: ParamInfo) -> str:
@@ -103,6 +109,14 @@ def parse_number(text: str, name: str, kind: str) -> float | str:
     if kind in INTEGERS:
         return _whole(value, name, kind)
     return shortest_float32(value)
+
+
+def is_rounded(text: str, value: float) -> bool:
+    """Return whether a typed number is sent as another one, the nearest float32."""
+    try:
+        return float(text) != value
+    except ValueError:  # hexadecimal, or a name
+        return False
 
 
 def _whole(value: float, name: str, kind: str) -> float | str:

@@ -42,6 +42,15 @@ class ValueEditor:
         """The bits, where the parameter has some and no list of values."""
         return self.info.bits if self.info and not self.info.values else ()
 
+    @property
+    def advice(self) -> str:
+        """Which keys do what."""
+        if self.bits:
+            return "↑ ↓ choose a bit, TAB toggles it, or type a number · ENTER keeps it, ESC leaves it"
+        if self.info and self.info.values:
+            return "↑ ↓ choose, letters find a name, or type a number · ENTER keeps it, ESC leaves it"
+        return "type a number, 0x for a hexadecimal one · ENTER keeps it, ESC leaves it"
+
     def move(self, rows: int) -> None:
         """Move in the list; a value of the list becomes the text at once, unless a name is being typed."""
         last = len(self.bits or self.choices) - 1

@@ -251,10 +251,10 @@ class ParamModel:
         return bool(self.pending) and self._writing is None and self.page is not None
 
     def write(self) -> tuple[AnyIntent, ...]:
-        """Write the pending changes."""
+        """Write the pending changes in the order in which they are listed."""
         if not self.may_write or self.page is None:
             return ()
-        changes, number = tuple(self.pending.values()), self._numbers.take()
+        changes, number = tuple(self.pending[name] for name in sorted(self.pending)), self._numbers.take()
         self._writing = number, changes
         return (WriteParams(number, self.page.system, tuple((each.name, each.value) for each in changes)),)
 

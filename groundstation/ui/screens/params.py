@@ -88,12 +88,14 @@ class ParamsScreen(ConsoleScreen):
     @property
     def advice(self) -> str:
         """Return how the last request stands, or what to do."""
+        if editor := self._model.editor:
+            return editor.advice
         waiting = len(self._model.pending)
         if status := self._model.status:
             return status
         if waiting:
             return f"{waiting} {'edit waits' if waiting == 1 else 'edits wait'}: W writes after one more look, x drops"
-        return "ENTER edits · TAB groups · / finds (several words: any of them) · ESC goes back to Drive"
+        return "ENTER edits · TAB groups · / finds any of the words · ESC goes back to Drive"
 
     # ---- keys ----
 

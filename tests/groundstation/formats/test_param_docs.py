@@ -25,7 +25,8 @@ XML = b"""<?xml version="1.0" encoding="utf-8"?>
 <field name="Increment">0.1</field></param>
 </parameters></vehicles><libraries><parameters name="LOG_"><param humanName="Log &amp; bits" name="LOG_BITMASK"
  documentation=""><field name="RebootRequired">True</field><bitmask><bit code="0">Fast Attitude</bit>
-<bit code="3">System Performance</bit></bitmask><field name="Bitmask">0:Fast Attitude,3:System Performance</field></param>
+<bit code="3">System Performance</bit></bitmask>
+<field name="Bitmask">0:Fast Attitude,3:System Performance</field></param>
 </parameters></libraries></paramfile>"""
 
 PDEF = {

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from textual.strip import Strip
 
 from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, TEXT, WHITE, style
-from groundstation.ui.params.checks import Level, check_value, range_text
+from groundstation.ui.params.checks import Level, check_value, is_rounded, range_text
 from groundstation.ui.params.reasons import reason_for
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.widgets.params.range_line import range_lines
@@ -16,8 +16,12 @@ from groundstation.ui.wrap import clean, wrap
 from groundstation.views.params import ParamInfo
 from link.services.param.float32 import value_text
 
-LABEL = 11
+LABEL = 12
 """Width of the labels."""
+TALL = 24
+"""Rows from which on texts are shown whole before the values."""
+MAX_TEXT = 3
+"""Lines of a text below that."""
 _CHECK_COLOURS = {Level.GOOD: GREEN, Level.WARNING: AMBER, Level.UNKNOWN: DIM}
 
 
@@ -49,7 +53,7 @@ class ParamDetail(Instrument[DetailValue]):
         value = self.value
         if value.info is None:
             return [strip((f" {line}", style(DIM))) for line in wrap(value.note, width - 2)]
-        lines = list(detail_lines(value, width - 2))
+        lines = list(detail_lines(value, width - 2, short=height < TALL))
         top = self._top(value, len(lines), height)
         return [strip((" ", style()), *parts).crop(0, width) for parts in lines[top : top + height]]
 
@@ -60,27 +64,27 @@ class ParamDetail(Instrument[DetailValue]):
         return max(0, min(value.top, count - height))
 
 
-def detail_lines(value: DetailValue, width: int) -> Iterator[list[Part]]:
-    """Yield all lines of a parameter."""
+def detail_lines(value: DetailValue, width: int, *, short: bool) -> Iterator[list[Part]]:
+    """Yield all lines of a parameter; `short`: what matters most comes first."""
     info = value.info
     if info is None:
         return
     editing = value.typed is not None and bool(info.values or info.bits)
     if editing:
         yield from _values(value, info, width)
+        yield from _facts(value, info, width)
         yield from _list(value, info, width)
         return
     if info.title:
         yield from ([(line, style(WHITE, bold=True))] for line in wrap(info.title, width))
-    yield from ([(line, style(TEXT))] for line in (wrap(info.text, width) if info.text else ()))
+    yield from ([(line, style(TEXT))] for line in _text(info.text, width, MAX_TEXT if short else len(info.text)))
     if info.title or info.text:
         yield []
-    yield from _values(value, info, width)
-    if why := reason_for(info.name):
-        yield []
-        yield [("why it matters here", style(AMBER, bold=True))]
-        yield from ([(line, style(TEXT))] for line in wrap(why, width))
-    yield from _list(value, info, width)
+    parts = [_values(value, info, width), _facts(value, info, width), _reason(info, width), _list(value, info, width)]
+    if short:
+        parts[1], parts[2] = parts[2], parts[1]
+    for part in parts:
+        yield from part
     if value.note:
         yield []
         yield from ([(line, style(DIM))] for line in wrap(value.note, width))
@@ -99,6 +103,9 @@ def _values(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Pa
         yield _labelled("unit", unit.removeprefix(" · "), TEXT)
     if info.low is not None or info.high is not None:
         yield _labelled("range", range_text(info), TEXT)
+
+
+def _facts(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Part]]:
     index = "" if info.index is None else f" · index {info.index}"
     yield _labelled("type", f"{info.kind}{index}", DIM)
     yield _effect(info)
@@ -107,10 +114,25 @@ def _values(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Pa
         yield from range_lines(info.low, info.high, info.default, shown, min(width, 44))
 
 
+def _text(text: str, width: int, most: int) -> list[str]:
+    """Return a text in at most so many lines; one that is cut says so."""
+    lines = wrap(text, width) if text else []
+    return lines if len(lines) <= most else [*lines[: most - 1], f"{lines[most - 1][: width - 1]}…"]
+
+
+def _reason(info: ParamInfo, width: int) -> Iterator[list[Part]]:
+    if why := reason_for(info.name):
+        yield []
+        yield [("why it matters here", style(AMBER, bold=True))]
+        yield from ([(line, style(TEXT))] for line in wrap(why, width))
+        yield []
+
+
 def _new_line(value: DetailValue, info: ParamInfo, width: int) -> list[Part]:
-    """Return the new value on a ground of its own; a typed one that is sent as another float32 is named."""
-    new = "--" if value.new is None else value_text(value.new)
-    shown = new if value.typed is None or value.typed.strip() == new else f"{value.typed} = {new}"
+    """Return the new value on a ground of its own; one that is sent as another float32 says so."""
+    shown = "--" if value.new is None else value_text(value.new)
+    if value.new is not None and value.typed is not None and is_rounded(value.typed, value.new):
+        shown = f"{shown} rounded"
     return [
         ("new value".ljust(LABEL), style(DIM, FAINT)),
         (clean(shown).ljust(width - LABEL), style(BLUE, FAINT, bold=True)),
@@ -119,7 +141,7 @@ def _new_line(value: DetailValue, info: ParamInfo, width: int) -> list[Part]:
 
 def _check_line(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Part]]:
     if value.new is not None and (check := check_value(info, value.new)).text:
-        yield [(" " * LABEL, style()), (check.shown[: width - LABEL], style(_CHECK_COLOURS[check.level]))]
+        yield [(" " * LABEL, style()), (check.fitted(width - LABEL), style(_CHECK_COLOURS[check.level]))]
 
 
 def _effect(info: ParamInfo) -> list[Part]:
@@ -148,7 +170,7 @@ def _list(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Part
         for row, (number, name) in enumerate(choices):
             yield _choice(f"{value_text(number):>4} {name}", number == now, row == value.cursor, width)
     elif info.bits:
-        yield [("bits" if value.typed is None else "bits: TAB toggles the one at the cursor", style(DIM))]
+        yield [("bits" if value.typed is None else "bits · TAB toggles", style(DIM))]
         whole = int(now) if now == int(now) else 0
         for row, (bit, name) in enumerate(info.bits):
             yield _choice(f"{bit:>4} {name}", bool(whole >> bit & 1), row == value.cursor, width)

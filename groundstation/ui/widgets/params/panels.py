@@ -8,7 +8,6 @@ from groundstation.ui.panels import BORDERS
 from groundstation.ui.params.model import ParamModel
 from groundstation.ui.params.panels import ParamPanels
 from groundstation.ui.params.scope import ALL
-from groundstation.ui.params.status import missing_text
 from groundstation.ui.widgets.instrument import Instrument
 from groundstation.ui.widgets.params.compare import CompareList, CompareValue
 from groundstation.ui.widgets.params.detail import DetailValue, ParamDetail
@@ -128,8 +127,8 @@ def _empty_note(model: ParamModel, page: ParamPage | None) -> str:
 def _count_text(page: ParamPage) -> str:
     shown = f"{page.matching} of " if page.matching != page.known else ""
     of_all = f" of {page.total}" if page.total is not None and page.total != page.known else ""
-    missing = f" · {missing_text(page.missing)}" if page.missing else ""
-    return f"{shown}{page.known}{of_all}{missing} · system {page.system}"
+    missing = f" · {len(page.missing)} missing" if page.missing else ""
+    return f"{shown}{page.known}{'' if shown else of_all}{missing} · system {page.system}"
 
 
 def _no_text(page: ParamPage) -> str:

@@ -47,19 +47,19 @@ class PendingList(Instrument[PendingValue]):
         lines = [header(COLUMNS, widths)] if height > len(changes) else []
         room = height - len(lines)
         shown = changes[: room - 1] if len(changes) > room else changes
-        lines += [row(COLUMNS, widths, self._cells(each)) for each in shown]
+        lines += [row(COLUMNS, widths, self._cells(each, widths[-1])) for each in shown]
         if len(shown) < len(changes):
             lines.append(strip((f"and {len(changes) - len(shown)} more", style(DIM))))
         if self.value.last and len(lines) < height:
             lines.append(strip((self.value.last, style(DIM))))
         return [Strip([*strip((" ", style())), *line]).crop(0, width) for line in lines]
 
-    def _cells(self, change: PendingChange) -> list[Part]:
+    def _cells(self, change: PendingChange, width: int) -> list[Part]:
         info = self.value.infos.get(change.name)
         check = check_value(info, change.value)
         care = self.value.armed and needs_care(info, change.name)
         default = "" if info is None or info.default is None else value_text(info.default)
-        text = f"ARMED: care! {check.shown}" if care else check.shown
+        text = "ARMED: care!" if care else check.fitted(width)
         return [
             ("!" if care else "✎", style(AMBER if care else BLUE)),
             (change.name, style(AMBER if care else TEXT, bold=True)),

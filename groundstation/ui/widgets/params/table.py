@@ -12,6 +12,7 @@ from groundstation.ui.params.checks import meaning_of
 from groundstation.ui.params.pending import PendingChange
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
+from groundstation.ui.wrap import wrap
 from groundstation.views.params import ParamInfo, ParamRow
 from link.services.param.float32 import value_text
 
@@ -48,7 +49,7 @@ class ParamTable(Instrument[ParamTableValue]):
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw the titles and the page."""
         if not self.value.rows:
-            return [strip((f" {self.value.note}", style(DIM)))]
+            return [strip((f" {line}", style(DIM))) for line in wrap(self.value.note, width - 2)]
         widths = fit(COLUMNS, width - 2)
         lines = [_framed(header(COLUMNS, widths), width)]
         for index, each in enumerate(self.value.rows[: height - TITLES]):
