@@ -43,11 +43,36 @@ def count_groups(params: Mapping[str, Param], groups: Mapping[str, str]) -> tupl
     return tuple(ParamGroup(name, *counts[name]) for name in sorted(counts))
 
 
+class ParamRanks:
+    """How well names match a filter: kept while the filter and the texts stay, because a page is built 4 times/s."""
+
+    def __init__(self) -> None:
+        self._filter: tuple[str, int] = ("", 0)
+        self._words: list[_Word] = []
+        self._ranks: dict[str, int] = {}
+
+    def set_filter(self, text: str, docs: ParamDocs) -> None:
+        """Use this filter from now on."""
+        if (text, id(docs)) != self._filter:
+            self._filter, self._ranks = (text, id(docs)), {}
+            self._words = [_Word(word) for word in text.upper().split()]
+
+    def rank(self, name: str, docs: ParamDocs) -> int:
+        """Return the best rank of all words."""
+        if name not in self._ranks:
+            self._ranks[name] = min((word.rank(name, docs) for word in self._words), default=0)
+        return self._ranks[name]
+
+
 def choose(
-    params: Mapping[str, Param], docs: ParamDocs, groups: Mapping[str, str], request: ParamPageRequest
+    params: Mapping[str, Param],
+    docs: ParamDocs,
+    groups: Mapping[str, str],
+    request: ParamPageRequest,
+    ranks: ParamRanks,
 ) -> list[Param]:
     """Return the parameters of a request, the best matches first, else by name."""
-    words = [_Word(word) for word in request.filter.upper().split()]
+    ranks.set_filter(request.filter, docs)
     wanted = None if request.names is None else set(request.names)
     found: tuple[list[Param], ...] = ([], [], [])
     for name, param in sorted(params.items()):
@@ -55,7 +80,7 @@ def choose(
             continue
         if (wanted is not None and name not in wanted) or (request.changed_only and not is_changed(param)):
             continue
-        rank = min((word.rank(name, docs) for word in words), default=0)
+        rank = ranks.rank(name, docs)
         if rank < len(found):
             found[rank].append(param)
     return [param for each in found for param in each]

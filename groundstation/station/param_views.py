@@ -9,7 +9,7 @@ from groundstation.formats.docs_files import DocsFile
 from groundstation.formats.param_compare import compare
 from groundstation.formats.param_docs import ParamDocs
 from groundstation.formats.param_file import ParamForm, format_params
-from groundstation.station.param_filter import choose, count_groups, groups_of, is_changed
+from groundstation.station.param_filter import ParamRanks, choose, count_groups, groups_of, is_changed
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
@@ -47,6 +47,7 @@ class ParamViews:
         self._fleet = fleet
         self._desk = desk
         self._files = files
+        self._ranks = ParamRanks()
 
     @property
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
@@ -69,7 +70,7 @@ class ParamViews:
         if contact.services is not None and params and not contact.services.params.fetching:
             contact.services.metadata.want()
         groups = groups_of(params)
-        chosen = choose(params, docs, groups, request)
+        chosen = choose(params, docs, groups, request, self._ranks)
         first = max(0, min(request.first, len(chosen) - 1))
         system, file = contact.state.system, self._file_values(contact)
         requests = self._desk.requests_of("params", system)
@@ -132,7 +133,7 @@ class ParamViews:
             return ParamExport(request.number, "", 0, "this vehicle does not report defaults: save all")
         groups = groups_of(params)
         page = ParamPageRequest(changed_only=request.changed_only, group=request.group)
-        chosen = choose(params, ParamDocs(), groups, page)
+        chosen = choose(params, ParamDocs(), groups, page, ParamRanks())
         if not chosen:
             return ParamExport(request.number, "", 0, "there is nothing to save")
         state = contact.state

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from groundstation.formats.param_docs import ParamDoc, ParamDocs
-from groundstation.station.param_filter import choose, count_groups, groups_of
+from groundstation.station.param_filter import ParamRanks, choose, count_groups, groups_of
 from groundstation.views.params import ParamGroup, ParamPageRequest
 from link.services.param.client import Param
 
@@ -15,10 +15,12 @@ PARAMS = {name: Param(name, 1.0, 9, None, 0.0 if name.startswith("FS") else None
 DOCS = ParamDocs(
     "x", {"WP_SPEED": ParamDoc("WP_SPEED", "Waypoint speed"), "RC1_MIN": ParamDoc("RC1_MIN", text="Failsafe or so")}
 )
+RANKS = ParamRanks()
+"""One for all tests, as a station has one for all filters."""
 
 
 def chosen(request: ParamPageRequest) -> list[str]:
-    return [param.name for param in choose(PARAMS, DOCS, groups_of(PARAMS), request)]
+    return [param.name for param in choose(PARAMS, DOCS, groups_of(PARAMS), request, RANKS)]
 
 
 def test_several_words_are_alternatives() -> None:

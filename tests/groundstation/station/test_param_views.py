@@ -28,8 +28,13 @@ Wanted = TypeVar("Wanted", bound=View)
 
 def view(drive: Drive, request: ViewRequest, kind: type[Wanted]) -> Wanted:
     found: list[View] = []
+
+    def take(each: View) -> bool:
+        found.append(each)
+        return True
+
     drive.tell(Watch((request,)))
-    drive.station.views.send_due(lambda each: not found.append(each), drive.world.now + 10.0, 0.0)
+    drive.station.views.send_due(take, drive.world.now + 10.0, 0.0)
     drive.tell(Watch(()))
     assert isinstance(found[-1], kind)
     return found[-1]
