@@ -80,6 +80,7 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         sitl=options.sitl,
         log_file=log_file,
         dialect=os.path.expanduser(settings.dialect) if settings.dialect else None,
+        param_docs=_docs_file(settings.param_docs),
         terminal=_terminal_path(),
         meanwhile=_import_screen,
     )
@@ -185,6 +186,18 @@ def _log_file(requested: str | None) -> Path | None:
         if requested is None:
             return None
         raise UsageError(f"log file {path}: {error.strerror}") from error
+
+
+def _docs_file(requested: str | None) -> Path | None:
+    """Return the file with texts of parameters. Raises UsageError if it cannot be read."""
+    if requested is None:
+        return None
+    path = Path(requested).expanduser()
+    try:
+        with path.open("rb"):
+            return path.absolute()
+    except OSError as error:
+        raise UsageError(f"--param-docs {path}: {error.strerror}") from error
 
 
 if __name__ == "__main__":

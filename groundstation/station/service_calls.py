@@ -6,7 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from groundstation.intents.services import FetchParams, ServiceIntent, WriteParams
+from groundstation.intents.services import (
+    CompareParams,
+    FetchParams,
+    ResetParams,
+    ServiceIntent,
+    StoreParams,
+    WriteParams,
+)
 from groundstation.vehicles.services import VehicleServices
 
 
@@ -30,6 +37,17 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
         "params",
         "set parameters",
         lambda services, intent, now: services.param_writer.write(intent.request, intent.changes, now),
+    ),
+    CompareParams: ServiceCall(
+        "params",
+        "compare parameters",
+        lambda services, intent, now: services.param_file.open(intent.request, intent.name, intent.text, now),
+    ),
+    StoreParams: ServiceCall(
+        "params", "store parameters", lambda services, intent, now: services.param_storage.store(intent.request, now)
+    ),
+    ResetParams: ServiceCall(
+        "params", "reset parameters", lambda services, intent, now: services.param_storage.reset(intent.request, now)
     ),
 }
 """Intent -> call."""

@@ -6,17 +6,16 @@ The services of a vehicle exist from the first request on: a vehicle that is onl
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import MutableMapping
 
 from dialects.enums import Command, Severity
 from groundstation.intents.services import ServiceIntent
 from groundstation.station.commander import Commander
-from groundstation.station.param_view import build_param_page
 from groundstation.station.service_calls import SERVICE_CALLS
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
-from groundstation.views.params import ParamPage, ParamPageRequest
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from link.core import Outgoing, Received
 
@@ -27,13 +26,22 @@ _SEVERITIES = {RequestState.REFUSED: Severity.WARNING, RequestState.NO_ANSWER: S
 
 
 class ServiceDesk:
-    """The services of all vehicles. `system` and `component` are our ids."""
+    """The services of all vehicles. `system` and `component` are our ids; `texts`: see VehicleServices."""
 
-    def __init__(self, fleet: Fleet, commander: Commander, log: MessageLog, system: int, component: int) -> None:
+    def __init__(
+        self,
+        fleet: Fleet,
+        commander: Commander,
+        log: MessageLog,
+        system: int,
+        component: int,
+        texts: MutableMapping[int, bytes] | None = None,
+    ) -> None:
         self._fleet = fleet
         self._commander = commander
         self._log = log
         self._ids = (system, component)
+        self._texts: MutableMapping[int, bytes] = {} if texts is None else texts
         self._service_of: dict[int, str] = {}
         """Number of a request -> name of its service."""
         self._ended: dict[str, deque[RequestLine]] = {}
@@ -95,15 +103,10 @@ class ServiceDesk:
         """Build the view of all requests."""
         return RequestsView(tuple(self._running()), tuple(line for lines in self._ended.values() for line in lines))
 
-    def build_param_page(self, request: ParamPageRequest, now: float, wall: float) -> ParamPage | None:
-        """Build the page of the selected vehicle; None without a vehicle."""
-        selected = self._fleet.selected
-        if selected is None:
-            return None
-        running = tuple(
-            line for line in self._running() if line.service == "params" and line.system == selected.state.system
-        )
-        return build_param_page(selected, request, RequestsView(running, tuple(self._ended.get("params", ()))))
+    def requests_of(self, service: str, system: int) -> RequestsView:
+        """Return the requests of one service: what runs at this vehicle, and what has ended."""
+        running = (line for line in self._running() if line.service == service and line.system == system)
+        return RequestsView(tuple(running), tuple(self._ended.get(service, ())))
 
     # ---- parts ----
 
@@ -119,7 +122,7 @@ class ServiceDesk:
 
     def _services(self, contact: Contact) -> VehicleServices:
         if contact.services is None:
-            contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component))
+            contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component), self._texts)
             contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
         return contact.services
 

@@ -23,6 +23,8 @@ from groundstation.station.link_views import LinkViews
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
 from groundstation.station.operator_log import OperatorLog
+from groundstation.station.param_texts import ParamTexts
+from groundstation.station.param_views import ParamViews
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
@@ -31,7 +33,6 @@ from groundstation.vehicles.message_log import MessageLog
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
 from groundstation.views.messages import MessageRequest, MessagesRequest
-from groundstation.views.params import ParamPageRequest
 from groundstation.views.requests import RequestsRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
@@ -56,6 +57,7 @@ class Station:
         style: Style = Style.HOLD,
         speed: float = 0.6,
         session: int = 0,
+        texts: ParamTexts = ParamTexts(),  # noqa: B008 - frozen
         now: float = 0.0,
     ) -> None:
         self.log = MessageLog()
@@ -67,7 +69,7 @@ class Station:
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
-        self._services = ServiceDesk(self.fleet, self._commander, self.log, system, COMPONENT)
+        self._services = ServiceDesk(self.fleet, self._commander, self.log, system, COMPONENT, texts.cache)
         self._driving = DrivingController(self.operator, self.fleet, self._commander, (system, COMPONENT))
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
@@ -87,11 +89,11 @@ class Station:
         self.views = ViewFeed(
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
-                ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
                 RequestsRequest: ViewSource(self._services.build_requests, period=0.25),
                 MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
                 MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
                 **self._link_views.sources,
+                **ParamViews(self.fleet, self._services, texts.files).sources,
             }
         )
         """Request -> its source."""
