@@ -45,8 +45,8 @@ class TabBar(Instrument[TabBarValue]):
         return [strip(*parts, (" " * gap, style()), *right).crop(0, width)]
 
     def _tab(self, row: ScreenRow, width: int) -> list[Part]:
-        key = main_key(self.value.keymap, row.action) if width >= WIDE else row.digit
-        shown = format_key(key) if key else ""
+        key = main_key(self.value.keymap, row.action) if width >= WIDE else None
+        shown = format_key(key) if key else row.digit
         if row.id == self.value.screen:
             return [(f" {shown} {row.title} ", style(WHITE, FAINT, bold=True))]
         return [(f" {shown} ", style(YELLOW)), (f"{row.title} ", style(DIM))]
