@@ -20,6 +20,7 @@ from dialects.extra.errors import DialectError
 from dialects.extra.option import Note, use_dialect
 from dialects.messages import printable
 from groundstation.connect.desk import ConnectDesk
+from groundstation.disk.desk import DiskDesk
 from groundstation.input.style import Style
 from groundstation.intents.driving import Stop
 from groundstation.intents.session import Quit, RenewLease
@@ -81,6 +82,7 @@ class StationProcess:
         self._watchdog = watchdog
         self._core = CrashNeutral(station)
         self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash, sent=watchdog.record_sent)
+        self._disk = DiskDesk(station, self._runner.flush)
         self.connect = ConnectDesk(self._runner, station, ids, sent)
         self._last_snapshot = Snapshot()
         self._addresses = LocalAddresses()
@@ -101,6 +103,7 @@ class StationProcess:
             show.cancel()
             loop.remove_reader(self._pipe)
             self.connect.close()
+            self._disk.close()
             self._watchdog.close()
         return 1 if self._broken else 0
 
@@ -145,6 +148,7 @@ class StationProcess:
             else:
                 self._station.handle_intent(intent, now)
                 self.connect.handle(intent, now)
+        self._disk.run()
 
     async def _send_snapshots(self) -> None:
         """Send snapshots at absolute deadlines, and do what is due for the links."""
@@ -166,6 +170,7 @@ class StationProcess:
     def _send_snapshot(self, now: float) -> None:
         self._report(now)
         self.connect.tick(now)
+        self._disk.run()
         self._station.set_addresses(self._addresses.find(now))
         self._last_snapshot = self._station.snapshot(now, time.time())
         for text in self._lasting_alerts.new_in(self._last_snapshot):

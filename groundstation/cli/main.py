@@ -20,8 +20,8 @@ from groundstation.cli.unknown_options import describe_unknown
 from groundstation.cli.verb_help import LOCAL_HELP, RESERVED, VERB_HELP
 from groundstation.client import StationClient, StationError
 from groundstation.config.config_file import ConfigError
-from groundstation.config.effective import build_keymap, load_config, merge, resolve_endpoints
-from groundstation.config.settings import Settings, ThemeName
+from groundstation.config.effective import Effective, build_keymap, load_config, merge, resolve_endpoints
+from groundstation.config.settings import ThemeName
 from groundstation.input.keymap import KeymapError
 from groundstation.recent.recent_file import RecentFile
 from link.endpoint import EndpointError
@@ -66,9 +66,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
     config = load_config(options.config, os.environ, RESERVED)
-    settings = merge(config, os.environ, given_settings(options)).settings
+    effective = merge(config, os.environ, given_settings(options))
+    settings = effective.settings
     keymap = build_keymap(settings)
-    endpoints = _endpoints(options, settings, names)
+    endpoints = _endpoints(options, effective, names)
     _check_terminal()
     log_file = _log_file(settings.log_file)
     folder = _folder(settings.folder, log_file)
@@ -94,7 +95,8 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
             ascii=needs_ascii() if settings.ascii is None else settings.ascii,
             reduce_motion=settings.reduce_motion,
         )
-        return run(client, keymap=keymap, log_file=log_file, folder=folder, look=look)
+        first = "drive" if endpoints or options.sitl else "connect"
+        return run(client, keymap=keymap, log_file=log_file, folder=folder, look=look, first=first)
     finally:
         client.close()
         _remember(endpoints, client.vehicle_name)
@@ -121,9 +123,13 @@ def report_armed(lines: Sequence[str]) -> None:
             print(f"groundstation: {line}", file=sys.stderr, flush=True)
 
 
-def _endpoints(options: argparse.Namespace, settings: Settings, names: Sequence[str]) -> list[str]:
-    """Return what to open. A simulator alone opens nothing that the command line does not name."""
-    if options.sitl and not options.endpoints:
+def _endpoints(options: argparse.Namespace, effective: Effective, names: Sequence[str]) -> list[str]:
+    """Return what to open. Without an endpoint on the command line or in the settings, the Connect screen comes first.
+
+    A simulator alone opens nothing that the command line does not name.
+    """
+    settings = effective.settings
+    if not options.endpoints and (options.sitl or "open" not in effective.sources):
         return []
     for text in options.endpoints:
         if f"--{text}" in names and text not in settings.endpoints:

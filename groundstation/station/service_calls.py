@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, ListLogs, PutFile, RemoveFile
 from groundstation.intents.services import (
     CompareParams,
     FetchParams,
@@ -48,6 +49,41 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
     ),
     ResetParams: ServiceCall(
         "params", "reset parameters", lambda services, intent, now: services.param_storage.reset(intent.request, now)
+    ),
+    ListFolder: ServiceCall(
+        "folders",
+        "list a folder",
+        lambda services, intent, now: services.folders.list_folder(intent.request, intent.path, now),
+    ),
+    GetFile: ServiceCall(
+        "files",
+        "download a file",
+        lambda services, intent, now: services.transfers.get_file(
+            intent.request, intent.path, intent.folder, intent.name, now, overwrite=intent.overwrite
+        ),
+    ),
+    PutFile: ServiceCall(
+        "files",
+        "upload a file",
+        lambda services, intent, now: services.transfers.put_file(intent.request, intent.path, intent.file, now),
+    ),
+    RemoveFile: ServiceCall(
+        "files",
+        "remove a file",
+        lambda services, intent, now: services.files.remove(intent.request, intent.path, now),
+    ),
+    ListLogs: ServiceCall(
+        "folders", "list logs", lambda services, intent, now: services.logs.list_logs(intent.request, now)
+    ),
+    GetLog: ServiceCall(
+        "files",
+        "download a log",
+        lambda services, intent, now: services.transfers.get_log(
+            intent.request, intent.log, intent.folder, intent.name, now, overwrite=intent.overwrite
+        ),
+    ),
+    EraseLogs: ServiceCall(
+        "files", "erase all logs", lambda services, intent, now: services.logs.erase(intent.request, now)
     ),
 }
 """Intent -> call."""

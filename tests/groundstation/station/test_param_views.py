@@ -78,7 +78,7 @@ def test_the_users_file_serves_a_vehicle_without_texts_of_its_own() -> None:
         ((other,), "", ""),
         ((damaged,), "", damaged.problem),
     ):
-        views = ParamViews(drive.station.fleet, drive.station._services, files)
+        views = ParamViews(drive.station.fleet, drive.station.services, files)
         page = views.sources[ParamPageRequest].build(request, 0.0, 0.0)
         assert isinstance(page, ParamPage)
         assert (page.rows[0].unit, page.texts) == (unit, texts)
