@@ -39,6 +39,7 @@ from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.lasting_alerts import LastingAlerts
 from groundstation.station.station import COMPONENT, Station
 from groundstation.station_options import log_to, station_parser
+from groundstation.vehicles.fleet import PLACES
 from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, parse_endpoint
 from link.protocol.sent_frames import SentFrames
@@ -253,7 +254,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         log_to(options.log_file)
         notes = use_dialect(options.dialect)
         sent = SentFrames()
-        links = open_links(endpoints, system=options.system, component=COMPONENT, sent=sent)
+        links = open_links(endpoints, system=options.system, component=COMPONENT, sent=sent, places=PLACES)
         known = tuple(parse_endpoint(text).text for text in endpoints)
     except (DialectError, EndpointError, LinkError, OSError) as error:
         pipe.send(encode(StationFailed(_one_line(error))))
