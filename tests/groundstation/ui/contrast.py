@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 from rich.color import Color, ColorSystem
 from rich.palette import Palette
@@ -47,6 +48,7 @@ PALETTES = {"xterm": XTERM_16, "linux": LINUX_16}
 """Terminals with 16 colours."""
 
 
+@cache
 def shown(colour: str, depth: str) -> tuple[int, int, int]:
     """Return what a terminal shows for a colour."""
     parsed = Color.parse(colour)

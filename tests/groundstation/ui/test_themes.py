@@ -8,7 +8,6 @@ from itertools import product
 from pathlib import Path
 
 import pytest
-from rich.color import Color
 from textual.theme import BUILTIN_THEMES
 from textual.widgets import Input
 
@@ -89,11 +88,11 @@ def pairs_of(screen: Console) -> Iterator[tuple[Role, Role]]:
 
 def role_of(colour: str, theme: Colours) -> Role | None:
     """Return the role whose colour this is; Textual rounds."""
-    parts = Color.parse(colour).get_truecolor()
+    parts = shown(colour, "all")
     near = (
         role
         for role, known in theme.items()
-        if max(abs(a - b) for a, b in zip(parts, Color.parse(known).get_truecolor(), strict=True)) <= 2
+        if all(abs(a - b) <= 2 for a, b in zip(parts, shown(known, "all"), strict=True))
     )
     return next(near, None)
 
