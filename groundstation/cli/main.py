@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from platformdirs import user_log_path
 
@@ -26,6 +27,9 @@ from groundstation.input.keymap import KeymapError
 from groundstation.recent.recent_file import RecentFile
 from link.endpoint import EndpointError
 from link.runtime import stdio
+
+if TYPE_CHECKING:
+    from groundstation.ui.appearance import Look  # the UI is imported while the station starts
 
 MIN_TERMINAL_SIZE = (40, 10)
 """Columns and rows below which not even the message fits that the terminal is too small."""
@@ -86,21 +90,25 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         meanwhile=_import_screen,
     )
     try:
-        from groundstation.ui.appearance import Look
         from groundstation.ui.run import run
 
         _remember(endpoints)
-        look = Look(
-            theme=settings.theme or ThemeName.DARK,
-            ascii=needs_ascii() if settings.ascii is None else settings.ascii,
-            reduce_motion=settings.reduce_motion,
-        )
         first = "drive" if endpoints or options.sitl else "connect"
-        return run(client, keymap=keymap, log_file=log_file, folder=folder, look=look, first=first)
+        return run(client, keymap=keymap, log_file=log_file, folder=folder, look=_look(settings), first=first)
     finally:
         client.close()
         _remember(endpoints, client.vehicle_name)
         report_armed(client.left_armed)
+
+
+def _look(settings: Settings) -> Look:
+    from groundstation.ui.appearance import Look
+
+    return Look(
+        theme=settings.theme or ThemeName.DARK,
+        ascii=needs_ascii() if settings.ascii is None else settings.ascii,
+        reduce_motion=settings.reduce_motion,
+    )
 
 
 def _remember(endpoints: Sequence[str], vehicle: str = "") -> None:
