@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from groundstation.intents.services import FetchParams, ServiceIntent, WriteParams
+from groundstation.intents.services import FetchParams, RequestMessage, ServiceIntent, SetMessageRate, WriteParams
 from groundstation.vehicles.services import VehicleServices
 
 
@@ -30,6 +30,20 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
         "params",
         "set parameters",
         lambda services, intent, now: services.param_writer.write(intent.request, intent.changes, now),
+    ),
+    SetMessageRate: ServiceCall(
+        "messages",
+        "set the rate of a message",
+        lambda services, intent, now: services.messages.set_rate(
+            intent.request, intent.component, intent.message, intent.name, intent.rate, now
+        ),
+    ),
+    RequestMessage: ServiceCall(
+        "messages",
+        "request a message",
+        lambda services, intent, now: services.messages.request_once(
+            intent.request, intent.component, intent.message, intent.name, now
+        ),
     ),
 }
 """Intent -> call."""

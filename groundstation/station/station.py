@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from groundstation.input.style import Style
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
+from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driven import DrivenVehicle
@@ -19,6 +20,7 @@ from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
+from groundstation.station.message_detail import MessageDetail
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
 from groundstation.station.service_desk import ServiceDesk
@@ -28,7 +30,6 @@ from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
-from groundstation.views.messages import MessageRequest, MessagesRequest
 from groundstation.views.params import ParamPageRequest
 from groundstation.views.requests import RequestsRequest
 from link.core import LinkReport, Outgoing, Received
@@ -79,14 +80,16 @@ class Station:
             self._timesync,
             Program(system, COMPONENT, session),
         )
+        self._detail = MessageDetail(self._traffic)
+        self._charts = ChartDesk(self.fleet, self._traffic, self.operator, self._links, self._timesync)
         self.views = ViewFeed(
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
                 ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
                 RequestsRequest: ViewSource(self._services.build_requests, period=0.25),
-                MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
-                MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
                 **self._link_views.sources,
+                **self._charts.sources,
+                **self._detail.sources,
             }
         )
         """Request -> its source."""
@@ -153,6 +156,8 @@ class Station:
             self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
         self._driving.update(now)
         self._departure.tick(now)
+        self._charts.tick(now)
+        self._detail.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
@@ -196,6 +201,7 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._expire_lease(now)
+        self._charts.handle_intent(intent, now)
         self._intents.handle(intent, now)
 
     def set_simulator_state(self, state: str | None) -> None:

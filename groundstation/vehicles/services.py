@@ -10,6 +10,7 @@ from groundstation.vehicles.command_requests import CommandRequests
 from groundstation.vehicles.file_requests import FileRequests
 from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.log_requests import LogRequests
+from groundstation.vehicles.message_requests import MessageRequests
 from groundstation.vehicles.mode_requests import ModeRequests
 from groundstation.vehicles.param_requests import ParamRequests
 from groundstation.vehicles.param_writer import ParamWriter
@@ -35,6 +36,7 @@ class VehicleServices:
         self.book = RequestBook()
         self.identity = VehicleIdentity(at)
         self.commands = CommandRequests(CommandClient(system, component), self.book, target)
+        self.messages = MessageRequests(self.commands, self.book)
         self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
         self.files = FileRequests(FtpClient(system, component, target_system=to, target_component=at), self.book)
         self.plans = PlanRequests(MissionClient(system, component, target_system=to, target_component=at), self.book)
