@@ -103,6 +103,7 @@ class Station:
             self.log,
             self.views,
             self._services,
+            self._charts,
         )
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
@@ -201,7 +202,7 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._expire_lease(now)
-        self._charts.handle_intent(intent, now)
+        self._charts.mark_key(intent, now)
         self._intents.handle(intent, now)
 
     def set_simulator_state(self, state: str | None) -> None:

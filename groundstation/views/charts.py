@@ -120,6 +120,7 @@ class FieldRow(msgspec.Struct, frozen=True, array_like=True):
     field: FieldId
     value: str
     """Newest value with its unit."""
+    unit: str = ""
 
 
 class ChartTemplate(msgspec.Struct, frozen=True, array_like=True):

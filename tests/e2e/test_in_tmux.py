@@ -169,7 +169,8 @@ def test_waiting_offers_the_simulator(tmux: Callable[..., Tmux]) -> None:
     terminal = tmux(80, 24, f"udpin:127.0.0.1:{port}")
     waiting = terminal.until(lambda screen: "waiting for a vehicle" in screen, PATIENCE)
     assert str(port) in waiting
-    terminal.press("F5")
+    assert "ENTER starts a simulated rover" in waiting
+    terminal.press("Enter")
     terminal.until(lambda screen: "DISARMED" in screen, PATIENCE)
 
 

@@ -41,7 +41,7 @@ class FieldCatalogue:
         self._update()
         wanted = max(0, min(request.count, MAX_ROWS))
         matching = rank_fields(request.text, self._fields) if wanted else []
-        rows = tuple(FieldRow(field, self._value(field)) for field in matching[:wanted])
+        rows = tuple(FieldRow(field, self._value(field), self._info(field).unit) for field in matching[:wanted])
         known = tuple(self._info(field) for field in request.known)
         ready = build_ready(lambda name: self._find(name, vehicle))
         return FieldsPage(request.text, rows, len(matching), len(self._fields), known, ready)
@@ -83,6 +83,6 @@ class FieldCatalogue:
         message, field, index = match[1], match[2], int(match[3] or -1)
         if message == STATION:
             return STATION_FIELDS[field].field
-        ids = [ids for (sent, *ids), kind in self._places if kind == message and not sent]
-        ids.sort(key=lambda each: (tuple(each) != vehicle, each))
+        ids = [source[1:] for source, kind in self._places if kind == message and not source[0]]
+        ids.sort(key=lambda each: (each != vehicle, each))
         return FieldId(*ids[0], False, message, field, index) if ids else None

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from dialects.messages import Message
-from groundstation.intents.charts import PinSeries
 from groundstation.intents.union import AnyIntent
 from groundstation.station.charts.catalogue import FieldCatalogue, class_of, place_of
 from groundstation.station.charts.fields import Reader, make_reader
@@ -61,11 +60,13 @@ class ChartDesk:
             FieldsRequest: ViewSource(self._build_fields, FIELDS_PERIOD),
         }
 
-    def handle_intent(self, intent: AnyIntent, now: float) -> None:
-        """Mark the keys of a driver; pin series."""
-        if isinstance(intent, PinSeries):
-            self._recorder.pin(intent.fields)
-        elif self._operator.blocked_reason(now) is None:
+    def pin(self, fields: Iterable[FieldId]) -> None:
+        """Record these fields also while no screen draws them, in place of those pinned before."""
+        self._recorder.pin(fields)
+
+    def mark_key(self, intent: AnyIntent, now: float) -> None:
+        """Mark an intent that is a key of the driver, where keys count."""
+        if self._operator.blocked_reason(now) is None:
             self._watcher.press(intent, now)
 
     def tick(self, now: float) -> None:

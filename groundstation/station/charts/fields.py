@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
-from functools import cache
 
 from dialects.enum_names import enum_names
 from dialects.messages import Message
@@ -25,7 +24,6 @@ _UNKNOWN = {
 """Type of a field -> the value that means "not known" in most messages (common.xml, attribute `invalid`)."""
 
 
-@cache
 def array_length(kind: type[Message], field: str) -> int:
     """Return the items of a field; 0: it is no array. -1: it is text."""
     if _type(kind, field) == "char":

@@ -78,7 +78,8 @@ class WaitingPage(Instrument[WaitingValue]):
         if not any(endpoint.startswith("udpin:") for endpoint in self.value.snapshot.endpoints):
             return [("  groundstation --sitl", style(TEXT, bold=True)), (" starts a simulated rover.", style(DIM))]
         key = style(YELLOW, bold=True)
-        keys: list[Part] = [("  ENTER", key), (" or ", style(DIM)), (self.value.simulator_key, key)]
+        own = self.value.simulator_key  # "?": no key map file has bound one
+        keys: list[Part] = [("  ENTER", key), *([(" or ", style(DIM)), (own, key)] if own != "?" else [])]
         return [*keys, (" starts a simulated rover.", style(TEXT))]
 
 

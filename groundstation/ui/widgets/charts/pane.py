@@ -1,0 +1,179 @@
+"""Chart pane: one chart in braille, drawn from a value: header, scale, lines, cursors. It has no keys."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rich.style import Style
+from textual.strip import Strip
+
+from groundstation.ui.charts.columns import Column
+from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, LINE, TEXT, VIOLET, WHITE, YELLOW, style
+from groundstation.ui.widgets.canvas import Canvas
+from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
+
+AXIS = 8
+"""Cells at the left for the scale."""
+
+LEAST_SHARE = 0.02
+"""Share of its value that a scale spans at least: the noise of a constant value must not fill the chart."""
+
+COLOURS = (GREEN, AMBER, BLUE, VIOLET)
+"""Colours of the lines of one chart, in their order."""
+
+PATTERNS: tuple[tuple[int, int], ...] = ((1, 1), (4, 6), (1, 3), (6, 9))
+"""Dots that are drawn of so many: solid, dashed, dotted, long dashes. Not only colours tell lines apart."""
+
+SAMPLES = ("━━", "╌╌", "··", "━╌")
+"""The same for legends."""
+
+
+@dataclass(frozen=True, eq=False)
+class PaneLine:
+    """One line: its columns from the left of the picture on, and the one before, see Columns.between."""
+
+    name: str
+    value: str
+    """At the cursor, or the newest; "--" where there is none."""
+    columns: Sequence[Column]
+    slot: int
+    """Index of its colour and its pattern."""
+    chosen: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class PaneValue:
+    """A chart. Two values are equal only if they are the same object: the model makes a new one when it has changed."""
+
+    number: int
+    title: str
+    unit: str
+    lines: tuple[PaneLine, ...]
+    left: int
+    """Number of the column of dots at the left edge."""
+    low: float
+    high: float
+    decimals: int
+    cursor: int | None = None
+    """Column of dots of the cursor, counted from the left edge."""
+    mark: int | None = None
+    """That of the second cursor."""
+    chosen: bool = False
+
+
+EMPTY = PaneValue(0, "", "", (), 0, 0.0, 1.0, 0)
+
+
+def plot_dots(width: int) -> int:
+    """Return the columns of dots of a pane of this width."""
+    return max(2, (width - AXIS) * 2)
+
+
+def draw_chart(value: PaneValue, width: int, height: int) -> list[Strip]:
+    """Draw a chart of at least two rows: a header, then the picture."""
+    canvas = Canvas(width, max(1, height - 1))
+    _draw_scale(canvas, value)
+    for line in value.lines:
+        _Plotter(canvas, value, line).draw()
+    for at, colour in ((value.mark, YELLOW), (value.cursor, WHITE)):
+        if at is not None and 0 <= at < plot_dots(width):
+            for row in range(canvas.height):
+                canvas.write(AXIS + at // 2, row, "│", style(colour, bold=colour == WHITE))
+    return [_header(value, width), *canvas.strips()]
+
+
+class ChartPane(Instrument[PaneValue]):
+    """One chart."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """Draw it."""
+        return draw_chart(self.value, width, height) if height else []
+
+
+def nice_scale(low: float, high: float) -> tuple[float, float, int]:
+    """Return bounds on steps of 1, 2 or 5 around two values, and the decimals that tell the bounds apart."""
+    if 0 <= low < high / 2:
+        low = 0.0  # a scale from 0 shows at once how much it is
+    span = max(high - low, LEAST_SHARE * max(abs(low), abs(high)), 0.0) or 1.0
+    power = 10.0 ** math.floor(math.log10(span))
+    step = next(power * each / 5 for each in (1, 2, 5, 10) if power * each >= span)
+    bottom, top = math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
+    if top - bottom < step:
+        top = bottom + step
+    return bottom, top, max(0, -math.floor(math.log10((top - bottom) / 2) - 1e-9)) if top - bottom < 20 else 0
+
+
+def _header(value: PaneValue, width: int) -> Strip:
+    """Return the line over a chart: number, title, legend with values, unit."""
+    rule = style(BLUE if value.chosen else LINE)
+    parts: list[Part] = [("─ ", rule), (f"{value.number} {value.title} ", style(BLUE, bold=value.chosen))]
+    for line in value.lines:
+        colour = COLOURS[line.slot]
+        legend = [(f" {SAMPLES[line.slot]} ", style(colour)), (f"{line.name} ", style(TEXT if line.chosen else DIM)),
+                  (f"{line.value} ", style(colour, bold=True))]  # fmt: skip
+        if length(parts) + length(legend) + len(value.unit) + 4 > width:
+            break
+        parts += legend
+    unit = f" {value.unit} ─" if value.unit else "─"
+    parts.append(("─" * max(0, width - length(parts) - len(unit)), rule))
+    return strip(*parts, (unit, style(DIM))).crop(0, width)
+
+
+def _draw_scale(canvas: Canvas, value: PaneValue) -> None:
+    rows = sorted({0, canvas.height // 2, canvas.height - 1}) if canvas.height > 3 else sorted({0, canvas.height - 1})
+    for row in rows:
+        share = 1 - row / max(1, canvas.height - 1)
+        number = value.low + (value.high - value.low) * share
+        text = f"{round(number, value.decimals) + 0.0:.{value.decimals}f}"
+        canvas.write(0, row, text[: AXIS - 1].rjust(AXIS - 1), style(DIM))
+        y = row * 4 + (0 if row == 0 else 3 if row == canvas.height - 1 else 1)
+        for x in range(AXIS * 2, canvas.across, 8):
+            canvas.dot(x, y, style(LINE))
+
+
+class _Plotter:
+    """Draws one line on a canvas."""
+
+    def __init__(self, canvas: Canvas, value: PaneValue, line: PaneLine) -> None:
+        self._canvas, self._value, self._line = canvas, value, line
+        self._style: Style = style(COLOURS[line.slot])
+        self._on, self._period = PATTERNS[line.slot]
+        self._factor = (canvas.down - 1) / ((value.high - value.low) or 1.0)
+
+    def draw(self) -> None:
+        """Draw the columns, and a line from each to the next where no data is missing between them."""
+        before: Column | None = None
+        for column in self._line.columns:
+            low, high = self._y(column.low), self._y(column.high)
+            joined = before is not None and not column.broken
+            if before is not None and joined:
+                end, start = self._y(before.last), self._y(column.first)
+                self._connect(before.number, end, column.number, start)
+                if column.number == before.number + 1:
+                    low, high = max(low, min(end, self._canvas.down)), min(high, max(end, -1))
+            self._run(column.number, high, low)
+            before = column
+
+    def _connect(self, left: int, start: int, right: int, end: int) -> None:
+        """Draw the columns between two that have points."""
+        for number in range(max(left + 1, self._value.left), right):
+            share = (number - left) / (right - left)
+            y = round(start + (end - start) * share)
+            self._run(number, y, y)
+
+    def _run(self, number: int, top: int, bottom: int) -> None:
+        x = number - self._value.left
+        if x < 0 or number % self._period >= self._on:
+            return
+        for y in range(max(0, top), min(self._canvas.down - 1, bottom) + 1):
+            self._canvas.dot(AXIS * 2 + x, y, self._style)
+
+    def _y(self, value: float) -> int:
+        return round((self._value.high - value) * self._factor)
+
+
+def legend_parts(slot: int) -> Iterator[Part]:
+    """Yield the sample of a line for a list."""
+    yield SAMPLES[slot], style(COLOURS[slot])
