@@ -75,7 +75,7 @@ class MessageDetail:
             self._watch(place)
         kind = self._traffic.find(place)
         if kind is None:
-            return None
+            return self._traffic.unknown.build_message(request, now)
         return MessageView(
             request.system, request.component, request.sent, request.name, type(kind.newest).id, kind.rate, kind.count,
             now - kind.at, kind.length, tuple(self._fields(kind)), kind.payload, self._plot(request, kind, now),

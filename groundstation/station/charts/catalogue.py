@@ -15,7 +15,6 @@ MAX_ROWS = 50
 """Rows of one answer, more than fit beside the charts."""
 
 _NAME = re.compile(r"(\w+)\.(\w+)(?:\[(\d+)\])?")
-_CLASSES: dict[str, type[Message]] = {kind.msgname: kind for kind in MESSAGES.values()}
 
 
 def place_of(field: FieldId) -> Place:
@@ -24,8 +23,8 @@ def place_of(field: FieldId) -> Place:
 
 
 def class_of(field: FieldId) -> type[Message] | None:
-    """Return the class of its message; None outside the dialect."""
-    return _CLASSES.get(field.message)
+    """Return the class of its message; None outside the dialects, which may have grown by that of the user."""
+    return next((kind for kind in MESSAGES.values() if kind.msgname == field.message), None)
 
 
 class FieldCatalogue:
