@@ -113,9 +113,9 @@ class MessageDetail:
         for at, kept in self._kept:
             value = read(kept)
             if value is not None and now - at <= SPAN:
-                times.append(at - now)
+                times.append(at)
                 values.append(value)
-        return FieldPlot(build_info(field, message), times.tobytes(), values.tobytes())
+        return FieldPlot(build_info(field, message), now, times.tobytes(), values.tobytes())
 
 
 def _spark(kind: type[Message], field: str, messages: list[Message]) -> str:

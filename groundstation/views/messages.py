@@ -103,8 +103,10 @@ class FieldPlot(msgspec.Struct, frozen=True):
     """The last minute of one field."""
 
     info: FieldInfo
+    now: float
+    """s of the station's clock."""
     times: bytes
-    """s before now, 0 and below, as 8-byte floats of this machine."""
+    """By the same clock, as 8-byte floats of this machine."""
     values: bytes
     """In the unit of `info`, as 8-byte floats of this machine."""
 

@@ -83,7 +83,8 @@ def rank_fields(text: str, fields: Iterable[FieldId]) -> list[FieldId]:
     for field in fields:
         scores = [match_score(word, f"{field.name} {field.source}") for word in words]
         if None not in scores:
-            found.append((sum(score for score in scores if score is not None), field))
+            further = 0.5 if field.index > 0 else 0.0  # most arrays use their first items only
+            found.append((further + sum(score for score in scores if score is not None), field))
     return [field for _, field in sorted(found)]
 
 

@@ -49,8 +49,9 @@ class Pictures:
         chart, chosen = model.charts.charts[index], model.charts.chosen
         columns = [model.columns(spec).between(axis.left, axis.right) for spec in chart.lines]
         shown = [each for line in columns for each in line if each.number >= axis.left]
+        least = min((10.0 ** -spec.decimals(model.infos.get(spec.field)) for spec in chart.lines), default=0.0)
         low, high, decimals = nice_scale(
-            min((each.low for each in shown), default=0.0), max((each.high for each in shown), default=1.0)
+            min((each.low for each in shown), default=0.0), max((each.high for each in shown), default=1.0), least
         )
         lines = tuple(
             PaneLine(short_name(spec), texts[slot], columns[slot], slot, chosen == (index, slot))
@@ -131,7 +132,7 @@ class Pictures:
         ends = [axis.column_of(mark.at) for mark in modes[1:]] + [axis.dots]
         bars = tuple(
             TimelineMode(max(0, axis.column_of(mark.at)), min(end, axis.dots), mark.text)
-            for mark, end in zip(modes, ends, strict=True)
+            for mark, end in zip(modes, ends, strict=False)  # without a mode there is no bar
             if end > 0 and axis.column_of(mark.at) < axis.dots
         )
         marks = tuple(

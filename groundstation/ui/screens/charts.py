@@ -112,7 +112,7 @@ class ChartsScreen(ConsoleScreen):
             return measured
         behind = f"paused, {axis.now - axis.end:.0f} s behind: z goes on live" if axis.paused_at is not None else ""
         hidden = len(model.charts.charts) - self._visible
-        more = f"{hidden} more charts: ↑ ↓ scroll" if hidden > 0 else ""
+        more = f"{hidden} more {'chart' if hidden == 1 else 'charts'}: ↑ ↓ scroll" if hidden > 0 else ""
         window = f"{axis.window:g} s" if model.charts.charts else ""
         return " · ".join(part for part in (behind, window, more, "ESC goes back to Drive") if part)
 

@@ -50,7 +50,7 @@ def test_one_of_them_comes_without_fields() -> None:
     assert view is not None
     assert (view.id, view.count, view.length, view.fields) == (51000, 40, 31, ())
     for name in ("#1", "#", "51000", "#x", "ATTITUDE"):
-        assert traffic().build_message(MessageRequest(1, 1, False, name), 10.0, 0.0) is None
+        assert traffic().unknown.build_message(MessageRequest(1, 1, False, name), 10.0) is None
 
 
 def test_a_channel_reports_them() -> None:

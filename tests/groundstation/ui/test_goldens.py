@@ -17,6 +17,7 @@ from groundstation.ui.display_state import DisplayState
 from groundstation.views.base import View
 from groundstation.views.links import ControlView, LinksView, VehiclesView
 from tests.groundstation.ui import frames
+from tests.groundstation.ui.example_charts import drive, fields_page
 from tests.groundstation.ui.examples import (
     LOG_PAGE,
     MESSAGES_PAGE,
@@ -29,7 +30,7 @@ from tests.groundstation.ui.examples import (
     wheels,
 )
 from tests.groundstation.ui.link_examples import FLEET, OURS, VIEWS
-from tests.groundstation.ui.pilots import console
+from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import STANDARD
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -92,6 +93,14 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "links_empty_80x24": (SMALL, waiting(), ("f7",)),
     "messages_80x24": (SMALL, snapshot(), ("f3", *["down"] * 8)),
     "messages_140x45": (WIDE, snapshot(), ("f3", *["down"] * 8)),
+    "charts_empty_80x24": (SMALL, snapshot(), ("f5",)),
+    "charts_empty_140x45": (WIDE, waiting(), ("f5",)),
+    "charts_80x24": (SMALL, snapshot(), ("f5", "v")),
+    "charts_140x45": (WIDE, snapshot(), ("f5", "v")),
+    "charts_list_80x24": (SMALL, snapshot(), ("f5", "v", "tab")),
+    "charts_measure_80x24": (SMALL, snapshot(), ("f5", "v", "z", *["shift+left"] * 2, "m", "left", "left")),
+    "charts_measure_140x45": (WIDE, snapshot(), ("f5", "v", "z", "shift+left", "m", *["shift+left"] * 4)),
+    "charts_add_140x45": (WIDE, snapshot(), ("f5", "v", "a", *"volt")),
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
@@ -112,17 +121,38 @@ FRAMES |= {
         "goto_80x24",
         "messages_80x24",
         "messages_140x45",
+        "charts_80x24",
+        "charts_measure_140x45",
     )
 }
 
 
 def views_for(name: str) -> Sequence[View]:
     """Return what the station sends to the screen of a frame."""
+    if "charts" in name:
+        return (fields_page(empty=True),) if "empty" in name else (fields_page(),)
     if "empty" in name:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
     if "params" in name:
         return (param_page(),)
     return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE)
+
+
+async def fill(screen: Console, name: str, keys: Sequence[str], picture: Snapshot) -> None:
+    """Press the keys behind the one that opened the screen, and show what that asks for."""
+    if "charts" in name:
+        await screen.press(*keys[1:2])
+        screen.station.offer_view(drive())
+        await screen.show(picture)
+        await screen.press(*keys[2:])
+        if "a" in keys:
+            screen.station.offer_view(fields_page("volt"))
+        return
+    await screen.press(*keys[1:])
+    if "messages" in name:
+        screen.station.offer_view(SYS_STATUS_VIEW)
+    if "params" in name:
+        await screen.press("down", "enter", "backspace", "0", "enter", "W")
 
 
 @pytest.mark.parametrize("name", FRAMES)
@@ -134,11 +164,7 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
             for view in views_for(name):
                 screen.station.offer_view(view)
             await screen.show(picture)
-            await screen.press(*keys[1:])
-            if "messages" in name:
-                screen.station.offer_view(SYS_STATUS_VIEW)
-            if "params" in name:
-                await screen.press("down", "enter", "backspace", "0", "enter", "W")
+            await fill(screen, name, keys, picture)
             await screen.show(picture)  # the height of the alerts is known after the first one
         if "hold" in name:
             state = DisplayState(picture, STANDARD, hold=HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4))

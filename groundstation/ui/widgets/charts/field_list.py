@@ -99,7 +99,7 @@ class FieldList(Instrument[tuple[ListRow, ...]]):
             case CandidateRow():
                 ground = FAINT if row.first else BACKGROUND
                 left = [("› " if row.first else "  ", style(YELLOW, ground)), (clean(row.name), style(TEXT, ground))]
-                return _ends(left, [(clean(row.value)[:16], style(DIM, ground))], width, ground)
+                return _ends(left, [(f" {clean(row.value)[:16]}", style(DIM, ground))], width, ground)
             case ViewRow():
                 note = "now" if row.shown else "no field yet" if row.empty else ""
                 colour = GREEN if row.shown else DIM if row.empty else TEXT

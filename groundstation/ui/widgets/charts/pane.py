@@ -92,11 +92,11 @@ class ChartPane(Instrument[PaneValue]):
         return draw_chart(self.value, width, height) if height else []
 
 
-def nice_scale(low: float, high: float) -> tuple[float, float, int]:
-    """Return bounds on steps of 1, 2 or 5 around two values, and the decimals that tell the bounds apart."""
+def nice_scale(low: float, high: float, least: float = 0.0) -> tuple[float, float, int]:
+    """Return bounds on steps of 1, 2 or 5 around two values, at least `least` apart, and decimals for a scale."""
     if 0 <= low < high / 2:
         low = 0.0  # a scale from 0 shows at once how much it is
-    span = max(high - low, LEAST_SHARE * max(abs(low), abs(high)), 0.0) or 1.0
+    span = max(high - low, LEAST_SHARE * max(abs(low), abs(high)), least) or 1.0
     power = 10.0 ** math.floor(math.log10(span))
     step = next(power * each / 5 for each in (1, 2, 5, 10) if power * each >= span)
     bottom, top = math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
@@ -108,7 +108,10 @@ def nice_scale(low: float, high: float) -> tuple[float, float, int]:
 def _header(value: PaneValue, width: int) -> Strip:
     """Return the line over a chart: number, title, legend with values, unit."""
     rule = style(BLUE if value.chosen else LINE)
-    parts: list[Part] = [("─ ", rule), (f"{value.number} {value.title} ", style(BLUE, bold=value.chosen))]
+    parts: list[Part] = [
+        ("─ ", rule),
+        (f"{value.number or ''} {value.title} ".lstrip(), style(BLUE, bold=value.chosen)),
+    ]
     for line in value.lines:
         colour = COLOURS[line.slot]
         legend = [(f" {SAMPLES[line.slot]} ", style(colour)), (f"{line.name} ", style(TEXT if line.chosen else DIM)),
@@ -122,13 +125,10 @@ def _header(value: PaneValue, width: int) -> Strip:
 
 
 def _draw_scale(canvas: Canvas, value: PaneValue) -> None:
-    rows = sorted({0, canvas.height // 2, canvas.height - 1}) if canvas.height > 3 else sorted({0, canvas.height - 1})
-    for row in rows:
-        share = 1 - row / max(1, canvas.height - 1)
-        number = value.low + (value.high - value.low) * share
+    middle = ((value.low + value.high) / 2, (canvas.down - 1) // 2)
+    for number, y in ((value.high, 0), *([middle] if canvas.height > 3 else []), (value.low, canvas.down - 1)):
         text = f"{round(number, value.decimals) + 0.0:.{value.decimals}f}"
-        canvas.write(0, row, text[: AXIS - 1].rjust(AXIS - 1), style(DIM))
-        y = row * 4 + (0 if row == 0 else 3 if row == canvas.height - 1 else 1)
+        canvas.write(0, y // 4, text[: AXIS - 1].rjust(AXIS - 1), style(DIM))
         for x in range(AXIS * 2, canvas.across, 8):
             canvas.dot(x, y, style(LINE))
 
@@ -147,21 +147,21 @@ class _Plotter:
         before: Column | None = None
         for column in self._line.columns:
             low, high = self._y(column.low), self._y(column.high)
-            joined = before is not None and not column.broken
-            if before is not None and joined:
-                end, start = self._y(before.last), self._y(column.first)
-                self._connect(before.number, end, column.number, start)
-                if column.number == before.number + 1:
-                    low, high = max(low, min(end, self._canvas.down)), min(high, max(end, -1))
+            if before is not None and not column.broken:
+                end = self._connect(before, column)
+                low, high = max(low, min(end, self._canvas.down)), min(high, max(end, -1))
             self._run(column.number, high, low)
             before = column
 
-    def _connect(self, left: int, start: int, right: int, end: int) -> None:
-        """Draw the columns between two that have points."""
-        for number in range(max(left + 1, self._value.left), right):
-            share = (number - left) / (right - left)
-            y = round(start + (end - start) * share)
-            self._run(number, y, y)
+    def _connect(self, before: Column, column: Column) -> int:
+        """Draw the columns between two that have points; return where the line has come to."""
+        start, end = self._y(before.last), self._y(column.first)
+        rise = (end - start) / max(1, column.number - before.number)
+        y = start
+        for number in range(max(before.number + 1, self._value.left), column.number):
+            last, y = y, round(start + rise * (number - before.number))
+            self._run(number, min(last, y), max(last, y))
+        return y
 
     def _run(self, number: int, top: int, bottom: int) -> None:
         x = number - self._value.left

@@ -18,7 +18,7 @@ MODE_COLOURS = {"MANUAL": GREEN, "HOLD": AMBER}
 """Mode -> its colour; those that move by themselves are yellow."""
 
 _EVENTS = {"armed": ("▲", RED), "disarmed": ("▼", GREEN), "failsafe": ("!", RED), "link": ("!", AMBER)}
-"""Kind of mark -> sign and colour; a text that fits stands behind it."""
+"""Kind of mark -> sign and colour; its text stands behind it where there is room."""
 
 KEY_NAMES = {
     "space": "␣",
@@ -97,25 +97,29 @@ def _draw_mode(canvas: Canvas, mode: TimelineMode) -> None:
 
 
 def _draw_marks(canvas: Canvas, marks: Iterable[TimelineMark], width: int) -> None:
-    """Draw events first, with their text where it fits, then keys where there is room."""
-    taken: set[int] = set()
-    for mark in sorted(marks, key=lambda each: each.kind == "key"):
-        text, look = _mark_text(mark)
-        at = AXIS + mark.column // 2
-        for shown in (text, text[:1]):
-            cells = set(range(at, at + len(shown)))
-            if not cells & taken and at + len(shown) <= width:
-                canvas.write(at, 1, shown, look)
-                taken |= cells | {at + len(shown)}
-                break
+    """Draw the signs of events, then keys, then the texts of events, each where there is room."""
+    marks, free = list(marks), [True] * width
+    events = [mark for mark in marks if mark.kind != "key"]
+    for mark in (*events, *(mark for mark in marks if mark.kind == "key")):
+        sign, look = _sign(mark)
+        _write_free(canvas, free, AXIS + mark.column // 2, sign, look)
+    for mark in events:
+        _write_free(canvas, free, AXIS + mark.column // 2 + 2, f"{clean(mark.text)}", _sign(mark)[1])
 
 
-def _mark_text(mark: TimelineMark) -> tuple[str, Style]:
+def _write_free(canvas: Canvas, free: list[bool], at: int, text: str, look: Style) -> None:
+    """Write a text on the row of marks if nothing stands there."""
+    if at + len(text) <= len(free) and all(free[at : at + len(text)]):
+        canvas.write(at, 1, text, look)
+        free[at : at + len(text)] = [False] * len(text)
+
+
+def _sign(mark: TimelineMark) -> tuple[str, Style]:
     if mark.kind == "key":
         stops = mark.text in ("stop", "e-stop")
         return KEY_NAMES.get(mark.text, clean(mark.text)), style(RED if stops else TEXT)
     sign, colour = _EVENTS.get(mark.kind, ("!", AMBER))
-    return f"{sign} {clean(mark.text)}", style(colour, bold=True)
+    return sign, style(colour, bold=True)
 
 
 def _draw_times(canvas: Canvas, value: TimelineValue, width: int) -> None:
