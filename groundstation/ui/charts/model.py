@@ -123,7 +123,8 @@ class ChartsModel:
     def stats(self, spec: SeriesSpec) -> Stats | None:
         """Return the lowest, mean and highest value of a line in the window; None without any."""
         axis = self.axis
-        shown = [each for each in self.columns(spec).between(axis.left, axis.right) if each.number >= axis.left]
+        left = axis.left
+        shown = [each for each in self.columns(spec).between(left, axis.right) if each.number >= left]
         if not shown:
             return None
         mean = sum(each.low + each.high for each in shown) / 2 / len(shown)

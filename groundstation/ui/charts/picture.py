@@ -22,6 +22,7 @@ class Pictures:
     def __init__(self, model: ChartsModel) -> None:
         self._model = model
         self._panes: dict[int, tuple[object, PaneValue]] = {}
+        self._stats: tuple[object, tuple[StatsRow, ...]] = (None, ())
 
     def pane(self, index: int) -> PaneValue:
         """Return the chart with this index."""
@@ -48,7 +49,8 @@ class Pictures:
         model, axis = self._model, self._model.axis
         chart, chosen = model.charts.charts[index], model.charts.chosen
         columns = [model.columns(spec).between(axis.left, axis.right) for spec in chart.lines]
-        shown = [each for line in columns for each in line if each.number >= axis.left]
+        left = axis.left
+        shown = [each for line in columns for each in line if each.number >= left]
         least = min((10.0 ** -spec.decimals(model.infos.get(spec.field)) for spec in chart.lines), default=0.0)
         low, high, decimals = nice_scale(
             min((each.low for each in shown), default=0.0), max((each.high for each in shown), default=1.0), least
@@ -106,9 +108,15 @@ class Pictures:
                 )
 
     def stats_rows(self) -> tuple[StatsRow, ...]:
-        """Return lowest, mean and highest value of each line in the window."""
+        """Return lowest, mean and highest value of each line in the window, at most once a second."""
+        axis = self._model.axis
+        key = (int(axis.end), axis.step, tuple(self._model.charts.specs()), self._model.store.state > 0)
+        if self._stats[0] != key:
+            self._stats = key, tuple(self._build_stats())
+        return self._stats[1]
+
+    def _build_stats(self) -> Iterator[StatsRow]:
         model = self._model
-        rows = []
         for chart in model.charts.charts:
             for slot, spec in enumerate(chart.lines):
                 stats = model.stats(spec)
@@ -120,8 +128,7 @@ class Pictures:
                         f"{each:.{min(2, spec.decimals(info))}f}" for each in (stats.low, stats.mean, stats.high)
                     )
                 )
-                rows.append(StatsRow(short_name(spec), texts, model.unit(spec), slot))
-        return tuple(rows)
+                yield StatsRow(short_name(spec), texts, model.unit(spec), slot)
 
     # ---- the time axis ----
 

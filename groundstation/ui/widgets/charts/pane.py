@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rich.style import Style
@@ -134,46 +134,38 @@ def _draw_scale(canvas: Canvas, value: PaneValue) -> None:
 
 
 class _Plotter:
-    """Draws one line on a canvas."""
+    """Draws one line on a canvas. Most of what a frame of the Charts screen costs is here."""
 
     def __init__(self, canvas: Canvas, value: PaneValue, line: PaneLine) -> None:
-        self._canvas, self._value, self._line = canvas, value, line
+        self._canvas, self._line = canvas, line
+        self._left = value.left
+        self._shift = AXIS * 2 - value.left
         self._style: Style = style(COLOURS[line.slot])
         self._on, self._period = PATTERNS[line.slot]
+        self._high = value.high
         self._factor = (canvas.down - 1) / ((value.high - value.low) or 1.0)
 
     def draw(self) -> None:
         """Draw the columns, and a line from each to the next where no data is missing between them."""
-        before: Column | None = None
+        before, ended = -1, 0
+        top, factor, left = self._high, self._factor, self._left
         for column in self._line.columns:
-            low, high = self._y(column.low), self._y(column.high)
-            if before is not None and not column.broken:
-                end = self._connect(before, column)
-                low, high = max(low, min(end, self._canvas.down)), min(high, max(end, -1))
-            self._run(column.number, high, low)
-            before = column
+            number = column.number
+            high, low = round((top - column.high) * factor), round((top - column.low) * factor)
+            if before >= 0 and not column.broken:
+                if number > before + 1:
+                    ended = self._connect(before, ended, number, round((top - column.first) * factor))
+                high, low = min(high, ended), max(low, ended)
+            if number >= left and number % self._period < self._on:
+                self._canvas.run(number + self._shift, high, low, self._style)
+            before, ended = number, round((top - column.last) * factor)
 
-    def _connect(self, before: Column, column: Column) -> int:
+    def _connect(self, before: int, start: int, number: int, end: int) -> int:
         """Draw the columns between two that have points; return where the line has come to."""
-        start, end = self._y(before.last), self._y(column.first)
-        rise = (end - start) / max(1, column.number - before.number)
+        rise = (end - start) / (number - before)
         y = start
-        for number in range(max(before.number + 1, self._value.left), column.number):
-            last, y = y, round(start + rise * (number - before.number))
-            self._run(number, min(last, y), max(last, y))
+        for between in range(max(before + 1, self._left), number):
+            last, y = y, round(start + rise * (between - before))
+            if between % self._period < self._on:
+                self._canvas.run(between + self._shift, min(last, y), max(last, y), self._style)
         return y
-
-    def _run(self, number: int, top: int, bottom: int) -> None:
-        x = number - self._value.left
-        if x < 0 or number % self._period >= self._on:
-            return
-        for y in range(max(0, top), min(self._canvas.down - 1, bottom) + 1):
-            self._canvas.dot(AXIS * 2 + x, y, self._style)
-
-    def _y(self, value: float) -> int:
-        return round((self._value.high - value) * self._factor)
-
-
-def legend_parts(slot: int) -> Iterator[Part]:
-    """Yield the sample of a line for a list."""
-    yield SAMPLES[slot], style(COLOURS[slot])
