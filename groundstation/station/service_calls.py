@@ -10,8 +10,10 @@ from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, 
 from groundstation.intents.services import (
     CompareParams,
     FetchParams,
+    RequestMessage,
     ResetParams,
     ServiceIntent,
+    SetMessageRate,
     StoreParams,
     WriteParams,
 )
@@ -84,6 +86,20 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
     ),
     EraseLogs: ServiceCall(
         "files", "erase all logs", lambda services, intent, now: services.logs.erase(intent.request, now)
+    ),
+    SetMessageRate: ServiceCall(
+        "messages",
+        "set the rate of a message",
+        lambda services, intent, now: services.messages.set_rate(
+            intent.request, intent.component, intent.message, intent.name, intent.rate, now
+        ),
+    ),
+    RequestMessage: ServiceCall(
+        "messages",
+        "request a message",
+        lambda services, intent, now: services.messages.request_once(
+            intent.request, intent.component, intent.message, intent.name, now
+        ),
     ),
 }
 """Intent -> call."""
