@@ -66,7 +66,9 @@ class ParamsScreen(ConsoleScreen):
         """Show a view; parameters that are not known are fetched."""
         match view:
             case ParamPage():
+                before = self._model.last_write
                 self._send(self._model.show_page(view))
+                self.say(self._model.last_write if self._model.last_write != before else None)
             case ParamInfos():
                 self._model.show_infos(view)
             case ParamDiff():

@@ -13,6 +13,7 @@ import subprocess
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from textual.pilot import Pilot
 
@@ -85,13 +86,41 @@ async def pictures(size: tuple[int, int]) -> dict[str, str]:
     return made
 
 
+SAFE = "FS_TIMEOUT 1\nFS_GCS_TIMEOUT 3\nMOT_THR_MAX 60\nMOT_SLEWRATE 250\n"
+"""A parameter file to compare with."""
+
+
+async def param_pictures(size: tuple[int, int], folder: Path) -> dict[str, str]:
+    """The Parameters screen with a file of this folder that is compared, and its values as changes."""
+    client = StationClient.start([], sitl=True)
+    try:
+        app = ConsoleApp(client, Keymap("standard", KEYMAPS["standard"]), folder=folder)
+        async with app.run_test(size=size) as pilot:
+            await _until(pilot, lambda: app.drive.snapshot.vehicle is not None)
+            await pilot.press("f4")
+            await _until(pilot, lambda: "Turn rate" in frames.text(app))
+            await pilot.press("O", *"safe", "full_stop", *"param", "enter")
+            await pilot.pause(1.0)
+            await pilot.press("a", "slash", *"fs", "underscore", "space", *"mot", "underscore", "enter")
+            await pilot.pause(1.0)
+            await pilot.press(*["down"] * 9)
+            await _until(pilot, lambda: "edits wait" in frames.text(app))
+            return {"params": frames.svg(app)}
+    finally:
+        client.close()
+
+
 def main() -> None:
     """Write them all."""
     parser = argparse.ArgumentParser(description="Make the pictures of the documents.")
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args().folder
     for width, height in SIZES:
-        for name, svg in asyncio.run(pictures((width, height))).items():
+        made = asyncio.run(pictures((width, height)))
+        with TemporaryDirectory() as files:
+            Path(files, "safe.param").write_text(SAFE)
+            made |= asyncio.run(param_pictures((width, height), Path(files)))
+        for name, svg in made.items():
             file = folder / f"{name}_{width}x{height}.svg"
             file.write_text(svg, "utf-8")
             if converter := shutil.which("rsvg-convert"):
