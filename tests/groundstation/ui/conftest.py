@@ -1,4 +1,4 @@
-"""The screen's tests run in one time zone, since the log shows local times, and keep nothing in the home folder."""
+"""The screen's tests run in one time zone, with all colours, and keep nothing in the home folder."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ def _utc(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
         patch.setenv("TZ", "UTC")
         patch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
         patch.delenv("NO_COLOR", raising=False)
+        patch.setenv("COLORTERM", "truecolor")
         time.tzset()
         yield
     time.tzset()

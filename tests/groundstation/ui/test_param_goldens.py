@@ -6,6 +6,7 @@ import os
 
 import pytest
 
+from groundstation.ui.appearance import Look
 from tests.groundstation.ui.example_params import STATES
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.test_goldens import GOLDEN, SMALL, STANDING, WIDE
@@ -24,7 +25,7 @@ FRAMES = {
 @pytest.mark.parametrize("name", FRAMES)
 async def test_the_frame_is_the_golden_one(name: str) -> None:
     views, keys = STATES[name.removeprefix("ascii_").split("_")[1]]
-    async with console(FRAMES[name], STANDING, ascii_only=name.startswith("ascii")) as screen:
+    async with console(FRAMES[name], STANDING, look=Look(ascii=name.startswith("ascii"))) as screen:
         await screen.press("f4")
         for _ in range(2):
             for view in views:
