@@ -172,7 +172,7 @@ def _list(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Part
             yield _choice(f"{value_text(number):>4} {name}", number == now, row == value.cursor, width)
     elif info.bits:
         yield [("bits" if value.typed is None else "bits · TAB toggles", style(DIM))]
-        whole = int(now) if now == int(now) else 0
+        whole = int(now) if now.is_integer() else 0
         for row, (bit, name) in enumerate(info.bits):
             yield _choice(f"{bit:>4} {name}", bool(whole >> bit & 1), row == value.cursor, width)
 
