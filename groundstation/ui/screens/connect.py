@@ -210,7 +210,7 @@ class ConnectScreen(ConsoleScreen):
         self._ports.border_subtitle = "live"
         for panel, table in zip(Panel, self._tables, strict=True):
             table.set_class(panel is model.chosen, "-chosen")
-        turn, endpoints = int(snapshot.uptime * 4), snapshot.endpoints
+        turn, endpoints = 0 if self._state.still else int(snapshot.uptime * 4), snapshot.endpoints
         self._welcome.show(
             WelcomeValue(self._describe_state(), len(model.heard), turn, endpoints, tuple(snapshot.addresses))
         )
