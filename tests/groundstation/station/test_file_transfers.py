@@ -211,7 +211,7 @@ def test_on_a_slow_line_transfers_wait_while_the_operator_drives(tmp_path: Path)
     assert len(pit.vehicle.all(m.FileTransferProtocol)) + len(pit.vehicle.all(m.ParamRequestList)) == asked
     line = pit.line(1)
     assert line is not None
-    assert (line.state, line.waits) == ("running", "waits while you drive: the line is slow")
+    assert (line.state, line.waits) == ("running", "waits: you drive, and the line is slow")
     drive.do(DriveKeyUp(key="i"))
     assert pit.ended(1).state == "accepted"
     assert (tmp_path / "2.tlog").read_bytes() == DATA
