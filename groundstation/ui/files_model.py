@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
@@ -10,12 +9,11 @@ from pathlib import Path, PurePosixPath
 
 from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, ListLogs, PutFile, RemoveFile
 from groundstation.intents.services import ServiceIntent
+from groundstation.ui.local_files import LocalFile, list_files
 from groundstation.ui.task_list import TaskList
 from groundstation.views.files import FilesRequest, FilesView, LogRow
 
 ROOT = "/"
-MAX_HERE = 500
-"""Files of this machine that are listed, the newest ones."""
 MAX_OPEN = 32
 """Folders that are open at once."""
 PART = ".part"
@@ -47,16 +45,6 @@ class TreeRow:
     def name(self) -> str:
         """Last part of the path."""
         return PurePosixPath(self.path).name or ROOT
-
-
-@dataclass(frozen=True, slots=True)
-class LocalFile:
-    """A file of the folder of this machine."""
-
-    name: str
-    size: int
-    changed: float
-    """s since 1970."""
 
 
 class FilesModel:
@@ -105,16 +93,14 @@ class FilesModel:
 
     def scan(self) -> None:
         """Look which files are here."""
-        found = []
-        try:
-            with os.scandir(self.folder) as entries:
-                for entry in entries:
-                    if not entry.name.startswith(".") and entry.is_file():
-                        status = entry.stat()
-                        found.append(LocalFile(entry.name, status.st_size, status.st_mtime))
-        except OSError:
-            pass
-        self.here = tuple(sorted(found, key=lambda each: -each.changed)[:MAX_HERE])
+        self.here = list_files(self.folder)
+
+    def mark_here(self, name: str) -> None:
+        """Put the cursor on a file of this machine."""
+        self.scan()
+        self.chosen = Panel.HERE
+        names = [each.name for each in self.here]
+        self._cursors[Panel.HERE] = names.index(name) if name in names else 0
 
     def find_here(self, name: str) -> LocalFile | None:
         """Return a file of the folder."""

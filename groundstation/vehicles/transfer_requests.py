@@ -54,7 +54,7 @@ class _Transfer:
     @property
     def resumable(self) -> bool:
         """A file that the vehicle makes anew each time is not."""
-        return not self.remote.startswith("@")
+        return not self.remote.lstrip("/").startswith("@")
 
 
 class TransferRequests:

@@ -84,7 +84,7 @@ class RowTable(Instrument[RowTableValue]):
 
 def _bar(share: float, width: int) -> str:
     full = round(max(0.0, min(1.0, share)) * width)
-    return "█" * full + "░" * (width - full)
+    return "█" * full + "·" * (width - full)
 
 
 def dim(text: str) -> Cell:

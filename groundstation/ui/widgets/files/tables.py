@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 
 from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, WHITE
-from groundstation.ui.files_model import PART, FilesModel, LocalFile, Panel, TreeRow
+from groundstation.ui.files_model import PART, FilesModel, Panel, TreeRow
+from groundstation.ui.local_files import LocalFile
 from groundstation.ui.task_list import TaskList
 from groundstation.ui.widgets.columns import Column
 from groundstation.ui.widgets.row_table import Cell, RowTableValue, dim
@@ -90,7 +91,7 @@ def _node(each: TreeRow) -> tuple[Cell, ...]:
     if each.size is not None:
         return Cell(f"{indent}  {each.name}"), dim(""), dim(size_text(each.size))
     note = each.problem or ("reading" if each.opened and each.count is None else "")
-    count = "" if each.count is None else "empty" if not each.count else f"{each.count} entries"
+    count = "" if each.count is None else "empty" if not each.count else f"{each.count} inside"
     mark = "▾" if each.opened else "▸"
     cell = Cell(note, AMBER) if each.problem else dim(note or count)
     return Cell(f"{indent}{mark} {each.name}", BLUE, bold=True), cell, dim("")
