@@ -140,4 +140,4 @@ def progress_text(line: RequestLine, tasks: TaskList) -> str:
     if line.service != "files":
         return f"{line.done} of {line.total or '?'}"
     left = "" if speed.left is None else f"  {speed.left:.0f} s left" if speed.left < 6000 else "  hours left"
-    return f"{size_text(speed.per_second)}/s{left}"
+    return f"{size_text(speed.per_second)}/s{left}{f'  {line.detail}' if line.detail else ''}"
