@@ -40,6 +40,7 @@ from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.lasting_alerts import LastingAlerts
 from groundstation.station.station import COMPONENT, Station
 from groundstation.station_options import log_to, station_parser
+from groundstation.texts_folder import load_texts
 from groundstation.vehicles.fleet import PLACES
 from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, parse_endpoint
@@ -279,11 +280,21 @@ def _run(
 ) -> int:
     started = time.monotonic()  # the loop's clock
     session = secrets.randbits(32)
-    style = Style(options.style)
-    station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
+    texts = load_texts(options.param_docs)
+    station = Station(
+        endpoints,
+        system=options.system,
+        style=Style(options.style),
+        speed=options.speed,
+        session=session,
+        texts=texts,
+        now=started,
+    )
     process = StationProcess(station, links, pipe, watchdog, ids=(options.system, COMPONENT), sent=sent)
     for note in notes:
         process.add_to_log(started, note.text, note.severity)
+    for problem in texts.problems:
+        process.add_to_log(started, problem, Severity.WARNING)
     if options.sitl:
         process.connect.start_simulator(started)
     gc.collect()

@@ -7,7 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, ListLogs, PutFile, RemoveFile
-from groundstation.intents.services import FetchParams, ServiceIntent, WriteParams
+from groundstation.intents.services import (
+    CompareParams,
+    FetchParams,
+    RequestMessage,
+    ResetParams,
+    ServiceIntent,
+    SetMessageRate,
+    StoreParams,
+    WriteParams,
+)
 from groundstation.vehicles.services import VehicleServices
 
 
@@ -31,6 +40,17 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
         "params",
         "set parameters",
         lambda services, intent, now: services.param_writer.write(intent.request, intent.changes, now),
+    ),
+    CompareParams: ServiceCall(
+        "params",
+        "compare parameters",
+        lambda services, intent, now: services.param_file.open(intent.request, intent.name, intent.text, now),
+    ),
+    StoreParams: ServiceCall(
+        "params", "store parameters", lambda services, intent, now: services.param_storage.store(intent.request, now)
+    ),
+    ResetParams: ServiceCall(
+        "params", "reset parameters", lambda services, intent, now: services.param_storage.reset(intent.request, now)
     ),
     ListFolder: ServiceCall(
         "folders",
@@ -66,6 +86,20 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
     ),
     EraseLogs: ServiceCall(
         "files", "erase all logs", lambda services, intent, now: services.logs.erase(intent.request, now)
+    ),
+    SetMessageRate: ServiceCall(
+        "messages",
+        "set the rate of a message",
+        lambda services, intent, now: services.messages.set_rate(
+            intent.request, intent.component, intent.message, intent.name, intent.rate, now
+        ),
+    ),
+    RequestMessage: ServiceCall(
+        "messages",
+        "request a message",
+        lambda services, intent, now: services.messages.request_once(
+            intent.request, intent.component, intent.message, intent.name, now
+        ),
     ),
 }
 """Intent -> call."""

@@ -6,13 +6,12 @@ The services of a vehicle exist from the first request on: a vehicle that is onl
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, MutableMapping
 
 from dialects.enums import Command, Severity
 from groundstation.intents.services import ServiceIntent
 from groundstation.station.commander import Commander
 from groundstation.station.file_view import build_files
-from groundstation.station.param_view import build_param_page
 from groundstation.station.service_calls import SERVICE_CALLS
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.disk_jobs import DiskJob, DiskResult
@@ -22,7 +21,6 @@ from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.views.base import ViewRequest
 from groundstation.views.files import FilesRequest, FilesView
-from groundstation.views.params import ParamPage, ParamPageRequest
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from link.core import Outgoing, Received
 
@@ -33,7 +31,7 @@ _SEVERITIES = {RequestState.REFUSED: Severity.WARNING, RequestState.NO_ANSWER: S
 
 
 class ServiceDesk:
-    """The services of all vehicles. `system` and `component` are our ids."""
+    """The services of all vehicles. `system` and `component` are our ids; `texts`: see VehicleServices."""
 
     def __init__(
         self,
@@ -43,6 +41,7 @@ class ServiceDesk:
         system: int,
         component: int,
         *,
+        texts: MutableMapping[int, bytes] | None = None,
         is_held: Callable[[Contact, float], bool] = lambda contact, now: False,
     ) -> None:
         """`is_held` says whether the transfers of a vehicle wait: for the operator who drives over a slow line."""
@@ -51,6 +50,7 @@ class ServiceDesk:
         self._commander = commander
         self._log = log
         self._ids = (system, component)
+        self._texts: MutableMapping[int, bytes] = {} if texts is None else texts
         self._service_of: dict[int, str] = {}
         """Number of a request -> name of its service."""
         self._ended: dict[str, deque[RequestLine]] = {}
@@ -102,6 +102,10 @@ class ServiceDesk:
         """Return whether a REQUEST_MESSAGE to this vehicle is under way: another would be taken for it."""
         return contact.services is not None and contact.services.commands.is_waiting(Command.REQUEST_MESSAGE)
 
+    def is_setting_rate(self, contact: Contact) -> bool:
+        """Return whether a SET_MESSAGE_INTERVAL of the operator is under way: another would be taken for it."""
+        return contact.services is not None and contact.services.commands.is_waiting(Command.SET_MESSAGE_INTERVAL)
+
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now and clear the queue."""
         found = (contact.services for contact in self._fleet if contact.services is not None)
@@ -133,7 +137,6 @@ class ServiceDesk:
     def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
         """Request -> its source."""
         return {
-            ParamPageRequest: ViewSource(self.build_param_page, period=0.25),
             RequestsRequest: ViewSource(self.build_requests, period=0.25),
             FilesRequest: ViewSource(self.build_files, period=0.25),
         }
@@ -155,15 +158,10 @@ class ServiceDesk:
         """Build the view of all requests."""
         return RequestsView(tuple(self._running()), tuple(line for lines in self._ended.values() for line in lines))
 
-    def build_param_page(self, request: ParamPageRequest, now: float, wall: float) -> ParamPage | None:
-        """Build the page of the selected vehicle; None without a vehicle."""
-        selected = self._fleet.selected
-        if selected is None:
-            return None
-        running = tuple(
-            line for line in self._running() if line.service == "params" and line.system == selected.state.system
-        )
-        return build_param_page(selected, request, RequestsView(running, tuple(self._ended.get("params", ()))))
+    def requests_of(self, service: str, system: int) -> RequestsView:
+        """Return the requests of one service: what runs at this vehicle, and what has ended."""
+        running = (line for line in self._running() if line.service == service and line.system == system)
+        return RequestsView(tuple(running), tuple(self._ended.get(service, ())))
 
     # ---- parts ----
 
@@ -179,7 +177,7 @@ class ServiceDesk:
 
     def _services(self, contact: Contact) -> VehicleServices:
         if contact.services is None:
-            contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component))
+            contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component), self._texts)
             contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
         return contact.services
 

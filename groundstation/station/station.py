@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from groundstation.input.style import Style
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
+from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driven import DrivenVehicle
@@ -20,9 +21,12 @@ from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_closing import LinkClosing
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
+from groundstation.station.message_detail import MessageDetail
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
 from groundstation.station.operator_log import OperatorLog
+from groundstation.station.param_texts import ParamTexts
+from groundstation.station.param_views import ParamViews
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.transfer_hold import TransferHold
 from groundstation.station.vehicle_queries import VehicleQueries
@@ -31,7 +35,6 @@ from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
-from groundstation.views.messages import MessageRequest, MessagesRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -55,6 +58,7 @@ class Station:
         style: Style = Style.HOLD,
         speed: float = 0.6,
         session: int = 0,
+        texts: ParamTexts = ParamTexts(),  # noqa: B008 - frozen
         now: float = 0.0,
     ) -> None:
         self.log = MessageLog()
@@ -68,7 +72,9 @@ class Station:
         self._commander = Commander(self.log, system, COMPONENT)
         self._links = LinkStats()
         hold = TransferHold(self.fleet, self.operator, self._links)
-        self.services = ServiceDesk(self.fleet, self._commander, self.log, system, COMPONENT, is_held=hold.is_held)
+        self.services = ServiceDesk(
+            self.fleet, self._commander, self.log, system, COMPONENT, texts=texts.cache, is_held=hold.is_held
+        )
         self._driving = DrivingController(self.operator, self.fleet, self._commander, (system, COMPONENT))
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
@@ -84,13 +90,16 @@ class Station:
             self._timesync,
             Program(system, COMPONENT, session),
         )
+        self._detail = MessageDetail(self._traffic)
+        self._charts = ChartDesk(self.fleet, self._traffic, self.operator, self._links, self._timesync)
         self.views = ViewFeed(
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
-                MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
-                MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
                 **self.services.sources,
                 **self._link_views.sources,
+                **ParamViews(self.fleet, self.services, texts.files).sources,
+                **self._charts.sources,
+                **self._detail.sources,
             }
         )
         """Request -> its source."""
@@ -105,6 +114,7 @@ class Station:
             self.log,
             self.views,
             self.services,
+            self._charts,
             self.link_closing,
         )
         self._operator_log = OperatorLog(self.log)
@@ -161,6 +171,8 @@ class Station:
         self._driving.update(now)
         self._log_driving(now)
         self._departure.tick(now)
+        self._charts.tick(now)
+        self._detail.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
@@ -205,6 +217,7 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._expire_lease(now)
+        self._charts.mark_key(intent, now)
         self._operator_log.handle(intent, now)
         self._intents.handle(intent, now)
         self._log_driving(now)

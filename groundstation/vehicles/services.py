@@ -5,14 +5,20 @@ Each request has a number and ends in `book`. Nothing is sent before the first r
 
 from __future__ import annotations
 
+from collections.abc import MutableMapping
+
 from dialects.enums import Autopilot, Command, Result, VehicleType
 from groundstation.vehicles.command_requests import CommandRequests
 from groundstation.vehicles.file_requests import FileRequests
 from groundstation.vehicles.folder_cache import FolderCache
 from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.log_requests import LogRequests
+from groundstation.vehicles.message_requests import MessageRequests
+from groundstation.vehicles.metadata_requests import MetadataRequests
 from groundstation.vehicles.mode_requests import ModeRequests
+from groundstation.vehicles.param_comparing import ParamComparing
 from groundstation.vehicles.param_requests import ParamRequests
+from groundstation.vehicles.param_storage import ParamStorage
 from groundstation.vehicles.param_writer import ParamWriter
 from groundstation.vehicles.plan_requests import PlanRequests
 from groundstation.vehicles.requests import RequestBook, RequestReport
@@ -26,9 +32,14 @@ from link.services.param.client import ParamClient
 
 
 class VehicleServices:
-    """Services of the component `target` (system, component). `system` and `component` are our ids."""
+    """Services of the component `target` (system, component). `system` and `component` are our ids.
 
-    def __init__(self, system: int, component: int, target: tuple[int, int]) -> None:
+    `texts` keeps downloaded texts of parameters, by the checksum of the vehicle's general metadata file.
+    """
+
+    def __init__(
+        self, system: int, component: int, target: tuple[int, int], texts: MutableMapping[int, bytes] | None = None
+    ) -> None:
         to, at = target
         self.autopilot: int = Autopilot.GENERIC
         """MAV_AUTOPILOT of its HEARTBEAT."""
@@ -37,6 +48,7 @@ class VehicleServices:
         self.book = RequestBook()
         self.identity = VehicleIdentity(at)
         self.commands = CommandRequests(CommandClient(system, component), self.book, target)
+        self.messages = MessageRequests(self.commands, self.book)
         self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
         self.files = FileRequests(FtpClient(system, component, target_system=to, target_component=at), self.book)
         self.plans = PlanRequests(MissionClient(system, component, target_system=to, target_component=at), self.book)
@@ -44,6 +56,9 @@ class VehicleServices:
         params = ParamClient(system, component, target_system=to, target_component=at)
         self.params = ParamRequests(params, self.files, self.identity, self.book, lambda: self.autopilot)
         self.param_writer = ParamWriter(self.params, self.book)
+        self.param_storage = ParamStorage(self.commands)
+        self.param_file = ParamComparing(self.book)
+        self.metadata = MetadataRequests(self.files, self.identity, {} if texts is None else texts)
         self.folders = FolderCache(self.files)
         self.transfers = TransferRequests(self.files, self.logs, self.book)
         self._services = (self.commands, self.files, self.logs, self.plans, self.params)
@@ -85,6 +100,7 @@ class VehicleServices:
         self.transfers.tick(now)
         self._take_queries(now)
         self.modes.tick(now)
+        self.metadata.tick(now)
         if self._used and may_query:
             self._query_identity(now)
         self.book.tick(now)

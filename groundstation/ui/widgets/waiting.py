@@ -27,18 +27,17 @@ class WaitingValue:
     snapshot: Snapshot = _NO_SNAPSHOT
     simulator_key: str = "?"
     quit_key: str = "?"
-    connect_keys: str = "?"
-    """Of the Connect screen, in the go-to menu."""
     still: bool = False
     """The spinner does not turn."""
+    connect_keys: str = "?"
+    """Of the Connect screen, in the go-to menu."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> WaitingValue:
         """Return the page of a display state."""
         if now.snapshot.vehicle is not None:
             return cls()
-        keys = f"{now.key('app.goto')} c"
-        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"), keys, now.still)
+        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"), now.still, f"{now.key('app.goto')} c")
 
 
 class WaitingPage(Instrument[WaitingValue]):
@@ -83,7 +82,8 @@ class WaitingPage(Instrument[WaitingValue]):
     def _simulator(self) -> list[Part]:
         """Return how to start a simulated rover, and where to connect to another vehicle."""
         key = style(YELLOW, bold=True)
-        keys: list[Part] = [("  ENTER", key), (" or ", style(DIM)), (self.value.simulator_key, key)]
+        own = self.value.simulator_key  # "?": no key map file has bound one
+        keys: list[Part] = [("  ENTER", key), *([(" or ", style(DIM)), (own, key)] if own != "?" else [])]
         connect: list[Part] = [(self.value.connect_keys, key), (" connects to another vehicle.", style(TEXT))]
         return [*keys, (" starts a simulated rover, ", style(TEXT)), *connect]
 

@@ -38,7 +38,7 @@ NO_TASKS = RequestsView((), ())
 NO_SERVICE = FilesView(system=1, name="Rover 1", logs=(), folders=(FolderRow("/", problem="no answer after 16 tries"),))
 
 
-def fill(folder: Path) -> Path:
+def fill_folder(folder: Path) -> Path:
     """Put logs into a folder, all of one size and time that the frames show."""
     for number, (name, size) in enumerate(
         (("1-00013.bin", 14_200), ("1-00009.bin.part", 1_159_000), ("2-00003.bin", 900), ("threads.txt", 1100))

@@ -25,7 +25,7 @@ from tests.groundstation.ui.example_connect import (
     forget,
     remember,
 )
-from tests.groundstation.ui.example_files import fill
+from tests.groundstation.ui.example_files import fill_folder
 from tests.groundstation.ui.link_examples import FLEET, VIEWS
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
@@ -173,7 +173,7 @@ async def test_a_link_is_closed_after_a_question() -> None:
 
 
 async def test_a_log_that_is_here_leads_to_the_files_screen(tmp_path: Path) -> None:
-    async with console((140, 45), UNCONNECTED, folder=fill(tmp_path)) as screen:
+    async with console((140, 45), UNCONNECTED, folder=fill_folder(tmp_path)) as screen:
         await open_connect(screen)
         await screen.press("shift+tab", "down")
         assert "ENTER shows 2-00003.bin on the Files screen" in screen.text
@@ -182,7 +182,7 @@ async def test_a_log_that_is_here_leads_to_the_files_screen(tmp_path: Path) -> N
 
 
 async def test_where_there_is_no_room_for_the_logs_the_arrows_do_not_go_there(tmp_path: Path) -> None:
-    async with console((80, 24), UNCONNECTED, folder=fill(tmp_path)) as screen:
+    async with console((80, 24), UNCONNECTED, folder=fill_folder(tmp_path)) as screen:
         await open_connect(screen)
         await screen.press("shift+tab")
         assert "ENTER starts a simulator" in screen.text

@@ -13,7 +13,7 @@ from groundstation.ui.task_list import TaskList
 from groundstation.views.base import View
 from groundstation.views.files import FileRow, FilesRequest, FilesView, FolderRow
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
-from tests.groundstation.ui.example_files import FILES, FOLDERS, NO_TASKS, TASKS, fill
+from tests.groundstation.ui.example_files import FILES, FOLDERS, NO_TASKS, TASKS, fill_folder
 from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
@@ -51,7 +51,7 @@ async def test_it_lists_the_logs_and_the_top_folder_of_each_vehicle_once() -> No
 
 
 async def test_a_log_is_downloaded_and_one_that_is_here_only_after_the_word(tmp_path: Path) -> None:
-    async with console(WIDE, folder=fill(tmp_path)) as screen:
+    async with console(WIDE, folder=fill_folder(tmp_path)) as screen:
         await open_files(screen)
         await screen.press("D")
         (get,) = screen.station.of(GetLog)
@@ -101,7 +101,7 @@ async def test_nothing_is_deleted_or_erased_before_a_word_is_typed() -> None:
 
 
 async def test_a_file_is_uploaded_into_the_folder_under_the_cursor_after_a_question(tmp_path: Path) -> None:
-    async with console(WIDE, folder=fill(tmp_path)) as screen:
+    async with console(WIDE, folder=fill_folder(tmp_path)) as screen:
         await open_files(screen)
         await screen.press("tab", "down", "enter", "U", "enter")
         assert "upload 1-00013.bin, 14.2 kB, into /APM of Rover 1" in screen.text
