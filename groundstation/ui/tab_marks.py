@@ -30,7 +30,13 @@ def _pending_params(now: DisplayState) -> TabMark | None:
     return TabMark(f"✎{pending}", BLUE, short="✎") if pending else None
 
 
-TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {"params": _pending_params}
+def _transfers(now: DisplayState) -> TabMark | None:
+    """Return how far the downloads and uploads are."""
+    share = now.snapshot.transfers
+    return None if share is None else TabMark(f" {100 * share:.0f}%", BLUE)
+
+
+TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {"params": _pending_params, "files": _transfers}
 """Id of a row in SCREENS -> its mark, None for no mark."""
 
 
