@@ -43,6 +43,8 @@ SCREENS: tuple[ScreenRow, ...] = (
               "groundstation.ui.screens.log:LogScreen"),
     ScreenRow("links", "Links", "Vehicles, links and who is in control: choose a vehicle", ("f7",), "7",
               "groundstation.ui.screens.links:LinksScreen"),
+    ScreenRow("setup", "Setup", "Why the vehicle cannot be driven, motor test, calibration", ("f8",), "8",
+              "groundstation.ui.screens.setup:SetupScreen"),
     ScreenRow("help", "Help", "Keys and what they do", ("question_mark",), "",
               "groundstation.ui.screens.help:HelpScreen"),
 )  # fmt: skip

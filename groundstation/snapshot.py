@@ -225,6 +225,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """The newest lines of the log, oldest first, without changes of state, which the screen shows anyway."""
     messages: tuple[MessageRate, ...] = ()
     """Received from the selected vehicle, and sent."""
+    faults: int = 0
+    """Links of the chain from the finger to the wheel that stop the operator (groundstation/doctor)."""
     simulator: str | None = None
     """State of the simulator that we started, e.g. "running", "ended with code 1: ..."; None without one."""
 

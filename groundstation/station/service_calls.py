@@ -6,7 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from dialects.enums import Command
 from groundstation.intents.services import FetchParams, ServiceIntent, WriteParams
+from groundstation.intents.setup import Calibrate, RebootVehicle, RunChecks
+from groundstation.vehicles.calibration import KINDS, REQUEST
 from groundstation.vehicles.services import VehicleServices
 
 
@@ -22,6 +25,25 @@ class ServiceCall:
     """Called with the services of the vehicle, the intent and the time."""
 
 
+SETUP = "setup"
+"""The service of the requests of the Setup screen."""
+
+AUTOPILOT = 1.0
+"""Parameter 1 of PREFLIGHT_REBOOT_SHUTDOWN: restart the autopilot, not its computer."""
+
+
+def _command(what: str, command: Command, *params: float) -> ServiceCall:
+    """Return a call that is one command."""
+    return ServiceCall(
+        SETUP, what, lambda services, intent, now: services.commands.send(intent.request, command, params, what, now)
+    )
+
+
+def _calibrate(services: VehicleServices, intent: Calibrate, now: float) -> None:
+    kind = KINDS[intent.kind]
+    services.commands.send(intent.request, kind.command, kind.params, f"{REQUEST}{intent.kind}", now)
+
+
 SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
     FetchParams: ServiceCall(
         "params", "fetch parameters", lambda services, intent, now: services.params.fetch(intent.request, now)
@@ -31,5 +53,8 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
         "set parameters",
         lambda services, intent, now: services.param_writer.write(intent.request, intent.changes, now),
     ),
+    RunChecks: _command("pre-arm checks", Command.RUN_PREARM_CHECKS),
+    RebootVehicle: _command("reboot", Command.PREFLIGHT_REBOOT_SHUTDOWN, AUTOPILOT),
+    Calibrate: ServiceCall(SETUP, "calibrate", _calibrate),
 }
 """Intent -> call."""

@@ -95,6 +95,11 @@ class ServiceDesk:
         """Build the view of all requests."""
         return RequestsView(tuple(self._running()), tuple(line for lines in self._ended.values() for line in lines))
 
+    def requests_of(self, service: str, system: int) -> tuple[RequestLine, ...]:
+        """Return the requests of one service to one vehicle: those that have ended, then those under way."""
+        lines = (*self._ended.get(service, ()), *self._running())
+        return tuple(line for line in lines if line.service == service and line.system == system)
+
     def build_param_page(self, request: ParamPageRequest, now: float, wall: float) -> ParamPage | None:
         """Build the page of the selected vehicle; None without a vehicle."""
         selected = self._fleet.selected

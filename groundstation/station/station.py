@@ -11,6 +11,7 @@ from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
+from groundstation.station.doctor_desk import DoctorDesk
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.driving import DrivingController
 from groundstation.station.handover import Handover
@@ -20,12 +21,15 @@ from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
 from groundstation.station.message_traffic import MessageTraffic
+from groundstation.station.motor_test import MotorTester
 from groundstation.station.operator import OperatorSession
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.motor_outputs import is_turn
+from groundstation.views.doctor import DoctorRequest
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
 from groundstation.views.messages import MessageRequest, MessagesRequest
@@ -69,6 +73,8 @@ class Station:
         self._links = LinkStats()
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self._services)
         self._timesync = TimesyncClient(system)
+        tester = MotorTester(self.fleet, self.operator, (system, COMPONENT))
+        self._doctor = DoctorDesk(self.fleet, self._services, self._queries, self._links, tester, (system, COMPONENT))
         self._link_views = LinkViews(
             self.fleet,
             self._commander,
@@ -87,6 +93,7 @@ class Station:
                 MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
                 MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
                 **self._link_views.sources,
+                **self._doctor.sources,
             }
         )
         """Request -> its source."""
@@ -128,6 +135,7 @@ class Station:
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
         self._services.receive(contact, received, now)
+        self._doctor.receive(contact, received, now)
         match received.message:
             case m.StatusText() as message:
                 self._handle_statustext(message, contact, now)
@@ -144,6 +152,7 @@ class Station:
         self.log.expire(now)
         self.fleet.update(now)
         self._commander.tick(now)
+        self._doctor.tick(now, watched=self.views.is_watching(DoctorRequest))
         self._handover.tick(now)
         if self.operator.live:
             self._queries.tick(now)
@@ -173,7 +182,12 @@ class Station:
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
         services = self._services.messages_to_send()  # repeated later if they are dropped here
         return (
-            demands + commands + self._timesync.messages_to_send() + outbox + (services if self.operator.live else [])
+            demands
+            + commands
+            + self._doctor.messages_to_send()
+            + self._timesync.messages_to_send()
+            + outbox
+            + (services if self.operator.live else [])
         )
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
@@ -182,8 +196,9 @@ class Station:
         self._driving.handle_sent(message, sequence, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
-        """Return False for a demand that was made before the process stood still."""
-        return not isinstance(message, DEMANDS) or not self.operator.stall.is_stalled(now)
+        """Return False for what moves a vehicle and was made before the process stood still."""
+        moves = isinstance(message, DEMANDS) or is_turn(message)
+        return not moves or not self.operator.stall.is_stalled(now)
 
     # ---- the shell around the core ----
 
@@ -196,6 +211,7 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._expire_lease(now)
+        self._doctor.handle(intent, now)
         self._intents.handle(intent, now)
 
     def set_simulator_state(self, state: str | None) -> None:
@@ -215,7 +231,7 @@ class Station:
         """Build the snapshot for the screen; `now` and `wall` are the same moment on both clocks."""
         self._snapshot_count += 1
         selected = self.fleet.selected
-        return Snapshot(
+        snapshot = Snapshot(
             number=self._snapshot_count,
             uptime=now - self._started,
             endpoints=self._endpoints,
@@ -234,8 +250,11 @@ class Station:
             links=self._links.build_views(self._timesync.round_trip),
             texts=self.log.build_lines(now, wall),
             messages=self._traffic.build_rates(selected.state.system if selected else 0, now),
+            faults=self._doctor.faults,
             simulator=self._simulator_state,
         )
+        self._doctor.look(snapshot, now)
+        return snapshot
 
     def _expire_lease(self, now: float) -> None:
         """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first.
@@ -256,6 +275,7 @@ class Station:
             contact.state.handle_text(text)
             self._commander.handle_statustext(system, text, message.severity, now)
             self._services.handle_text(contact, text, message.severity, now)
+            self._doctor.handle_text(contact, text, now)
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
         state, commander = contact.state, self._commander

@@ -50,6 +50,8 @@ class ParamModel:
         self.changed_only = False
         self.pending: dict[str, PendingChange] = {}
         self._undo: list[dict[str, PendingChange]] = []
+        self._system: int | None = None
+        """The vehicle that the changes are for."""
         self._top = self._selected = 0
         self._height = 1
         self._fetched: set[int] = set()
@@ -67,8 +69,8 @@ class ParamModel:
         """Take a page; return the intents that follow: parameters that are not known are fetched once."""
         if self.page is not None and self.page.known and not page.known:
             self._fetched.discard(page.system)  # the station has forgotten them: the vehicle was lost, or restarted
-        if self.page is not None and page.system != self.page.system:
-            self.pending, self._undo, self._writing = {}, [], None  # they were for another vehicle
+        if page.system != self._system:
+            self._forget_changes(page.system)
         self.page = page
         self._selected = max(0, min(self._selected, page.matching - 1))
         self._finish_write(page)
@@ -147,6 +149,19 @@ class ParamModel:
             return "this vehicle does not report the default"
         self._set_pending(row, row.default)
         return None
+
+    def propose(self, system: int, name: str, before: float, value: float) -> None:
+        """Make a value of a parameter of this vehicle pending that another screen recommends."""
+        if self._system != system:
+            self._forget_changes(system)
+        self._remember()
+        self.pending.pop(name, None)
+        if value != before:
+            self.pending[name] = PendingChange(name, before, value)
+
+    def _forget_changes(self, system: int) -> None:
+        """Drop the changes: they were for another vehicle."""
+        self.pending, self._undo, self._writing, self._system = {}, [], None, system
 
     def drop(self) -> None:
         """Drop the change of the selected parameter."""

@@ -8,10 +8,13 @@ from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
 from groundstation.screens import SCREENS, ScreenRow
-from groundstation.ui.colours import DIM, FAINT, WHITE, YELLOW, style
+from groundstation.ui.colours import DIM, FAINT, RED, WHITE, YELLOW, style
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.keynames import format_key, main_key
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
+
+MARKED = "setup"
+"""The screen whose tab counts what stops the operator."""
 
 WIDE = 120
 """Columns from which on the keys of the screens are shown, below them the digits of the go-to menu."""
@@ -23,11 +26,13 @@ class TabBarValue:
 
     keymap: Keymap
     screen: str = "drive"
+    faults: int = 0
+    """Links of the chain that stop the operator: a mark on the Setup screen's tab."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> TabBarValue:
         """Return the tab bar of a display state."""
-        return cls(now.keymap, now.screen.id)
+        return cls(now.keymap, now.screen.id, now.snapshot.faults)
 
 
 class TabBar(Instrument[TabBarValue]):
@@ -47,9 +52,10 @@ class TabBar(Instrument[TabBarValue]):
     def _tab(self, row: ScreenRow, width: int) -> list[Part]:
         key = main_key(self.value.keymap, row.action) if width >= WIDE else row.digit
         shown = format_key(key) if key else ""
+        count = f"{self.value.faults}✗ " if row.id == MARKED and self.value.faults else ""
         if row.id == self.value.screen:
-            return [(f" {shown} {row.title} ", style(WHITE, FAINT, bold=True))]
-        return [(f" {shown} ", style(YELLOW)), (f"{row.title} ", style(DIM))]
+            return [(f" {shown} {row.title} ", style(WHITE, FAINT, bold=True)), (count, style(RED, FAINT, bold=True))]
+        return [(f" {shown} ", style(YELLOW)), (f"{row.title} ", style(DIM)), (count, style(RED, bold=True))]
 
 
 def goto_parts(keymap: Keymap) -> list[Part]:
