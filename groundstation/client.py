@@ -171,6 +171,11 @@ class StationClient:
         return (self.outage.text, *(f"last known before: {line}" for line in lines))
 
     @property
+    def vehicle_name(self) -> str:
+        """Name of the vehicle in the newest snapshot; "" if there is none."""
+        return self._newest.vehicle.name if self._newest.vehicle is not None else ""
+
+    @property
     def alive(self) -> bool:
         """The station runs. False once its end of the pipe is closed: intents can no longer be sent."""
         return self._open and self._process.poll() is None

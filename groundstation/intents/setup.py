@@ -50,3 +50,7 @@ class EndCalibration(Intent, frozen=True):
 
     system: int
     accept: bool = False
+
+
+SETUP_INTENTS: tuple[type[Intent], ...] = (TurnMotor, StopMotorTest, ConfirmPosition, EndCalibration)
+"""Those that station/doctor_desk.py carries out; the others are requests to services."""

@@ -14,6 +14,7 @@ from groundstation.snapshot import Snapshot
 from groundstation.station.doctor_facts import VehicleReport, collect, sensor_rows
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.motor_test import THROTTLE_MAX, MotorTester
+from groundstation.station.operator import OperatorSession
 from groundstation.station.service_calls import SETUP
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
@@ -52,12 +53,12 @@ class DoctorDesk:
         services: ServiceDesk,
         queries: VehicleQueries,
         links: LinkStats,
-        tester: MotorTester,
+        operator: OperatorSession,
         ids: tuple[int, int],
     ) -> None:
         self._fleet, self._services, self._queries = fleet, services, queries
         self._links, self._ids = links, ids
-        self.tester = tester
+        self.tester = MotorTester(fleet, operator, ids)
         self.faults = 0
         """How many links of the chain stop the operator."""
         self._reports: dict[int, VehicleReport] = {}
