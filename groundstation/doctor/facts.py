@@ -43,7 +43,7 @@ class DoctorFacts:
     """The known state. A vehicle that was never heard is None."""
 
     system: int
-    """Our system id."""
+    """System id of the ground station that drives or will drive."""
     vehicle: VehicleView | None = None
     operator: OperatorView = field(default_factory=OperatorView)
     links: tuple[LinkView, ...] = ()

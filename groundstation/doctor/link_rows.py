@@ -18,6 +18,9 @@ stops itself."""
 SLOW_LINK, STALE_LINK = 0.25, 0.45
 """s of the round trip. Above 0.45 (OPR_ECHO_MAX) a vehicle of our dialect refuses demands as stale."""
 
+OBEYED = ("MAV_GCS_SYSID", "SYSID_MYGCS")
+"""Parameters with the ground station that the vehicle obeys; 0 means any (our rover)."""
+
 CRC_SHARE = 0.01
 """Bad share of the frames from which on the line is worth a look."""
 
@@ -47,6 +50,8 @@ def _ping(seconds: float | None) -> str:
 
 def station(facts: DoctorFacts) -> Finding:
     """Judge this station."""
+    if facts.terminal is None:
+        return unknown("does not apply: a ground station does not run here")
     if facts.operator.gate_reason in ("screen not responding", "screen was frozen"):
         return warn(facts.operator.gate_reason, "wait 1 s; a busy computer is too slow to drive with")
     sends = f", sends {facts.operator.rate:.0f} demands/s" if facts.operator.sending else ""
@@ -56,6 +61,9 @@ def station(facts: DoctorFacts) -> Finding:
 def link(facts: DoctorFacts) -> Finding:
     """Judge the link of the vehicle, both ways."""
     where = ", ".join(facts.endpoints) or "no link"
+    heard = facts.vehicle is not None and facts.vehicle.alive
+    if heard and not any(each.frames for each in facts.links):
+        return unknown(f"{where}: not measured yet")  # links are counted once a second
     if not any(each.frames for each in facts.links):
         down = next((each.problem for each in facts.links if each.problem), None)
         silence = (
@@ -124,12 +132,18 @@ def our_id(facts: DoctorFacts) -> Finding:
         return fault("another program sends with our ids", "end it, or use --system", "app.links")
     if facts.vehicle is None:
         return ok(f"{facts.system}, nobody else has it")
-    if facts.vehicle.obeys:
-        return fault(facts.vehicle.obeys.partition(":")[0], f"use --system {_wanted(facts.vehicle.obeys)}")
+    wanted = _obeyed(facts)
+    if wanted not in (None, facts.system):
+        return fault(
+            f"the vehicle obeys ground station {wanted} only, this is {facts.system}", f"use --system {wanted}"
+        )
     if facts.signs:
         return warn("the vehicle signs its frames, and this station cannot", "switch signing off at the vehicle")
     return ok(f"{facts.system}, nobody else has it")
 
 
-def _wanted(obeys: str) -> str:
-    return obeys.rpartition(" ")[2]
+def _obeyed(facts: DoctorFacts) -> int | None:
+    """Return the only ground station that the vehicle obeys; None: any, or not known."""
+    settings = {each.name: each.value for each in facts.settings} | dict(facts.params)
+    value = next((settings[name] for name in OBEYED if settings.get(name)), None)
+    return None if value is None else int(value) & 0xFF  # ArduPilot accepts 300 and uses the low byte

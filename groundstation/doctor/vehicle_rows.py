@@ -25,6 +25,8 @@ def control(facts: DoctorFacts) -> Finding:
         return ok("this station")
     if view.twin:
         return fault(f"another program with our id {view.driver}", "end it, or use --system", "app.links")
+    if view.driver == facts.system:
+        return ok(f"ground station {view.driver}")
     if view.driver:
         waits = "" if view.control_wait is None else f", may answer for {view.control_wait:.0f} s"
         return fault(f"ground station {view.driver}{waits}", "request control", "vehicle.control")

@@ -32,7 +32,6 @@ from groundstation.views.doctor import (
     DoctorView,
     MotorRow,
     ParamFix,
-    TerminalFacts,
 )
 from groundstation.views.requests import RequestLine
 from link.core import Outgoing, Received
@@ -63,7 +62,7 @@ class DoctorDesk:
         """How many links of the chain stop the operator."""
         self._reports: dict[int, VehicleReport] = {}
         self._snapshot = Snapshot()
-        self._terminal: TerminalFacts | None = None
+        self._request = DoctorRequest()
         self._rows: tuple[DoctorRow, ...] = ()
         self._due = -math.inf
         self._outbox: list[Outgoing] = []
@@ -155,16 +154,16 @@ class DoctorDesk:
             contact,
             self._reports.get(system),
             self._links,
-            system=self._ids[0],
-            terminal=self._terminal,
+            system=self._request.station or self._ids[0],
+            terminal=self._request.terminal,
             tested=self.tester.tested.get(system, frozenset()),
             now=now,
         )
         return examine(facts)
 
     def _build(self, request: DoctorRequest, now: float, wall: float) -> DoctorView:
-        if request.terminal != self._terminal:
-            self._terminal, self._due = request.terminal, -math.inf
+        if request != self._request:
+            self._request, self._due = request, -math.inf
         self.look(self._snapshot, now)
         contact = self._fleet.selected
         if contact is None:

@@ -9,7 +9,7 @@ from dialects.enums import Autopilot
 from link.core import Outgoing, Received
 from link.services.param.client import ParamClient
 
-OURS = ("FS_GCS_ENABLE", "FS_GCS_TIMEOUT", "MAN_TIMEOUT", "BATT_LOW_VOLT", "MOT_TEST_MAX",
+OURS = ("FS_GCS_ENABLE", "FS_GCS_TIMEOUT", "MAN_TIMEOUT", "BATT_LOW_VOLT", "MOT_TEST_MAX", "MAV_GCS_SYSID",
         *(f"MOT{number}_REVERSED" for number in range(1, 5)))  # fmt: skip
 NAMES: dict[int, tuple[str, ...]] = {
     Autopilot.GENERIC: OURS,

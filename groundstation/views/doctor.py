@@ -113,6 +113,8 @@ class DoctorRequest(ViewRequest, frozen=True):
 
     terminal: TerminalFacts | None = None
     """None: there is no screen."""
+    station: int = 0
+    """System id of the ground station that will drive; 0: this one."""
 
 
 class DoctorView(View, frozen=True, kw_only=True):
