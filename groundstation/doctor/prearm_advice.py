@@ -35,6 +35,7 @@ ADVICE: tuple[Advice, ...] = (
     _to("set FS_DISARM_T above FS_TIMEOUT", "fs_disarm_t"),
     _to("release the sticks and keys", "not neutral", "throttle or steering"),
     _to("set mode MANUAL", "mode not available"),
+    _to("wait until it has started", "vehicle is in state"),
     _to("give the Pi a stronger power supply", "pi under-voltage"),
     _to("let the Pi cool down", "pi too hot"),
     # ArduPilot and PX4, by subject

@@ -12,9 +12,9 @@ from groundstation.verbs.output import Output
 from groundstation.verbs.station_session import StationSession
 from groundstation.views.doctor import DoctorView, Health
 
-SETTLE = 5.0
+SETTLE = 3.5
 """s for the vehicle to answer: settings that it does not have are requested for 3 s, the checks for 2 s."""
-AWAITED = ("link", "pre_arm", "stop_bound", "gcs_failsafe", "battery")
+AWAITED = ("link", "pre_arm", "stop_bound", "gcs_failsafe")
 """Rows that wait for answers of the vehicle."""
 
 

@@ -107,6 +107,8 @@ class SetupModel:
         view = self.view
         if view is None:
             return "waiting for the station"
+        if not view.system and not view.faults:
+            return "no vehicle yet: switch it on, and check address and power"
         if view.faults:
             names = ", ".join(row.title for row in view.faults)
             return f"You cannot drive yet: {names} · the same list: groundstation doctor"

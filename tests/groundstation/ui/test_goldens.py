@@ -17,6 +17,7 @@ from groundstation.ui.display_state import DisplayState
 from groundstation.views.base import View
 from groundstation.views.links import ControlView, LinksView, VehiclesView
 from tests.groundstation.ui import frames
+from tests.groundstation.ui.example_setup import setup_frames, setup_view
 from tests.groundstation.ui.examples import (
     LOG_PAGE,
     MESSAGES_PAGE,
@@ -67,6 +68,8 @@ WARNED = snapshot(
     )
 )  # fmt: skip
 
+SETUP_FRAMES = setup_frames(STANDING, waiting())
+
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_80x24": (SMALL, snapshot(), ()),
     "drive_140x45": (WIDE, snapshot(), ()),
@@ -92,6 +95,7 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "links_empty_80x24": (SMALL, waiting(), ("f7",)),
     "messages_80x24": (SMALL, snapshot(), ("f3", *["down"] * 8)),
     "messages_140x45": (WIDE, snapshot(), ("f3", *["down"] * 8)),
+    **SETUP_FRAMES,
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
@@ -110,6 +114,8 @@ FRAMES |= {
         "links_80x24",
         "links_140x45",
         "goto_80x24",
+        "setup_80x24",
+        "setup_140x45",
         "messages_80x24",
         "messages_140x45",
     )
@@ -118,8 +124,10 @@ FRAMES |= {
 
 def views_for(name: str) -> Sequence[View]:
     """Return what the station sends to the screen of a frame."""
-    if "empty" in name:
+    if "links_empty" in name:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
+    if "setup" in name:
+        return (setup_view(name),)
     if "params" in name:
         return (param_page(),)
     return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE)

@@ -54,18 +54,20 @@ class ChainPanel(Instrument[ChainValue]):
         ground = {"on": FAINT} if selected else {}
         mark, colour = MARKS[row.health]
         title = row.title if len(line.rows) == 1 else f"{line.rows[0].title} → {row.title}"
-        proposal = f" {propose(row)} " if len(line.rows) == 1 else " "
         look = style(DIM if row.health is Health.UNKNOWN else TEXT, **ground)
-        name = style(WHITE if selected or row.health is Health.FAULT else look.color.name if look.color else TEXT,
-                     bold=row.health is Health.FAULT, **ground)  # fmt: skip
+        name = style(
+            WHITE if selected or row.health is Health.FAULT else TEXT, bold=row.health is Health.FAULT, **ground
+        )
         head: list[Part] = [(f" {mark} ", style(colour, bold=True, **ground)), (f"{title:<{TITLE - 3}} ", name)]
-        room = max(0, width - length(head) - len(proposal))
-        evidence = clean("all well" if len(line.rows) > 1 else row.evidence)
-        if len(evidence) > room:  # the reason matters more than the proposal
-            room = max(room, min(len(evidence), width - length(head) - 2))
-            proposal = proposal[: max(1, width - length(head) - room)]
+        room = max(1, width - length(head))
+        evidence, proposal = "all well", ""
+        if len(line.rows) == 1:
+            evidence, proposal = clean(row.evidence), propose(row, room - len(clean(row.evidence)) - 3)
+        room = max(1, room - len(proposal) - (2 if proposal else 1))
         text = evidence if len(evidence) <= room else f"{evidence[: room - 1]}…"
-        return strip(*head, (f"{text:<{room}}", look), (proposal, style(BLUE, **ground))).crop(0, width)
+        return strip(
+            *head, (f"{text:<{room}}", look), (f" {proposal} " if proposal else " ", style(BLUE, **ground))
+        ).crop(0, width)
 
     def _picture(self, width: int, room: int) -> list[Strip]:
         """Draw the chain as one line: it breaks at what stops the operator."""
@@ -74,12 +76,12 @@ class ChainPanel(Instrument[ChainValue]):
         parts: list[Part] = [("  ", style())]
         for row in (row for row in self.value.rows if row.id in STRIP):
             mark, colour = MARKS[row.health]
-            link = " ━━ " if row.health in (Health.OK, Health.WARNING) else f" {mark} "
+            link = " ━ " if row.health in (Health.OK, Health.WARNING) else f" {mark} "
             parts += [
                 (link, style(colour, bold=True)),
                 (row.title, style(colour if row.health is Health.FAULT else TEXT)),
             ]
-        return [Strip([]), strip(*parts).crop(0, width)]
+        return [Strip([]), strip(*parts)] if length(parts) <= width else []
 
     def _steps(self, width: int, room: int) -> list[Strip]:
         steps = self.value.steps[: max(0, room - 2)]
@@ -96,13 +98,14 @@ def _id(row: DoctorRow) -> str:
     return row.id
 
 
-def propose(row: DoctorRow) -> str:
-    """Return what a key does about a row."""
+def propose(row: DoctorRow, room: int) -> str:
+    """Return what a key does about a row, in short where the room is too small."""
     if row.fix is not None:
         return f"f sets {row.fix.value:g}"
-    if row.action and row.advice:
-        return f"ENTER: {row.advice}"
-    return row.advice
+    if not row.action:
+        return row.advice if len(row.advice) <= room else ""
+    whole = f"ENTER: {row.advice}"
+    return whole if len(whole) <= room else "ENTER"
 
 
 def counts(rows: tuple[DoctorRow, ...]) -> str:

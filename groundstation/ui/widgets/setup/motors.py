@@ -69,12 +69,12 @@ class MotorsPanel(Instrument[MotorsValue]):
         return [(" m", style(YELLOW, bold=True)), (" begins; then a motor turns while its key is held", style(DIM))]
 
     def _strength(self, view: DoctorView) -> list[Part]:
-        reverses = " · v reverses the motor tested last" if any(row.reversal for row in view.motors) else ""
-        text = f" strength {self.value.strength:.0%} of {view.motor_limit:.0%} at most, + and - change it{reverses}"
+        reverses = " · v reverses the last one" if any(row.reversal for row in view.motors) else ""
+        text = f" strength {self.value.strength:.0%} of {view.motor_limit:.0%} at most: + -{reverses}"
         return [(text, style(DIM))]
 
 
-STOPS: list[Part] = [(" any other key stops the motor; so does the vehicle 0.5 s after the last request", style(DIM))]
+STOPS: list[Part] = [(" any other key stops it, and the vehicle itself after 0.5 s", style(DIM))]
 """The last line of the panel."""
 
 
