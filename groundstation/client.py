@@ -71,17 +71,20 @@ class StationClient:
         speed: float = 0.6,
         sitl: bool = False,
         log_file: Path | None = None,
+        dialect: str | None = None,
         terminal: str | None = None,
         meanwhile: Callable[[], object] = lambda: None,
     ) -> StationClient:
         """Start the station process and wait until its links are open. Raises StationError.
 
-        `terminal` is the path of the terminal that is reset if this process is killed. `meanwhile` is called first: the
-        process takes 0.2 s to import its modules.
+        `dialect` is an XML file that the station reads. `terminal` is the path of the terminal that is reset if this
+        process is killed. `meanwhile` is called first: the process takes 0.2 s to import its modules.
         """
         options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
         if log_file is not None:
             options.append(f"--log-file={log_file}")
+        if dialect is not None:
+            options.append(f"--dialect={dialect}")
         if terminal is not None:
             options.append(f"--terminal={terminal}")
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

@@ -16,6 +16,8 @@ from typing import Any
 import msgspec
 
 from dialects.enums import Severity
+from dialects.extra.errors import DialectError
+from dialects.extra.option import Note, use_dialect
 from dialects.messages import printable
 from groundstation.connect.desk import ConnectDesk
 from groundstation.input.style import Style
@@ -37,6 +39,7 @@ from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.lasting_alerts import LastingAlerts
 from groundstation.station.station import COMPONENT, Station
 from groundstation.station_options import log_to, station_parser
+from groundstation.vehicles.fleet import PLACES
 from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, parse_endpoint
 from link.protocol.sent_frames import SentFrames
@@ -133,7 +136,7 @@ class StationProcess:
         for intent in batch.intents:
             if late and not intent.valid_when_late:
                 if not isinstance(intent, RenewLease):
-                    self._log_warning(
+                    self.add_to_log(
                         now, f"{type(intent).__name__} arrived {now - batch.time:.1f} s late and was dropped"
                     )
             elif isinstance(intent, Quit):
@@ -157,7 +160,7 @@ class StationProcess:
     def _report(self, now: float) -> None:
         """Tell the watchdog that the station runs."""
         if not self._watchdog.report(self._station.report_to_watchdog(now), now):
-            self._log_warning(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
+            self.add_to_log(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
 
     def _send_snapshot(self, now: float) -> None:
         self._report(now)
@@ -184,9 +187,10 @@ class StationProcess:
             return True
         return False
 
-    def _log_warning(self, now: float, text: str) -> None:
-        log.warning(text)
-        self._station.log.add(now, "station", text, Severity.WARNING)
+    def add_to_log(self, now: float, text: str, severity: Severity = Severity.WARNING) -> None:
+        """Write a line to the log on the screen and to the log file."""
+        log.log(logging.WARNING if severity <= Severity.WARNING else logging.INFO, text)
+        self._station.log.add(now, "station", text, severity)
 
     # ---- shutdown ----
 
@@ -248,14 +252,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     endpoints = [*options.endpoints, *([f"udpin:127.0.0.1:{free_port()}"] if options.sitl else [])]
     try:
         log_to(options.log_file)
+        notes = use_dialect(options.dialect)
         sent = SentFrames()
-        links = open_links(endpoints, system=options.system, component=COMPONENT, sent=sent)
+        links = open_links(endpoints, system=options.system, component=COMPONENT, sent=sent, places=PLACES)
         known = tuple(parse_endpoint(text).text for text in endpoints)
-    except (EndpointError, LinkError, OSError) as error:
+    except (DialectError, EndpointError, LinkError, OSError) as error:
         pipe.send(encode(StationFailed(_one_line(error))))
         return 2
     pipe.send(encode(StationReady(known)))
-    return _run(options, known, links, pipe, watchdog, sent)
+    return _run(options, known, links, pipe, watchdog, sent, notes)
 
 
 def _run(
@@ -265,12 +270,15 @@ def _run(
     pipe: socket.socket,
     watchdog: WatchdogFeed,
     sent: SentFrames,
+    notes: Sequence[Note],
 ) -> int:
     started = time.monotonic()  # the loop's clock
     session = secrets.randbits(32)
     style = Style(options.style)
     station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
     process = StationProcess(station, links, pipe, watchdog, ids=(options.system, COMPONENT), sent=sent)
+    for note in notes:
+        process.add_to_log(started, note.text, note.severity)
     if options.sitl:
         process.connect.start_simulator(started)
     gc.collect()

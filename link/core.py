@@ -90,6 +90,8 @@ class LinkReport:
     late: int = 0
     rate_limited: int = 0
     refused_peers: int = 0
+    unknown_ids: dict[tuple[int, int, int], tuple[int, int]] = field(default_factory=dict)
+    """Of those, by system, component and id: frames, and bytes of the newest one. At most 64, and not verified."""
     dialect_mismatch: tuple[str, ...] = ()
     """Names of messages that arrive complete but with the checksum of another definition."""
     signing: frozenset[int] = frozenset()

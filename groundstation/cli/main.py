@@ -21,7 +21,7 @@ from groundstation.cli.verb_help import LOCAL_HELP, RESERVED, VERB_HELP
 from groundstation.client import StationClient, StationError
 from groundstation.config.config_file import ConfigError
 from groundstation.config.effective import build_keymap, load_config, merge, resolve_endpoints
-from groundstation.config.settings import Settings
+from groundstation.config.settings import Settings, ThemeName
 from groundstation.input.keymap import KeymapError
 from groundstation.recent.recent_file import RecentFile
 from link.endpoint import EndpointError
@@ -79,15 +79,21 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         speed=settings.speed,
         sitl=options.sitl,
         log_file=log_file,
+        dialect=os.path.expanduser(settings.dialect) if settings.dialect else None,
         terminal=_terminal_path(),
         meanwhile=_import_screen,
     )
     try:
+        from groundstation.ui.appearance import Look
         from groundstation.ui.run import run
 
         _remember(endpoints)
-        ascii_only = needs_ascii() if settings.ascii is None else settings.ascii
-        return run(client, keymap=keymap, log_file=log_file, folder=folder, ascii_only=ascii_only)
+        look = Look(
+            theme=settings.theme or ThemeName.DARK,
+            ascii=needs_ascii() if settings.ascii is None else settings.ascii,
+            reduce_motion=settings.reduce_motion,
+        )
+        return run(client, keymap=keymap, log_file=log_file, folder=folder, look=look)
     finally:
         client.close()
         _remember(endpoints, client.vehicle_name)

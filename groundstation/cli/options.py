@@ -23,6 +23,7 @@ examples:
   groundstation --style latch --speed 0.3  a key drives until the next key, slowly
   groundstation --keys teleop              the keys of teleop_twist_keyboard
   groundstation --keys my.toml             your own keys; see below
+  groundstation --dialect mine.xml         name the messages of your vehicle's dialect; see below
 
 first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
 one press of `r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
@@ -39,6 +40,9 @@ key map file (--keys my.toml): replaces the keys of the actions it names
   base = "standard"            # or "teleop"
   [keys]
   "drive.forward" = ["e", "up"]
+
+dialect file (--dialect mine.xml): MAVLink definitions in XML, read at each start and not compiled. It may include
+the definitions that come with pymavlink, such as common.xml; --dialect ardupilotmega.xml names one of them.
 
 status line: link: four bars up to 2 % loss, three up to 10 %, two up to 25 %; loss: lost frames of the last 5 s;
 rtt: round trip to the vehicle; sent: demands per second; cmd: age of the demand that the motors obey;

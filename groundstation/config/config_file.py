@@ -25,7 +25,7 @@ FILE = "groundstation.toml"
 MAX_SIZE = 256 * 1024
 """Bytes of a file that is read: far more than all settings need."""
 
-PATHS = ("keymap", "folder", "log_file")
+PATHS = ("keymap", "folder", "log_file", "dialect")
 """Settings with a path, which is relative to the folder of the file."""
 
 _AT_LINE = re.compile(r" \(?at line (\d+)(, column \d+\))?")
@@ -91,11 +91,18 @@ def _translate(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     values = dict(table)
     for name in PATHS:
         value = values.get(name)
-        if isinstance(value, str) and value not in KEYMAPS:
+        if isinstance(value, str) and _is_path(name, value, folder):
             values[name] = str(folder / os.path.expanduser(value))
     if isinstance(values.get("keys"), dict):
         values["keys"] = flatten(values["keys"])
     return values
+
+
+def _is_path(name: str, value: str, folder: Path) -> bool:
+    """Return whether a text is a path: a key map may be a name, a dialect one of the files that pymavlink ships."""
+    if name == "dialect":
+        return "/" in value or os.path.exists(folder / value)
+    return value not in KEYMAPS
 
 
 def _line(text: str, key: tuple[str, ...]) -> int:

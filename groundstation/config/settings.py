@@ -66,6 +66,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Folder in which the screens save files."""
     log_file: Annotated[str | None, Option("--log-file", "FILE", "groundstation.log in the user's log folder")] = None
     """Log of the program itself."""
+    dialect: Annotated[str | None, Option("--dialect", "FILE.xml", "the built-in one alone")] = None
+    """MAVLink definitions of a vehicle that sends messages of its own."""
     endpoints: dict[str, str | tuple[str, ...]] = {}
     """Names for endpoints: `groundstation field` opens what `field` names, one endpoint or a list."""
     keys: dict[str, Any] = {}

@@ -22,6 +22,7 @@ EXAMPLES: dict[str, Any] = {
     "ascii": True,
     "folder": "~/rover",
     "log_file": "~/rover/groundstation.log",
+    "dialect": "mine.xml",
 }
 """Setting without a default -> what the file shows."""
 

@@ -178,7 +178,7 @@ class Station:
         selected = self.fleet.selected
         self._links.update(reports, selected.state.system if selected else None, now)
         self.fleet.observe(reports, now)
-        self._traffic.observe(reports)
+        self._traffic.observe(reports, now)
         self._traffic.set_labels({(each.state.system, each.state.component): each.state.name for each in self.fleet})
         for report in reports:
             event = self._link_events.update(report)

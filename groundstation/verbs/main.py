@@ -11,6 +11,8 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 
+from dialects.extra.errors import DialectError
+from dialects.extra.option import use_dialect
 from groundstation.config.config_file import ConfigError
 from groundstation.config.effective import ENDPOINT_VARIABLE, load_config, merge, resolve_endpoints
 from groundstation.config.settings import DEFAULT_ENDPOINT
@@ -48,13 +50,14 @@ def run(arguments: Sequence[str]) -> int:
     logging.basicConfig(handlers=[logging.NullHandler()])  # what is worth knowing is printed
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a transfer ends in order, and can be resumed
     try:
+        use_dialect(options.dialect)
         code = run_loop(_run(VERBS[arguments[0]][options.action], options, output))
         sys.stdout.flush()
     except ConfigError as error:
         for problem in error.problems:
             output.error(problem)
         return int(ExitCode.USAGE)
-    except (VerbError, FileFormatError, EndpointError, LinkError) as error:
+    except (VerbError, FileFormatError, DialectError, EndpointError, LinkError) as error:
         output.error(str(error))
         return int(error.code if isinstance(error, VerbError) else ExitCode.USAGE)
     except KeyboardInterrupt:
@@ -145,6 +148,7 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     add("--wait", type=_seconds, default=10.0, metavar="S", help="for the vehicle's heartbeat (default: 10)")
     add("--timeout", type=_seconds, metavar="S", help="end after this time in any case")
     add("--system", type=_system_id, default=SYSTEM, metavar="ID", help=f"our system id (default: {SYSTEM})")
+    add("--dialect", metavar="FILE.xml", help="definitions of a vehicle that sends messages of its own")
     add("--json", action="store_true", help="print one JSON object a line")
     add("-q", "--quiet", action="store_true", help="print no progress and no notes")  # fmt: skip
 

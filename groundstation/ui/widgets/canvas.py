@@ -14,8 +14,6 @@ from groundstation.ui.colours import style as style_of
 _BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """Bit of each dot in U+2800, by row and column of the cell (Unicode standard, Braille patterns)."""
 
-_BLANK = style_of()
-
 Point = tuple[float, float]
 
 
@@ -26,7 +24,7 @@ class Canvas:
         self.width, self.height = width, height
         self.across, self.down = width * 2, height * 4
         self._dots = [bytearray(width) for _ in range(height)]
-        self._styles: list[list[Style]] = [[_BLANK] * width for _ in range(height)]
+        self._styles: list[list[Style]] = [[style_of()] * width for _ in range(height)]
         self._texts: list[dict[int, tuple[str, Style]]] = [{} for _ in range(height)]
 
     def dot(self, x: int, y: int, style: Style) -> None:
@@ -75,7 +73,7 @@ class Canvas:
 
     def _segments(self, row: int) -> Iterable[Segment]:
         dots, styles, texts = self._dots[row], self._styles[row], self._texts[row]
-        run, run_style = "", _BLANK
+        run, run_style = "", style_of()
         for column in range(self.width):
             character, style = texts.get(column) or (
                 chr(0x2800 + dots[column]) if dots[column] else " ",

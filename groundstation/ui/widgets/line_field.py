@@ -35,6 +35,7 @@ class LineField(Input):
 
     def __init__(self) -> None:
         super().__init__(id="field", select_on_focus=False)
+        self.cursor_blink = False
         self._use: FieldUse | None = None
 
     def open(self, use: FieldUse, *, text: str = "", placeholder: str = "") -> None:

@@ -15,6 +15,8 @@ from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 _NO_SNAPSHOT = Snapshot()
 _SPINNER = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
+STILL = "·"
+"""In place of the spinner."""
 _COLOURS = {AdviceKind.TEXT: DIM, AdviceKind.WARNING: AMBER}
 
 
@@ -25,13 +27,15 @@ class WaitingValue:
     snapshot: Snapshot = _NO_SNAPSHOT
     simulator_key: str = "?"
     quit_key: str = "?"
+    still: bool = False
+    """The spinner does not turn."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> WaitingValue:
         """Return the page of a display state."""
         if now.snapshot.vehicle is not None:
             return cls()
-        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"))
+        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"), now.still)
 
 
 class WaitingPage(Instrument[WaitingValue]):
@@ -49,7 +53,7 @@ class WaitingPage(Instrument[WaitingValue]):
 
     def _lines(self, width: int) -> list[list[Part]]:
         snapshot = self.value.snapshot
-        turn = _SPINNER[int(snapshot.uptime * 4) % len(_SPINNER)]
+        turn = STILL if self.value.still else _SPINNER[int(snapshot.uptime * 4) % len(_SPINNER)]
         lines: list[list[Part]] = [
             [("  m a v h e l m", style(BLUE, bold=True)), ("   the helm of a MAVLink vehicle", style(DIM))],
             [],

@@ -42,6 +42,7 @@ ascii = false
 reduce_motion = true
 folder = "saved"
 log_file = "~/mine.log"
+dialect = "ardupilotmega.xml"
 [endpoints]
 field = "udpout:10.0.0.2:14550"
 both = ["serial:/dev/ttyUSB0:57600", "udpin:127.0.0.1:14550"]
@@ -55,11 +56,19 @@ drive.forward = ["e", "up"]
     assert settings.endpoints["both"] == ("serial:/dev/ttyUSB0:57600", "udpin:127.0.0.1:14550")
     assert settings.folder == str(tmp_path / "saved"), "a path is relative to the folder of the file"
     assert settings.log_file == os.path.expanduser("~/mine.log")
+    assert settings.dialect == "ardupilotmega.xml", "one that pymavlink ships"
     keymap = build_keymap(settings)
     assert keymap.get_keys("drive.forward") == ("e", "up")
     assert keymap.get_keys("app.log") == ("f2",)
     assert keymap.get_keys("speed.faster") == ("q",), "the key map is that of the file it names"
     assert file.place("theme") == f"{tmp_path}/my.toml:6"
+
+
+def test_a_dialect_beside_the_file_or_with_a_folder_is_a_path(tmp_path: Path) -> None:
+    (tmp_path / "mine.xml").touch()
+    for name in ("mine.xml", "sub/mine.xml", "x" * 300):
+        dialect = merge(read_config(write(tmp_path, f'dialect = "{name}"')), {}, {}).settings.dialect
+        assert dialect == (name if name.startswith("x") else str(tmp_path / name))
 
 
 @pytest.mark.parametrize(

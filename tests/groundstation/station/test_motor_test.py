@@ -90,7 +90,7 @@ def test_it_turns_two_seconds_at_most() -> None:
 def test_every_other_key_and_another_screen_stop_it(intent: Intent) -> None:
     bench = Bench()
     bench.turn()
-    bench.tell(intent)  # type: ignore[arg-type]
+    bench.tell(intent)
     bench.stands_within(0.1)
 
 

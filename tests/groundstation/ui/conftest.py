@@ -1,4 +1,4 @@
-"""The screen's tests run in one time zone: the log shows local times."""
+"""The screen's tests run in one time zone, because the log shows local times, and with all colours."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ def _utc(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     with monkeypatch.context() as patch:
         patch.setenv("TZ", "UTC")
         patch.delenv("NO_COLOR", raising=False)
+        patch.setenv("COLORTERM", "truecolor")
         time.tzset()
         yield
     time.tzset()

@@ -13,10 +13,10 @@ from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.screens import SCREENS
 from groundstation.snapshot import OutputView, Snapshot
+from groundstation.ui.appearance import Look
 from groundstation.ui.display_state import DisplayState
 from groundstation.views.base import View
 from groundstation.views.links import ControlView, LinksView, VehiclesView
-from tests.groundstation.ui import frames
 from tests.groundstation.ui.example_setup import setup_frames, setup_view
 from tests.groundstation.ui.examples import (
     LOG_PAGE,
@@ -136,7 +136,7 @@ def views_for(name: str) -> Sequence[View]:
 @pytest.mark.parametrize("name", FRAMES)
 async def test_the_frame_is_the_golden_one(name: str) -> None:
     size, picture, keys = FRAMES[name]
-    async with console(size, picture, ascii_only=name.startswith("ascii")) as screen:
+    async with console(size, picture, look=Look(ascii=name.startswith("ascii"))) as screen:
         await screen.press(*keys[:1])
         if keys:
             for view in views_for(name):
@@ -189,22 +189,3 @@ def test_no_frame_is_wider_or_higher_than_its_terminal(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in FRAMES if name.startswith("ascii")])
 def test_ascii_frames_are_ascii(name: str) -> None:
     assert (GOLDEN / f"{name}.txt").read_text("utf-8").isascii()
-
-
-@pytest.mark.parametrize("name", ["drive_80x24", "log_80x24", "log_140x45", "links_80x24", "strip_60x15"])
-async def test_without_colours_the_text_is_the_same_and_everything_is_grey(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("NO_COLOR", "1")
-    size, picture, keys = FRAMES[name]
-    async with console(size, picture) as screen:
-        await screen.press(*keys)
-        for view in views_for(name):
-            screen.station.offer_view(view)
-        await screen.show(picture)
-        await screen.show(picture)
-        assert screen.text == (GOLDEN / f"{name}.txt").read_text("utf-8")
-        looks = [look for row in frames.cells(screen.app) for _, look in row]
-    colours = {each.get_truecolor() for look in looks for each in (look.color, look.bgcolor) if each is not None}
-    assert len(colours) > 3
-    assert all(red == green == blue for red, green, blue in colours)
