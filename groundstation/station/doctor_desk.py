@@ -233,7 +233,8 @@ def _reversal(motor: TestedMotor, report: VehicleReport) -> ParamFix | None:
 
 def _vehicle_facts(contact: Contact) -> tuple[tuple[str, str], ...]:
     """Return what the vehicle is."""
-    state, services = contact.state, contact.services
+    state = contact.state
+    known = len(contact.services.params.client.params) if contact.services is not None else 0
     axes = "operator presence" if state.has_rover_dialect else "MANUAL_CONTROL"
     lines = {
         "firmware": contact.details.firmware,
@@ -241,7 +242,7 @@ def _vehicle_facts(contact: Contact) -> tuple[tuple[str, str], ...]:
         "dialect": "rover" if state.has_rover_dialect else "common",
         "demands": axes,
         "motors": ", ".join(state.servo_names.values()) or "",
-        "params": f"{len(services.params.client.params)} known" if services else "",
+        "params": f"{known} known" if known else "",
         "signing": "signs its frames" if contact.signs else "",
     }
     return tuple((name, text) for name, text in lines.items() if text)

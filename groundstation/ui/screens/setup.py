@@ -29,7 +29,7 @@ from groundstation.ui.setup.model import MOTOR_KEYS, SetupModel
 from groundstation.ui.widgets.setup.chain import ChainPanel, ChainValue, counts
 from groundstation.ui.widgets.setup.checks import ChecksPanel, ChecksValue, checks_age
 from groundstation.ui.widgets.setup.lists import CALIBRATION_KEYS, CalibrationPanel, FactsPanel, ListValue, request_text
-from groundstation.ui.widgets.setup.motors import MotorsPanel, MotorsValue, armed_warning
+from groundstation.ui.widgets.setup.motors import MotorsPanel, MotorsValue, frame_note
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.doctor import DoctorRequest, DoctorRow, DoctorView, ParamFix, TerminalFacts
 
@@ -276,8 +276,7 @@ class SetupScreen(ConsoleScreen):
         self._checks.show(ChecksValue(view))
         self._checks.border_subtitle = checks_age(view) if view is not None else ""
         self._motors.show(MotorsValue(view, model.testing, model.strength))
-        text, colour = armed_warning(view)
-        self._motors.border_subtitle = f"[{colour}]{text}[/]"
+        self._motors.border_subtitle = frame_note(view)
         self._calibration.show(ListValue(view))
         self._facts.show(ListValue(view))
 

@@ -31,15 +31,17 @@ class ChainLine:
 
 
 def chain_lines(rows: tuple[DoctorRow, ...], room: int) -> tuple[ChainLine, ...]:
-    """Return the rows as lines; where the room is too small, rows in a run that are well share a line."""
+    """Return the rows as lines; where the room is too small, the first rows that are well share a line."""
     single = tuple(ChainLine((row,)) for row in rows)
     if len(single) <= room:
         return single
     lines: list[ChainLine] = []
+    surplus = len(single) - room
     for row in rows:
         last = lines[-1].row if lines else None
-        if last is not None and row.health is Health.OK and last.health is Health.OK:
+        if surplus > 0 and last is not None and row.health is Health.OK and last.health is Health.OK:
             lines[-1] = ChainLine((*lines[-1].rows, row))
+            surplus -= 1
         else:
             lines.append(ChainLine((row,)))
     return tuple(lines)

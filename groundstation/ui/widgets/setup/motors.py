@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, DIM, FAINT, GREEN, RED, TEXT, YELLOW, style
+from groundstation.ui.colours import AMBER, DIM, GREEN, TEXT, YELLOW, style
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.ui.wrap import clean, wrap
 from groundstation.views.doctor import DoctorView, MotorRow
 
-BAR = 24
+BAR = 18
 """Cells of the bar of an output; its middle is neutral."""
-WIDE = 72
+WIDE = 60
 """Cells from which on the bar is shown beside the names."""
 
 
@@ -35,7 +35,7 @@ class MotorsPanel(Instrument[MotorsValue]):
         view = self.value.view
         if view is None or not view.system:
             return [strip((" no vehicle yet", style(DIM)))]
-        texts = (self._status(view), self._strength(view), STOPS)
+        texts = (self._status(view), self._strength(view), _stops())
         below = [line for parts in texts for line in _wrapped(parts, width)]
         motors = [self._motor(row, view, width) for row in view.motors]
         if not motors:
@@ -49,8 +49,8 @@ class MotorsPanel(Instrument[MotorsValue]):
         key = style(YELLOW, bold=True) if self.value.testing else style(DIM)
         parts: list[Part] = [
             (f" {row.number} ", key),
-            (f"{clean(row.name):<15}", style(AMBER if turns else TEXT, bold=turns)),
-            (f"{clean(row.output):<12}", style(DIM)),
+            (f"{clean(row.name):<14}", style(AMBER if turns else TEXT, bold=turns)),
+            (f"{clean(row.output):<11}", style(DIM)),
         ]
         parts += _bar(row.value) if width >= WIDE else []
         value = "   --" if row.value is None else f"{row.value:+5.0%}"
@@ -74,8 +74,8 @@ class MotorsPanel(Instrument[MotorsValue]):
         return [(text, style(DIM))]
 
 
-STOPS: list[Part] = [(" any other key stops it, and the vehicle itself after 0.5 s", style(DIM))]
-"""The last line of the panel."""
+def _stops() -> list[Part]:
+    return [(" any other key stops it, and the vehicle itself after 0.5 s", style(DIM))]
 
 
 def _wrapped(parts: list[Part], width: int) -> list[list[Part]]:
@@ -91,15 +91,13 @@ def _bar(value: float | None) -> Iterator[Part]:
     half = BAR // 2
     cells = 0 if value is None else max(-half, min(half, round(value * half)))
     left, right = max(0, -cells), max(0, cells)
-    yield "·" * (half - left), style(FAINT)
+    yield "·" * (half - left), style(DIM)
     yield "█" * left, style(AMBER)
     yield "│", style(DIM if value is None else TEXT)
     yield "█" * right, style(AMBER)
-    yield "·" * (half - right), style(FAINT)
+    yield "·" * (half - right), style(DIM)
 
 
-def armed_warning(view: DoctorView | None) -> tuple[str, str]:
-    """Return what stands in the frame, and its colour."""
-    if view is not None and view.armed:
-        return "not while armed", RED
-    return "wheels off the ground", AMBER
+def frame_note(view: DoctorView | None) -> str:
+    """Return what stands in the frame."""
+    return "not while armed" if view is not None and view.armed else "WHEELS OFF THE GROUND"
