@@ -120,10 +120,18 @@ async def test_the_release_stops_it() -> None:
         assert isinstance(screen.station.wishes[-1], StopMotorTest)
 
 
-@pytest.mark.parametrize(
-    "key", ["x", "space", "escape", "f1", "f6", "ctrl+g", "ctrl+p", "right_square_bracket", "q", "c", "plus", "3"]
-)
-async def test_every_other_key_stops_it(key: str) -> None:
+async def test_every_other_key_stops_it() -> None:
+    async with console() as screen:
+        await begin_test(screen)
+        for key in ("x", "space", "q", "c", "plus", "3", "up"):
+            await screen.press("1")
+            before = len(screen.station.of(StopMotorTest))
+            await screen.press(key)
+            await until(lambda count=before: len(screen.station.of(StopMotorTest)) > count)
+
+
+@pytest.mark.parametrize("key", ["escape", "f6", "ctrl+g", "ctrl+p"])
+async def test_what_comes_on_top_stops_it(key: str) -> None:
     async with console() as screen:
         await begin_test(screen)
         await screen.press("1")
@@ -141,25 +149,27 @@ async def test_after_another_screen_the_keys_turn_nothing() -> None:
         assert screen.station.of(TurnMotor) == []
 
 
-@pytest.mark.parametrize(("view", "words"), [
-    (doctor_view(armed=True), "the vehicle is armed"),
-    (LACKING, "not known which motors"),
-    (EMPTY, "no vehicle yet"),
-    (doctor_view(motor_limit=0.0), "MOT_TEST_MAX is 0"),
-])  # fmt: skip
-async def test_where_no_motor_can_be_tested(view: DoctorView, words: str) -> None:
+async def test_where_no_motor_can_be_tested() -> None:
+    cases = {
+        "not known which motors": LACKING,
+        "the vehicle is armed": doctor_view(armed=True),
+        "MOT_TEST_MAX is 0": doctor_view(motor_limit=0.0),
+        "no vehicle yet": EMPTY,
+    }
     async with console() as screen:
-        await open_setup(screen, view)
-        await screen.press("m")
-        await until(lambda: words in screen.text)
-        await screen.press("y", "1")
+        await open_setup(screen)
+        for words, view in cases.items():
+            await offer(screen, view)
+            await screen.press("m")
+            await until(lambda words=words: words in screen.text)
+            await screen.press("y", "1")
         assert screen.station.of(TurnMotor) == []
 
 
 async def test_the_strength_has_its_limits() -> None:
     async with console() as screen:
         await begin_test(screen)
-        await screen.press(*["plus"] * 12, "1", *["minus"] * 30, "1")
+        await screen.press(*["plus"] * 10, "1", *["minus"] * 14, "1")
         assert [intent.throttle for intent in screen.station.of(TurnMotor)] == [0.3, 0.04]
 
 
