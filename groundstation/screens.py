@@ -45,6 +45,8 @@ SCREENS: tuple[ScreenRow, ...] = (
               "groundstation.ui.screens.links:LinksScreen"),
     ScreenRow("setup", "Setup", "Why the vehicle cannot be driven, motor test, calibration", ("f8",), "8",
               "groundstation.ui.screens.setup:SetupScreen"),
+    ScreenRow("connect", "Connect", "What can be connected to: vehicles heard, endpoints, ports", (), "c",
+              "groundstation.ui.screens.connect:ConnectScreen"),
     ScreenRow("help", "Help", "Keys and what they do", ("question_mark",), "",
               "groundstation.ui.screens.help:HelpScreen"),
 )  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias, Union
 
-from groundstation.intents import driving, links, services, session, setup, vehicle  # noqa: F401
+from groundstation.intents import driving, files, links, services, session, setup, vehicle  # noqa: F401
 from groundstation.intents.base import Intent
 from groundstation.intents.services import ServiceIntent
 

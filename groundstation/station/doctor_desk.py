@@ -193,7 +193,8 @@ class DoctorDesk:
         )
 
     def _requests(self, system: int) -> tuple[RequestLine, ...]:
-        return self._services.requests_of(SETUP, system)
+        found = self._services.requests_of(SETUP, system)
+        return (*(line for line in found.ended if line.system == system), *found.running)
 
     def _motors(self, contact: Contact | None) -> tuple[TestedMotor, ...]:
         if contact is None:

@@ -24,7 +24,10 @@ from groundstation.station.link_views import LinkViews
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
 from groundstation.station.operator_log import OperatorLog
+from groundstation.station.param_texts import ParamTexts
+from groundstation.station.param_views import ParamViews
 from groundstation.station.service_desk import ServiceDesk
+from groundstation.station.transfer_hold import TransferHold
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
@@ -34,8 +37,6 @@ from groundstation.views.doctor import DoctorRequest
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
 from groundstation.views.messages import MessageRequest, MessagesRequest
-from groundstation.views.params import ParamPageRequest
-from groundstation.views.requests import RequestsRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -59,6 +60,7 @@ class Station:
         style: Style = Style.HOLD,
         speed: float = 0.6,
         session: int = 0,
+        texts: ParamTexts = ParamTexts(),  # noqa: B008 - frozen
         now: float = 0.0,
     ) -> None:
         self.log = MessageLog()
@@ -70,15 +72,18 @@ class Station:
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
-        self._services = ServiceDesk(self.fleet, self._commander, self.log, system, COMPONENT)
+        self._links = LinkStats()
+        hold = TransferHold(self.fleet, self.operator, self._links)
+        self.services = ServiceDesk(
+            self.fleet, self._commander, self.log, system, COMPONENT, texts=texts.cache, is_held=hold.is_held
+        )
         self._driving = DrivingController(self.operator, self.fleet, self._commander, (system, COMPONENT))
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
-        self._links = LinkStats()
-        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self._services)
+        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self.services)
         self._timesync = TimesyncClient(system)
         self._doctor = DoctorDesk(
-            self.fleet, self._services, self._queries, self._links, self.operator, (system, COMPONENT)
+            self.fleet, self.services, self._queries, self._links, self.operator, (system, COMPONENT)
         )
         self._link_views = LinkViews(
             self.fleet,
@@ -93,11 +98,11 @@ class Station:
         self.views = ViewFeed(
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
-                ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
-                RequestsRequest: ViewSource(self._services.build_requests, period=0.25),
                 MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
                 MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
+                **self.services.sources,
                 **self._link_views.sources,
+                **ParamViews(self.fleet, self.services, texts.files).sources,
                 **self._doctor.sources,
             }
         )
@@ -112,7 +117,7 @@ class Station:
             self._handover,
             self.log,
             self.views,
-            self._services,
+            self.services,
             self.link_closing,
         )
         self._operator_log = OperatorLog(self.log)
@@ -142,7 +147,7 @@ class Station:
         contact.details.receive(received, now)
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
-        self._services.receive(contact, received, now)
+        self.services.receive(contact, received, now)
         self._doctor.receive(contact, received, now)
         match received.message:
             case m.StatusText() as message:
@@ -164,7 +169,7 @@ class Station:
         self._handover.tick(now)
         if self.operator.live:
             self._queries.tick(now)
-            self._services.tick(now)
+            self.services.tick(now)
         if self.operator.live and not self._driving.ending:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
@@ -190,7 +195,7 @@ class Station:
         outbox, self._outbox = self._outbox, []
         demands = self._driving.messages_to_send()
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
-        services = self._services.messages_to_send()  # repeated later if they are dropped here
+        services = self.services.messages_to_send()  # repeated later if they are dropped here
         return (
             demands
             + commands
@@ -268,6 +273,7 @@ class Station:
             messages=self._traffic.build_rates(selected.state.system if selected else 0, now),
             faults=self._doctor.faults,
             simulator=self._simulator_state,
+            transfers=self.services.progress,
         )
         self._doctor.look(snapshot, now)
         return snapshot
@@ -294,7 +300,7 @@ class Station:
         if text is not None:
             contact.state.handle_text(text)
             self._commander.handle_statustext(system, text, message.severity, now)
-            self._services.handle_text(contact, text, message.severity, now)
+            self.services.handle_text(contact, text, message.severity, now)
             self._doctor.handle_text(contact, text, now)
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:

@@ -29,7 +29,7 @@ from groundstation.ui.gate_checks import AppCondition, find_closure
 from groundstation.ui.key_gate import OTHER_SCREEN, GateClosure, GateLevel, KeyGate, StationConnection
 from groundstation.ui.key_hint import KeyHint
 from groundstation.ui.key_parser import KeyRepeat, KeyUp
-from groundstation.ui.navigation import ScreenNavigator
+from groundstation.ui.navigation import ROOT, ScreenNavigator, find_row
 from groundstation.ui.palette import STYLE as PALETTE_STYLE
 from groundstation.ui.palette import ActionProvider, action_commands, theme_commands
 from groundstation.ui.pressed_keys import PressedKeys
@@ -68,9 +68,12 @@ class ConsoleApp(App[int]):
         terminal: TerminalFile | None = None,
         folder: Path = Path(),
         look: Look = PLAIN,
+        first: str = ROOT.id,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
+        """`first` is the id of the screen that is shown at first."""
         self.gate = KeyGate(client, keymap, clock)
+        self._first = first
         driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
@@ -94,6 +97,8 @@ class ConsoleApp(App[int]):
     def on_mount(self) -> None:
         """Open the Drive screen, connect the station and start the timers."""
         self.push_screen(self.drive)
+        if self._first != ROOT.id:
+            self.call_after_refresh(self._navigator.open, find_row(self._first))
         self._own_loop = asyncio.get_running_loop()
         self._own_loop.add_reader(self._client.fileno(), self._readable)
         # In this loop and not in a thread: a UI that hangs must lose its lease.

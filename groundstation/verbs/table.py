@@ -15,7 +15,7 @@ from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
 from groundstation.verbs import calibrate, doctor, ftp, log, mode, motor, param, plan, reboot
 from groundstation.verbs.output import Output
-from link.services.param.values import is_float32
+from link.services.param.float32 import is_float32
 
 Argument = tuple[str, dict[str, Any]]
 """Name and settings for argparse."""

@@ -22,7 +22,8 @@ from groundstation.intents.setup import (
 from groundstation.ui.display_state import DisplayState, ScreenKey
 from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.list_keys import rows_to_move
-from groundstation.ui.param_model import ParamModel
+from groundstation.ui.params.kept import keep_params
+from groundstation.ui.params.pending import PendingChange
 from groundstation.ui.save_file import save_text
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.setup.model import MOTOR_KEYS, SetupModel
@@ -61,7 +62,7 @@ class SetupScreen(ConsoleScreen):
     def __init__(self, context: ScreenContext) -> None:
         super().__init__(context)
         self._model = SetupModel()
-        self._params = context.keep(ParamModel, context.numbers)
+        self._params = keep_params(context)
         self._chain = ChainPanel(ChainValue(), id="chain")
         self._checks = ChecksPanel(ChecksValue(), id="checks")
         self._motors = MotorsPanel(MotorsValue(), id="motors")
@@ -176,7 +177,7 @@ class SetupScreen(ConsoleScreen):
     def _propose(self, fix: ParamFix) -> None:
         view = self._model.view
         if view is not None:
-            self._params.propose(view.system, fix.name, fix.before, fix.value)
+            self._params.propose(view.system, PendingChange(fix.name, fix.before, fix.value))
             self.say(f"{fix.name} {fix.before:g} → {fix.value:g} is pending: F4, then W writes it")
 
     def _check(self) -> None:

@@ -29,13 +29,15 @@ class WaitingValue:
     quit_key: str = "?"
     still: bool = False
     """The spinner does not turn."""
+    connect_keys: str = "?"
+    """Of the Connect screen, in the go-to menu."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> WaitingValue:
         """Return the page of a display state."""
         if now.snapshot.vehicle is not None:
             return cls()
-        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"), now.still)
+        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"), now.still, f"{now.key('app.goto')} c")
 
 
 class WaitingPage(Instrument[WaitingValue]):
@@ -78,12 +80,11 @@ class WaitingPage(Instrument[WaitingValue]):
         return [self._simulator(), [], *(line for each in advice for line in _advice(each, width))]
 
     def _simulator(self) -> list[Part]:
-        """Return how to start a simulated rover; it can send only to a UDP port that listens."""
-        if not any(endpoint.startswith("udpin:") for endpoint in self.value.snapshot.endpoints):
-            return [("  groundstation --sitl", style(TEXT, bold=True)), (" starts a simulated rover.", style(DIM))]
+        """Return how to start a simulated rover, and where to connect to another vehicle."""
         key = style(YELLOW, bold=True)
         keys: list[Part] = [("  ENTER", key), (" or ", style(DIM)), (self.value.simulator_key, key)]
-        return [*keys, (" starts a simulated rover.", style(TEXT))]
+        connect: list[Part] = [(self.value.connect_keys, key), (" connects to another vehicle.", style(TEXT))]
+        return [*keys, (" starts a simulated rover, ", style(TEXT)), *connect]
 
 
 def _advice(advice: Advice, width: int) -> list[list[Part]]:

@@ -1,6 +1,9 @@
-"""Contrast of text and background, with the colours that different terminals show."""
+"""Contrast of text and background, with the colours that different terminals show, and what is sent to them."""
 
 from __future__ import annotations
+
+import re
+from functools import cache
 
 from rich.color import Color, ColorSystem
 from rich.palette import Palette
@@ -45,6 +48,7 @@ PALETTES = {"xterm": XTERM_16, "linux": LINUX_16}
 """Terminals with 16 colours."""
 
 
+@cache
 def shown(colour: str, depth: str) -> tuple[int, int, int]:
     """Return what a terminal shows for a colour."""
     parsed = Color.parse(colour)
@@ -55,3 +59,13 @@ def shown(colour: str, depth: str) -> tuple[int, int, int]:
     else:
         red, green, blue = (parsed.downgrade(ColorSystem.EIGHT_BIT) if depth == "256" else parsed).get_truecolor()
     return red, green, blue
+
+
+SGR = re.compile(rb"\x1b\[([0-9;]*)m")
+
+
+def colour_codes(drawn: bytes) -> set[int]:
+    """Return the numbers of all colours that were sent to a terminal."""
+    short = re.sub(rb"([34]8);5;[0-9]+", rb"\1", drawn)  # the number of one of 256 follows
+    numbers = {int(number) for codes in SGR.findall(short) for number in codes.split(b";") if number}
+    return {number for number in numbers if 30 <= number <= 49 or 90 <= number <= 107}

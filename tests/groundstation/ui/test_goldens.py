@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from groundstation.ui.appearance import Look
 from groundstation.ui.display_state import DisplayState
 from groundstation.views.base import View
 from groundstation.views.links import ControlView, LinksView, VehiclesView
+from tests.groundstation.ui.example_connect import CONNECT, FAILED, NOTHING, UNCONNECTED, forget, remember
 from tests.groundstation.ui.example_setup import setup_frames, setup_view
 from tests.groundstation.ui.examples import (
     LOG_PAGE,
@@ -95,6 +97,10 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "links_empty_80x24": (SMALL, waiting(), ("f7",)),
     "messages_80x24": (SMALL, snapshot(), ("f3", *["down"] * 8)),
     "messages_140x45": (WIDE, snapshot(), ("f3", *["down"] * 8)),
+    "connect_80x24": (SMALL, UNCONNECTED, ("ctrl+g", "c")),
+    "connect_140x45": (WIDE, UNCONNECTED, ("ctrl+g", "c")),
+    "connect_nothing_80x24": (SMALL, UNCONNECTED, ("ctrl+g", "c")),
+    "connect_failed_140x45": (WIDE, FLEET, ("ctrl+g", "c", "tab", "tab", "down")),
     **SETUP_FRAMES,
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
@@ -113,6 +119,8 @@ FRAMES |= {
         "params_80x24",
         "links_80x24",
         "links_140x45",
+        "connect_80x24",
+        "connect_140x45",
         "goto_80x24",
         "setup_80x24",
         "setup_140x45",
@@ -124,6 +132,8 @@ FRAMES |= {
 
 def views_for(name: str) -> Sequence[View]:
     """Return what the station sends to the screen of a frame."""
+    if "connect" in name:
+        return (NOTHING if "nothing" in name else FAILED if "failed" in name else CONNECT,)
     if "links_empty" in name:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
     if "setup" in name:
@@ -133,16 +143,26 @@ def views_for(name: str) -> Sequence[View]:
     return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE)
 
 
+def fill_recent(name: str) -> None:
+    """Fill the file of the endpoints used before, for the frames that list them."""
+    if "connect" in name and "nothing" not in name:
+        remember(time.time())
+    else:
+        forget()
+
+
 @pytest.mark.parametrize("name", FRAMES)
 async def test_the_frame_is_the_golden_one(name: str) -> None:
     size, picture, keys = FRAMES[name]
+    fill_recent(name)
     async with console(size, picture, look=Look(ascii=name.startswith("ascii"))) as screen:
-        await screen.press(*keys[:1])
+        opens = 2 if keys[:1] == ("ctrl+g",) else 1
+        await screen.press(*keys[:opens])
         if keys:
             for view in views_for(name):
                 screen.station.offer_view(view)
             await screen.show(picture)
-            await screen.press(*keys[1:])
+            await screen.press(*keys[opens:])
             if "messages" in name:
                 screen.station.offer_view(SYS_STATUS_VIEW)
             if "params" in name:
@@ -166,7 +186,7 @@ async def test_a_screen_looks_the_same_after_all_others_were_open(name: str) -> 
     size, picture, keys = FRAMES[name]
     async with console(size, picture) as screen:
         for row in SCREENS:
-            await screen.press(row.keys[0])
+            await screen.press(*(row.keys[:1] or ("ctrl+g", row.digit)))
         await screen.press("escape", *keys)
         for view in views_for(name):
             screen.station.offer_view(view)

@@ -8,7 +8,6 @@ from itertools import product
 from pathlib import Path
 
 import pytest
-from rich.color import Color
 from textual.theme import BUILTIN_THEMES
 from textual.widgets import Input
 
@@ -18,7 +17,7 @@ from groundstation.ui.appearance import Look
 from groundstation.ui.roles import Role
 from groundstation.ui.themes import THEMES, Colours, ColourTheme, choose_colours
 from tests.groundstation.ui import frames
-from tests.groundstation.ui.contrast import TEXT_CONTRAST, contrast, luminance, shown
+from tests.groundstation.ui.contrast import TEXT_CONTRAST, colour_codes, contrast, luminance, shown
 from tests.groundstation.ui.examples import snapshot, waiting
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import app_on_a_pty, until
@@ -89,11 +88,11 @@ def pairs_of(screen: Console) -> Iterator[tuple[Role, Role]]:
 
 def role_of(colour: str, theme: Colours) -> Role | None:
     """Return the role whose colour this is; Textual rounds."""
-    parts = Color.parse(colour).get_truecolor()
+    parts = shown(colour, "all")
     near = (
         role
         for role, known in theme.items()
-        if max(abs(a - b) for a, b in zip(parts, Color.parse(known).get_truecolor(), strict=True)) <= 2
+        if all(abs(a - b) <= 2 for a, b in zip(parts, shown(known, "all"), strict=True))
     )
     return next(near, None)
 
@@ -168,16 +167,6 @@ async def test_a_theme_of_the_palette_changes_all_that_is_shown() -> None:
     assert all(role_of(ground, light) for ground in {ground for _, ground in cells})
     grounds = [luminance(shown(ground, "all")) for _, ground in cells]
     assert sum(each > 0.5 for each in grounds) > 0.9 * len(grounds)
-
-
-SGR = re.compile(rb"\x1b\[([0-9;]*)m")
-
-
-def colour_codes(drawn: bytes) -> set[int]:
-    """Return the numbers of all colours that were sent to a terminal."""
-    short = re.sub(rb"([34]8);5;[0-9]+", rb"\1", drawn)  # the number of one of 256 follows
-    numbers = {int(number) for codes in SGR.findall(short) for number in codes.split(b";") if number}
-    return {number for number in numbers if 30 <= number <= 49 or 90 <= number <= 107}
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,7 @@ from groundstation.intents.setup import (
 from groundstation.intents.vehicle import SetMode
 from groundstation.snapshot import Snapshot
 from groundstation.ui.key_parser import KeyUp
-from groundstation.ui.param_model import ParamModel
+from groundstation.ui.params.model import ParamModel
 from groundstation.ui.screens.setup import SetupScreen
 from groundstation.views.doctor import DoctorRequest, DoctorView
 from groundstation.views.requests import RequestLine
@@ -93,6 +94,16 @@ async def test_checks_and_reboot() -> None:
 # ---- motors ----
 
 
+def stopped(screen: Console, before: int) -> bool:
+    """Another stop was sent."""
+    return len(screen.station.of(StopMotorTest)) > before
+
+
+def says(screen: Console, words: str) -> bool:
+    """The screen shows these words."""
+    return words in screen.text
+
+
 async def begin_test(screen: Console) -> None:
     await open_setup(screen)
     await screen.press("m")
@@ -127,7 +138,7 @@ async def test_every_other_key_stops_it() -> None:
             await screen.press("1")
             before = len(screen.station.of(StopMotorTest))
             await screen.press(key)
-            await until(lambda count=before: len(screen.station.of(StopMotorTest)) > count)
+            await until(partial(stopped, screen, before))
 
 
 @pytest.mark.parametrize("key", ["escape", "f6", "ctrl+g", "ctrl+p"])
@@ -161,7 +172,7 @@ async def test_where_no_motor_can_be_tested() -> None:
         for words, view in cases.items():
             await offer(screen, view)
             await screen.press("m")
-            await until(lambda words=words: words in screen.text)
+            await until(partial(says, screen, words))
             await screen.press("y", "1")
         assert screen.station.of(TurnMotor) == []
 
