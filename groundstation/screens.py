@@ -39,6 +39,8 @@ SCREENS: tuple[ScreenRow, ...] = (
               "groundstation.ui.screens.messages:MessagesScreen"),
     ScreenRow("params", "Params", "Parameters of the vehicle: read, change, write", ("f4",), "4",
               "groundstation.ui.screens.params:ParamsScreen"),
+    ScreenRow("charts", "Charts", "Fields of messages over time, with modes, events and own keys", ("f5",), "5",
+              "groundstation.ui.screens.charts:ChartsScreen"),
     ScreenRow("log", "Log", "All alerts and messages, to scroll, filter and save", ("f6",), "6",
               "groundstation.ui.screens.log:LogScreen"),
     ScreenRow("links", "Links", "Vehicles, links and who is in control: choose a vehicle", ("f7",), "7",

@@ -22,7 +22,7 @@ from groundstation.cli.verb_help import LOCAL_HELP, RESERVED, VERB_HELP
 from groundstation.client import StationClient, StationError
 from groundstation.config.config_file import ConfigError
 from groundstation.config.effective import Effective, build_keymap, load_config, merge, resolve_endpoints
-from groundstation.config.settings import ThemeName
+from groundstation.config.settings import Settings, ThemeName
 from groundstation.input.keymap import KeymapError
 from groundstation.recent.recent_file import RecentFile
 from link.endpoint import EndpointError

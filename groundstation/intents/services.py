@@ -46,6 +46,26 @@ class ResetParams(ServiceIntent, frozen=True, tag=True):
     """Have the vehicle reset all parameters to their defaults."""
 
 
+class SetMessageRate(ServiceIntent, frozen=True, tag=True):
+    """Request a message at a rate."""
+
+    component: int = 1
+    message: int = 0
+    """Its id."""
+    name: str = ""
+    rate: float = 0.0
+    """Hz; 0: the default of the vehicle, below 0: not at all."""
+
+
+class RequestMessage(ServiceIntent, frozen=True, tag=True):
+    """Request a message once."""
+
+    component: int = 1
+    message: int = 0
+    """Its id."""
+    name: str = ""
+
+
 class CancelRequest(Intent, frozen=True):
     """Cancel a request; what was set or sent before stays."""
 

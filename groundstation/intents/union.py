@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias, Union
 
-from groundstation.intents import driving, files, links, services, session, setup, vehicle  # noqa: F401
+from groundstation.intents import (  # noqa: F401 - defines the classes
+    charts,
+    driving,
+    files,
+    links,
+    services,
+    session,
+    setup,
+    vehicle,
+)
 from groundstation.intents.base import Intent
 from groundstation.intents.services import ServiceIntent
 

@@ -11,8 +11,10 @@ from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, 
 from groundstation.intents.services import (
     CompareParams,
     FetchParams,
+    RequestMessage,
     ResetParams,
     ServiceIntent,
+    SetMessageRate,
     StoreParams,
     WriteParams,
 )
@@ -106,6 +108,20 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
     ),
     EraseLogs: ServiceCall(
         "files", "erase all logs", lambda services, intent, now: services.logs.erase(intent.request, now)
+    ),
+    SetMessageRate: ServiceCall(
+        "messages",
+        "set the rate of a message",
+        lambda services, intent, now: services.messages.set_rate(
+            intent.request, intent.component, intent.message, intent.name, intent.rate, now
+        ),
+    ),
+    RequestMessage: ServiceCall(
+        "messages",
+        "request a message",
+        lambda services, intent, now: services.messages.request_once(
+            intent.request, intent.component, intent.message, intent.name, now
+        ),
     ),
     RunChecks: _command("pre-arm checks", Command.RUN_PREARM_CHECKS),
     RebootVehicle: _command("reboot", Command.PREFLIGHT_REBOOT_SHUTDOWN, AUTOPILOT),

@@ -102,6 +102,10 @@ class ServiceDesk:
         """Return whether a REQUEST_MESSAGE to this vehicle is under way: another would be taken for it."""
         return contact.services is not None and contact.services.commands.is_waiting(Command.REQUEST_MESSAGE)
 
+    def is_setting_rate(self, contact: Contact) -> bool:
+        """Return whether a SET_MESSAGE_INTERVAL of the operator is under way: another would be taken for it."""
+        return contact.services is not None and contact.services.commands.is_waiting(Command.SET_MESSAGE_INTERVAL)
+
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now and clear the queue."""
         found = (contact.services for contact in self._fleet if contact.services is not None)

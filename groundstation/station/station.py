@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from groundstation.input.style import Style
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
+from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.doctor_desk import DoctorDesk
@@ -21,6 +22,7 @@ from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_closing import LinkClosing
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
+from groundstation.station.message_detail import MessageDetail
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
 from groundstation.station.operator_log import OperatorLog
@@ -36,7 +38,6 @@ from groundstation.vehicles.motor_outputs import is_turn
 from groundstation.views.doctor import DoctorRequest
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
-from groundstation.views.messages import MessageRequest, MessagesRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -95,14 +96,16 @@ class Station:
             self._timesync,
             Program(system, COMPONENT, session),
         )
+        self._detail = MessageDetail(self._traffic)
+        self._charts = ChartDesk(self.fleet, self._traffic, self.operator, self._links, self._timesync)
         self.views = ViewFeed(
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
-                MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
-                MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
                 **self.services.sources,
                 **self._link_views.sources,
                 **ParamViews(self.fleet, self.services, texts.files).sources,
+                **self._charts.sources,
+                **self._detail.sources,
                 **self._doctor.sources,
             }
         )
@@ -118,6 +121,7 @@ class Station:
             self.log,
             self.views,
             self.services,
+            self._charts,
             self.link_closing,
         )
         self._operator_log = OperatorLog(self.log)
@@ -176,6 +180,8 @@ class Station:
         self._driving.update(now)
         self._log_driving(now)
         self._departure.tick(now)
+        self._charts.tick(now)
+        self._detail.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
@@ -226,6 +232,7 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._expire_lease(now)
+        self._charts.mark_key(intent, now)
         self._operator_log.handle(intent, now)
         self._doctor.handle(intent, now)
         self._intents.handle(intent, now)

@@ -13,6 +13,7 @@ from groundstation.vehicles.file_requests import FileRequests
 from groundstation.vehicles.folder_cache import FolderCache
 from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.log_requests import LogRequests
+from groundstation.vehicles.message_requests import MessageRequests
 from groundstation.vehicles.metadata_requests import MetadataRequests
 from groundstation.vehicles.mode_requests import ModeRequests
 from groundstation.vehicles.param_comparing import ParamComparing
@@ -47,6 +48,7 @@ class VehicleServices:
         self.book = RequestBook()
         self.identity = VehicleIdentity(at)
         self.commands = CommandRequests(CommandClient(system, component), self.book, target)
+        self.messages = MessageRequests(self.commands, self.book)
         self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
         self.files = FileRequests(FtpClient(system, component, target_system=to, target_component=at), self.book)
         self.plans = PlanRequests(MissionClient(system, component, target_system=to, target_component=at), self.book)

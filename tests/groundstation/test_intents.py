@@ -44,12 +44,12 @@ def test_every_intent_has_a_handler() -> None:
 def test_what_moves_a_vehicle_is_dropped_when_late() -> None:
     late = {kind.__name__ for kind in KINDS if kind.valid_when_late}
     stops = {"Stop", "EmergencyStop", "Disarm", "DriveKeyUp", "ReleaseControl", "Quit", "StopMotorTest"}
-    assert late == stops | {"SetKeyGate", "ReportKeyReleases", "Watch"}
+    assert late == stops | {"SetKeyGate", "ReportKeyReleases", "Watch", "PinSeries"}
 
 
 def test_what_the_screen_sends_on_its_own_is_no_input() -> None:
     own = {kind.__name__ for kind in KINDS if not kind.is_input}
-    assert own == {"RenewLease", "SetKeyGate", "ReportKeyReleases", "Watch", "Quit"}
+    assert own == {"RenewLease", "SetKeyGate", "ReportKeyReleases", "Watch", "Quit", "PinSeries"}
 
 
 def test_no_key_has_two_actions_and_drive_keys_differ() -> None:

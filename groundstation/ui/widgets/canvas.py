@@ -14,6 +14,12 @@ from groundstation.ui.colours import style as style_of
 _BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """Bit of each dot in U+2800, by row and column of the cell (Unicode standard, Braille patterns)."""
 
+_RUNS = tuple(
+    tuple(tuple(sum(bits[side] for bits in _BITS[above : below + 1]) for below in range(4)) for above in range(4))
+    for side in range(2)
+)
+"""Bits of the dots of one column of a cell, by column, first and last row."""
+
 Point = tuple[float, float]
 
 
@@ -32,6 +38,17 @@ class Canvas:
         if 0 <= x < self.across and 0 <= y < self.down:
             row, column = y >> 2, x >> 1
             self._dots[row][column] |= _BITS[y & 3][x & 1]
+            self._styles[row][column] = style
+
+    def run(self, x: int, top: int, bottom: int, style: Style) -> None:
+        """Set the dots of one column from `top` down to `bottom`: cell by cell, which is faster than dot by dot."""
+        if not 0 <= x < self.across:
+            return
+        top, bottom = max(0, top), min(self.down - 1, bottom)
+        column, side = x >> 1, x & 1
+        for row in range(top >> 2, (bottom >> 2) + 1):
+            above, below = max(0, top - row * 4), min(3, bottom - row * 4)
+            self._dots[row][column] |= _RUNS[side][above][below]
             self._styles[row][column] = style
 
     def line(self, start: Point, end: Point, style: Style) -> None:

@@ -82,7 +82,8 @@ class WaitingPage(Instrument[WaitingValue]):
     def _simulator(self) -> list[Part]:
         """Return how to start a simulated rover, and where to connect to another vehicle."""
         key = style(YELLOW, bold=True)
-        keys: list[Part] = [("  ENTER", key), (" or ", style(DIM)), (self.value.simulator_key, key)]
+        own = self.value.simulator_key  # "?": no key map file has bound one
+        keys: list[Part] = [("  ENTER", key), *([(" or ", style(DIM)), (own, key)] if own != "?" else [])]
         connect: list[Part] = [(self.value.connect_keys, key), (" connects to another vehicle.", style(TEXT))]
         return [*keys, (" starts a simulated rover, ", style(TEXT)), *connect]
 

@@ -69,12 +69,30 @@ async def pictures(size: tuple[int, int]) -> dict[str, str]:
     """Name -> SVG."""
     made = {}
     async with armed_app(size) as (app, pilot):
+        await pilot.press("f5")
+        await pilot.pause(1.0)
+        await pilot.press("v")
+        for _ in range(6):
+            await pilot.press("p", "down")
+        await pilot.pause(1.0)
+        await pilot.press("f1")
+        await pilot.pause(1.0)
         for key, seconds in DRIVE:
             await _hold(pilot, key, seconds)
         made["drive"] = frames.svg(app)
         await pilot.press("f6")
         await pilot.pause(1.0)
         made["log"] = frames.svg(app)
+        await pilot.press("f3", *"/sysstat", "enter")
+        await pilot.pause(1.5)
+        await pilot.press("down", "tab", *["down"] * 4)
+        await pilot.pause(12.0)
+        made["messages"] = frames.svg(app)
+        await pilot.press("f5")
+        await pilot.pause(0.5)
+        await pilot.press("z", "shift+left")
+        await pilot.pause(0.5)
+        made["charts"] = frames.svg(app)
         await pilot.press("f1")
         await pilot.press("exclamation_mark")
         await pilot.pause(1.0)

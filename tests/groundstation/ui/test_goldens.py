@@ -18,6 +18,7 @@ from groundstation.ui.appearance import Look
 from groundstation.ui.display_state import DisplayState
 from groundstation.views.base import View
 from groundstation.views.links import ControlView, LinksView, VehiclesView
+from tests.groundstation.ui.example_charts import drive, fields_page
 from tests.groundstation.ui.example_connect import CONNECT, FAILED, NOTHING, UNCONNECTED, forget, remember
 from tests.groundstation.ui.example_setup import setup_frames, setup_view
 from tests.groundstation.ui.examples import (
@@ -32,7 +33,7 @@ from tests.groundstation.ui.examples import (
     wheels,
 )
 from tests.groundstation.ui.link_examples import FLEET, OURS, VIEWS
-from tests.groundstation.ui.pilots import console
+from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import STANDARD
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -101,6 +102,14 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "connect_140x45": (WIDE, UNCONNECTED, ("ctrl+g", "c")),
     "connect_nothing_80x24": (SMALL, UNCONNECTED, ("ctrl+g", "c")),
     "connect_failed_140x45": (WIDE, FLEET, ("ctrl+g", "c", "tab", "tab", "down")),
+    "charts_empty_80x24": (SMALL, snapshot(), ("f5",)),
+    "charts_empty_140x45": (WIDE, waiting(), ("f5",)),
+    "charts_80x24": (SMALL, snapshot(), ("f5", "v")),
+    "charts_140x45": (WIDE, snapshot(), ("f5", "v")),
+    "charts_list_80x24": (SMALL, snapshot(), ("f5", "v", "tab")),
+    "charts_measure_80x24": (SMALL, snapshot(), ("f5", "v", "z", *["shift+left"] * 2, "m", "left", "left")),
+    "charts_measure_140x45": (WIDE, snapshot(), ("f5", "v", "z", "shift+left", "m", *["shift+left"] * 4)),
+    "charts_add_140x45": (WIDE, snapshot(), ("f5", "v", "a", *"volt")),
     **SETUP_FRAMES,
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
@@ -126,6 +135,8 @@ FRAMES |= {
         "setup_140x45",
         "messages_80x24",
         "messages_140x45",
+        "charts_80x24",
+        "charts_measure_140x45",
     )
 }
 
@@ -134,6 +145,8 @@ def views_for(name: str) -> Sequence[View]:
     """Return what the station sends to the screen of a frame."""
     if "connect" in name:
         return (NOTHING if "nothing" in name else FAILED if "failed" in name else CONNECT,)
+    if "charts" in name:
+        return (fields_page(empty=True),) if "empty" in name else (fields_page(),)
     if "links_empty" in name:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
     if "setup" in name:
@@ -151,6 +164,23 @@ def fill_recent(name: str) -> None:
         forget()
 
 
+async def fill(screen: Console, name: str, keys: Sequence[str], picture: Snapshot) -> None:
+    """Press the keys behind the one that opened the screen, and show what that asks for."""
+    if "charts" in name:
+        await screen.press(*keys[1:2])
+        screen.station.offer_view(drive())
+        await screen.show(picture)
+        await screen.press(*keys[2:])
+        if "a" in keys:
+            screen.station.offer_view(fields_page("volt"))
+        return
+    await screen.press(*keys[1:])
+    if "messages" in name:
+        screen.station.offer_view(SYS_STATUS_VIEW)
+    if "params" in name:
+        await screen.press("down", "enter", "backspace", "0", "enter", "W")
+
+
 @pytest.mark.parametrize("name", FRAMES)
 async def test_the_frame_is_the_golden_one(name: str) -> None:
     size, picture, keys = FRAMES[name]
@@ -162,11 +192,7 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
             for view in views_for(name):
                 screen.station.offer_view(view)
             await screen.show(picture)
-            await screen.press(*keys[opens:])
-            if "messages" in name:
-                screen.station.offer_view(SYS_STATUS_VIEW)
-            if "params" in name:
-                await screen.press("down", "enter", "backspace", "0", "enter", "W")
+            await fill(screen, name, keys[opens - 1 :], picture)
             await screen.show(picture)  # the height of the alerts is known after the first one
         if "hold" in name:
             state = DisplayState(picture, STANDARD, hold=HoldProgress(ACTIONS["vehicle.arm"], "r", 0.4))
