@@ -12,13 +12,15 @@ from groundstation.intents.session import RenewLease, ReportKeyReleases, SetKeyG
 from groundstation.intents.setup import StopMotorTest, TurnMotor
 from groundstation.intents.vehicle import Arm, Disarm
 from groundstation.station.motor_test import LONGEST
-from groundstation.vehicles.motor_outputs import TURN_TIME, build_stop, build_turn, is_turn, motors_of
+from groundstation.vehicles.motor_outputs import build_stop, build_turn, is_turn, motors_of
 from groundstation.views.doctor import DoctorRequest
 from tests.groundstation.fake_ardupilot import FakeArduPilot
 from tests.groundstation.fake_vehicle import Cockpit
 from tests.test_stops import Drive
 from vehicle.safety.states import SafetyState
 
+GONE_WITHIN = 0.5
+"""s for which a wheel may turn after the station is gone: the promise of docs/safety.md, not the program's constant."""
 TURN = TurnMotor(system=1, motor=1, throttle=0.2)
 WATCH = Watch((DoctorRequest(),))
 
@@ -107,7 +109,7 @@ def test_a_killed_station_leaves_a_wheel_turning_for_half_a_second_at_most() -> 
     bench.turn()
     bench.run(0.6)
     bench.world.near.frozen = True  # as after kill -9: it sends nothing more
-    bench.stands_within(TURN_TIME)
+    bench.stands_within(GONE_WITHIN)
 
 
 def test_a_cut_link_does_so_too() -> None:
@@ -115,14 +117,14 @@ def test_a_cut_link_does_so_too() -> None:
     bench.turn()
     bench.run(0.6)
     bench.world.cut()
-    bench.stands_within(TURN_TIME)
+    bench.stands_within(GONE_WITHIN)
 
 
 def test_a_station_that_wakes_up_turns_nothing() -> None:
     bench = Bench()
     bench.turn()
     bench.world.near.frozen = True
-    bench.stands_within(TURN_TIME)
+    bench.stands_within(GONE_WITHIN)
     bench.world.near.frozen = False
     bench.moved.clear()
     bench.run(1.0)
@@ -164,7 +166,7 @@ def test_with_losses_it_stops_as_well() -> None:
     bench.tell(TURN)
     bench.until(lambda: bench.power > 0.1, within=1.0)
     bench.tell(StopMotorTest())
-    bench.stands_within(TURN_TIME)
+    bench.stands_within(GONE_WITHIN)
 
 
 def test_not_while_armed() -> None:
@@ -222,7 +224,7 @@ def test_ardupilot_gets_short_requests_and_a_stop() -> None:
     sent = cockpit.vehicle.commands(Command.DO_MOTOR_TEST)
     assert [(each.param1, each.param2, round(each.param3)) for each in sent] == [(4, 0, -10)] * len(sent)
     assert 4 <= len(sent) <= 5
-    assert all(0 < each.param4 <= TURN_TIME for each in sent)
+    assert all(0 < each.param4 <= GONE_WITHIN for each in sent)
     cockpit.do(StopMotorTest())
     cockpit.run(1.0)
     stops = cockpit.vehicle.commands(Command.DO_MOTOR_TEST)[len(sent) :]
