@@ -36,9 +36,9 @@ class CalibrationPanel(Instrument[ListValue]):
         view = self.value.view
         if view is None or not view.system:
             return [strip((" no vehicle yet", style(DIM)))]
-        running = _running(view)
         if height == 1:
-            return [strip(*(running or _in_one_line(view))).crop(0, width)]
+            return [strip(*(_running(view, ended=False) or _in_one_line(view))).crop(0, width)]
+        running = _running(view, ended=True)
         lines = [_line(row) for row in view.calibrations]
         below = [running] if running else []
         below += [[(f" {text}", style(BLUE, bold=True))] for text in wrap(view.calibration, width - 2)]
@@ -67,10 +67,10 @@ def _in_one_line(view: DoctorView) -> list[Part]:
     return parts if len(parts) > 1 else [(" calibration: this vehicle cannot", style(DIM))]
 
 
-def _running(view: DoctorView) -> list[Part]:
-    """Return how the newest request for a calibration stands."""
+def _running(view: DoctorView, *, ended: bool) -> list[Part]:
+    """Return how the newest request for a calibration stands; `ended`: also after its end."""
     line = next((each for each in reversed(view.requests) if each.what.startswith("calibrate")), None)
-    if line is None or (line.state == "accepted" and view.calibration):
+    if line is None or (line.state != "running" and (view.calibration or not ended)):
         return []
     colour = {"running": BLUE, "accepted": GREEN}.get(line.state, RED)
     return [(f" {clean(request_text(line))}", style(colour))]
