@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 VERB_HELP = {
-    "param": "get, set, save, load or diff parameters of a vehicle",
+    "param": "get, set, save, load, diff, store or reset parameters of a vehicle",
     "mission": "show, get, put or clear the mission",
     "fence": "show, get, put or clear the fence",
     "rally": "show, get, put or clear the rally points",

@@ -13,6 +13,7 @@ import subprocess
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from textual.pilot import Pilot
 
@@ -108,6 +109,37 @@ async def pictures(size: tuple[int, int]) -> dict[str, str]:
     return made
 
 
+SAFE = "FS_TIMEOUT 1\nFS_GCS_TIMEOUT 3\nMOT_THR_MAX 60\nMOT_SLEWRATE 250\n"
+"""A parameter file to compare with."""
+
+
+async def param_pictures(size: tuple[int, int], folder: Path) -> dict[str, str]:
+    """The Parameters screen with a file of this folder that is compared, and its values as changes."""
+    client = StationClient.start([], sitl=True)
+    try:
+        app = ConsoleApp(client, Keymap("standard", KEYMAPS["standard"]), folder=folder)
+        async with app.run_test(size=size) as pilot:
+            await _until(pilot, lambda: app.drive.snapshot.vehicle is not None)
+            await pilot.press("f4")
+            await _until(pilot, lambda: "Turn rate" in frames.text(app))
+            await pilot.press("O", *"safe", "full_stop", *"param", "enter")
+            await pilot.pause(1.0)
+            await pilot.press("a", "slash", *"fs", "underscore", "space", *"mot", "underscore", "enter")
+            await pilot.pause(1.0)
+            await pilot.press(*["down"] * 9)
+            await _until(pilot, lambda: "edits wait" in frames.text(app))
+            return {"params": frames.svg(app)}
+    finally:
+        client.close()
+
+
+async def all_pictures(size: tuple[int, int]) -> dict[str, str]:
+    """Name -> SVG of all screens."""
+    with TemporaryDirectory() as files:
+        Path(files, "safe.param").write_text(SAFE)
+        return await pictures(size) | await param_pictures(size, Path(files))
+
+
 def write_pictures(make: Callable[[tuple[int, int]], Awaitable[dict[str, str]]]) -> None:
     """Write what `make` returns for each size into the folder of the command line."""
     parser = argparse.ArgumentParser(description="Make the pictures of the documents.")
@@ -127,4 +159,4 @@ async def _await(made: Awaitable[dict[str, str]]) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    write_pictures(pictures)
+    write_pictures(all_pictures)
