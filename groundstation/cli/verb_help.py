@@ -10,6 +10,9 @@ VERB_HELP = {
     "modes": "print the modes of the vehicle",
     "mode": "change the mode",
     "reboot": "restart the vehicle",
+    "doctor": "print why the vehicle cannot be driven",
+    "motor": "turn one motor of a disarmed vehicle",
+    "calibrate": "calibrate gyros, level or pressure",
     "ftp": "ls, get, put, rm or crc files on the vehicle",
     "log": "list or get the logs on the vehicle",
 }

@@ -52,6 +52,14 @@ class ViewFeed:
                 watched.request, watched.sent = request, None
             self._watched[type(request)] = watched
 
+    def is_watching(self, kind: type[ViewRequest]) -> bool:
+        """Return whether the screen watches a view of this kind."""
+        return kind in self._watched
+
+    def build(self, request: ViewRequest, now: float, wall: float) -> View | None:
+        """Build the view for a request at once, for a station without a screen."""
+        return self._sources[type(request)].build(request, now, wall)
+
     def send_due(self, send: Callable[[View], bool], now: float, wall: float) -> None:
         """Send the views that are due and have changed. `send` returns False for one that is to be tried again."""
         for kind, watched in self._watched.items():

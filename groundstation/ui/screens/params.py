@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from platformdirs import user_state_path
 from textual import events
 from textual.containers import Container
 from textual.widget import Widget
@@ -12,8 +11,7 @@ from textual.widget import Widget
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.list_keys import rows_to_move
-from groundstation.ui.params.favourites import Favourites
-from groundstation.ui.params.model import ParamModel
+from groundstation.ui.params.kept import keep_params
 from groundstation.ui.params.panels import PARAM_KEYS, ParamPanels
 from groundstation.ui.params.saving import ParamSaving
 from groundstation.ui.params.scope import ALL, CHANGED
@@ -40,8 +38,7 @@ class ParamsScreen(ConsoleScreen):
 
     def __init__(self, context: ScreenContext) -> None:
         super().__init__(context)
-        favourites = context.keep(Favourites, user_state_path("mavhelm"))
-        self._model = context.keep(ParamModel, context.numbers, favourites)
+        self._model = keep_params(context)
         self._transfers = ParamTransfers(self, self._model, context.keep(ParamSaving, context.numbers))
         self._panels = ParamPanels(self._model)
         self._widgets = ParamWidgets()
