@@ -38,12 +38,15 @@ class TabBar(Instrument[TabBarValue]):
     """One line: a screen after the other, the one on top bold on a ground of its own."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Draw the tabs that fit, and the key of the go-to menu at the right edge."""
+        """Draw the tabs that fit, that of the screen on top first of all, and at the right edge how to go to others."""
         parts: list[Part] = []
         right = goto_parts(self.value.keymap)
-        for row in SCREENS:
-            tab = self._tab(row, width) if row.in_tabs else []
-            if length(parts) + length(tab) + length(right) <= width:
+        tabs = {row.id: self._tab(row, width) for row in SCREENS if row.in_tabs}
+        reserved = length(tabs.get(self.value.screen, []))
+        for screen, tab in tabs.items():
+            if screen == self.value.screen:
+                reserved = 0
+            if length(parts) + length(tab) + reserved + length(right) <= width:
                 parts += tab
         gap = max(0, width - length(parts) - length(right))
         return [strip(*parts, (" " * gap, style()), *right).crop(0, width)]
