@@ -61,7 +61,7 @@ class FilesModel:
         self._open: list[str] = [ROOT]
         self._system: int | None = None
         self._refresh: dict[int, str] = {}
-        """Request -> folder to list when it has ended; "" for the logs."""
+        """Request -> folder to list when it has ended."""
 
     # ---- lists ----
 

@@ -85,11 +85,6 @@ class RequestBook:
         if (report.done, report.total, report.detail) != (done, total, detail):
             self._running[number] = self._changed[number] = replace(report, done=done, total=total, detail=detail)
 
-    @staticmethod
-    def describe_holes(holes: int) -> str:
-        """Return how many gaps a transfer has, which are requested again."""
-        return "" if not holes else "1 hole" if holes == 1 else f"{holes} holes"
-
     def accept(self, number: int, detail: str = "") -> None:
         """End a request as accepted."""
         self._end(number, RequestState.ACCEPTED, detail)
@@ -142,3 +137,8 @@ class RequestBook:
         self._refused.pop(number, None)
         if report is not None:
             self._changed[number] = replace(report, state=state, detail=detail)
+
+
+def describe_holes(holes: int) -> str:
+    """Return how many gaps a transfer has, which are requested again."""
+    return "" if not holes else "1 hole" if holes == 1 else f"{holes} holes"

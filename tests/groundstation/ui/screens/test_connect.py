@@ -92,6 +92,7 @@ async def test_watch_only() -> None:
         assert screen.station.of(AddLink)[-1].watch_only
         await offer(screen, NOTHING)
         await screen.press("W", *"udpin:127.0.0.1:9", "enter")
+        await until(lambda: len(screen.station.of(AddLink)) == 2)
         assert screen.station.of(AddLink)[-1] == AddLink(request=2, endpoint="udpin:127.0.0.1:9", watch_only=True)
 
 
@@ -103,6 +104,7 @@ async def test_a_typed_endpoint_is_checked_while_it_is_typed() -> None:
         await screen.press("enter")
         assert screen.station.of(AddLink) == []
         await screen.press("colon", *"tcpout:10.0.0.7:5762", "enter")
+        await until(lambda: screen.station.of(AddLink))
         assert screen.station.of(AddLink)[-1].endpoint == "tcpout:10.0.0.7:5762"
 
 
@@ -111,13 +113,15 @@ async def test_the_whole_network_is_asked_for_once() -> None:
     async with console((140, 45), UNCONNECTED) as screen:
         await open_connect(screen)
         await screen.press("colon", *endpoint, "enter")
-        assert "which everybody in the network can send to" in screen.text
+        await until(lambda: "which everybody in the network can send to" in screen.text)
         await screen.press("n")
         assert screen.station.of(AddLink) == []
-        await screen.press("colon", *endpoint, "enter", "y")
+        await screen.press("colon", *endpoint, "enter")
+        await until(lambda: "which everybody in the network can send to" in screen.text)
+        await screen.press("y")
         assert [add.endpoint for add in screen.station.of(AddLink)] == [endpoint]
         await screen.press("colon", *endpoint, "enter")
-        assert len(screen.station.of(AddLink)) == 2
+        await until(lambda: len(screen.station.of(AddLink)) == 2)
         await screen.press("tab", "enter")  # the pinned one was agreed to when it was opened first
         assert screen.station.of(AddLink)[-1].endpoint == "udpin:0.0.0.0:14550"
 

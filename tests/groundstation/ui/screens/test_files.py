@@ -104,12 +104,12 @@ async def test_a_file_is_uploaded_into_the_folder_under_the_cursor_after_a_quest
     async with console(WIDE, folder=fill_folder(tmp_path)) as screen:
         await open_files(screen)
         await screen.press("tab", "down", "enter", "U", "enter")
-        assert "upload 1-00013.bin, 14.2 kB, into /APM of Rover 1" in screen.text
+        await until(lambda: "upload 1-00013.bin, 14.2 kB, into /APM of Rover 1" in screen.text)
         await screen.press("y")
         (put,) = screen.station.of(PutFile)
         assert (put.path, put.file) == ("/APM/1-00013.bin", str(tmp_path / "1-00013.bin"))
         await screen.press("U", *["backspace"] * 3, "enter")
-        assert "is no file of this machine" in screen.text
+        await until(lambda: "is no file of this machine" in screen.text)
         assert len(screen.station.of(PutFile)) == 1
 
 
