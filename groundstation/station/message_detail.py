@@ -119,9 +119,9 @@ class MessageDetail:
 
 
 def _spark(kind: type[Message], field: str, messages: list[Message]) -> str:
-    """Return a bar for each message, from the lowest to the highest value; empty for what is no single number."""
+    """Return a bar for each message, from the lowest to the highest value; empty for flags, texts and arrays."""
     read = make_reader(kind, field, -1)
-    if read is None or not messages:
+    if read is None or not messages or kind.fielddisplays_by_name.get(field) == "bitmask":
         return ""
     values = [read(message) for message in messages]
     known = [value for value in values if value is not None]
