@@ -45,6 +45,8 @@ SCREENS: tuple[ScreenRow, ...] = (
               "groundstation.ui.screens.log:LogScreen"),
     ScreenRow("links", "Links", "Vehicles, links and who is in control: choose a vehicle", ("f7",), "7",
               "groundstation.ui.screens.links:LinksScreen"),
+    ScreenRow("connect", "Connect", "What can be connected to: vehicles heard, endpoints, ports", (), "c",
+              "groundstation.ui.screens.connect:ConnectScreen"),
     ScreenRow("help", "Help", "Keys and what they do", ("question_mark",), "",
               "groundstation.ui.screens.help:HelpScreen"),
 )  # fmt: skip

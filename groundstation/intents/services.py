@@ -30,6 +30,22 @@ class WriteParams(ServiceIntent, frozen=True, tag=True):
     """Names and values."""
 
 
+class CompareParams(ServiceIntent, frozen=True, tag=True):
+    """Compare the parameters with those of a file."""
+
+    name: str = ""
+    """Name of the file. Empty: compare no more."""
+    text: str = ""
+
+
+class StoreParams(ServiceIntent, frozen=True, tag=True):
+    """Have the vehicle store all parameters."""
+
+
+class ResetParams(ServiceIntent, frozen=True, tag=True):
+    """Have the vehicle reset all parameters to their defaults."""
+
+
 class SetMessageRate(ServiceIntent, frozen=True, tag=True):
     """Request a message at a rate."""
 

@@ -19,7 +19,8 @@ from groundstation.station.intent_handler import HANDLERS, VEHICLE_COMMANDS
 KINDS = [each for each in (*Intent.__subclasses__(), *ServiceIntent.__subclasses__()) if each is not ServiceIntent]
 VALUES: dict[str, Any] = {
     "key": "i", "throttle": 1, "steering": -1, "open": True, "style": "latch", "mode": "HOLD", "system": 3,
-    "request": 5, "endpoint": "udpin:127.0.0.1:14550", "link": 2, "changes": (("FS_ACTION", 2.0),),
+    "request": 5, "endpoint": "udpin:127.0.0.1:14550", "link": 2, "path": "/logs/1.bin",
+    "folder": "/tmp", "name": "1.bin", "file": "/tmp/1.bin", "log": 3, "changes": (("FS_ACTION", 2.0),),
 }  # fmt: skip
 """Field -> a value for fields without a default."""
 

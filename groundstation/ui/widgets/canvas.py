@@ -20,8 +20,6 @@ _RUNS = tuple(
 )
 """Bits of the dots of one column of a cell, by column, first and last row."""
 
-_BLANK = style_of()
-
 Point = tuple[float, float]
 
 
@@ -32,7 +30,7 @@ class Canvas:
         self.width, self.height = width, height
         self.across, self.down = width * 2, height * 4
         self._dots = [bytearray(width) for _ in range(height)]
-        self._styles: list[list[Style]] = [[_BLANK] * width for _ in range(height)]
+        self._styles: list[list[Style]] = [[style_of()] * width for _ in range(height)]
         self._texts: list[dict[int, tuple[str, Style]]] = [{} for _ in range(height)]
 
     def dot(self, x: int, y: int, style: Style) -> None:
@@ -92,7 +90,7 @@ class Canvas:
 
     def _segments(self, row: int) -> Iterable[Segment]:
         dots, styles, texts = self._dots[row], self._styles[row], self._texts[row]
-        run, run_style = "", _BLANK
+        run, run_style = "", style_of()
         for column in range(self.width):
             character, style = texts.get(column) or (
                 chr(0x2800 + dots[column]) if dots[column] else " ",

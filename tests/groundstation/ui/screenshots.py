@@ -10,7 +10,7 @@ import argparse
 import asyncio
 import shutil
 import subprocess
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -106,13 +106,13 @@ async def pictures(size: tuple[int, int]) -> dict[str, str]:
     return made
 
 
-def main() -> None:
-    """Write them all."""
+def write_pictures(make: Callable[[tuple[int, int]], Awaitable[dict[str, str]]]) -> None:
+    """Write what `make` returns for each size into the folder of the command line."""
     parser = argparse.ArgumentParser(description="Make the pictures of the documents.")
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args().folder
     for width, height in SIZES:
-        for name, svg in asyncio.run(pictures((width, height))).items():
+        for name, svg in asyncio.run(_await(make((width, height)))).items():
             file = folder / f"{name}_{width}x{height}.svg"
             file.write_text(svg, "utf-8")
             if converter := shutil.which("rsvg-convert"):
@@ -120,5 +120,9 @@ def main() -> None:
             print(file)
 
 
+async def _await(made: Awaitable[dict[str, str]]) -> dict[str, str]:
+    return await made
+
+
 if __name__ == "__main__":
-    main()
+    write_pictures(pictures)

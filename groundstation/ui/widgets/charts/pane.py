@@ -10,7 +10,7 @@ from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.ui.charts.columns import Column
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, LINE, TEXT, VIOLET, WHITE, YELLOW, style
+from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, LINE, TEXT, WHITE, YELLOW, style
 from groundstation.ui.widgets.canvas import Canvas
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
@@ -22,7 +22,7 @@ MAX_DECIMALS = 9
 LEAST_SHARE = 0.02
 """Share of its value that a scale spans at least: the noise of a constant value must not fill the chart."""
 
-COLOURS = (GREEN, AMBER, BLUE, VIOLET)
+COLOURS = (GREEN, AMBER, BLUE, WHITE)
 """Colours of the lines of one chart, in their order."""
 
 PATTERNS: tuple[tuple[int, int], ...] = ((1, 1), (4, 6), (1, 3), (6, 9))
