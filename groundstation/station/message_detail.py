@@ -85,6 +85,9 @@ class MessageDetail:
         self._place = place
         self._kept.clear()
         self._traffic.set_taps(TAPS, {} if place is None else {place: self._keep})
+        kind = None if place is None else self._traffic.find(place)
+        if kind is not None:
+            self._kept.append((kind.at, kind.newest))
 
     def _keep(self, message: Message, now: float) -> None:
         if not self._kept or now - self._kept[-1][0] >= SPACING:
