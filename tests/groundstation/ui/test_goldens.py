@@ -12,6 +12,7 @@ import pytest
 
 from groundstation.actions import ACTIONS
 from groundstation.input.hold_to_confirm import HoldProgress
+from groundstation.intents.session import Watch
 from groundstation.screens import SCREENS
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.appearance import Look
@@ -35,7 +36,7 @@ from tests.groundstation.ui.examples import (
 )
 from tests.groundstation.ui.link_examples import FLEET, OURS, VIEWS
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import STANDARD
+from tests.groundstation.ui.ptys import STANDARD, until
 
 GOLDEN = Path(__file__).parent / "golden"
 SMALL, WIDE = (80, 24), (140, 45)
@@ -179,6 +180,8 @@ async def fill(screen: Console, name: str, keys: Sequence[str], picture: Snapsho
     """Press the keys behind the one that opened the screen, and show what that asks for."""
     if "charts" in name:
         await screen.press(*keys[1:2])
+        if "v" in keys:  # points that come before they are requested are dropped
+            await until(lambda: any(getattr(each, "fields", ()) for each in screen.station.of(Watch)[-1].requests))
         screen.station.offer_view(drive())
         await screen.show(picture)
         await screen.press(*keys[2:])
