@@ -47,6 +47,8 @@ SCREENS: tuple[ScreenRow, ...] = (
               "groundstation.ui.screens.links:LinksScreen"),
     ScreenRow("setup", "Setup", "Why the vehicle cannot be driven, motor test, calibration", ("f8",), "8",
               "groundstation.ui.screens.setup:SetupScreen"),
+    ScreenRow("files", "Files", "Logs and files of the vehicle: download, upload, delete", (), "9",
+              "groundstation.ui.screens.files:FilesScreen"),
     ScreenRow("connect", "Connect", "What can be connected to: vehicles heard, endpoints, ports", (), "c",
               "groundstation.ui.screens.connect:ConnectScreen"),
     ScreenRow("help", "Help", "Keys and what they do", ("question_mark",), "",

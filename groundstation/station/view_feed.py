@@ -41,9 +41,12 @@ class ViewFeed:
         self._sources[kind] = source
 
     def watch(self, requests: Sequence[ViewRequest]) -> None:
-        """Answer these requests from now on and no others. A changed request keeps the rate of its kind."""
+        """Answer these requests from now on and no others. A changed request keeps the rate of its kind.
+
+        One without a source is ignored: its screen shows that nothing has arrived.
+        """
         before, self._watched = self._watched, {}
-        for request in requests:
+        for request in (each for each in requests if type(each) in self._sources):
             watched = before.get(type(request)) or _Watched(request)
             if watched.request != request:
                 watched.request, watched.sent = request, None

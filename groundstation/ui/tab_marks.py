@@ -30,6 +30,12 @@ def _pending_params(now: DisplayState) -> TabMark | None:
     return TabMark(f"✎{pending}", BLUE, short="✎") if pending else None
 
 
+def _transfers(now: DisplayState) -> TabMark | None:
+    """Return how far the downloads and uploads are."""
+    share = now.snapshot.transfers
+    return None if share is None else TabMark(f" {100 * share:.0f}%", BLUE)
+
+
 def _faults(now: DisplayState) -> TabMark | None:
     """Return how many links of the chain from the finger to the wheel stop the operator."""
     count = now.snapshot.faults
@@ -39,6 +45,7 @@ def _faults(now: DisplayState) -> TabMark | None:
 TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {
     "params": _pending_params,
     "setup": _faults,
+    "files": _transfers,
 }
 """Id of a row in SCREENS -> its mark, None for no mark."""
 

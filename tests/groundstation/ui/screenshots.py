@@ -136,8 +136,13 @@ async def param_pictures(size: tuple[int, int], folder: Path) -> dict[str, str]:
 async def all_pictures(size: tuple[int, int]) -> dict[str, str]:
     """Name -> SVG of all screens."""
     with TemporaryDirectory() as files:
-        Path(files, "safe.param").write_text(SAFE)
-        return await pictures(size) | await param_pictures(size, Path(files))
+        return await pictures(size) | await param_pictures(size, write_safe(Path(files)))
+
+
+def write_safe(folder: Path) -> Path:
+    """Write the file to compare with; return the folder."""
+    (folder / "safe.param").write_text(SAFE)
+    return folder
 
 
 def write_pictures(make: Callable[[tuple[int, int]], Awaitable[dict[str, str]]]) -> None:

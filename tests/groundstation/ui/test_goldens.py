@@ -20,6 +20,7 @@ from groundstation.views.base import View
 from groundstation.views.links import ControlView, LinksView, VehiclesView
 from tests.groundstation.ui.example_charts import drive, fields_page
 from tests.groundstation.ui.example_connect import CONNECT, FAILED, NOTHING, UNCONNECTED, forget, remember
+from tests.groundstation.ui.example_files import FILES, NO_SERVICE, NO_TASKS, TASKS, fill_folder
 from tests.groundstation.ui.example_setup import setup_frames, setup_view
 from tests.groundstation.ui.examples import (
     LOG_PAGE,
@@ -102,6 +103,12 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "connect_140x45": (WIDE, UNCONNECTED, ("ctrl+g", "c")),
     "connect_nothing_80x24": (SMALL, UNCONNECTED, ("ctrl+g", "c")),
     "connect_failed_140x45": (WIDE, FLEET, ("ctrl+g", "c", "tab", "tab", "down")),
+    "files_80x24": (SMALL, snapshot(transfers=0.41), ("ctrl+g", "9")),
+    "files_140x45": (WIDE, snapshot(transfers=0.41), ("ctrl+g", "9", "down", "tab", "down")),
+    "files_tree_80x24": (SMALL, snapshot(), ("ctrl+g", "9", "tab", "down", "enter", "down", "enter")),
+    "files_here_80x24": (SMALL, snapshot(), ("ctrl+g", "9", "tab", "tab")),
+    "files_none_80x24": (SMALL, snapshot(), ("ctrl+g", "9", "tab")),
+    "files_loading_80x24": (SMALL, waiting(), ("ctrl+g", "9")),
     "charts_empty_80x24": (SMALL, snapshot(), ("f5",)),
     "charts_empty_140x45": (WIDE, waiting(), ("f5",)),
     "charts_80x24": (SMALL, snapshot(), ("f5", "v")),
@@ -130,6 +137,8 @@ FRAMES |= {
         "links_140x45",
         "connect_80x24",
         "connect_140x45",
+        "files_80x24",
+        "files_140x45",
         "goto_80x24",
         "setup_80x24",
         "setup_140x45",
@@ -143,6 +152,8 @@ FRAMES |= {
 
 def views_for(name: str) -> Sequence[View]:
     """Return what the station sends to the screen of a frame."""
+    if "files" in name:
+        return () if "loading" in name else (NO_SERVICE, NO_TASKS) if "none" in name else (FILES, TASKS)
     if "connect" in name:
         return (NOTHING if "nothing" in name else FAILED if "failed" in name else CONNECT,)
     if "charts" in name:
@@ -182,10 +193,13 @@ async def fill(screen: Console, name: str, keys: Sequence[str], picture: Snapsho
 
 
 @pytest.mark.parametrize("name", FRAMES)
-async def test_the_frame_is_the_golden_one(name: str) -> None:
+async def test_the_frame_is_the_golden_one(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     size, picture, keys = FRAMES[name]
     fill_recent(name)
-    async with console(size, picture, look=Look(ascii=name.startswith("ascii"))) as screen:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "logs").mkdir()
+    look, folder = Look(ascii=name.startswith("ascii")), fill_folder(tmp_path / "logs")
+    async with console(size, picture, folder=folder, look=look) as screen:
         opens = 2 if keys[:1] == ("ctrl+g",) else 1
         await screen.press(*keys[:opens])
         if keys:

@@ -12,6 +12,7 @@ from groundstation.snapshot import LogLine
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.log import LogScreen, short_path
 from groundstation.views.log import LogPage, LogRequest
+from groundstation.views.requests import RequestsRequest
 from tests.groundstation.ui.examples import LOG_PAGE, NOON, snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
@@ -37,8 +38,8 @@ async def test_it_requests_lines_while_it_is_open_and_says_which_it_has() -> Non
     async with console() as screen:
         assert screen.station.of(Watch) == []
         await open_log(screen)
-        await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100),)))
-        assert screen.station.of(Watch)[0] == Watch((LogRequest(0),))
+        await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100), RequestsRequest())))
+        assert screen.station.of(Watch)[0] == Watch((LogRequest(0), RequestsRequest()))
         await screen.press("escape")
         await until(lambda: screen.station.of(Watch)[-1] == Watch(()))
 
@@ -47,7 +48,7 @@ async def test_under_the_menu_it_stays_live() -> None:
     async with console() as screen:
         await open_log(screen)
         await screen.press("ctrl+g")
-        await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100),)))
+        await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100), RequestsRequest())))
         line = LogLine(time=NOON, severity=6, label="vehicle", text="under the menu", number=101)
         screen.station.offer_view(LogPage((line,), 101, after=100))
         await screen.show(snapshot(vehicle=vehicle(mode="HOLD")))
