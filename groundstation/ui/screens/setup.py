@@ -213,12 +213,6 @@ class SetupScreen(ConsoleScreen):
         if self._model.testing:
             self.context.send(StopMotorTest())
 
-    def _stronger(self) -> None:
-        self._model.change_strength(1)
-
-    def _weaker(self) -> None:
-        self._model.change_strength(-1)
-
     def _reverse(self) -> None:
         row = next((row for row in self._model.motors if str(row.number) == self._tested), None)
         if row is None or row.reversal is None:
@@ -236,12 +230,6 @@ class SetupScreen(ConsoleScreen):
             return
         intent = Calibrate(self.context.numbers.take(), view.system, row.kind)
         self.ask(f"calibrate {row.title} of {view.name}", lambda: self.context.send(intent))
-
-    def _accept(self) -> None:
-        self._end_compass(accept=True)
-
-    def _cancel(self) -> None:
-        self._end_compass(accept=False)
 
     def _end_compass(self, *, accept: bool) -> None:
         view = self._model.view
@@ -287,11 +275,11 @@ _ACTIONS: dict[str, Callable[[SetupScreen], None]] = {
     "f": SetupScreen._fix,
     "c": SetupScreen._check,
     "m": SetupScreen._ask_for_motors,
-    "plus": SetupScreen._stronger,
-    "minus": SetupScreen._weaker,
+    "plus": lambda screen: screen._model.change_strength(1),
+    "minus": lambda screen: screen._model.change_strength(-1),
     "v": SetupScreen._reverse,
-    "W": SetupScreen._accept,
-    "x": SetupScreen._cancel,
+    "W": lambda screen: screen._end_compass(accept=True),
+    "x": lambda screen: screen._end_compass(accept=False),
     "B": SetupScreen._reboot,
     "S": SetupScreen._save_report,
 }
