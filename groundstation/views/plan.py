@@ -138,3 +138,12 @@ class TrackView(View, frozen=True):
     system: int
     origin: PlanPlace | None
     points: tuple[tuple[float, float], ...]
+
+
+class PlanDocument(msgspec.Struct, frozen=True):
+    """The plans of a file, on the pipe to the process that reads and writes it."""
+
+    plans: tuple[tuple[PlanItem, ...], tuple[PlanItem, ...], tuple[PlanItem, ...]]
+    """By PlanKind."""
+    home: PlanPlace | None = None
+    home_altitude: float = 0.0
