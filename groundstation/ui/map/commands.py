@@ -17,6 +17,12 @@ _NAMES = {
     RETURN_POINT: "return point", POLYGON_IN: "polygon in", POLYGON_OUT: "polygon out", CIRCLE_IN: "circle in",
     CIRCLE_OUT: "circle out", RALLY_POINT: "rally point",
 }  # fmt: skip
+_SHORT = {
+    WAYPOINT: "waypoint", 17: "loiter", 18: "turns", 19: "loiter", RTL: "RTL", CHANGE_SPEED: "speed", DO_JUMP: "jump",
+    92: "guided", 93: "delay", 112: "delay", 114: "distance", 115: "yaw", 181: "relay", 183: "servo", 195: "ROI",
+    201: "ROI", RETURN_POINT: "return", POLYGON_IN: "poly in", POLYGON_OUT: "poly out", RALLY_POINT: "rally",
+}  # fmt: skip
+"""Names for narrow tables."""
 _COMMON = (16, 19, 18, 17, 20, 178, 177, 112, 114, 115, 93, 181, 183, 201, 92)
 """Commands of rovers, those first that are used most."""
 _WORDS = {"RTL": 20, "SPEED": 178, "JUMP": 177, "LOITER": 19, "DELAY": 112, "RELAY": 181, "SERVO": 183, "ROI": 201}
@@ -35,6 +41,11 @@ def command_title(command: int) -> str:
         return _NAMES[command]
     known = MISSION_COMMANDS.get(command)
     return known.name.removeprefix("NAV_") if known else f"command {command}"
+
+
+def short_title(command: int) -> str:
+    """Return the name for a narrow table."""
+    return _SHORT.get(command) or command_title(command).removeprefix("DO_").lower()
 
 
 def has_location(command: int) -> bool:

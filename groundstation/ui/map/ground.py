@@ -6,7 +6,7 @@ import math
 from enum import Enum, auto
 
 from groundstation.ui.map.geometry import LocalMap, Point
-from groundstation.ui.map.window import MapWindow, fit_window
+from groundstation.ui.map.window import FITTED, MapWindow, fit_window
 from groundstation.views.plan import PlanPlace
 
 
@@ -56,7 +56,9 @@ class Ground:
         """Return whether the window still is a good one: a fit at each step would move the map all the time."""
         inside = all(self.window.shows(point, *self._size, 0.47) for point in points)
         closer = self.window.zoomed(-2)
-        loose = closer.zoom < self.window.zoom and all(closer.shows(point, *self._size, 0.4) for point in points)
+        loose = FITTED <= closer.zoom < self.window.zoom and all(
+            closer.shows(point, *self._size, 0.4) for point in points
+        )
         return inside and not loose
 
     def fit(self) -> None:

@@ -123,15 +123,15 @@ def cursor_lines(model: MapModel, *, narrow: bool) -> tuple[str, ...]:
     ground, point = model.ground, model.ground.cursor_point
     if ground.cursor is None or point is None:
         return ()
-    at = f"{ground.cursor.latitude:.7f} {ground.cursor.longitude:.7f}"
-    name = "vehicle" if model.view is None else model.view.name
-    ways = f"{way_text(ground.vehicle, point)} from {name}", f"{way_text(model.home, point)} from home"
+    at = f"{ground.cursor.latitude:.6f} {ground.cursor.longitude:.6f}"
+    name = "" if model.view is None or narrow else f" from {model.view.name}"
+    way, home = f"{way_text(ground.vehicle, point)}{name}", f"{way_text(model.home, point)} from home"
     if ground.measured is not None and ground.frame is not None:
-        ways = (f"measured {way_text(ground.frame.to_point(ground.measured), point)}", ways[0])
-    following = " · following" if ground.looking is Looking.FOLLOW else ""
+        way = f"measured {way_text(ground.frame.to_point(ground.measured), point)}"
+    following = "following" if ground.looking is Looking.FOLLOW else ""
     fence = fence_text(model, point)
-    parts = (ways[0], at, ways[1], fence) if narrow else (at, *ways, fence)
-    return (" · ".join(part for part in parts if part) + following,)
+    parts = (f"cursor {way}", at, home, fence, following) if narrow else (following, f"cursor {at}", way, home, fence)
+    return (" · ".join(part for part in parts if part),)
 
 
 def fence_text(model: MapModel, point: Point | None) -> str:
@@ -142,7 +142,7 @@ def fence_text(model: MapModel, point: Point | None) -> str:
     check = check_fence(point, fence_shapes(model.editor.items(PlanKind.FENCE), frame))
     if check is None:
         return ""
-    return f"in fence, {check.distance:.0f} m to it" if check.inside else f"OUTSIDE the fence by {check.distance:.0f} m"
+    return f"in fence, {check.distance:.0f} m" if check.inside else f"OUTSIDE the fence, {check.distance:.0f} m"
 
 
 def title_of(model: MapModel, index: int) -> str:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
 
 from groundstation.snapshot import VehicleView
 from groundstation.ui.map.checks import item_fault, range_warning
-from groundstation.ui.map.commands import CHANGE_SPEED, DO_JUMP, POLYGONS, command_title, describe_command
+from groundstation.ui.map.commands import CHANGE_SPEED, DO_JUMP, POLYGONS, command_title, describe_command, short_title
 from groundstation.ui.map.fields import FRAMES, fields_of, number_text, value_of
 from groundstation.ui.map.geometry import bearing, place_of
 from groundstation.ui.map.model import PLAN_NAMES, MapModel
@@ -23,8 +24,8 @@ LEAST_SPEED = 0.1
 # ---- the table ----
 
 
-def build_table(model: MapModel, rows: int) -> PlanTableValue:
-    """Return the part of the edited plan that fits around the selected row."""
+def build_table(model: MapModel, rows: int, *, narrow: bool = False) -> PlanTableValue:
+    """Return the part of the edited plan that fits around the selected row; in a narrow table with short names."""
     items, selected = model.editor.rows(), model.editor.selected
     home = 1 if model.editor.layer is PlanKind.MISSION and model.home is not None else 0
     top = max(0, min(selected - rows // 2, len(items) + home - rows))
@@ -32,7 +33,10 @@ def build_table(model: MapModel, rows: int) -> PlanTableValue:
     outside = outside_rows(model)
     begin = max(0, top - home)
     end = min(len(items), begin + rows - len(shown))
-    found = (*shown, *(_row(model, index, outside) for index in range(begin, end)))
+    found = (
+        *shown,
+        *(_row(model, index, outside, short_title if narrow else command_title) for index in range(begin, end)),
+    )
     at = selected - begin + len(shown) if items else None
     return PlanTableValue(found, at, _summary(model), _empty_note(model))
 
@@ -41,7 +45,7 @@ def _home_row(model: MapModel) -> PlanTableRow:
     return PlanTableRow("0" if model.first else "⌂", "HOME", look="done")
 
 
-def _row(model: MapModel, index: int, outside: frozenset[int]) -> PlanTableRow:
+def _row(model: MapModel, index: int, outside: frozenset[int], name: Callable[[int], str]) -> PlanTableRow:
     layer, row = model.editor.layer, model.editor.rows()[index]
     current, reached = progress_of(model) if layer is PlanKind.MISSION else (None, frozenset())
     edit = mark_of(model, layer, index)
@@ -49,7 +53,7 @@ def _row(model: MapModel, index: int, outside: frozenset[int]) -> PlanTableRow:
     state = "▶" if index == current else "✓" if index in reached else ""
     look = "now" if index == current else "edited" if edit else "done" if index in reached else ""
     leg, course = _leg(model, index)
-    title, value = command_title(row.item.command), item_value(row.item, model.first)
+    title, value = name(row.item.command), item_value(row.item, model.first)
     mark = ("!" if warned else "") + (edit or state)
     return PlanTableRow(str(index + model.first), title, value, leg, course, mark, "warned" if warned else look)
 
@@ -237,7 +241,7 @@ def _texts(
     if vehicle is not None and vehicle.speed is not None and math.isfinite(vehicle.speed):
         texts.append(("speed", f"{vehicle.speed:.2f} m/s"))
     if fence := fence_text(model, model.ground.vehicle):
-        texts.append(("fence", fence.removeprefix("in fence, ")))
+        texts.append(("fence", fence.removeprefix("in fence, ").replace("OUTSIDE the fence", "OUTSIDE")))
     return tuple(texts)
 
 

@@ -12,6 +12,8 @@ SCALES = tuple(step * 10.0**decade for decade in range(-2, 4) for step in (1.0, 
 """m per dot that a map may have."""
 CLOSEST = SCALES.index(0.05)
 """A closer view would show the noise of GPS only."""
+FITTED = SCALES.index(0.1)
+"""A fit comes no closer: an empty plan begins with some ten metres around the vehicle."""
 MARGIN = 0.42
 """Share of the width and height on each side of the middle in which everything lies after a fit."""
 
@@ -56,7 +58,7 @@ def fit_window(points: Sequence[Point], across: int, down: int) -> MapWindow:
     if not points:
         return MapWindow()
     norths, easts = [north for north, _ in points], [east for _, east in points]
-    for zoom in range(CLOSEST, len(SCALES)):
+    for zoom in range(FITTED, len(SCALES)):
         step = SCALES[zoom] * 4
         window = MapWindow(_middle(norths, step), _middle(easts, step), zoom)
         if all(window.shows(each, across, down, MARGIN) for each in _corners(norths, easts)):

@@ -209,7 +209,7 @@ class MapScreen(ConsoleScreen):
         for number, panel in enumerate(self._panels):
             panel.set_class(number == self._chosen, "-chosen")
         self.set_class(self._chosen == 2, "-editing")
-        table = build_table(model, max(1, self._table.size.height - 2))
+        table = build_table(model, max(1, self._table.size.height - 2), narrow=self._narrow)
         self._table.show(table.with_reason(self._map.value.note))
         self._table.border_title = model.plan_name
         diff = model.editor.diff(model.editor.layer)

@@ -81,10 +81,11 @@ class Canvas:
                 chr(0x2800 + dots[column]) if dots[column] else " ",
                 styles[column],
             )
-            if style is not run_style and character != " " and run:
+            blank = character == " " and column not in texts and run_style.bgcolor == _BLANK.bgcolor
+            if style is not run_style and not blank and run:
                 yield Segment(run, run_style)
                 run = ""
-            if not run or character != " ":
+            if not run or not blank:
                 run_style = style
             run += character
         if run:

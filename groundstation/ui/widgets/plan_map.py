@@ -249,7 +249,7 @@ class _Drawing:
         bar = max(2, round(self.ring / self._window.scale / 2))
         bottom = canvas.height - 1
         if bar < canvas.width // 2:
-            canvas.write(1, bottom, "├" + "─" * (bar - 1) + "┤ " + metres(self.ring), style(DIM))
+            canvas.write(1, bottom - len(value.lines), "├" + "─" * (bar - 1) + "┤ " + metres(self.ring), style(DIM))
         for up, line in enumerate(reversed(value.lines)):
             canvas.write(max(0, canvas.width - len(line) - 1), bottom - up, line, style(TEXT))
 

@@ -10,7 +10,7 @@ from groundstation.ui.colours import AMBER, BLUE, DIM, FAINT, GREEN, TEXT, WHITE
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 from groundstation.ui.wrap import clean
 
-LABEL = 13
+LABEL = 14
 """Width of the labels."""
 
 

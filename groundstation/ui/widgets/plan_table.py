@@ -12,9 +12,9 @@ from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, strip
 
 COLUMNS = (
-    Column("#", 3, 0, right=True),
-    Column("command", 11, 0, most=22),
-    Column("value", 6, 2, right=True, most=12),
+    Column("#", 2, 0, right=True, most=4),
+    Column("command", 9, 0, most=16),
+    Column("value", 5, 2, right=True, most=9),
     Column("leg m", 5, 1, right=True, most=7),
     Column("brg", 4, 3, right=True),
     Column("", 2, 0),
