@@ -17,10 +17,12 @@ from groundstation.station.handover import Handover
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
+from groundstation.station.link_closing import LinkClosing
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
+from groundstation.station.operator_log import OperatorLog
 from groundstation.station.plan_views import PlanViews
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
@@ -37,6 +39,8 @@ from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
 
 DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
+
+NO_LINK = "no link yet: Connect opens one"
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -60,6 +64,7 @@ class Station:
         self.fleet = Fleet(self.log, system, COMPONENT)
         self._traffic = MessageTraffic(system, COMPONENT)
         self._endpoints = tuple(endpoints)
+        self._not_open: tuple[LinkReport, ...] = ()
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
@@ -92,6 +97,7 @@ class Station:
             }
         )
         """Request -> its source."""
+        self.link_closing = LinkClosing(self.operator, self.fleet, self._links)
         self._intents = IntentHandler(
             self.operator,
             self.fleet,
@@ -102,7 +108,9 @@ class Station:
             self.log,
             self.views,
             self._services,
+            self.link_closing,
         )
+        self._operator_log = OperatorLog(self.log)
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
@@ -154,14 +162,16 @@ class Station:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
         self._driving.update(now)
+        self._log_driving(now)
         self._departure.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
+        reports = [*reports, *self._not_open]
         selected = self.fleet.selected
         self._links.update(reports, selected.state.system if selected else None, now)
         self.fleet.observe(reports, now)
-        self._traffic.observe(reports)
+        self._traffic.observe(reports, now)
         self._traffic.set_labels({(each.state.system, each.state.component): each.state.name for each in self.fleet})
         for report in reports:
             event = self._link_events.update(report)
@@ -198,11 +208,17 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._expire_lease(now)
+        self._operator_log.handle(intent, now)
         self._intents.handle(intent, now)
+        self._log_driving(now)
 
     def set_simulator_state(self, state: str | None) -> None:
         """Record the state of the simulator, for the next snapshot."""
         self._simulator_state = state
+
+    def set_endpoints(self, endpoints: Sequence[str], not_open: Sequence[LinkReport]) -> None:
+        """Record the endpoints of all links, and the reports of those that are not open."""
+        self._endpoints, self._not_open = tuple(endpoints), tuple(not_open)
 
     def set_addresses(self, addresses: tuple[str, ...]) -> None:
         """Record the addresses of this machine, for the next snapshot."""
@@ -251,6 +267,10 @@ class Station:
         if any(contact.ours and contact.state.armed for contact in self.fleet):
             self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
 
+    def _log_driving(self, now: float) -> None:
+        selected = self.fleet.selected
+        self._operator_log.tick(self.operator.sent_demand, selected.state.latency if selected else None, now)
+
     def _handle_statustext(self, message: m.StatusText, contact: Contact, now: float) -> None:
         system = contact.state.system
         text = self.log.handle_statustext(message, system, now)
@@ -279,4 +299,4 @@ class Station:
             return None
         if self._links.has_traffic:
             return "receiving data, but no HEARTBEAT of a vehicle yet"
-        return f"waiting for a vehicle on {', '.join(self._endpoints)}"
+        return f"waiting for a vehicle on {', '.join(self._endpoints)}" if self._endpoints else NO_LINK

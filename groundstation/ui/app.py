@@ -83,6 +83,7 @@ class ConsoleApp(App[int]):
         self._ascii = AsciiFilter(enabled=ascii_only)
         self._watched: tuple[ViewRequest, ...] = ()
         context = ScreenContext(keymap, self._send, self.perform_action, self._display_state, folder)
+        self._kept = context.kept
         self.drive = DriveScreen(context)
         self._navigator = ScreenNavigator(self, context)
         self._actions = {"app.quit": self.request_quit, **self._navigator.actions}
@@ -202,6 +203,7 @@ class ConsoleApp(App[int]):
             key_hint=self._key_hint.text(self._clock()),
             terminal_round_trip=self.gate.ping.round_trip,
             ascii=self._ascii.enabled,
+            kept=self._kept,
         )
 
     def get_line_filters(self) -> Sequence[LineFilter]:

@@ -17,6 +17,8 @@ class LatencyMeter:
     def __init__(self) -> None:
         self.latest: float | None = None
         """s"""
+        self.reports = 0
+        """Reports that gave a latency."""
         self._sent: OrderedDict[int, float] = OrderedDict()
 
     def record_sent(self, sequence: int, now: float) -> None:
@@ -33,4 +35,5 @@ class LatencyMeter:
         """
         sent = self._sent.pop(sequence, None)
         if sent is not None and now - sent <= TOO_OLD:
+            self.reports += 1
             self.latest = max(0.0, now - sent - age)

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias, Union
 
-from groundstation.views import links, log, messages, params, plan, requests  # noqa: F401 - defines the classes
+from groundstation.views import (  # noqa: F401 - defines the classes
+    connect,
+    links,
+    log,
+    messages,
+    params,
+    plan,
+    requests,
+)
 from groundstation.views.base import View, ViewRequest
 
 if TYPE_CHECKING:

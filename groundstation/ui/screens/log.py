@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from textual import events
@@ -25,6 +27,13 @@ LEAST_ROWS = 4
 
 BORDERS = 2
 
+_SOURCES = {
+    "v": (("vehicle", "state"), "of vehicles"),
+    "h": (("station",), "of this ground station"),
+    "m": (("you", "ack"), "your keys and the answers"),
+}
+"""Key -> labels of the lines that it shows, and what they are."""
+
 
 class LogScreen(ConsoleScreen):
     """Alerts over messages. TAB chooses which of them the arrows scroll."""
@@ -32,8 +41,11 @@ class LogScreen(ConsoleScreen):
     CSS_PATH = "log.tcss"
     KEYS = (
         ScreenKey("slash", "Filter", "Show the messages that contain a text"),
-        ScreenKey("w", "Warnings", "Show warnings and worse only"),
         ScreenKey("a", "All", "Show all messages"),
+        ScreenKey("w", "Warnings", "Show warnings and worse only"),
+        ScreenKey("v", "Vehicle", "Show what vehicles sent and how they changed only"),
+        ScreenKey("h", "Here", "Show the events of this ground station only"),
+        ScreenKey("m", "Mine", "Show what your keys did, and the answers to your commands only"),
         ScreenKey("S", "Save", "Save the messages that are shown to a file"),
         ScreenKey("tab", "Alerts", "Scroll the alerts, or the messages again"),
     )
@@ -85,6 +97,7 @@ class LogScreen(ConsoleScreen):
         chosen = self._model.filter
         parts = ["live, newest below" if self._model.following else "scrolled: END follows the newest line"]
         parts += ["warnings and worse"] if chosen.warnings else []
+        parts += [text for labels, text in _SOURCES.values() if labels == chosen.labels]
         parts += [f"with “{chosen.text}”"] if chosen.text else []
         return " · ".join([*parts, "ESC goes back to Drive"])
 
@@ -106,10 +119,13 @@ class LogScreen(ConsoleScreen):
         self.field.open(use, text=self._model.filter.text, placeholder="text; ENTER keeps it, ESC shows all")
 
     def _filter_text(self, text: str) -> None:
-        self._set_filter(LogFilter(text, self._model.filter.warnings))
+        self._set_filter(replace(self._model.filter, text=text))
 
     def _show_warnings(self) -> None:
         self._set_filter(LogFilter(self._model.filter.text, warnings=True))
+
+    def _show_labels(self, labels: tuple[str, ...]) -> None:
+        self._set_filter(LogFilter(self._model.filter.text, labels=labels))
 
     def _show_all(self) -> None:
         self._set_filter(LogFilter())
@@ -157,10 +173,11 @@ class LogScreen(ConsoleScreen):
             self.say(f"not saved: {error.strerror}: {short_path(path)}")
 
 
-_ACTIONS = {
+_ACTIONS: dict[str, Callable[[LogScreen], None]] = {
     "slash": LogScreen._open_filter,
-    "w": LogScreen._show_warnings,
     "a": LogScreen._show_all,
+    "w": LogScreen._show_warnings,
+    **{key: partial(LogScreen._show_labels, labels=labels) for key, (labels, _) in _SOURCES.items()},
     "S": LogScreen._save,
     "tab": LogScreen._swap_scrolling,
 }

@@ -163,7 +163,7 @@ class MessagesScreen(ConsoleScreen):
 
     def _show_message(self, view: MessageView) -> None:
         self._detail.show(MessageDetailValue(view, self._detail.value.top if self._in_detail else 0))
-        self._detail.border_title = f"{view.name} #{view.id}"
+        self._detail.border_title = f"{view.name} #{view.id}" if view.fields else view.name
         self._detail.border_subtitle = (
             f"{view.system}/{view.component} · {view.rate:.1f} Hz · {view.length} B · {format_age(view.age)} s ago"
         )
