@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from groundstation.ui.colours import BLUE
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.map.model import MapModel
 from groundstation.ui.param_model import ParamModel
 
 
@@ -30,7 +31,13 @@ def _pending_params(now: DisplayState) -> TabMark | None:
     return TabMark(f"✎{pending}", BLUE, short="✎") if pending else None
 
 
-TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {"params": _pending_params}
+def _edited_plans(now: DisplayState) -> TabMark | None:
+    """Return a pencil while a plan is not as on the vehicle."""
+    model = now.kept.get(MapModel)
+    return TabMark("✎", BLUE) if isinstance(model, MapModel) and model.editor.edited else None
+
+
+TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {"map": _edited_plans, "params": _pending_params}
 """Id of a row in SCREENS -> its mark, None for no mark."""
 
 

@@ -103,8 +103,11 @@ def plan_fault(items: Sequence[PlanItem], first: int = 0) -> str | None:
         if item.command == DO_JUMP and not 0 <= item.params[0] < len(items):  # also false for NaN
             return f"item {index + first}: it jumps to an item that does not exist"
     for at, count in polygon_spans(items):
-        if count < LEAST_CORNERS or count != items[at].params[0]:
+        wanted = items[at].params[0]
+        if count < LEAST_CORNERS:
             return f"item {at + first}: a polygon needs {LEAST_CORNERS} corners, this one has {count}"
+        if count != wanted:
+            return f"item {at + first}: the polygon shall have {wanted:g} corners and has {count}"
     return None
 
 

@@ -70,11 +70,12 @@ def find_command(text: str, kind: PlanKind) -> int | str:
 
 
 def _find_name(words: str, names: dict[str, int]) -> int | str:
+    usual = _WORDS.get(words)
+    if words not in names and usual in names.values() and usual is not None:
+        return usual
     exact = names.get(words) or names.get(f"NAV_{words}") or names.get(f"DO_{words}")
     if exact is not None:
         return exact
-    if words in _WORDS and _WORDS[words] in names.values():
-        return _WORDS[words]
     found = [(name, number) for name, number in names.items() if words and words.replace(" ", "_") in name]
     found = found or [(name, number) for name, number in names.items() if words and words in name]
     common = [pair for pair in found if pair[1] in _COMMON]

@@ -83,8 +83,8 @@ def number_text(value: float) -> str:
     """Return a float32 with no more digits than it has; "--" for NaN, which leaves the value to the vehicle."""
     if math.isnan(value):
         return "--"
-    return next(text for digits in range(1, 10) if float(text := f"{value:.{digits}g}") == value or digits == 9
-                or _float32(float(text)) == _float32(value))  # fmt: skip
+    texts = (f"{float(f'{value:.{digits}g}'):.9g}" for digits in range(1, 9))
+    return next((text for text in texts if _float32(float(text)) == _float32(value)), f"{value:.9g}")
 
 
 def change_field(item: PlanItem, field: Field, text: str, first: int = 0) -> PlanItem | str:
@@ -156,5 +156,7 @@ def _coordinate(value: int, frame: int) -> str:
 
 
 def _float32(value: float) -> float:
+    if abs(value) > _LARGEST:
+        return value
     found: float = struct.unpack("<f", struct.pack("<f", value))[0]
     return found
