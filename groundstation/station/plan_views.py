@@ -71,7 +71,9 @@ class PlanViews:
 
     def _build_page(self, request: PlanPageRequest, now: float, wall: float) -> PlanPage | None:
         contact = self._fleet.selected
-        if contact is None or contact.services is None or request.kind not in PlanKind._value2member_map_:
+        if contact is None or contact.services is None or contact.state.system != request.system:
+            return None
+        if request.kind not in PlanKind._value2member_map_:
             return None
         services, kind = contact.services, MissionType(request.kind)
         plan = from_vehicle(services.plans.plans.get(kind, ()), kind, services.autopilot).of(kind)

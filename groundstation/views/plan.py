@@ -110,8 +110,9 @@ class PlanView(View, frozen=True, kw_only=True):
 
 
 class PlanPageRequest(ViewRequest, frozen=True):
-    """Items of one plan of the selected vehicle."""
+    """Items of one plan of the selected vehicle, if it is `system`."""
 
+    system: int
     kind: int
     version: int
     first: int

@@ -12,11 +12,17 @@ class PlanCopies:
 
     def __init__(self) -> None:
         self.view: PlanView | None = None
-        self.track: TrackView | None = None
+        self._track: TrackView | None = None
         self.items: dict[PlanKind, Items] = {}
         """Plans that have arrived whole."""
         self._versions: dict[PlanKind, int] = {}
         self._parts: dict[PlanKind, tuple[int, list[PlanPage]]] = {}
+
+    @property
+    def track(self) -> TrackView | None:
+        """Where the vehicle has been. The track of another one may have arrived before its PlanView."""
+        track = self._track
+        return track if track is not None and self.view is not None and track.system == self.view.system else None
 
     @property
     def requests(self) -> tuple[ViewRequest, ...]:
@@ -30,15 +36,15 @@ class PlanCopies:
                 if self.view is not None and view.system != self.view.system:
                     self._clear()
                 self.view = view
-            case TrackView() if self.view is not None and view.system == self.view.system:
-                self.track = view
+            case TrackView():
+                self._track = view
             case PlanPage() if self.view is not None and view.system == self.view.system:
-                return self._take_page(view)
+                expected = self.view.plans[view.kind].version == view.version
+                return self._take_page(view) if expected else None
         return None
 
     def _clear(self) -> None:
         """Drop what is of another vehicle."""
-        self.track = None
         for kept in (self.items, self._versions, self._parts):
             kept.clear()
 
@@ -50,7 +56,7 @@ class PlanCopies:
             if version and version != self._versions.get(kind):
                 part = self._parts.get(kind)
                 have = sum(len(page.items) for page in part[1]) if part is not None and part[0] == version else 0
-                return (PlanPageRequest(kind, version, have),)
+                return (PlanPageRequest(self.view.system, kind, version, have),)
         return ()
 
     def _take_page(self, page: PlanPage) -> PlanKind | None:
