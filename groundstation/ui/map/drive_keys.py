@@ -131,7 +131,7 @@ class DriveKeys:
             self._screen.say("no position: the vehicle does not know where it is")
             return
         way = way_text(self._model.ground.vehicle, self._model.ground.cursor_point)
-        text = f"{view.name} drives to the cursor by itself, {way}"
+        text = f"{view.name} drives to the cursor, {way}"
         self._ask(text, view, lambda: (self._model.intents.go_to(view, place),))
 
     def _set_home(self, view: PlanView) -> None:

@@ -124,8 +124,8 @@ def cursor_lines(model: MapModel, *, narrow: bool) -> tuple[str, ...]:
     if ground.cursor is None or point is None:
         return ()
     at = f"{ground.cursor.latitude:.6f} {ground.cursor.longitude:.6f}"
-    name = "" if model.view is None or narrow else f" from {model.view.name}"
-    way, home = f"{way_text(ground.vehicle, point)}{name}", f"{way_text(model.home, point)} from home"
+    name = "" if model.view is None or narrow else f"{model.view.name} "
+    way, home = f"{name}{way_text(ground.vehicle, point)}", f"home {way_text(model.home, point)}"
     if ground.measured is not None and ground.frame is not None:
         way = f"measured {way_text(ground.frame.to_point(ground.measured), point)}"
     following = "following" if ground.looking is Looking.FOLLOW else ""
@@ -134,15 +134,15 @@ def cursor_lines(model: MapModel, *, narrow: bool) -> tuple[str, ...]:
     return (" · ".join(part for part in parts if part),)
 
 
-def fence_text(model: MapModel, point: Point | None) -> str:
-    """Return where a point is with regard to the fence; empty without a fence."""
+def fence_text(model: MapModel, point: Point | None, inside: str = "fence") -> str:
+    """Return where a point is with regard to the fence; empty without a fence. `inside`: the word for inside."""
     frame = model.ground.frame
     if frame is None or point is None:
         return ""
     check = check_fence(point, fence_shapes(model.editor.items(PlanKind.FENCE), frame))
     if check is None:
         return ""
-    return f"in fence, {check.distance:.0f} m" if check.inside else f"OUTSIDE the fence, {check.distance:.0f} m"
+    return f"{inside if check.inside else 'OUTSIDE'} {check.distance:.0f} m"
 
 
 def title_of(model: MapModel, index: int) -> str:

@@ -17,6 +17,8 @@ from groundstation.ui.widgets.plan_panels import PanelLine, PanelValue, Progress
 from groundstation.ui.widgets.plan_table import PlanTableRow, PlanTableValue
 from groundstation.views.plan import PlanItem, PlanKind
 
+NARROW_VALUE = 5
+"""Cells of a value in a narrow table; a longer one loses its unit."""
 LEAST_SPEED = 0.1
 """m/s below which the speed of the vehicle is no base for a time."""
 
@@ -38,7 +40,7 @@ def build_table(model: MapModel, rows: int, *, narrow: bool = False) -> PlanTabl
         *(_row(model, index, outside, short_title if narrow else command_title) for index in range(begin, end)),
     )
     at = selected - begin + len(shown) if items else None
-    return PlanTableValue(found, at, _summary(model), _empty_note(model))
+    return PlanTableValue(found, at, _summary(model), "" if items else _empty_note(model))
 
 
 def _home_row(model: MapModel) -> PlanTableRow:
@@ -54,6 +56,8 @@ def _row(model: MapModel, index: int, outside: frozenset[int], name: Callable[[i
     look = "now" if index == current else "edited" if edit else "done" if index in reached else ""
     leg, course = _leg(model, index)
     title, value = name(row.item.command), item_value(row.item, model.first)
+    if name is short_title and len(value) > NARROW_VALUE:
+        value = value.partition(" ")[0] if row.item.command != DO_JUMP else value
     mark = ("!" if warned else "") + (edit or state)
     return PlanTableRow(str(index + model.first), title, value, leg, course, mark, "warned" if warned else look)
 
@@ -146,7 +150,7 @@ def _item_checks(model: MapModel, item: PlanItem) -> tuple[PanelLine, ...]:
     frame, place = model.ground.frame, place_of(item)
     lines = [PanelLine("frame", FRAMES.get(item.frame, f"frame {item.frame}"), look="faint")]
     if frame is not None and place is not None and model.editor.layer is not PlanKind.FENCE:
-        text = fence_text(model, frame.to_point(place))
+        text = fence_text(model, frame.to_point(place), "inside")
         if text:
             outside = text.startswith("OUTSIDE")
             lines.append(PanelLine("fence", text, "" if outside else "✓", "warned" if outside else "good"))
@@ -240,8 +244,8 @@ def _texts(
         texts.append(("off the line", f"{abs(view.off_line):.2f} m {side}"))
     if vehicle is not None and vehicle.speed is not None and math.isfinite(vehicle.speed):
         texts.append(("speed", f"{vehicle.speed:.2f} m/s"))
-    if fence := fence_text(model, model.ground.vehicle):
-        texts.append(("fence", fence.removeprefix("in fence, ").replace("OUTSIDE the fence", "OUTSIDE")))
+    if fence := fence_text(model, model.ground.vehicle, "inside"):
+        texts.append(("fence", fence))
     return tuple(texts)
 
 

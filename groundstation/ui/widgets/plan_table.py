@@ -48,7 +48,7 @@ class PlanTableValue:
     summary: str = ""
     """The line below them."""
     note: str = ""
-    """In place of rows, where there are none."""
+    """Why there are no items."""
 
     def with_reason(self, reason: str) -> PlanTableValue:
         """Return the table with the reason why there is no map in place of the summary."""
@@ -62,10 +62,10 @@ class PlanTable(Instrument[PlanTableValue]):
         """Draw titles, rows and the summary."""
         widths = fit(COLUMNS, width)
         lines = [header(COLUMNS, widths)]
-        if not self.value.rows and self.value.note:
-            lines.append(strip((f" {self.value.note}"[:width], style(DIM))))
         for index, item in enumerate(self.value.rows[: max(0, height - 2)]):
             lines.append(_draw_row(item, widths, selected=index == self.value.selected, width=width))
+        if self.value.note:
+            lines.append(strip((f" {self.value.note}"[:width], style(DIM))))
         lines += [strip()] * (height - 1 - len(lines))
         return [*lines[: height - 1], strip((f" {self.value.summary}"[:width], style(DIM)))]
 
