@@ -47,6 +47,8 @@ class MapModel:
         """Name of the file that was opened or saved last."""
         self._asked: set[int] = set()
         """Systems whose plans were requested by opening the screen."""
+        self._told = 0
+        """Number of the newest request whose end was told."""
         self._route: tuple[object, Route] | None = None
 
     # ---- views ----
@@ -203,9 +205,17 @@ class MapModel:
 
     # ---- status ----
 
+    def pop_news(self) -> str | None:
+        """Return how the newest request has ended, once; None if that is told already."""
+        line = self.view.ended[-1] if self.view is not None and self.view.ended else None
+        if line is None or line.number == self._told:
+            return None
+        self._told = line.number
+        return _ended_text(line)
+
     @property
     def status(self) -> str:
-        """How the last request stands, one line."""
+        """What runs, what somebody else has changed, and what was refused last; one line."""
         view = self.view
         if view is None:
             return ""
@@ -214,7 +224,9 @@ class MapModel:
         for kind in PlanKind:
             if view.plans[kind].changed:
                 return f"the {PLAN_NAMES[kind]} on the vehicle has changed · D downloads it"
-        return _ended_text(view.ended[-1]) if view.ended else ""
+        last = view.ended[-1] if view.ended else None
+        told = last is None or last.state == "accepted" or last.what.startswith("download")  # the table names those
+        return "" if last is None or told else _ended_text(last)
 
 
 def _running_text(line: RequestLine) -> str:

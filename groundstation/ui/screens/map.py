@@ -74,6 +74,7 @@ class MapScreen(ConsoleScreen):
     def show_view(self, view: View) -> None:
         """Take a view; plans that are not known are downloaded."""
         self.send(self._model.show_view(view))
+        self.say(self._model.pop_news())
 
     def show_body(self, now: DisplayState) -> None:
         """Draw what is due."""
