@@ -15,7 +15,7 @@ from groundstation.ui.map.fields import change_command
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.views.base import View
-from groundstation.views.plan import PlanKind, PlanPlace, PlanView
+from groundstation.views.plan import PlanKind, PlanPlace, PlanSummary, PlanView
 from tests.test_stops import Drive
 
 
@@ -34,7 +34,7 @@ class MapDrive(Drive):
     def view(self) -> PlanView | None:
         return self.model.view
 
-    def plan(self, kind: PlanKind) -> object:
+    def plan(self, kind: PlanKind) -> PlanSummary:
         assert self.view is not None
         return self.view.plans[kind]
 
@@ -70,6 +70,10 @@ class MapDrive(Drive):
         self.held = None
         self.until(lambda: self.power == 0.0)
 
+    def is_in(self, mode: Mode) -> bool:
+        """Whether that is the rover's mode."""
+        return self.rover._safety.mode is mode
+
     @property
     def last(self) -> str:
         """How the last request ended."""
@@ -90,12 +94,12 @@ def test_a_mission_is_drawn_uploaded_driven_and_changed_while_it_is_paused() -> 
     assert drive.view is not None
     drive.tell(drive.model.intents.start(drive.view))
     drive.until(lambda: drive.power > 0.2)
-    assert drive.rover._safety.mode is Mode.AUTO
+    assert drive.is_in(Mode.AUTO)
     drive.until(lambda: drive.view is not None and 0 in drive.view.reached, within=60.0)
 
     drive.tell(Stop())
     drive.until(lambda: drive.power == 0.0, within=3.0)
-    assert drive.rover._safety.mode is Mode.HOLD
+    assert drive.is_in(Mode.HOLD)
     drive.model.editor.select(1)
     drive.draw((1.0, 2.0))
     drive.go(*drive.model.upload())
@@ -137,7 +141,7 @@ def test_pausing_stops_the_wheels_and_going_on_turns_them() -> None:
     drive.until(lambda: drive.power > 0.2)
     drive.tell(drive.model.intents.pause(drive.view))
     drive.until(lambda: drive.power == 0.0, within=3.0)
-    assert drive.rover._safety.mode is Mode.AUTO
+    assert drive.is_in(Mode.AUTO)
     drive.until(lambda: drive.view is not None and drive.view.state == 4)
     drive.tell(drive.model.intents.start(drive.view))
     drive.until(lambda: drive.power > 0.2)
@@ -152,11 +156,13 @@ def test_going_to_a_place_and_moving_home() -> None:
     drive.go(drive.model.intents.go_to(view, frame.to_place((0.0, 4.0))))
     assert drive.last.endswith(": accepted")
     drive.until(lambda: drive.power > 0.2)
-    assert drive.rover._safety.mode is Mode.GUIDED
+    assert drive.is_in(Mode.GUIDED)
     drive.go(drive.model.intents.set_home(view, frame.to_place((10.0, 10.0))))
     drive.until(lambda: drive.view is not None and drive.view.home != view.home)
-    assert drive.view.home is not None
-    assert math.dist(frame.to_point(drive.view.home), (10.0, 10.0)) < 0.1
+    after = drive.view
+    assert after is not None
+    assert after.home is not None
+    assert math.dist(frame.to_point(after.home), (10.0, 10.0)) < 0.1
 
 
 @pytest.mark.parametrize("place", [PlanPlace(95.0, 0.0), PlanPlace(0.0, -190.0), PlanPlace(math.nan, 1.0),
@@ -197,7 +203,8 @@ def test_fence_and_rally_points_go_up_and_come_down() -> None:
     assert drive.model.editor.edited == ()
     fence = drive.model.copies.items[PlanKind.FENCE]
     assert [each.command for each in fence] == [5001] * 4 + [5004]
-    drive.go(drive.model.intents.clear(drive.view, PlanKind.FENCE))  # type: ignore[arg-type]
+    assert drive.view is not None
+    drive.go(drive.model.intents.clear(drive.view, PlanKind.FENCE))
     drive.until(lambda: drive.model.copies.items[PlanKind.FENCE] == ())
     assert drive.model.editor.rows(PlanKind.FENCE) == ()
     assert len(drive.model.editor.rows(PlanKind.RALLY)) == 1

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from groundstation.ui.map.rows import Items
 from groundstation.views.base import View, ViewRequest
-from groundstation.views.plan import PlanKind, PlanPage, PlanPageRequest, PlanRequest, PlanView, TrackRequest, TrackView
+from groundstation.views.plan import (
+    MAX_ITEMS,
+    PlanKind,
+    PlanPage,
+    PlanPageRequest,
+    PlanRequest,
+    PlanView,
+    TrackRequest,
+    TrackView,
+)
 
 
 class PlanCopies:
@@ -53,7 +62,7 @@ class PlanCopies:
             return ()
         for kind in PlanKind:
             version = self.view.plans[kind].version
-            if version and version != self._versions.get(kind):
+            if version and version != self._versions.get(kind) and self.view.plans[kind].count <= MAX_ITEMS:
                 part = self._parts.get(kind)
                 have = sum(len(page.items) for page in part[1]) if part is not None and part[0] == version else 0
                 return (PlanPageRequest(self.view.system, kind, version, have),)

@@ -21,6 +21,10 @@ class Looking(Enum):
     """The cursor."""
 
 
+NOT_FITTED = MapWindow(math.inf, math.inf)
+"""Before the first fit, and where a fit is asked for: it shows nothing."""
+
+
 class Ground:
     """`frame` is the map's metres; None as long as nothing has a place."""
 
@@ -31,8 +35,8 @@ class Ground:
         self.measured: PlanPlace | None = None
         """Where the measured line begins."""
         self.looking = Looking.FIT
-        self.window = MapWindow()
-        self._size = (2, 4)
+        self.window = NOT_FITTED
+        self._size = (0, 0)
 
     @property
     def cursor_point(self) -> Point | None:
@@ -40,11 +44,16 @@ class Ground:
         return None if self.frame is None or self.cursor is None else self.frame.to_point(self.cursor)
 
     def set_size(self, width: int, height: int) -> None:
-        """Set the size of the map in cells."""
-        self._size = width * 2, height * 4
+        """Set the size of the map in cells; 0: it is not laid out yet, or hidden."""
+        size = width * 2, height * 4
+        if size != self._size and self.looking is Looking.FIT:
+            self.window = NOT_FITTED
+        self._size = size
 
     def look(self, points: tuple[Point, ...]) -> None:
         """Move the window so that it shows what it shall; `points` are all that a fit shows."""
+        if 0 in self._size:
+            return
         target = self.vehicle if self.looking is Looking.FOLLOW else self.cursor_point
         if self.looking is Looking.FIT:
             if not self._fits(points):
@@ -64,7 +73,7 @@ class Ground:
     def fit(self) -> None:
         """Show everything."""
         self.looking = Looking.FIT
-        self.window = MapWindow(math.inf, math.inf)
+        self.window = NOT_FITTED
 
     def follow(self) -> None:
         """Keep the vehicle in view, or stop that."""
@@ -72,6 +81,8 @@ class Ground:
 
     def zoom(self, by: int) -> None:
         """Zoom in (-1) or out (+1) around the vehicle while it is followed, else around the cursor."""
+        if self.window is NOT_FITTED:
+            return
         centre = self.vehicle if self.looking is Looking.FOLLOW else self.cursor_point
         if self.looking is Looking.FIT:
             self.looking = Looking.FREE
@@ -81,7 +92,7 @@ class Ground:
     def move(self, up: int, right: int) -> None:
         """Move the cursor by cells."""
         point = self.cursor_point
-        if self.frame is None or point is None:
+        if self.frame is None or point is None or self.window is NOT_FITTED:
             return
         scale = self.window.scale
         moved = (point[0] + up * 4 * scale, point[1] + right * 2 * scale)

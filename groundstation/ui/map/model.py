@@ -107,7 +107,7 @@ class MapModel:
         rows, frame, home = self.editor.rows(PlanKind.MISSION), self.ground.frame, self.home
         if self._route is None or self._route[0] != (id(rows), frame, home):
             items = self.editor.items(PlanKind.MISSION)
-            route = find_route(items, frame, home) if frame is not None else Route((), ())
+            route = find_route(items, frame, home) if frame is not None else Route()
             self._route = (id(rows), frame, home), route
         return self._route[1]
 

@@ -9,12 +9,14 @@ from groundstation.snapshot import VehicleView
 from groundstation.ui.map.checks import check_fence, fence_shapes
 from groundstation.ui.map.commands import command_title
 from groundstation.ui.map.geometry import Point, bearing, place_of
-from groundstation.ui.map.ground import Looking
+from groundstation.ui.map.ground import NOT_FITTED, Looking
 from groundstation.ui.map.model import PLAN_NAMES, MapModel
 from groundstation.ui.map.scene import build_legs, build_marks, build_outlines, track_points
 from groundstation.ui.widgets.plan_map import MapMark, PlanMapValue
 from groundstation.views.plan import PlanKind
 
+LEAST_WAY = 0.05
+"""m; a shorter way is drawn as 0.0 and has no direction."""
 COMPLETE = 5
 """MISSION_STATE."""
 
@@ -43,7 +45,7 @@ def build_map(model: MapModel, vehicle: VehicleView | None, *, ascii: bool = Fal
     return replace(
         value,
         marks=(*value.marks, *others),
-        window=model.ground.window,
+        window=None if model.ground.window is NOT_FITTED else model.ground.window,
         cursor=model.ground.cursor_point,
         measured=None if model.ground.measured is None else frame.to_point(model.ground.measured),
     )
@@ -111,11 +113,11 @@ def no_position(vehicle: VehicleView | None) -> str:
 
 def way_text(start: Point | None, end: Point | None) -> str:
     """Return distance and bearing, "--" where a point is not known."""
-    return (
-        "--"
-        if start is None or end is None
-        else f"{math.dist(start, end):.1f} m {round(bearing(start, end)) % 360:03}°"
-    )
+    if start is None or end is None:
+        return "--"
+    distance = math.dist(start, end)
+    direction = bearing(start, end) if distance >= LEAST_WAY else 0.0
+    return f"{distance:.1f} m {round(direction) % 360:03}°"
 
 
 def cursor_lines(model: MapModel, *, narrow: bool) -> tuple[str, ...]:
@@ -158,15 +160,15 @@ def layer_title(model: MapModel) -> str:
     return " · ".join(parts)
 
 
-def outside_rows(model: MapModel) -> frozenset[int]:
-    """Return the rows of the edited plan that lie outside the fence."""
+def outside_rows(model: MapModel, among: range) -> frozenset[int]:
+    """Return which of these rows of the edited plan lie outside the fence."""
     frame = model.ground.frame
     if frame is None or model.editor.layer is PlanKind.FENCE:
         return frozenset()
     shapes = fence_shapes(model.editor.items(PlanKind.FENCE), frame)
     found = set()
-    for index, row in enumerate(model.editor.rows()):
-        place = place_of(row.item)
+    for index in among:
+        place = place_of(model.editor.rows()[index].item)
         check = check_fence(frame.to_point(place), shapes) if place is not None else None
         if check is not None and not check.inside:
             found.add(index)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 from groundstation.ui.map.checks import fence_shapes
 from groundstation.ui.map.commands import CIRCLES, POLYGONS, RETURN_POINT, RTL
@@ -23,13 +23,15 @@ MAX_LEGS = 500
 class Route:
     """The items of a mission that have a place, in the order in which they are driven."""
 
-    indices: tuple[int, ...]
-    points: tuple[Point, ...]
+    indices: tuple[int, ...] = ()
+    points: tuple[Point, ...] = ()
+    number: Mapping[int, int] = field(default_factory=dict)
+    """Index of an item -> its place in `points`."""
 
-    @property
-    def at(self) -> dict[int, Point]:
-        """Index of an item -> where it is."""
-        return dict(zip(self.indices, self.points, strict=True))
+    def at(self, index: int | None) -> Point | None:
+        """Return where an item is; None for one without a place."""
+        number = None if index is None else self.number.get(index)
+        return None if number is None else self.points[number]
 
 
 def find_reference(view: PlanView | None, items: Sequence[Items] = ()) -> PlanPlace | None:
@@ -48,7 +50,8 @@ def find_route(mission: Sequence[PlanItem], frame: LocalMap, home: Point | None)
             found.append((index, frame.to_point(place)))
         elif item.command == RTL and home is not None:
             found.append((index, home))
-    return Route(tuple(index for index, _ in found), tuple(point for _, point in found))
+    indices = tuple(index for index, _ in found)
+    return Route(indices, tuple(point for _, point in found), {index: number for number, index in enumerate(indices)})
 
 
 def build_legs(route: Route, start: Point | None, current: int | None, reached: frozenset[int]) -> tuple[MapLeg, ...]:

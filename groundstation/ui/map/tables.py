@@ -15,7 +15,7 @@ from groundstation.ui.map.model import PLAN_NAMES, MapModel
 from groundstation.ui.map.picture import fence_text, mark_of, outside_rows, progress_of, title_of, way_text
 from groundstation.ui.widgets.plan_panels import PanelLine, PanelValue, ProgressValue
 from groundstation.ui.widgets.plan_table import PlanTableRow, PlanTableValue
-from groundstation.views.plan import PlanItem, PlanKind
+from groundstation.views.plan import MAX_ITEMS, PlanItem, PlanKind
 
 NARROW_VALUE = 5
 """Cells of a value in a narrow table; a longer one loses its unit."""
@@ -32,9 +32,9 @@ def build_table(model: MapModel, rows: int, *, narrow: bool = False) -> PlanTabl
     home = 1 if model.editor.layer is PlanKind.MISSION and model.home is not None else 0
     top = max(0, min(selected - rows // 2, len(items) + home - rows))
     shown = [_home_row(model)] if home and top == 0 else []
-    outside = outside_rows(model)
     begin = max(0, top - home)
     end = min(len(items), begin + rows - len(shown))
+    outside = outside_rows(model, range(begin, end))
     found = (
         *shown,
         *(_row(model, index, outside, short_title if narrow else command_title) for index in range(begin, end)),
@@ -70,9 +70,9 @@ def _leg(model: MapModel, index: int) -> tuple[str, str]:
             return "", ""
         return _way(model.home, frame.to_point(place))
     route = model.route
-    if index not in route.at:
+    number = route.number.get(index)
+    if number is None:
         return "", ""
-    number = route.indices.index(index)
     before = route.points[number - 1] if number else model.home
     return ("", "") if before is None else _way(before, route.points[number])
 
@@ -123,6 +123,8 @@ def _empty_note(model: MapModel) -> str:
         if failed:
             return f"no {name} ({failed[-1].detail or failed[-1].state})"
         return f"{name} not loaded: D"
+    if view.plans[layer].count > MAX_ITEMS:
+        return f"{view.plans[layer].count} items, more than {MAX_ITEMS}: groundstation {layer.name.lower()} get"
     return f"no {name}: a adds an item"
 
 
@@ -221,9 +223,9 @@ def _all_done(model: MapModel) -> bool:
 def _left(model: MapModel, current: int | None) -> float | None:
     """Return the way from the vehicle over the current item to the end, m."""
     route, vehicle = model.route, model.ground.vehicle
-    if current not in route.at or vehicle is None:
+    if current is None or current not in route.number or vehicle is None:
         return None
-    rest = route.points[route.indices.index(current) :]
+    rest = route.points[route.number[current] :]
     return math.dist(vehicle, rest[0]) + sum(math.dist(a, b) for a, b in pairwise(rest))
 
 
@@ -234,7 +236,7 @@ def _texts(
     if view is None:
         return ()
     if current is not None:
-        at = model.route.at.get(current)
+        at = model.route.at(current)
         texts.append(("next", f"{title_of(model, current)} {way_text(model.ground.vehicle, at)}"))
     texts.append(("mission", _STATES.get(view.state, "--")))
     if left is not None:

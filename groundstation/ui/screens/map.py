@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from textual import events
 from textual.containers import Horizontal, Vertical
+from textual.geometry import Size
 from textual.widget import Widget
 
 from groundstation.intents.union import AnyIntent
@@ -53,6 +54,7 @@ class MapScreen(ConsoleScreen):
         self._panels: tuple[Widget, ...] = (self._map, self._table, self._item)
         self._chosen = self._field = 0
         self._map_due = self._table_due = 0.0
+        self._drawn_for = Size(0, 0)
         self._drive = DriveKeys(self, self._model, lambda: self._state.snapshot.vehicle)
         self._files = FileKeys(self, self._model, context.folder)
 
@@ -187,7 +189,9 @@ class MapScreen(ConsoleScreen):
         return self.size.width < NARROW
 
     def _show(self, *, forced: bool) -> None:
-        now = time.monotonic()
+        now, size = time.monotonic(), self._map.size
+        forced = forced or size != self._drawn_for
+        self._drawn_for = size
         if forced or now >= self._map_due:
             self._map_due = now + MAP_PERIOD
             self._show_map()
@@ -197,7 +201,7 @@ class MapScreen(ConsoleScreen):
 
     def _show_map(self) -> None:
         model, vehicle = self._model, self._state.snapshot.vehicle
-        model.ground.set_size(max(1, self._map.size.width), max(1, self._map.size.height))
+        model.ground.set_size(self._map.size.width, self._map.size.height)
         value = build_map(model, vehicle, ascii=self._state.ascii)
         lines = cursor_lines(model, narrow=self._narrow)
         self._line.show(lines[0] if lines else value.note)

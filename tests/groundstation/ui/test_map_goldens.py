@@ -36,6 +36,7 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
         for view in views_for(name):
             screen.station.offer_view(view)
         await screen.show(shows)
+        await screen.show(shows)  # the size of the map is known after the first one
         await screen.press("f", *keys)
         await screen.show(shows)
         shown = screen.text

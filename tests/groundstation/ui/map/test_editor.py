@@ -195,6 +195,11 @@ def test_nothing_can_be_done_without_an_item() -> None:
     assert not editor.redo()
 
 
+def change_to_circle(editor: PlanEditor) -> None:
+    if editor.row is not None:
+        editor.change(change_command(editor.row.item, CIRCLE_IN))
+
+
 EDITS: dict[str, Callable[[PlanEditor, int], object]] = {
     "add": lambda editor, number: editor.add(at(number, number)),
     "polygon": lambda editor, number: editor.start_polygon(at(number, 3)),
@@ -205,7 +210,7 @@ EDITS: dict[str, Callable[[PlanEditor, int], object]] = {
     "place": lambda editor, number: editor.move_to(at(number, 7)),
     "jump": lambda editor, number: editor.change(task(DO_JUMP, float(number), 1.0)),
     "layer": lambda editor, number: editor.next_layer(),
-    "circle": lambda editor, number: editor.row and editor.change(change_command(editor.row.item, CIRCLE_IN)),
+    "circle": lambda editor, number: change_to_circle(editor),
     "upload": lambda editor, number: editor.load_base(editor.layer, editor.items(editor.layer)),
     "other": lambda editor, number: editor.load_base(MISSION, (item(north=number), item(north=2))),
     "undo": lambda editor, number: editor.undo(),
