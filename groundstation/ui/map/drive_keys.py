@@ -14,7 +14,7 @@ from groundstation.ui.map.model import MODE_KEYS, MapModel
 from groundstation.ui.map.picture import title_of, way_text
 from groundstation.views.plan import PlanKind, PlanView
 
-ACTIVE, PAUSED = 3, 4
+NOT_TOLD, ACTIVE, PAUSED = 0, 3, 4
 """MISSION_STATE."""
 MISSION_MODES = MODE_KEYS["3"]
 
@@ -107,10 +107,8 @@ class DriveKeys:
         if self._drives_mission:
             self._screen.send((self._model.intents.pause(view),))
             return
-        if self._model.editor.diff(PlanKind.MISSION).count:
-            edits = ", as the vehicle has it: the edits are not uploaded"
-        else:
-            edits = ""
+        edited = bool(self._model.editor.diff(PlanKind.MISSION).count)
+        edits = ", as the vehicle has it: the edits are not uploaded" if edited else ""
         text = "go on with the mission" if self._paused else "start the mission"
         self._ask(f"{text}: {view.name} drives by itself{edits}", view, lambda: (self._model.intents.start(view),))
 
@@ -150,7 +148,7 @@ class DriveKeys:
     def _drives_mission(self) -> bool:
         vehicle, view = self._vehicle(), self._model.view
         auto = vehicle is not None and vehicle.armed and vehicle.mode.upper() in MISSION_MODES
-        return auto and view is not None and view.state != PAUSED
+        return auto and view is not None and view.state in (NOT_TOLD, ACTIVE)
 
     @property
     def _paused(self) -> bool:
@@ -158,12 +156,15 @@ class DriveKeys:
         return view is not None and view.state == PAUSED
 
     def _ask(self, text: str, view: PlanView, perform: Callable[[], Iterable[AnyIntent]]) -> None:
-        """Ask; another vehicle that is selected meanwhile does not get the request."""
+        """Ask; what has changed meanwhile, the vehicle or the plan (a file was opened), is not what was asked for."""
+        rows = self._model.editor.rows()
 
         def answer() -> None:
             newest = self._model.view
             if newest is None or newest.system != view.system:
                 self._screen.say("another vehicle is selected: nothing was sent")
+            elif self._model.editor.rows() is not rows:
+                self._screen.say("the plan has changed meanwhile: nothing was sent")
             else:
                 self._screen.send(perform())
 
