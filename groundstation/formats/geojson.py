@@ -10,7 +10,7 @@ from typing import Any
 from dialects.enums import Command, FenceItem, command_name
 from groundstation.formats.plan import Plan
 from link.services.mission.items import GLOBAL_FRAMES, UNSET_COORDINATE, Items, MissionItem
-from link.services.param.values import shortest_float32
+from link.services.param.float32 import shortest_float32
 
 ARC = 64
 """Corners of a circle, which GeoJSON lacks."""

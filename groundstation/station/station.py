@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from groundstation.input.style import Style
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
+from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driven import DrivenVehicle
@@ -20,20 +21,21 @@ from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_closing import LinkClosing
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
+from groundstation.station.message_detail import MessageDetail
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
 from groundstation.station.operator_log import OperatorLog
+from groundstation.station.param_texts import ParamTexts
+from groundstation.station.param_views import ParamViews
 from groundstation.station.plan_views import PlanViews
 from groundstation.station.service_desk import ServiceDesk
+from groundstation.station.transfer_hold import TransferHold
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
-from groundstation.views.messages import MessageRequest, MessagesRequest
-from groundstation.views.params import ParamPageRequest
-from groundstation.views.requests import RequestsRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -57,6 +59,7 @@ class Station:
         style: Style = Style.HOLD,
         speed: float = 0.6,
         session: int = 0,
+        texts: ParamTexts = ParamTexts(),  # noqa: B008 - frozen
         now: float = 0.0,
     ) -> None:
         self.log = MessageLog()
@@ -68,12 +71,15 @@ class Station:
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
-        self._services = ServiceDesk(self.fleet, self._commander, self.log, system, COMPONENT)
+        self._links = LinkStats()
+        hold = TransferHold(self.fleet, self.operator, self._links)
+        self.services = ServiceDesk(
+            self.fleet, self._commander, self.log, system, COMPONENT, texts=texts.cache, is_held=hold.is_held
+        )
         self._driving = DrivingController(self.operator, self.fleet, self._commander, (system, COMPONENT))
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
-        self._links = LinkStats()
-        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self._services)
+        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self.services)
         self._timesync = TimesyncClient(system)
         self._link_views = LinkViews(
             self.fleet,
@@ -85,15 +91,17 @@ class Station:
             self._timesync,
             Program(system, COMPONENT, session),
         )
+        self._detail = MessageDetail(self._traffic)
+        self._charts = ChartDesk(self.fleet, self._traffic, self.operator, self._links, self._timesync)
         self.views = ViewFeed(
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
-                ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
-                RequestsRequest: ViewSource(self._services.build_requests, period=0.25),
-                MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
-                MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
+                **self.services.sources,
                 **self._link_views.sources,
-                **PlanViews(self.fleet, self._services).sources,
+                **PlanViews(self.fleet, self.services).sources,
+                **ParamViews(self.fleet, self.services, texts.files).sources,
+                **self._charts.sources,
+                **self._detail.sources,
             }
         )
         """Request -> its source."""
@@ -107,7 +115,8 @@ class Station:
             self._handover,
             self.log,
             self.views,
-            self._services,
+            self.services,
+            self._charts,
             self.link_closing,
         )
         self._operator_log = OperatorLog(self.log)
@@ -137,7 +146,7 @@ class Station:
         contact.details.receive(received, now)
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
-        self._services.receive(contact, received, now)
+        self.services.receive(contact, received, now)
         match received.message:
             case m.StatusText() as message:
                 self._handle_statustext(message, contact, now)
@@ -157,13 +166,15 @@ class Station:
         self._handover.tick(now)
         if self.operator.live:
             self._queries.tick(now)
-            self._services.tick(now)
+            self.services.tick(now)
         if self.operator.live and not self._driving.ending:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
         self._driving.update(now)
         self._log_driving(now)
         self._departure.tick(now)
+        self._charts.tick(now)
+        self._detail.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
@@ -183,7 +194,7 @@ class Station:
         outbox, self._outbox = self._outbox, []
         demands = self._driving.messages_to_send()
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
-        services = self._services.messages_to_send()  # repeated later if they are dropped here
+        services = self.services.messages_to_send()  # repeated later if they are dropped here
         return (
             demands + commands + self._timesync.messages_to_send() + outbox + (services if self.operator.live else [])
         )
@@ -208,6 +219,7 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float) -> None:
         """Carry out what the operator wants; the resulting messages are ready to be sent."""
         self._expire_lease(now)
+        self._charts.mark_key(intent, now)
         self._operator_log.handle(intent, now)
         self._intents.handle(intent, now)
         self._log_driving(now)
@@ -253,6 +265,7 @@ class Station:
             texts=self.log.build_lines(now, wall),
             messages=self._traffic.build_rates(selected.state.system if selected else 0, now),
             simulator=self._simulator_state,
+            transfers=self.services.progress,
         )
 
     def _expire_lease(self, now: float) -> None:
@@ -277,7 +290,7 @@ class Station:
         if text is not None:
             contact.state.handle_text(text)
             self._commander.handle_statustext(system, text, message.severity, now)
-            self._services.handle_text(contact, text, message.severity, now)
+            self.services.handle_text(contact, text, message.severity, now)
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
         state, commander = contact.state, self._commander

@@ -105,6 +105,11 @@ class VehicleState:
         return self.armed and self.mode not in DRIVABLE_MODES | STANDING_MODES
 
     @property
+    def failsafes(self) -> tuple[str, ...]:
+        """Names of the failsafes that are active."""
+        return flag_words(Failsafe, self._failsafe.active) if self._failsafe else ()
+
+    @property
     def driver(self) -> int | None:
         """System id of the ground station in control, 0: none; None: the vehicle does not tell."""
         return self.control.driver
@@ -148,7 +153,7 @@ class VehicleState:
             limits=flag_words(DriveLimit, drive.limits) if drive else (),
             command_age=drive.demand_age_ms / 1000 if drive and drive.demand_age_ms != UNKNOWN_U16 else None,
             latency=self.latency.latest,
-            failsafes=flag_words(Failsafe, self._failsafe.active) if self._failsafe else (),
+            failsafes=self.failsafes,
             failsafe_in=self._failsafe_in(now),
             **self._values,
             **station,

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeAlias, Union
 
 from groundstation.views import (  # noqa: F401 - defines the classes
+    charts,
     connect,
+    files,
     links,
     log,
     messages,

@@ -10,7 +10,21 @@ from itertools import pairwise
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BLACK, BLUE, DIM, FAINT, GREEN, LINE, RED, TEXT, WHITE, YELLOW, style
+from groundstation.ui.colours import (
+    AMBER,
+    BACKGROUND,
+    BLACK,
+    BLUE,
+    DIM,
+    FAINT,
+    GREEN,
+    LINE,
+    RED,
+    TEXT,
+    WHITE,
+    YELLOW,
+    style,
+)
 from groundstation.ui.map.geometry import Point
 from groundstation.ui.map.window import MapWindow, fit_window, ring_spacing
 from groundstation.ui.widgets.canvas import Canvas
@@ -95,28 +109,29 @@ class PlanMapValue:
         return (*ends, *corners, *alone, *(mark.point for mark in self.marks), *self.track)
 
 
-MARKS: dict[str, Style] = {
-    "item": style(TEXT, FAINT),
-    "done": style(DIM, FAINT),
-    "now": style(BLACK, YELLOW),
-    "edited": style(BLACK, BLUE),
-    "selected": style(BLACK, WHITE),
-    "rally": style(BLACK, GREEN),
-    "corner": style(RED),
-    "other": style(AMBER, FAINT),
+MARKS: dict[str, tuple[str, str]] = {
+    "item": (TEXT, FAINT),
+    "done": (DIM, FAINT),
+    "now": (BLACK, YELLOW),
+    "edited": (BLACK, BLUE),
+    "selected": (BACKGROUND, TEXT),
+    "rally": (BLACK, GREEN),
+    "corner": (RED, BACKGROUND),
+    "other": (AMBER, FAINT),
 }
-_LEGS = {Leg.DONE: (style(GREEN), 2, 2), Leg.NOW: (style(YELLOW), 1, 0), Leg.TO_GO: (style(TEXT), 1, 1)}
+"""How a mark is drawn -> colour of its text and of its ground."""
+_LEGS = {Leg.DONE: (GREEN, 2, 2), Leg.NOW: (YELLOW, 1, 0), Leg.TO_GO: (TEXT, 1, 1)}
 """Colour, dots and gap."""
 
 _LEGEND = (
-    ("⌂", style(AMBER, bold=True), "home"),
+    ("⌂", (AMBER, BACKGROUND), "home"),
     (" R ", MARKS["rally"], "rally"),
-    ("╶╶", style(RED), "fence"),
-    ("──", style(YELLOW), "leg now"),
-    ("··", style(TEXT), "to go"),
-    ("──", style(BLUE), "track"),
+    ("╶╶", (RED, BACKGROUND), "fence"),
+    ("──", (YELLOW, BACKGROUND), "leg now"),
+    ("··", (TEXT, BACKGROUND), "to go"),
+    ("──", (BLUE, BACKGROUND), "track"),
 )
-"""Mark, its look, and what it is."""
+"""Mark, its colours, and what it is."""
 
 
 class PlanMap(Instrument[PlanMapValue]):
@@ -137,7 +152,8 @@ class PlanMap(Instrument[PlanMapValue]):
             drawing.outline(outline)
         drawing.path(value.track, style(BLUE))
         for leg in value.legs:
-            drawing.dashes(leg.start, leg.end, *_LEGS[leg.look])
+            colour, dots, gap = _LEGS[leg.look]
+            drawing.dashes(leg.start, leg.end, style(colour), dots, gap)
         drawing.cross(value.cursor, value.measured)
         drawing.labels(value)
         drawing.vehicle(value)
@@ -212,7 +228,7 @@ class _Drawing:
         last = ("now", "edited", "selected")
         for mark in sorted(value.marks, key=lambda each: last.index(each.look) if each.look in last else -1):
             text = mark.text if mark.look == "corner" else f" {mark.text} "
-            self.write(mark.point, text, MARKS[mark.look if mark.look in order else "item"])
+            self.write(mark.point, text, style(*MARKS[mark.look if mark.look in order else "item"]))
 
     def vehicle(self, value: PlanMapValue) -> None:
         """Draw the vehicle with its heading."""
@@ -256,7 +272,7 @@ class _Drawing:
     def _legend(self, canvas: Canvas) -> None:
         column = canvas.width - sum(len(mark) + len(word) + 2 for mark, _, word in _LEGEND)
         for mark, look, word in _LEGEND:
-            canvas.write(column, 0, mark, look)
+            canvas.write(column, 0, mark, style(*look))
             canvas.write(column + len(mark) + 1, 0, word, style(DIM))
             column += len(mark) + len(word) + 2
 

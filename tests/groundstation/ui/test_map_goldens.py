@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.snapshot import Snapshot
+from groundstation.ui.appearance import Look
 from tests.groundstation.ui.example_map import EDITS, picture, views_for
 from tests.groundstation.ui.examples import waiting
 from tests.groundstation.ui.pilots import console
@@ -31,7 +32,7 @@ FRAMES: dict[str, tuple[Snapshot, tuple[str, ...]]] = {
 @pytest.mark.parametrize("name", FRAMES)
 async def test_the_frame_is_the_golden_one(name: str) -> None:
     shows, keys = FRAMES[name]
-    async with console(SIZES[name.rsplit("_")[-1]], shows, ascii_only=name.startswith("ascii")) as screen:
+    async with console(SIZES[name.rsplit("_")[-1]], shows, look=Look(ascii=name.startswith("ascii"))) as screen:
         await screen.press("f2")
         for view in views_for(name):
             screen.station.offer_view(view)
