@@ -56,7 +56,9 @@ def item_key(item: PlanItem) -> tuple[Any, ...]:
 
 
 def compare(rows: Rows, base: Items) -> PlanDiff:
-    """Return what differs between the rows and the vehicle's plan."""
+    """Return what differs between the rows and the vehicle's plan; equal items may have changed places."""
+    if [item_key(row.item) for row in rows] == [item_key(item) for item in base]:
+        return PlanDiff()
     kept = [row.origin for row in rows if row.origin is not None]
     changed = sum(
         row.origin is not None and item_key(row.item) != item_key(base[row.origin])

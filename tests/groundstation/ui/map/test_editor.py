@@ -63,6 +63,12 @@ def test_the_diff_names_what_changed() -> None:
     assert editor.diff(MISSION) == PlanDiff(removed=1)
 
 
+def test_equal_items_that_change_places_are_no_difference() -> None:
+    editor = editor_with(item(north=2), item(north=2))
+    assert editor.move(1)
+    assert editor.edited == ()
+
+
 def test_nan_is_equal_to_nan() -> None:
     there = item(16, 1, 0, math.nan, float("nan"))
     editor = editor_with(there)

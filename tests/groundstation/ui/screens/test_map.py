@@ -72,8 +72,8 @@ async def test_a_mission_is_drawn_with_the_cursor_and_uploaded() -> None:
         model = await open_map(screen, views=(empty,))
         await screen.press("up", "up", "a", *["right"] * 5, "a")
         assert len(model.editor.rows()) == 2
-        assert "2 new, not on the vehicle: U uploads" in screen.text
-        assert "Map✎" in screen.text
+        await until(lambda: "2 new, not on the vehicle: U uploads" in screen.text)
+        await until(lambda: "Map✎" in screen.text)
         await screen.press("U")
         [upload] = screen.station.of(UploadPlan)
         assert (upload.system, upload.kind, upload.items) == (1, 0, model.editor.items(PlanKind.MISSION))
@@ -84,7 +84,7 @@ async def test_an_upload_while_armed_asks() -> None:
     async with console() as screen:
         await open_map(screen, picture())
         await screen.press("tab", "end", "x", "U")
-        assert "upload the mission (1 removed) while Rover 1 is ARMED · y does it" in screen.text
+        await until(lambda: "upload the mission (1 removed) while Rover 1 is ARMED · y does it" in screen.text)
         await screen.press("n", "y")
         assert screen.station.of(UploadPlan) == []
         await screen.press("U", "y")
@@ -107,7 +107,7 @@ async def test_what_moves_the_vehicle_or_clears_its_plan_asks(key: str, words: s
     async with console((140, 45)) as screen:
         await open_map(screen)
         await screen.press(key)
-        assert words in screen.text
+        await until(lambda: words in screen.text)
         await screen.press("x")
         assert screen.station.of(kind) == []
         await screen.press(key, "y")
@@ -124,7 +124,7 @@ async def test_what_stops_does_not_ask() -> None:
         await screen.press("space")
         assert Stop(STOP_KEY) in screen.station.of(Stop)
         await screen.press("6")
-        assert "change to LOITER" in screen.text
+        await until(lambda: "change to LOITER" in screen.text)
         await screen.press("space")
         assert screen.station.of(Stop).count(Stop(STOP_KEY)) == 2, "SPACE stops, also while a question waits"
 
@@ -133,7 +133,7 @@ async def test_a_mode_that_the_vehicle_lacks() -> None:
     async with console() as screen:
         await open_map(screen, views=(plan_view(modes=()),))
         await screen.press("3")
-        assert "this vehicle has no mode AUTO or AUTO_MISSION" in screen.text
+        await until(lambda: "this vehicle has no mode AUTO or AUTO_MISSION" in screen.text)
         assert screen.station.of(ChooseMode) == []
 
 
@@ -142,15 +142,15 @@ async def test_fields_are_edited_in_the_item_panel() -> None:
         model = await open_map(screen)
         await screen.press("tab", "enter", "down", "enter", *["backspace"] * 12)
         await type_text(screen, "95")
-        assert "latitude is -90 to 90" in screen.text
+        await until(lambda: "latitude is -90 to 90" in screen.text)
         await screen.press("down", "down", "down", "enter", "backspace")
         await type_text(screen, "4.5")
-        assert model.editor.items(PlanKind.MISSION)[0].params[0] == 4.5
-        assert "was 0" in screen.text
+        await until(lambda: model.editor.items(PlanKind.MISSION)[0].params[0] == 4.5)
+        await until(lambda: "was 0" in screen.text)
         await screen.press("home", "enter")
         await type_text(screen, "speed")
-        assert model.editor.items(PlanKind.MISSION)[0].command == 178
-        assert "was WAYPOINT" in screen.text
+        await until(lambda: model.editor.items(PlanKind.MISSION)[0].command == 178)
+        await until(lambda: "was WAYPOINT" in screen.text)
         await screen.press("u", "u")
         assert model.editor.items(PlanKind.MISSION) == MISSION
         await screen.press("ctrl+r")
@@ -165,18 +165,18 @@ async def test_layers_order_and_measuring() -> None:
     async with console((140, 45)) as screen:
         model = await open_map(screen)
         await screen.press("tab", "greater_than_sign")
-        assert "other order" in screen.text
+        await until(lambda: "other order" in screen.text)
         await screen.press("less_than_sign")
         assert model.editor.edited == ()
         await screen.press("e")
-        assert "✎ fence" in screen.text
-        assert "polygon in" in screen.text
+        await until(lambda: "✎ fence" in screen.text)
+        await until(lambda: "polygon in" in screen.text)
         await screen.press("p", "e")
-        assert "✎ rally points" in screen.text
+        await until(lambda: "✎ rally points" in screen.text)
         await screen.press("tab", "tab", "b", *["right"] * 4)
-        assert "measured" in screen.text
+        await until(lambda: "measured" in screen.text)
         await screen.press("c")
-        assert "following" in screen.text
+        await until(lambda: "following" in screen.text)
         before = model.ground.window.zoom
         await screen.press("minus", "minus", "plus")
         assert model.ground.window.zoom == before + 1
@@ -186,15 +186,15 @@ async def test_a_plan_that_cannot_be_used_is_not_sent() -> None:
     async with console() as screen:
         await open_map(screen)
         await screen.press("e", "p", "U")
-        assert "not uploaded: item 6: a polygon needs 3 corners, this one has 1" in screen.text
+        await until(lambda: "not uploaded: item 6: a polygon needs 3 corners, this one has 1" in screen.text)
         assert screen.station.of(UploadPlan) == []
 
 
 async def test_transfers_are_shown_and_cancelled() -> None:
     async with console() as screen:
         await open_map(screen, views=(LOADING,))
-        assert "download mission 12/50 ██░░░░░░░░" in screen.text
-        assert "loading the mission 12/50" in screen.text
+        await until(lambda: "download mission 12/50 ██░░░░░░░░" in screen.text)
+        await until(lambda: "loading the mission 12/50" in screen.text)
         await screen.press("C")
         assert screen.station.of(CancelRequest) == [CancelRequest(1)]
 
@@ -206,7 +206,7 @@ async def test_another_vehicle_does_not_get_what_was_asked_for_the_first() -> No
         screen.station.offer_view(plan_view(system=2, name="Rover 2"))
         await screen.show(STANDING)
         await screen.press("y")
-        assert "another vehicle is selected: nothing was sent" in screen.text
+        await until(lambda: "another vehicle is selected: nothing was sent" in screen.text)
         assert screen.station.of(GoTo) == []
 
 
@@ -214,7 +214,7 @@ async def test_edits_stay_when_the_screen_is_closed() -> None:
     async with console((140, 45)) as screen:
         await open_map(screen)
         await screen.press("a", "escape")
-        assert "Map✎" in screen.text
+        await until(lambda: "Map✎" in screen.text)
         model = await open_map(screen)
         assert model.editor.diff(PlanKind.MISSION).text == "1 new"
 
@@ -231,7 +231,7 @@ async def test_files_are_saved_and_opened(tmp_path: Path) -> None:
         await until(lambda: len(model.editor.rows()) == len(MISSION))
         assert model.file == "park.plan"
         await screen.press("S", "enter")
-        assert "park.plan exists already: overwrite it · type overwrite" in screen.text
+        await until(lambda: "park.plan exists already: overwrite it · type overwrite" in screen.text)
         await screen.press("escape", "O", *["backspace"] * 9)
         await type_text(screen, "no.plan")
         await until(lambda: "No such file" in screen.app.screen.hint)  # type: ignore[attr-defined]
