@@ -37,6 +37,8 @@ class ScreenRow:
 SCREENS: tuple[ScreenRow, ...] = (
     ScreenRow("drive", "Drive", "Drive screen, the only one where keys drive", ("f1",), "1",
               "groundstation.ui.screens.drive:DriveScreen"),
+    ScreenRow("map", "Map", "Mission, fence and rally points: edit, upload, drive them", ("f2",), "2",
+              "groundstation.ui.screens.map:MapScreen"),
     ScreenRow("messages", "Messages", "Every message with its rate, and the fields of one", ("f3",), "3",
               "groundstation.ui.screens.messages:MessagesScreen", "Msgs"),
     ScreenRow("params", "Params", "Parameters of the vehicle: read, change, write", ("f4",), "4",

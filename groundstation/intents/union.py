@@ -9,6 +9,7 @@ from groundstation.intents import (  # noqa: F401 - defines the classes
     driving,
     files,
     links,
+    plan,
     services,
     session,
     setup,

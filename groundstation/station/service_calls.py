@@ -6,8 +6,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from dialects.enums import Command
+from dialects.enums import Command, MissionType
+from groundstation.formats.plan import Home, Plan, for_vehicle
 from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, ListLogs, PutFile, RemoveFile
+from groundstation.intents.plan import (
+    ChooseMode,
+    ClearPlan,
+    DownloadPlan,
+    GoTo,
+    JumpToItem,
+    PauseMission,
+    SetHome,
+    StartMission,
+    UploadPlan,
+)
 from groundstation.intents.services import (
     CompareParams,
     FetchParams,
@@ -21,6 +33,7 @@ from groundstation.intents.services import (
 from groundstation.intents.setup import Calibrate, RebootVehicle, RunChecks
 from groundstation.vehicles.calibration import KINDS, REQUEST
 from groundstation.vehicles.services import VehicleServices
+from link.services.mission.items import Items, MissionItem
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +67,24 @@ def _calibrate(services: VehicleServices, intent: Calibrate, now: float) -> None
     services.commands.send(intent.request, kind.command, kind.params, f"{REQUEST}{intent.kind}", now)
 
 
+def _upload(services: VehicleServices, intent: UploadPlan, now: float) -> None:
+    items = tuple(
+        MissionItem(each.command, each.frame, each.params, each.x, each.y, each.z, each.autocontinue)
+        for each in intent.items
+    )
+    home = Home(intent.home.latitude, intent.home.longitude, intent.home_altitude) if intent.home is not None else None
+    kind = MissionType(intent.kind)
+    plan = _PLANS[kind](items, home)
+    services.plans.upload(intent.request, kind, for_vehicle(plan, kind, services.autopilot), now)
+
+
+_PLANS: dict[MissionType, Callable[[Items, Home | None], Plan]] = {
+    MissionType.MISSION: lambda items, home: Plan(mission=items, home=home),
+    MissionType.FENCE: lambda items, _: Plan(fence=items),
+    MissionType.RALLY: lambda items, _: Plan(rally=items),
+}
+
+
 SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
     FetchParams: ServiceCall(
         "params", "fetch parameters", lambda services, intent, now: services.params.fetch(intent.request, now)
@@ -62,6 +93,47 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
         "params",
         "set parameters",
         lambda services, intent, now: services.param_writer.write(intent.request, intent.changes, now),
+    ),
+    DownloadPlan: ServiceCall(
+        "plan",
+        "download a plan",
+        lambda services, intent, now: services.plans.download(intent.request, MissionType(intent.kind), now),
+    ),
+    UploadPlan: ServiceCall("plan", "upload a plan", _upload),
+    ClearPlan: ServiceCall(
+        "plan",
+        "clear a plan",
+        lambda services, intent, now: services.plans.clear(intent.request, MissionType(intent.kind), now),
+    ),
+    StartMission: ServiceCall(
+        "plan", "start the mission", lambda services, intent, now: services.missions.start(intent.request, now)
+    ),
+    PauseMission: ServiceCall(
+        "plan", "pause the mission", lambda services, intent, now: services.missions.pause(intent.request, now)
+    ),
+    JumpToItem: ServiceCall(
+        "plan",
+        "jump to an item",
+        lambda services, intent, now: services.missions.jump(intent.request, intent.index, now),
+    ),
+    GoTo: ServiceCall(
+        "plan",
+        "go to a place",
+        lambda services, intent, now: services.missions.go_to(
+            intent.request, intent.place.latitude, intent.place.longitude, now
+        ),
+    ),
+    SetHome: ServiceCall(
+        "plan",
+        "set home",
+        lambda services, intent, now: services.missions.set_home(
+            intent.request, intent.place.latitude, intent.place.longitude, now
+        ),
+    ),
+    ChooseMode: ServiceCall(
+        "plan",
+        "change the mode",
+        lambda services, intent, now: services.modes.set(intent.request, intent.mode, now),
     ),
     CompareParams: ServiceCall(
         "params",

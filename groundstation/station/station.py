@@ -28,6 +28,7 @@ from groundstation.station.operator import OperatorSession
 from groundstation.station.operator_log import OperatorLog
 from groundstation.station.param_texts import ParamTexts
 from groundstation.station.param_views import ParamViews
+from groundstation.station.plan_views import PlanViews
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.transfer_hold import TransferHold
 from groundstation.station.vehicle_queries import VehicleQueries
@@ -103,6 +104,7 @@ class Station:
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
                 **self.services.sources,
                 **self._link_views.sources,
+                **PlanViews(self.fleet, self.services).sources,
                 **ParamViews(self.fleet, self.services, texts.files).sources,
                 **self._charts.sources,
                 **self._detail.sources,

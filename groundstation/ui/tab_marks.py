@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from groundstation.ui.colours import BLUE, RED
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.map.model import MapModel
 from groundstation.ui.params.model import ParamModel
 
 
@@ -42,7 +43,14 @@ def _faults(now: DisplayState) -> TabMark | None:
     return TabMark(f" {count}✗", RED, short=f"{count}✗") if count else None
 
 
+def _edited_plans(now: DisplayState) -> TabMark | None:
+    """Return a pencil while a plan is not as on the vehicle."""
+    model = now.kept.get(MapModel)
+    return TabMark("✎", BLUE) if isinstance(model, MapModel) and model.editor.edited else None
+
+
 TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {
+    "map": _edited_plans,
     "params": _pending_params,
     "setup": _faults,
     "files": _transfers,

@@ -40,6 +40,10 @@ class PlanRequests:
         self._client = client
         self._book = book
         self.plans: dict[MissionType, Items] = {}
+        self.versions: dict[MissionType, int] = {}
+        """How often each of `plans` was replaced."""
+        self.ids: dict[MissionType, int] = {}
+        """Ids that the vehicle gave them; 0: it is empty, or the vehicle has no ids."""
         self.current: int | None = None
         """Sequence of the item that AUTO drives to; None: not told."""
         self._jobs: deque[_PlanJob] = deque()
@@ -131,6 +135,8 @@ class PlanRequests:
         kinds = [job.kind] if job.kind is not MissionType.ALL else [each for each in MissionType if each != job.kind]
         for kind in kinds:
             self.plans[kind] = outcome.items if job.items is None else job.items
+            self.versions[kind] = self.versions.get(kind, 0) + 1
+            self.ids[kind] = outcome.plan_id if self.plans[kind] else 0
 
 
 def _where(outcome: MissionOutcome) -> str:

@@ -15,11 +15,13 @@ from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.log_requests import LogRequests
 from groundstation.vehicles.message_requests import MessageRequests
 from groundstation.vehicles.metadata_requests import MetadataRequests
+from groundstation.vehicles.mission_requests import MissionRequests
 from groundstation.vehicles.mode_requests import ModeRequests
 from groundstation.vehicles.param_comparing import ParamComparing
 from groundstation.vehicles.param_requests import ParamRequests
 from groundstation.vehicles.param_storage import ParamStorage
 from groundstation.vehicles.param_writer import ParamWriter
+from groundstation.vehicles.plan_progress import PlanProgress
 from groundstation.vehicles.plan_requests import PlanRequests
 from groundstation.vehicles.requests import RequestBook, RequestReport
 from groundstation.vehicles.transfer_requests import TransferRequests
@@ -52,6 +54,8 @@ class VehicleServices:
         self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
         self.files = FileRequests(FtpClient(system, component, target_system=to, target_component=at), self.book)
         self.plans = PlanRequests(MissionClient(system, component, target_system=to, target_component=at), self.book)
+        self.progress = PlanProgress(at)
+        self.missions = MissionRequests(self.commands, self.modes, self.progress, self.book, lambda: self.autopilot)
         self.logs = LogRequests(LogClient(system, component, target_system=to, target_component=at), self.book)
         params = ParamClient(system, component, target_system=to, target_component=at)
         self.params = ParamRequests(params, self.files, self.identity, self.book, lambda: self.autopilot)
@@ -70,6 +74,7 @@ class VehicleServices:
         """Handle a message of the vehicle."""
         self.identity.receive(received)
         self.modes.receive(received, now)
+        self.progress.receive(received, now)
         for service in self._services:
             service.receive(received, now)
         self._take_queries(now)

@@ -1,4 +1,4 @@
-"""Details of one vehicle that only the Links screen shows: components, place on earth, firmware, takeover."""
+"""Details of one vehicle that the snapshot lacks: components, place on earth, track, firmware, takeover."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from dialects import messages as m
 from dialects.enums import ControlFlag, type_name
-from groundstation.vehicles.track import METRES_PER_DEGREE
+from groundstation.vehicles.track import METRES_PER_DEGREE, LocalFrame, Track
 from groundstation.views.links import ComponentRow
 from link.core import Received
 
@@ -46,12 +46,16 @@ class VehicleDetails:
     def __init__(self, component: int) -> None:
         self.place: Place | None = None
         self.home: Place | None = None
+        self.origin: Place | None = None
+        """From where `track` counts: the first place."""
+        self.track = Track()
         self.firmware = ""
         """Version of AUTOPILOT_VERSION, e.g. "4.6.1"; empty until it has arrived."""
         self.takeover = False
         """A request for control is granted without asking the driver."""
         self.control_at: float | None = None
         """When the vehicle reported last who is in control."""
+        self._frame = LocalFrame()
         self._component = component
         self._components: dict[int, tuple[str, float]] = {}
         """Component id -> its kind in words, and when its HEARTBEAT arrived."""
@@ -75,7 +79,10 @@ class VehicleDetails:
             self._components[component] = (type_name(kind), now)
 
     def _global_position(self, message: m.GlobalPositionInt, now: float) -> None:
-        self.place = to_place(message.lat, message.lon) or self.place
+        place = to_place(message.lat, message.lon)
+        if place is not None:
+            self.place, self.origin = place, self.origin or place
+            self.track.add(self._frame.to_local(*place))
 
     def _home(self, message: m.HomePosition, now: float) -> None:
         self.home = to_place(message.latitude, message.longitude) or self.home

@@ -13,6 +13,7 @@ from groundstation.views import (  # noqa: F401 - defines the classes
     log,
     messages,
     params,
+    plan,
     requests,
 )
 from groundstation.views.base import View, ViewRequest

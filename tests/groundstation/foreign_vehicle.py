@@ -316,6 +316,7 @@ class ForeignVehicle:
 
 _ANSWERS: dict[str, Callable[[ForeignVehicle, Any], None]] = {
     "COMMAND_LONG": ForeignVehicle._command,
+    "COMMAND_INT": ForeignVehicle._command,
     "PARAM_REQUEST_LIST": ForeignVehicle._list,
     "PARAM_REQUEST_READ": ForeignVehicle._read,
     "PARAM_SET": ForeignVehicle._set,

@@ -14,6 +14,10 @@ from typing import Any
 
 import pytest
 
+from groundstation.intents.plan import DownloadPlan, UploadPlan
+from groundstation.views.plan import PlanKind
+from tests.groundstation.test_foreign_missions import open_station
+from tests.groundstation.ui.map.plans import item
 from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
 from tests.interop.mavsdk_process import ROOT, needed
 from tests.interop.mavsdk_vehicle import PARAMS
@@ -85,6 +89,16 @@ def verb(vehicle: Vehicle, capsys: pytest.CaptureFixture[str]) -> Callable[..., 
         return done
 
     return run
+
+
+def test_a_plan_of_the_map_screen(vehicle: Vehicle) -> None:
+    with open_station(f"udpin:{vehicle.endpoint}") as station:
+        ended = station.ask(UploadPlan(station.number(), 1, 0, (item(16, 5), item(16, 5, 5))))
+        assert ended.state == "accepted", ended
+        assert len(vehicle.wait_for("mission")) == 2
+        station.ask(DownloadPlan(station.number(), 1, 0))
+        station.until(lambda: len(station.copies.items.get(PlanKind.MISSION, ())) == 2)
+        assert [each.x for each in station.copies.items[PlanKind.MISSION]] == [item(16, 5).x, item(16, 5, 5).x]
 
 
 pytestmark.append(pytest.mark.xdist_group("mavsdk_vehicle"))

@@ -96,14 +96,20 @@ class Canvas:
                 chr(0x2800 + dots[column]) if dots[column] else " ",
                 styles[column],
             )
-            if style is not run_style and character != " " and run:
+            blank = character == " " and column not in texts and not _has_ground(run_style)
+            if style is not run_style and not blank and run:
                 yield Segment(run, run_style)
                 run = ""
-            if not run or character != " ":
+            if not run or not blank:
                 run_style = style
             run += character
         if run:
             yield Segment(run, run_style)
+
+
+def _has_ground(style: Style) -> bool:
+    """Return whether a space in this style would be seen: a badge ends with its text."""
+    return style.bgcolor != style_of().bgcolor or bool(style.reverse or style.underline)
 
 
 def _crossings(edges: Iterable[tuple[Point, Point]], y: int) -> Iterable[float]:

@@ -1,7 +1,7 @@
-"""Client half of the command protocol: sends COMMAND_LONG and repeats it until COMMAND_ACK.
+"""Client half of the command protocol: sends COMMAND_LONG or COMMAND_INT and repeats it until COMMAND_ACK.
 
-Rules (https://mavlink.io/en/services/command.html): repeats have a rising `confirmation`; IN_PROGRESS extends the
-timeout.
+Rules (https://mavlink.io/en/services/command.html): repeats of a COMMAND_LONG have a rising `confirmation`, COMMAND_INT
+has none; IN_PROGRESS extends the timeout.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dialects.enums import Result
-from dialects.messages import CommandAck, CommandLong
+from dialects.messages import CommandAck, CommandInt, CommandLong, Message
 from link.core import Outgoing, Received
 from link.services.command.request import PROGRESS_TIMEOUT, Params
 
@@ -18,6 +18,17 @@ REPEAT_AFTER = 0.35
 TRIES = 6
 """At 30 % loss each way all six fail once in 55 commands of the worst kind; the operator sees the failure after 2.1
 s."""
+
+
+@dataclass(frozen=True, slots=True)
+class CommandPlace:
+    """Frame and position of a COMMAND_INT."""
+
+    frame: int
+    """MAV_FRAME."""
+    x: int
+    """Latitude in 1e-7 degrees, or north in 1e-4 m, by frame."""
+    y: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +50,8 @@ class _Waiting:
     params: Params
     target: tuple[int, int]
     due: float
+    place: CommandPlace | None = None
+    """Of a COMMAND_INT."""
     sent: int = 0
     progress: int | None = None
     """% of a command that is IN_PROGRESS; None: not told."""
@@ -57,10 +70,21 @@ class CommandClient:
         self._outbox: list[Outgoing] = []
         self._outcomes: list[CommandOutcome] = []
 
-    def send(self, command: int, *params: float, target_system: int, target_component: int = 1, now: float) -> None:
-        """Send a command with up to 7 parameters (missing ones are 0) and wait for its COMMAND_ACK."""
+    def send(
+        self,
+        command: int,
+        *params: float,
+        target_system: int,
+        target_component: int = 1,
+        now: float,
+        place: CommandPlace | None = None,
+    ) -> None:
+        """Send a command with up to 7 parameters (missing ones are 0) and wait for its COMMAND_ACK.
+
+        With a `place` it is a COMMAND_INT, and parameters 5 and 6 are not used.
+        """
         full: Params = (*params, *(0.0,) * (7 - len(params)))  # type: ignore[assignment]
-        waiting = _Waiting(int(command), full, (target_system, target_component), now)
+        waiting = _Waiting(int(command), full, (target_system, target_component), now, place)
         self._waiting[target_system, int(command)] = waiting
         self._transmit(waiting, now)
 
@@ -115,9 +139,15 @@ class CommandClient:
         return outcomes
 
     def _transmit(self, waiting: _Waiting, now: float) -> None:
-        one, two, three, four, five, six, seven = waiting.params
-        system, component = waiting.target
-        message = CommandLong(system, component, waiting.command, waiting.sent, one, two, three, four, five, six, seven)
-        self._outbox.append(Outgoing(message))
+        self._outbox.append(Outgoing(_message(waiting)))
         waiting.sent += 1
         waiting.due = now + REPEAT_AFTER
+
+
+def _message(waiting: _Waiting) -> Message:
+    place, command = waiting.place, waiting.command
+    system, component = waiting.target
+    one, two, three, four, five, six, seven = waiting.params
+    if place is None:
+        return CommandLong(system, component, command, waiting.sent, one, two, three, four, five, six, seven)
+    return CommandInt(system, component, place.frame, command, 0, 0, one, two, three, four, place.x, place.y, seven)

@@ -12,6 +12,7 @@ import shutil
 import subprocess
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -22,6 +23,7 @@ from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.ui.app import ConsoleApp
 from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames
+from tests.groundstation.ui.map_pictures import map_picture
 
 SIZES = ((80, 24), (140, 45))
 
@@ -53,7 +55,7 @@ async def armed_app(size: tuple[int, int]) -> AsyncIterator[tuple[ConsoleApp, Pi
 
 
 async def _until(pilot: Pilot[int], wanted: Callable[[], bool]) -> None:
-    async with asyncio.timeout(20.0):
+    async with asyncio.timeout(90.0):
         while not wanted():
             await pilot.pause(GAP)
 
@@ -69,6 +71,8 @@ async def _hold(pilot: Pilot[int], key: str, seconds: float) -> None:
 async def pictures(size: tuple[int, int]) -> dict[str, str]:
     """Name -> SVG."""
     made = {}
+    async with armed_app(size) as (app, pilot):
+        made["map"] = await map_picture(app, pilot, partial(_until, pilot))
     async with armed_app(size) as (app, pilot):
         await pilot.press("f5")
         await pilot.pause(1.0)

@@ -155,6 +155,8 @@ async def test_no_key_drives_on_another_screen(row: ScreenRow) -> None:
         await wheels.type("\x1bOP")
         await wheels.until(lambda: wheels.app.screen is wheels.app.drive)
         await wheels.until(lambda: wheels.app.gate.closure is None)
+        await wheels.type("1")  # the 2 of the Map screen is HOLD, as that of Drive
+        await wheels.pass_time(0.5)
         await drives(wheels)
 
 

@@ -7,9 +7,9 @@ import random
 import pytest
 
 from dialects.enums import Command, Result
-from dialects.messages import CommandAck, CommandLong
+from dialects.messages import CommandAck, CommandInt, CommandLong
 from link.core import Outgoing, Received
-from link.services.command.client import REPEAT_AFTER, TRIES, CommandClient
+from link.services.command.client import REPEAT_AFTER, TRIES, CommandClient, CommandPlace
 from tests.link.command_vehicle import Vehicle, received
 
 
@@ -100,3 +100,16 @@ def test_a_lossy_link_still_ends_every_command() -> None:
         ended += outcomes
     assert len(ended) == 200
     assert sum(each.result is Result.ACCEPTED for each in ended) > 190
+
+
+def test_a_command_with_a_place_is_a_command_int_and_repeats_without_confirmation() -> None:
+    client = CommandClient(255, 190)
+    place = CommandPlace(3, -353632621, 1491652374)
+    client.send(192, -1.0, 1.0, 0.0, 0.0, 9.0, 9.0, 5.0, target_system=1, now=0.0, place=place)
+    client.tick(REPEAT_AFTER)
+    first, again = (each.message for each in client.messages_to_send())
+    assert isinstance(first, CommandInt)
+    assert (first.frame, first.x, first.y, first.z, first.param2) == (3, -353632621, 1491652374, 5.0, 1.0)
+    assert first.to_dict() == again.to_dict()
+    client.receive(ack(192, Result.ACCEPTED), 0.5)
+    assert [each.result for each in client.outcomes()] == [Result.ACCEPTED]

@@ -1,0 +1,51 @@
+"""The map as a pane of another screen: the plans as the vehicle has them, everything in view, without a cursor.
+
+The screen gives the views that `PlanCopies.requests` names to `PlanCopies.show_view`, and shows this in a PlanMap.
+"""
+
+from __future__ import annotations
+
+from groundstation.snapshot import VehicleView
+from groundstation.ui.map.copies import PlanCopies
+from groundstation.ui.map.geometry import LocalMap, Point
+from groundstation.ui.map.picture import COMPLETE, no_position
+from groundstation.ui.map.scene import (
+    build_legs,
+    build_marks,
+    build_outlines,
+    find_reference,
+    find_route,
+    track_points,
+)
+from groundstation.ui.widgets.plan_map import MapMark, PlanMapValue
+from groundstation.views.plan import PlanKind, PlanPlace
+
+
+def build_pane(copies: PlanCopies, vehicle: VehicleView | None, *, ascii: bool = False) -> PlanMapValue:  # noqa: A002
+    """Return the map of the newest view."""
+    view = copies.view
+    reference = find_reference(view)
+    if view is None or reference is None:
+        return PlanMapValue(no_position(vehicle))
+    frame = LocalMap(reference)
+    mission = copies.items.get(PlanKind.MISSION, ())
+    home, current = _point(frame, view.home), None if view.state == COMPLETE else view.current
+    reached = frozenset(range(len(mission)) if view.state == COMPLETE else view.reached)
+    looks = dict.fromkeys(reached, "done") | ({current: "now"} if current is not None else {})
+    rally = build_marks(PlanKind.RALLY, copies.items.get(PlanKind.RALLY, ()), frame, {})
+    others = tuple(MapMark(frame.to_point(each.place), str(each.system), "other") for each in view.neighbours)
+    return PlanMapValue(
+        note="",
+        home=home,
+        vehicle=_point(frame, view.place),
+        heading=None if vehicle is None or vehicle.heading is None else round(vehicle.heading, 1),
+        track=track_points(copies.track, frame),
+        legs=build_legs(find_route(mission, frame, home), home, current, reached),
+        outlines=build_outlines(copies.items.get(PlanKind.FENCE, ()), frame),
+        marks=(*rally, *build_marks(PlanKind.MISSION, mission, frame, looks, view.first), *others),
+        ascii=ascii,
+    )
+
+
+def _point(frame: LocalMap, place: PlanPlace | None) -> Point | None:
+    return None if place is None else frame.to_point(place)

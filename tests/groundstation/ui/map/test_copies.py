@@ -1,0 +1,80 @@
+"""Copies of the vehicle's plans: page by page, another version, another vehicle."""
+
+from __future__ import annotations
+
+from groundstation.ui.map.copies import PlanCopies
+from groundstation.views.plan import (
+    PAGE,
+    PlanItem,
+    PlanKind,
+    PlanPage,
+    PlanPageRequest,
+    PlanRequest,
+    PlanSummary,
+    PlanView,
+    TrackRequest,
+    TrackView,
+)
+from tests.groundstation.ui.map.plans import HOME, item
+
+ITEMS = tuple(item(north=number) for number in range(PAGE + 30))
+
+
+def view(version: int = 1, system: int = 1, count: int = len(ITEMS)) -> PlanView:
+    return PlanView(
+        system=system, name="", autopilot=0, plans=(PlanSummary(version, count), PlanSummary(), PlanSummary())
+    )
+
+
+def page(first: int, items: tuple[PlanItem, ...], *, version: int = 1, system: int = 1) -> PlanPage:
+    return PlanPage(system, 0, version, len(ITEMS), first, items)
+
+
+def page_request(copies: PlanCopies) -> PlanPageRequest | None:
+    return next((each for each in copies.requests if isinstance(each, PlanPageRequest)), None)
+
+
+def test_a_plan_arrives_page_by_page() -> None:
+    copies = PlanCopies()
+    assert copies.requests == (PlanRequest(), TrackRequest())
+    copies.show_view(view())
+    assert page_request(copies) == PlanPageRequest(1, 0, 1, 0)
+    assert copies.show_view(page(0, ITEMS[:PAGE])) is None
+    assert page_request(copies) == PlanPageRequest(1, 0, 1, PAGE)
+    assert copies.show_view(page(0, ITEMS[:PAGE])) is None, "again"
+    assert copies.show_view(page(PAGE, ITEMS[PAGE:])) is PlanKind.MISSION
+    assert copies.items[PlanKind.MISSION] == ITEMS
+    assert page_request(copies) is None
+    assert copies.show_view(page(PAGE, ITEMS[PAGE:])) is None
+
+
+def test_another_version_begins_anew() -> None:
+    copies = PlanCopies()
+    copies.show_view(view())
+    copies.show_view(page(0, ITEMS[:PAGE]))
+    copies.show_view(view(version=2))
+    assert page_request(copies) == PlanPageRequest(1, 0, 2, 0)
+    assert copies.show_view(page(PAGE, ITEMS[PAGE:])) is None, "of the version before"
+    copies.show_view(page(0, ITEMS[:PAGE], version=2))
+    assert copies.show_view(page(PAGE, ITEMS[PAGE:], version=2)) is PlanKind.MISSION
+
+
+def test_an_empty_plan_is_whole() -> None:
+    copies = PlanCopies()
+    copies.show_view(view(count=0))
+    assert copies.show_view(PlanPage(1, 0, 1, 0, 0, ())) is PlanKind.MISSION
+    assert copies.items[PlanKind.MISSION] == ()
+
+
+def test_another_vehicle_has_plans_of_its_own() -> None:
+    copies = PlanCopies()
+    copies.show_view(view())
+    copies.show_view(page(0, ITEMS[:PAGE]))
+    copies.show_view(page(PAGE, ITEMS[PAGE:]))
+    copies.show_view(TrackView(2, HOME, ((1.0, 2.0),)))
+    assert copies.track is None
+    copies.show_view(view(system=2))
+    assert copies.items == {}
+    assert copies.track is not None
+    assert page_request(copies) == PlanPageRequest(2, 0, 1, 0)
+    assert copies.show_view(page(0, ITEMS, system=1)) is None
