@@ -137,7 +137,7 @@ class StationProcess:
             elif isinstance(intent, Quit):
                 self._quit(intent, now)
             else:
-                self._station.handle_intent(intent, now)
+                self._station.handle_intent(intent, now, read_at=batch.time)
 
     async def _send_snapshots(self) -> None:
         """Send snapshots at absolute deadlines, and notice the simulator's end."""

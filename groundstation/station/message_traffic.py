@@ -9,7 +9,6 @@ from itertools import groupby
 from dialects.codec import CRC_SIZE, HEADER_V2, EncodeError, encode_payload
 from dialects.enum_names import enum_names
 from dialects.messages import Message
-from groundstation.snapshot import MessageRate
 from groundstation.station.message_fields import build_fields
 from groundstation.station.message_filter import parse_filter, sorted_rows
 from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
@@ -96,19 +95,6 @@ class MessageTraffic:
         self._labels = labels
 
     # ---- for the screen ----
-
-    def build_rates(self, system: int, now: float) -> tuple[MessageRate, ...]:
-        """Return the rates of one vehicle, and those of what we sent to all, by name."""
-        sums: dict[tuple[bool, str], tuple[float, int]] = {}
-        for (sent, other, _), kinds in self._kinds.items():
-            if sent or other == system:
-                for name, kind in kinds.items():
-                    rate, count = sums.get((sent, name), (0.0, 0))
-                    sums[sent, name] = rate + kind.meter.rate(now), count + kind.count
-        return tuple(
-            MessageRate(name=name, rate=rate, count=count, sent=sent)
-            for (sent, name), (rate, count) in sorted(sums.items())
-        )
 
     def build_page(self, request: MessagesRequest, now: float, wall: float) -> MessagesPage:
         """Return the rows that a screen shows."""

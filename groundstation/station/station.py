@@ -11,6 +11,7 @@ from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
+from groundstation.station.drive_display import DriveDisplay
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.driving import DrivingController
 from groundstation.station.handover import Handover
@@ -69,6 +70,7 @@ class Station:
         self._links = LinkStats()
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self._services)
         self._timesync = TimesyncClient(system)
+        self._display = DriveDisplay(self.fleet, self.operator, self._timesync)
         self._link_views = LinkViews(
             self.fleet,
             self._commander,
@@ -87,6 +89,7 @@ class Station:
                 MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
                 MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
                 **self._link_views.sources,
+                **self._display.sources,
             }
         )
         """Request -> its source."""
@@ -125,6 +128,7 @@ class Station:
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
         contact.details.receive(received, now)
+        self._display.receive(contact, received, now)
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
         self._services.receive(contact, received, now)
@@ -143,6 +147,7 @@ class Station:
         self._expire_lease(now)
         self.log.expire(now)
         self.fleet.update(now)
+        self._display.tick(now)
         self._commander.tick(now)
         self._handover.tick(now)
         if self.operator.live:
@@ -179,6 +184,7 @@ class Station:
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
         self._traffic.count_sent(message, now)
+        self._display.handle_sent(message, now)
         self._driving.handle_sent(message, sequence, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
@@ -193,10 +199,16 @@ class Station:
         self.operator.stall.record_report(now)
         return self._driving.driven_vehicles(now)
 
-    def handle_intent(self, intent: AnyIntent, now: float) -> None:
-        """Carry out what the operator wants; the resulting messages are ready to be sent."""
+    def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
+        """Carry out what the operator wants; the resulting messages are ready to be sent.
+
+        `read_at`: when the screen read the key of the intent; without it only now.
+        """
         self._expire_lease(now)
+        if intent.is_input:
+            self._driving.key_read_at = now if read_at is None else read_at
         self._intents.handle(intent, now)
+        self._driving.key_read_at = None
 
     def set_simulator_state(self, state: str | None) -> None:
         """Record the state of the simulator, for the next snapshot."""
@@ -233,7 +245,6 @@ class Station:
             ),
             links=self._links.build_views(self._timesync.round_trip),
             texts=self.log.build_lines(now, wall),
-            messages=self._traffic.build_rates(selected.state.system if selected else 0, now),
             simulator=self._simulator_state,
         )
 
@@ -270,6 +281,7 @@ class Station:
             refusal=commander.last_refusal(state.system, now),
             obeys=contact.settings_check.obeys if contact.settings_check else None,
             warnings=contact.warnings,
+            **self._display.build_fields(contact, now),
         )
 
     def _waiting(self) -> str | None:

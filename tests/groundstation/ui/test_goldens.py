@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.actions import ACTIONS
+from groundstation.drive_views import KeyToMotor, StopBound
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.screens import SCREENS
 from groundstation.snapshot import OutputView, Snapshot
@@ -18,9 +19,13 @@ from groundstation.views.base import View
 from groundstation.views.links import ControlView, LinksView, VehiclesView
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.examples import (
+    FOREIGN_STOPS,
+    FOREIGN_WAY,
     LOG_PAGE,
     MESSAGES_PAGE,
+    SPEEDS,
     SYS_STATUS_VIEW,
+    TRACK,
     helm,
     param_page,
     snapshot,
@@ -33,7 +38,7 @@ from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD
 
 GOLDEN = Path(__file__).parent / "golden"
-SMALL, WIDE = (80, 24), (140, 45)
+SMALL, WIDE, LARGE = (80, 24), (140, 45), (200, 60)
 
 STANDING = snapshot(
     vehicle=vehicle(
@@ -48,15 +53,18 @@ STANDING = snapshot(
 STOPPED = snapshot(vehicle=vehicle(emergency_stop=True, armed=False, failsafes=("estop",), outputs=wheels(0.0, 0.0)))
 UNKNOWN = snapshot(
     vehicle=vehicle(
-        name="ArduPilot rover 1", driver=None, position=None, home=None, track=(), heading=None, roll=None, pitch=None,
+        name="ArduPilot rover 1", driver=None, position=None, home=None, heading=None, roll=None, pitch=None,
         speed=math.nan, battery_voltage=None, battery_remaining=None, gps_fix=0, gps_satellites=None, demand=None,
-        outputs=(), command_age=None, latency=None,
+        outputs=(), command_age=None, latency=None, key_to_motor=KeyToMotor(), health=(), mission=None,
+        stops=(StopBound("no command", "--", "not known"), StopBound("no station", "--", "not known")),
     )
 )  # fmt: skip
 
 WARNED = snapshot(
     vehicle=vehicle(
-        name="ArduPilot rover 1", driver=None, demand=None, command_age=None, latency=None, limits=(),
+        name="ArduPilot rover 1", driver=None, demand=None, command_age=0.03, command_age_estimated=True, latency=None,
+        limits=(), stops=FOREIGN_STOPS, mission=None,
+        key_to_motor=FOREIGN_WAY,
         outputs=(OutputView(name="steering servo", value=0.25), OutputView(name="throttle servo", value=0.57)),
         obeys="obeys ground station 250 only and we are 255: use --system 250",
         warnings=(
@@ -70,6 +78,10 @@ WARNED = snapshot(
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_80x24": (SMALL, snapshot(), ()),
     "drive_140x45": (WIDE, snapshot(), ()),
+    "drive_200x60": (LARGE, snapshot(), ()),
+    "charts_80x24": (SMALL, snapshot(), ("v",)),
+    "rates_80x24": (SMALL, snapshot(), ("v", "v")),
+    "warned_140x45": (WIDE, WARNED, ()),
     "latched_80x24": (SMALL, snapshot(operator=helm(style="latch", stop_bound=math.inf, reports_releases=False)), ()),
     "disarmed_80x24": (SMALL, STANDING, ()),
     "hold_80x24": (SMALL, STANDING, ()),
@@ -102,6 +114,7 @@ FRAMES |= {
     for name in (
         "drive_80x24",
         "drive_140x45",
+        "drive_200x60",
         "waiting_80x24",
         "strip_40x10",
         "log_80x24",
@@ -122,7 +135,7 @@ def views_for(name: str) -> Sequence[View]:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
     if "params" in name:
         return (param_page(),)
-    return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE)
+    return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE, TRACK, SPEEDS)
 
 
 @pytest.mark.parametrize("name", FRAMES)
@@ -130,10 +143,10 @@ async def test_the_frame_is_the_golden_one(name: str) -> None:
     size, picture, keys = FRAMES[name]
     async with console(size, picture, ascii_only=name.startswith("ascii")) as screen:
         await screen.press(*keys[:1])
+        for view in views_for(name):
+            screen.station.offer_view(view)
+        await screen.show(picture)
         if keys:
-            for view in views_for(name):
-                screen.station.offer_view(view)
-            await screen.show(picture)
             await screen.press(*keys[1:])
             if "messages" in name:
                 screen.station.offer_view(SYS_STATUS_VIEW)
