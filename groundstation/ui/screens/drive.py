@@ -25,7 +25,7 @@ from groundstation.ui.widgets.pane import CLOSER, WIDER, PaneFrame
 from groundstation.ui.widgets.stops import StopsPanel
 from groundstation.ui.widgets.strip import DrivingStrip, StripValue
 from groundstation.views.base import View, ViewRequest
-from groundstation.views.drive import SpeedRequest
+from groundstation.views.drive import SpeedRequest, SpeedView
 
 BORDERS = 2
 """Rows of the border of a panel."""
@@ -141,11 +141,13 @@ class DriveScreen(ConsoleScreen):
 
     def show_view(self, view: View) -> None:
         """Show what the station sent for a pane or the chart."""
+        first = type(view) not in self._views
         self._views[type(view)] = view
-        given = PaneInput(self._state, self._views)
-        self._chart.show(speed_samples(given))
-        for pane in self._shown_panes:
-            pane.show_view(self._views)
+        if isinstance(view, SpeedView):
+            self._chart.show(speed_samples(PaneInput(self._state, self._views)))
+        if first:  # else it waits for the next update of the pane
+            for pane in self._shown_panes:
+                pane.show_view(self._views)
 
     @property
     def _shown_panes(self) -> tuple[PaneFrame, ...]:
