@@ -7,6 +7,7 @@ Frame format: https://mavlink.io/en/guide/serialization.html.
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from typing import Any
 
 from fastcrc.crc16 import mcrf4xx
@@ -61,7 +62,7 @@ def encode_payload(message: Message) -> bytes:
     try:
         payload: bytes = _ENCODERS[type(message).id](message)  # STATUSTEXT has a field `id`
     except (struct.error, TypeError, OverflowError) as error:
-        raise EncodeError(f"{message.msgname}: {error}") from error
+        raise EncodeError(f"{type(message).msgname}: {error}") from error
     return payload.rstrip(b"\0") or b"\0"
 
 
@@ -69,3 +70,19 @@ def frame(message_id: int, payload: bytes, sequence: int, system: int, component
     """Return an unsigned MAVLink 2 frame. `sequence`, `system` and `component` are 0..255."""
     body = _HEADER.pack(len(payload), sequence, system, component, message_id & 0xFFFF, message_id >> 16) + payload
     return _MAGIC + body + _CRC.pack(mcrf4xx(body + CRC_EXTRA[message_id]))
+
+
+def register(
+    message: type[Message], base_size: int, decoder: Callable[[bytes], Message], encoder: Callable[[Any], bytes]
+) -> None:
+    """Add a message to the dialect of this process, or replace one: before a link opens, never later.
+
+    `base_size`: payload length without extensions. `decoder` takes, and `encoder` returns, the whole payload.
+    """
+    number = message.id
+    MESSAGES[number] = message
+    CRC_EXTRA[number] = bytes([message.crc_extra])
+    BASE_SIZE[number] = base_size
+    _SIZES[number] = message.unpacker.size
+    _DECODERS[number] = decoder
+    _ENCODERS[number] = encoder

@@ -17,6 +17,15 @@ from dialects import rover
 _LINE = re.compile(r"^(?:# (?P<enum>[A-Z]\w*)|(?P<name>[A-Z]\w*) = (?P<value>-?\d+))$", re.MULTILINE)
 _END = "_ENUM_END"
 
+_added: dict[str, dict[int, str]] = {}
+"""Enum -> value -> name, of a dialect that was added."""
+
+
+def add_enum_names(enum: str, names: Mapping[int, str]) -> None:
+    """Add names of an enum to those of the built-in dialect, which go first for the same value."""
+    _added.setdefault(enum, {}).update(names)
+    enum_names.cache_clear()
+
 
 @cache
 def enum_names(enum: str) -> Mapping[int, str]:
@@ -24,7 +33,8 @@ def enum_names(enum: str) -> Mapping[int, str]:
 
     The part that a name shares with that of the enum is left out: "GCS" and not "MAV_TYPE_GCS".
     """
-    return {value: _short(name, enum) for value, name in sorted(_enums().get(enum, {}).items())}
+    names = _added.get(enum, {}) | _enums().get(enum, {})
+    return {value: _short(name, enum) for value, name in sorted(names.items())}
 
 
 def flag_names(enum: str, value: int) -> tuple[str, ...]:

@@ -6,9 +6,25 @@ that is not plain state also needs a row in traits.py.
 
 from __future__ import annotations
 
+from typing import Any
+
 from dialects import rover
 
 Message = rover.MAVLink_message
+
+
+class ExtraMessage(Message):
+    """A message of a user's dialect (dialects/extra).
+
+    Its fields are no attributes: no code that asks any message for `target_system` or `time_boot_ms` may read a field
+    that only has this name, with a type and a meaning of its own.
+    """
+
+    def __init__(self, values: dict[str, Any]) -> None:
+        super().__init__(type(self).id, type(self).msgname)
+        self.values = values
+        """Name of a field -> its value. A text is bytes without its trailing zeros, another array a list."""
+
 
 # Both directions
 Heartbeat = rover.MAVLink_heartbeat_message
@@ -104,6 +120,12 @@ RoverControl = rover.MAVLink_rover_control_message
 
 MESSAGES: dict[int, type[Message]] = rover.mavlink_map
 """Every message of the dialect by id."""
+
+
+def read_by_programs() -> frozenset[int]:
+    """Return the ids of the messages above, of which the programs read the fields."""
+    return frozenset(each.id for each in globals().values() if isinstance(each, type) and issubclass(each, Message))
+
 
 INVALID_AXIS = 32767
 """INT16_MAX on an axis of MANUAL_CONTROL: "no demand on this axis" (common.xml, MANUAL_CONTROL)."""

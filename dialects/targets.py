@@ -25,18 +25,22 @@ def _offsets(message: type[Message]) -> dict[str, int]:
     return starts
 
 
-def _targets() -> dict[int, tuple[int, int | None]]:
-    table: dict[int, tuple[int, int | None]] = {}
-    for number, message in MESSAGES.items():
-        field = _TARGET_FIELD.get(number, "target_system")
-        if field in message.fieldnames:
-            starts = _offsets(message)
-            table[number] = (starts[field], starts.get("target_component"))
-    return table
-
-
-TARGETS: dict[int, tuple[int, int | None]] = _targets()
+TARGETS: dict[int, tuple[int, int | None]] = {}
 """Message id -> payload offsets of target system and component (None: the message has no such field)."""
+
+
+def register(message: type[Message]) -> None:
+    """Add the target fields of a message, in place of those of another one with its id."""
+    number = message.id
+    field = _TARGET_FIELD.get(number, "target_system")
+    TARGETS.pop(number, None)
+    if field in message.fieldnames:
+        starts = _offsets(message)
+        TARGETS[number] = (starts[field], starts.get("target_component"))
+
+
+for _message in MESSAGES.values():
+    register(_message)
 
 
 def target_of(message_id: int, raw: bytes) -> tuple[int, int]:

@@ -71,17 +71,20 @@ class StationClient:
         speed: float = 0.6,
         sitl: bool = False,
         log_file: Path | None = None,
+        dialect: str | None = None,
         terminal: str | None = None,
         meanwhile: Callable[[], object] = lambda: None,
     ) -> StationClient:
         """Start the station process and wait until its links are open. Raises StationError.
 
-        `terminal` is the path of the terminal that is reset if this process is killed. `meanwhile` is called first: the
-        process takes 0.2 s to import its modules.
+        `dialect` is an XML file that the station reads. `terminal` is the path of the terminal that is reset if this
+        process is killed. `meanwhile` is called first: the process takes 0.2 s to import its modules.
         """
         options = [f"--system={system}", f"--style={style}", f"--speed={speed}", *(["--sitl"] if sitl else [])]
         if log_file is not None:
             options.append(f"--log-file={log_file}")
+        if dialect is not None:
+            options.append(f"--dialect={dialect}")
         if terminal is not None:
             options.append(f"--terminal={terminal}")
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -169,6 +172,11 @@ class StationClient:
         if not self.outage.ended:
             return lines
         return (self.outage.text, *(f"last known before: {line}" for line in lines))
+
+    @property
+    def vehicle_name(self) -> str:
+        """Name of the vehicle in the newest snapshot; "" if there is none."""
+        return self._newest.vehicle.name if self._newest.vehicle is not None else ""
 
     @property
     def alive(self) -> bool:

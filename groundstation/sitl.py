@@ -12,6 +12,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 
 from groundstation.processes import end_process, start_module
+from groundstation.simulators import find_simulator
 from link.endpoint import Endpoint
 
 PR_SET_PDEATHSIG = 1
@@ -37,12 +38,12 @@ def free_port() -> int:
 class Simulator:
     """One `vehicle --sim`. Its output is kept; the last line is the reason when it exits."""
 
-    def __init__(self, host: str, port: int) -> None:
+    def __init__(self, host: str, port: int, options: Sequence[str] = ()) -> None:
         """Start the simulator, sending to an address of this machine. Raises OSError."""
         self._output = tempfile.TemporaryFile()  # noqa: SIM115  # it has no name, so nothing is left behind even after a kill
         self._process: subprocess.Popen[bytes] = start_module(
             "vehicle",
-            ["--sim", f"udpout:{host}:{port}"],
+            ["--sim", f"udpout:{host}:{port}", *options],
             output=self._output,
             new_session=True,  # Ctrl-C in the terminal is for the screen only
             prepare=_die_with_parent(),
@@ -78,42 +79,55 @@ class Simulator:
 
 
 class SimulatorControl:
-    """Starts at most one simulator at a time and reports once when it exits."""
+    """Starts the simulators of one row at a time and reports once when one of them exits."""
 
     def __init__(self) -> None:
-        self._simulator: Simulator | None = None
-        self._exit_reported = False
+        self._simulators: list[Simulator] = []
+        self._reported: list[Simulator] = []
 
-    def start(self, endpoints: Sequence[Endpoint]) -> str | None:
-        """Start a simulator that sends to the first endpoint that listens. Returns an error text, or None."""
-        if self._simulator is not None and self._simulator.running:
+    def start(self, endpoints: Sequence[Endpoint], kind: str = "rover") -> str | None:
+        """Start simulators that send to the first endpoint that listens. Returns an error text, or None.
+
+        While one of ours runs, nothing is started.
+        """
+        if self.running:
             return None
         endpoint = next((each for each in endpoints if each.scheme == "udpin"), None)
         if endpoint is None:
             return "the simulator needs a link that listens, e.g. udpin:127.0.0.1:14550"
+        host = "127.0.0.1" if endpoint.host in WILDCARD_HOSTS else endpoint.host
+        self.close()
         try:
-            host = "127.0.0.1" if endpoint.host in WILDCARD_HOSTS else endpoint.host
-            self._simulator, self._exit_reported = Simulator(host, endpoint.port), False
+            for options in find_simulator(kind).options:
+                self._simulators.append(Simulator(host, endpoint.port, options))
         except OSError as error:
             return f"simulator did not start: {error.strerror}"
         return None
 
     @property
+    def running(self) -> bool:
+        """Any simulator of ours runs."""
+        return any(each.running for each in self._simulators)
+
+    @property
     def state(self) -> str | None:
-        """Status for the screen; None if no simulator was started."""
-        return None if self._simulator is None else self._simulator.state
+        """Status for the screen: of one that has exited, else "running"; None if no simulator was started."""
+        states = [each.state for each in self._simulators]
+        return next((state for state in states if state != "running"), states[0]) if states else None
 
     def pop_exit(self) -> tuple[str, str] | None:
-        """Return how the simulator exited and the end of its output, once; None while it runs."""
-        if self._simulator is None or self._simulator.running or self._exit_reported:
-            return None
-        self._exit_reported = True
-        return f"simulator {self._simulator.state}", self._simulator.output_tail
+        """Return how a simulator exited and the end of its output, once; None while they run."""
+        for each in self._simulators:
+            if not each.running and each not in self._reported:
+                self._reported.append(each)
+                return f"simulator {each.state}", each.output_tail
+        return None
 
     def close(self) -> None:
-        """Stop the simulator, if one was started."""
-        if self._simulator is not None:
-            self._simulator.close()
+        """Stop the simulators."""
+        for each in self._simulators:
+            each.close()
+        self._simulators, self._reported = [], []
 
 
 def _die_with_parent() -> Callable[[], None] | None:

@@ -176,6 +176,8 @@ class LinkView(msgspec.Struct, frozen=True, kw_only=True):
     """Messages that could not be sent: no room, or the other end refused them."""
     systems: tuple[int, ...] = ()
     """System ids heard, of ground stations too."""
+    watch_only: bool = False
+    """Nothing is ever sent on it."""
     problem: str | None = None
     """e.g. "messages arrive with another dialect's checksum: HEARTBEAT"."""
 
@@ -188,7 +190,7 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True):
     severity: int
     """MAV_SEVERITY."""
     label: str
-    """"vehicle", "ack", "state" or "station"."""
+    """"vehicle", "ack", "state", "you" (the operator) or "station"."""
     text: str
     count: int = 1
     """How often the line occurred in a row."""
@@ -222,7 +224,7 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     operator: OperatorView = OperatorView()
     links: tuple[LinkView, ...] = ()
     texts: tuple[LogLine, ...] = ()
-    """The newest lines of the log, oldest first, without changes of state, which the screen shows anyway."""
+    """The newest lines of the log, oldest first, without changes of state and what the operator did."""
     simulator: str | None = None
     """State of the simulator that we started, e.g. "running", "ended with code 1: ..."; None without one."""
 

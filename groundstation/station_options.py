@@ -33,6 +33,7 @@ def station_parser() -> argparse.ArgumentParser:
     parser.add_argument("--speed", type=float, default=0.6)
     parser.add_argument("--sitl", action="store_true")
     parser.add_argument("--log-file", type=Path)
+    parser.add_argument("--dialect", metavar="FILE.xml")
     parser.add_argument("--terminal", help="path of the screen's terminal, which is reset if the screen is killed")
     parser.add_argument("endpoints", nargs="*")
     return parser

@@ -16,10 +16,13 @@ from typing import Any
 import msgspec
 
 from dialects.enums import Severity
+from dialects.extra.errors import DialectError
+from dialects.extra.option import Note, use_dialect
 from dialects.messages import printable
+from groundstation.connect.desk import ConnectDesk
 from groundstation.input.style import Style
 from groundstation.intents.driving import Stop
-from groundstation.intents.session import Quit, RenewLease, StartSimulator
+from groundstation.intents.session import Quit, RenewLease
 from groundstation.ipc import (
     MAX_INTENT_AGE,
     MAX_PACKET,
@@ -28,7 +31,7 @@ from groundstation.ipc import (
     decode_from_screen,
     encode,
 )
-from groundstation.sitl import SimulatorControl, free_port
+from groundstation.sitl import free_port
 from groundstation.snapshot import Snapshot
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.crash_snapshot import crash_snapshot
@@ -38,6 +41,7 @@ from groundstation.station.station import COMPONENT, Station
 from groundstation.station_options import log_to, station_parser
 from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, parse_endpoint
+from link.protocol.sent_frames import SentFrames
 from link.runner import Runner, open_links
 from link.runtime.event_loop import run_loop
 from link.transport.local_addresses import LocalAddresses
@@ -60,14 +64,22 @@ QUIT = Quit()
 class StationProcess:
     """One station, its links, its pipe to the screen, and the simulator if it started one."""
 
-    def __init__(self, station: Station, links: Sequence[Link], pipe: socket.socket, watchdog: WatchdogFeed) -> None:
+    def __init__(
+        self,
+        station: Station,
+        links: Sequence[Link],
+        pipe: socket.socket,
+        watchdog: WatchdogFeed,
+        *,
+        ids: tuple[int, int],
+        sent: SentFrames,
+    ) -> None:
         self._station = station
-        self._links = links
         self._pipe = pipe
         self._watchdog = watchdog
         self._core = CrashNeutral(station)
         self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash, sent=watchdog.record_sent)
-        self._simulator = SimulatorControl()
+        self.connect = ConnectDesk(self._runner, station, ids, sent)
         self._last_snapshot = Snapshot()
         self._addresses = LocalAddresses()
         self._lasting_alerts = LastingAlerts()
@@ -86,15 +98,9 @@ class StationProcess:
         finally:
             show.cancel()
             loop.remove_reader(self._pipe)
-            self._simulator.close()
+            self.connect.close()
             self._watchdog.close()
         return 1 if self._broken else 0
-
-    def start_simulator(self, now: float) -> None:
-        """Start a simulator that sends to the first of our links that listens on this machine."""
-        error = self._simulator.start([link.endpoint for link in self._links])
-        if error is not None:
-            self._log_warning(now, error)
 
     # ---- the pipe ----
 
@@ -129,18 +135,17 @@ class StationProcess:
         for intent in batch.intents:
             if late and not intent.valid_when_late:
                 if not isinstance(intent, RenewLease):
-                    self._log_warning(
+                    self.add_to_log(
                         now, f"{type(intent).__name__} arrived {now - batch.time:.1f} s late and was dropped"
                     )
-            elif isinstance(intent, StartSimulator):
-                self.start_simulator(now)
             elif isinstance(intent, Quit):
                 self._quit(intent, now)
             else:
                 self._station.handle_intent(intent, now, read_at=batch.time)
+                self.connect.handle(intent, now)
 
     async def _send_snapshots(self) -> None:
-        """Send snapshots at absolute deadlines, and notice the simulator's end."""
+        """Send snapshots at absolute deadlines, and do what is due for the links."""
         loop = asyncio.get_running_loop()
         due = loop.time()
         while not self._broken:
@@ -154,11 +159,11 @@ class StationProcess:
     def _report(self, now: float) -> None:
         """Tell the watchdog that the station runs."""
         if not self._watchdog.report(self._station.report_to_watchdog(now), now):
-            self._log_warning(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
+            self.add_to_log(now, "the watchdog has ended: if this process is killed, nothing sends neutral")
 
     def _send_snapshot(self, now: float) -> None:
         self._report(now)
-        self._watch_simulator(now)
+        self.connect.tick(now)
         self._station.set_addresses(self._addresses.find(now))
         self._last_snapshot = self._station.snapshot(now, time.time())
         for text in self._lasting_alerts.new_in(self._last_snapshot):
@@ -181,17 +186,10 @@ class StationProcess:
             return True
         return False
 
-    def _watch_simulator(self, now: float) -> None:
-        exited = self._simulator.pop_exit()
-        if exited is not None:
-            text, output = exited
-            self._log_warning(now, text)
-            log.error("output of the simulator:\n%s", output)
-        self._station.set_simulator_state(self._simulator.state)
-
-    def _log_warning(self, now: float, text: str) -> None:
-        log.warning(text)
-        self._station.log.add(now, "station", text, Severity.WARNING)
+    def add_to_log(self, now: float, text: str, severity: Severity = Severity.WARNING) -> None:
+        """Write a line to the log on the screen and to the log file."""
+        log.log(logging.WARNING if severity <= Severity.WARNING else logging.INFO, text)
+        self._station.log.add(now, "station", text, severity)
 
     # ---- shutdown ----
 
@@ -253,13 +251,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     endpoints = [*options.endpoints, *([f"udpin:127.0.0.1:{free_port()}"] if options.sitl else [])]
     try:
         log_to(options.log_file)
-        links = open_links(endpoints, system=options.system, component=COMPONENT)
+        notes = use_dialect(options.dialect)
+        sent = SentFrames()
+        links = open_links(endpoints, system=options.system, component=COMPONENT, sent=sent)
         known = tuple(parse_endpoint(text).text for text in endpoints)
-    except (EndpointError, LinkError, OSError) as error:
+    except (DialectError, EndpointError, LinkError, OSError) as error:
         pipe.send(encode(StationFailed(_one_line(error))))
         return 2
     pipe.send(encode(StationReady(known)))
-    return _run(options, known, links, pipe, watchdog)
+    return _run(options, known, links, pipe, watchdog, sent, notes)
 
 
 def _run(
@@ -268,14 +268,18 @@ def _run(
     links: list[Link],
     pipe: socket.socket,
     watchdog: WatchdogFeed,
+    sent: SentFrames,
+    notes: Sequence[Note],
 ) -> int:
     started = time.monotonic()  # the loop's clock
     session = secrets.randbits(32)
     style = Style(options.style)
     station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
-    process = StationProcess(station, links, pipe, watchdog)
+    process = StationProcess(station, links, pipe, watchdog, ids=(options.system, COMPONENT), sent=sent)
+    for note in notes:
+        process.add_to_log(started, note.text, note.severity)
     if options.sitl:
-        process.start_simulator(started)
+        process.connect.start_simulator(started)
     gc.collect()
     gc.freeze()  # imported objects are never freed; without freezing them a full collection delays demands by 30 ms
     try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from dialects.messages import Message
 
@@ -90,6 +90,8 @@ class LinkReport:
     late: int = 0
     rate_limited: int = 0
     refused_peers: int = 0
+    unknown_ids: dict[tuple[int, int, int], tuple[int, int]] = field(default_factory=dict)
+    """Of those, by system, component and id: frames, and bytes of the newest one. At most 64, and not verified."""
     dialect_mismatch: tuple[str, ...] = ()
     """Names of messages that arrive complete but with the checksum of another definition."""
     signing: frozenset[int] = frozenset()
@@ -107,6 +109,10 @@ class LinkReport:
     frames_sent: int = 0
     """Outgoing frames, forwarded and dropped ones included, like `bytes_sent`."""
     bytes_sent: int = 0
+    watch_only: bool = False
+    """Nothing is ever sent on it."""
+    retry_in: float | None = None
+    """s until the next attempt to open it; None while it is open."""
     sources: dict[tuple[int, int], SourceCount] = field(default_factory=dict)
     audience: tuple[Peer, ...] = ()
     """Peers that get broadcast messages: those that sent a HEARTBEAT or connected, and the address that the user
@@ -131,3 +137,28 @@ class Core(Protocol):
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
+
+
+@runtime_checkable
+class PlaceKeeper(Protocol):
+    """A core that is controlled by one peer, for which each link keeps places."""
+
+    @property
+    def reserved_ids(self) -> tuple[int, int] | None:
+        """System and component id of the ground station in control, or None."""
+
+
+@runtime_checkable
+class SendListener(Protocol):
+    """A core that needs the packet sequence of the messages it sent."""
+
+    def handle_sent(self, message: Message, sequence: int, now: float) -> None:
+        """Take the sequence under which `message` was sent."""
+
+
+@runtime_checkable
+class SendGuard(Protocol):
+    """A core that can withdraw a message in the last moment, e.g. after the process was stopped and goes on."""
+
+    def may_send(self, message: Message, now: float) -> bool:
+        """Return whether `message` may still be sent."""

@@ -7,18 +7,17 @@ import logging
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Protocol, runtime_checkable
 
 from dialects.codec import EncodeError, encode_payload
 from dialects.enums import Severity
 from dialects.messages import Message
-from link.core import Core, LinkReport, Outgoing, Received
+from link.core import Core, LinkReport, Outgoing, PlaceKeeper, Received, SendGuard, SendListener
 from link.protocol.channel import Channel
 from link.protocol.link_events import LinkEvents
 from link.protocol.log_tap import LogTap
 from link.protocol.sent_frames import SentFrames
 from link.routing.router import Delivery, Router
-from link.transport.transport import Link
+from link.transport.transport import Link, Transport
 from link.transport.transports import open_transports
 
 log = logging.getLogger(__name__)
@@ -27,57 +26,49 @@ REPORT_PERIOD = 1.0
 """s between two calls of core.observe()."""
 
 
-@runtime_checkable
-class PlaceKeeper(Protocol):
-    """A core that is controlled by one peer, for which each link keeps places."""
-
-    @property
-    def reserved_ids(self) -> tuple[int, int] | None:
-        """System and component id of the ground station in control, or None."""
-
-
-@runtime_checkable
-class SendListener(Protocol):
-    """A core that needs the packet sequence of the messages it sent."""
-
-    def handle_sent(self, message: Message, sequence: int, now: float) -> None:
-        """Take the sequence under which `message` was sent."""
-
-
-@runtime_checkable
-class SendGuard(Protocol):
-    """A core that can withdraw a message in the last moment, e.g. after the process was stopped and goes on."""
-
-    def may_send(self, message: Message, now: float) -> bool:
-        """Return whether `message` may still be sent."""
-
-
 SentCallback = Callable[[Link, Hashable, Message, int, float], None]
 """Takes what was sent: link, address on it, message, packet sequence, time."""
 
 
 def open_links(
-    endpoints: Sequence[str], *, system: int, component: int, wanted: frozenset[int] | None = None
+    endpoints: Sequence[str],
+    *,
+    system: int,
+    component: int,
+    wanted: frozenset[int] | None = None,
+    sent: SentFrames | None = None,
 ) -> list[Link]:
-    """Open all endpoints, or none. Raises EndpointError or LinkError. `wanted`: see Channel."""
-    sent = SentFrames()
+    """Open all endpoints, or none. Raises EndpointError or LinkError. `wanted`, `sent`: see Channel."""
+    sent = sent or SentFrames()
     return [
-        Link(
-            transport,
-            Channel(
-                transport.endpoint.text,
-                index,
-                system=system,
-                component=component,
-                stream=transport.stream,
-                wanted=wanted,
-                target=transport.fixed_address,
-                capacity=transport.capacity,
-                sent=sent,
-            ),
-        )
+        build_link(transport, index, system=system, component=component, wanted=wanted, sent=sent)
         for index, transport in enumerate(open_transports(endpoints))
     ]
+
+
+def build_link(
+    transport: Transport,
+    index: int,
+    *,
+    system: int,
+    component: int,
+    wanted: frozenset[int] | None = None,
+    sent: SentFrames | None = None,
+    watch_only: bool = False,
+) -> Link:
+    """Return a link over an open transport. `index` is unique among the links of a runner."""
+    channel = Channel(
+        transport.endpoint.text,
+        index,
+        system=system,
+        component=component,
+        stream=transport.stream,
+        wanted=wanted,
+        target=None if watch_only else transport.fixed_address,
+        capacity=transport.capacity,
+        sent=sent,
+    )
+    return Link(transport, channel, watch_only)
 
 
 class Runner:
@@ -107,9 +98,10 @@ class Runner:
         """
         self._core = core
         self._broken = broken
-        self._links = links
+        self._links = {link.channel.index: link for link in links}
         self._period = period
-        self._router = _router(links) if links and (len(links) > 1 if route is None else route) else None
+        self._route = route
+        self._router: Router | None = None
         self._sent = core.handle_sent if isinstance(core, SendListener) else None
         self._may_send = core.may_send if isinstance(core, SendGuard) else None
         self._on_sent = sent
@@ -122,8 +114,43 @@ class Runner:
         self._log_tap = log_tap
         self._not_encoded: set[int] = set()
         """Ids of messages whose encoding has failed and was logged: a message may be asked for 100 times a second."""
+        self._update_router()
         for link in links:
             link.channel.log_tap = log_tap
+
+    @property
+    def links(self) -> tuple[Link, ...]:
+        """The links, in the order in which they were added."""
+        return tuple(self._links.values())
+
+    def add(self, link: Link) -> None:
+        """Add an open link while run() runs; the others go on."""
+        self._links[link.channel.index] = link
+        link.channel.log_tap = self._log_tap
+        if self._router:
+            self._router.table.add_link(link.channel.index, *_way(link))
+        self._update_router()
+        self._start(link)
+
+    def remove(self, index: int) -> None:
+        """Close a link and forget it while run() runs; the others go on. An unknown index changes nothing."""
+        link = self._links.pop(index, None)
+        if link is None:
+            return
+        link.close()
+        if self._router:
+            self._router.table.remove_link(index)
+        self._update_router()
+
+    def _update_router(self) -> None:
+        """Forward between links, as `route` says."""
+        links = self.links
+        if not links or not (len(links) > 1 if self._route is None else self._route):
+            self._router = None
+        elif self._router is None:
+            self._router = Router((), own=links[0].channel.ids)
+            for link in links:
+                self._router.table.add_link(link.channel.index, *_way(link))
 
     async def run(self) -> None:
         """Run until stop(), or until the core raises, and raise that. Closes the links at the end."""
@@ -131,16 +158,21 @@ class Runner:
         self._ended = loop.create_future()
         self._tick_due = loop.time()
         try:
-            for index, link in enumerate(self._links):
-                link.transport.start(loop, partial(self._deliver, index), partial(self._handle_disconnect, index))
+            for link in self.links:
+                self._start(link)
             self._tick()
             await self._ended
         finally:
             if self._timer:
                 self._timer.cancel()
             self._send_remaining()
-            for link in self._links:
+            for link in self.links:
                 link.close()
+
+    def _start(self, link: Link) -> None:
+        index = link.channel.index
+        loop = asyncio.get_running_loop()
+        link.transport.start(loop, partial(self._deliver, index), partial(self._handle_disconnect, index))
 
     def stop(self) -> None:
         """End run()."""
@@ -174,12 +206,16 @@ class Runner:
         self._guard(lambda: self._receive(index, received))
 
     def _handle_disconnect(self, index: int, address: Hashable) -> None:
+        if index not in self._links:  # it is being removed
+            return
         self._links[index].channel.handle_disconnect(address)
         if self._router:
             self._router.table.handle_disconnect(index, address)
 
     def _receive(self, index: int, received: Sequence[tuple[bytes, Hashable]]) -> None:
         now = asyncio.get_running_loop().time()
+        if index not in self._links:
+            return
         for data, address in received:
             self._hand_over(self._links[index].channel.receive(data, address, now), now)
         self._flush()
@@ -187,9 +223,9 @@ class Runner:
             self._forward(self._router.receive(index, received, now))
 
     def _forward(self, deliveries: Sequence[Delivery]) -> None:
-        for link, address, frames in deliveries:
+        for index, address, frames in deliveries:
             for frame in frames:
-                self._links[link].send(frame, address)
+                self._links[index].send(frame, address)
 
     def _hand_over(self, messages: list[Received], now: float) -> None:
         for received in messages:
@@ -204,7 +240,7 @@ class Runner:
 
     def _run_tick(self) -> None:
         now = asyncio.get_running_loop().time()
-        for link in self._links:
+        for link in self.links:
             self._hand_over(link.channel.tick(now), now)
         if self._router:
             self._forward(self._router.tick(now))
@@ -215,11 +251,11 @@ class Runner:
         self._flush()
 
     def _observe(self, now: float) -> None:
-        for link in self._links:
+        for link in self.links:
             link.channel.expire_peers(now)
             if self._keeper is not None:
                 link.channel.reserve(self._keeper.reserved_ids)
-        reports = [self._report(link, now) for link in self._links]
+        reports = [self._report(link, now) for link in self.links]
         for report in reports:
             if event := self._events.update(report):
                 level = logging.WARNING if event.severity <= Severity.ERROR else logging.INFO
@@ -229,7 +265,7 @@ class Runner:
     @staticmethod
     def _report(link: Link, now: float) -> LinkReport:
         report = link.channel.report(link.transport.problem, now=now, dropped=link.transport.dropped)
-        return replace(report, frames_sent=link.frames_sent, bytes_sent=link.bytes_sent)
+        return replace(report, frames_sent=link.frames_sent, bytes_sent=link.bytes_sent, watch_only=link.watch_only)
 
     def _flush(self) -> None:
         for outgoing in self._core.messages_to_send():
@@ -246,7 +282,9 @@ class Runner:
 
     def _send(self, outgoing: Outgoing) -> None:
         payload = encode_payload(outgoing.message)
-        for link in self._links:
+        for link in self._links.values():
+            if link.watch_only:
+                continue
             for data, address, sequence in link.channel.send(outgoing, payload):
                 now = asyncio.get_running_loop().time()
                 if self._may_send and not self._may_send(outgoing.message, now):
@@ -260,5 +298,6 @@ class Runner:
             self._log_tap.record_sent(type(outgoing.message).id, payload, asyncio.get_running_loop().time())
 
 
-def _router(links: Sequence[Link]) -> Router:
-    return Router([(link.transport.stream, link.transport.fixed_address) for link in links], own=links[0].channel.ids)
+def _way(link: Link) -> tuple[bool, Hashable | None]:
+    """Return what the route table must know of a link; one that only watches has no address to send to."""
+    return link.transport.stream, None if link.watch_only else link.transport.fixed_address

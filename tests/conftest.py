@@ -1,4 +1,4 @@
-"""Set up the suite: current generated code, repeatable hypothesis in CI, a state folder for each worker."""
+"""Set up the suite: current generated code, repeatable hypothesis in CI, state and config folders for each worker."""
 
 from __future__ import annotations
 
@@ -33,10 +33,13 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Give each worker a state folder of its own, because a vehicle locks its folder."""
-    state = tempfile.TemporaryDirectory(prefix="mavhelm-tests-")
-    os.environ["XDG_STATE_HOME"] = state.name
-    config.add_cleanup(state.cleanup)
+    """Give each worker a state and a config folder of its own: a vehicle locks its one, yours are not for tests."""
+    for variable in ("XDG_STATE_HOME", "XDG_CONFIG_HOME"):
+        folder = tempfile.TemporaryDirectory(prefix="mavhelm-tests-")
+        os.environ[variable] = folder.name
+        config.add_cleanup(folder.cleanup)
+    for variable in ("MAVHELM_ENDPOINT", "MAVHELM_CONFIG"):
+        os.environ.pop(variable, None)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

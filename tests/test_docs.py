@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from groundstation.cli import main as station_main
+from groundstation.cli import options as station_options
 from groundstation.verbs import main as verbs_main
 from groundstation.verbs.table import VERBS
 from link.bridge import __main__ as bridge_main
@@ -84,7 +84,7 @@ def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, w
     elif program == "groundstation" and words and words[0] in VERBS:
         verbs_main.build_parser(words[0]).parse_args(words[1:])
     elif program == "groundstation":
-        station_main._parser()[0].parse_args(words)
+        station_options.build_parser()[0].parse_args(words)
     else:
         bridge_main._parser().parse_args(words)
 

@@ -6,9 +6,9 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from dialects.messages import Message
-from link.core import Core, Outgoing
+from link.core import Core, Outgoing, SendListener
 from link.protocol.channel import Channel
-from link.runner import REPORT_PERIOD, SendListener
+from link.runner import REPORT_PERIOD
 from link.transport.memory import LossyPipe
 
 

@@ -16,7 +16,6 @@ MAVPROXY_OPTIONS = {
     "--console": "the screen shows what it would; leave it out",
     "--map": "the screen shows the track; leave it out",
     "--load-module": "there are no modules; leave it out",
-    "--dialect": "the dialect is built in; leave it out",
     "--streamrate": "telemetry is requested to fit the link; leave it out",
     "--mav10": "MAVLink 1 is understood and MAVLink 2 is sent; leave it out",
 }

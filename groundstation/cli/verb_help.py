@@ -13,9 +13,17 @@ VERB_HELP = {
     "ftp": "ls, get, put, rm or crc files on the vehicle",
     "log": "list or get the logs on the vehicle",
 }
-"""Verb -> what it does."""
+"""Verb -> what it does with a vehicle."""
+
+LOCAL_HELP = {
+    "config": "check, show, init or path of the config file",
+}
+"""Verb without a vehicle -> what it does."""
+
+RESERVED = frozenset({**VERB_HELP, **LOCAL_HELP})
+"""What cannot be the name of an endpoint."""
 
 
 def verb_help() -> str:
     """Return the verbs as lines for --help."""
-    return "\n".join(f"  groundstation {name:<9} {text}" for name, text in VERB_HELP.items())
+    return "\n".join(f"  groundstation {name:<9} {text}" for name, text in {**VERB_HELP, **LOCAL_HELP}.items())

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 import re
-from collections.abc import Mapping, Set
+from collections.abc import Mapping
 from pathlib import Path
 
 from groundstation.actions import ACTIONS
 from groundstation.input.keymap import KEYMAPS, Keymap, KeymapError
-from link.runtime.toml_file import TomlError, read_toml
+from link.runtime.toml_file import TomlError, parse_toml, read_text
 
 PUNCTUATION = {
     "!": "exclamation_mark", '"': "quotation_mark", "#": "number_sign", "$": "dollar_sign", "%": "percent_sign",
@@ -45,6 +46,9 @@ NAMED_KEYS = frozenset(
 REQUIRED_ACTIONS = ("drive.stop", "stop.emergency", "app.quit")
 """Actions that need a key in every key map. Escape does not count: a plain terminal reports it 0.1 s late."""
 
+MAX_SIZE = 256 * 1024
+"""Bytes of a file that is read: far more than a key for each action needs."""
+
 _MODIFIERS = re.compile(r"^(?:(?:ctrl|alt|shift|super)\+)+")
 
 
@@ -56,7 +60,7 @@ def load_keymap(name_or_path: str) -> Keymap:
     if path.suffix != ".toml" and not os.path.isfile(path):
         raise KeymapError(f"unknown key map {name_or_path!r}: choose {', '.join(KEYMAPS)} or the path of a .toml file")
     try:
-        content = read_toml(path)
+        content = parse_toml(read_text(path, MAX_SIZE), str(path))
     except TomlError as error:
         raise KeymapError(f"key map {error}") from error
     return parse_keymap(content, path.stem, str(path))
@@ -64,58 +68,75 @@ def load_keymap(name_or_path: str) -> Keymap:
 
 def parse_keymap(content: Mapping[str, object], name: str, where: str) -> Keymap:
     """Return the key map that a TOML file's content describes. Raises KeymapError with `where` in its line."""
-    unknown = set(content) - {"base", "keys"}
-    if unknown:
-        raise KeymapError(f"key map {where}: unknown entry {min(unknown)!r}: choose base, keys")
-    base = content.get("base", "standard")
-    if not isinstance(base, str) or base not in KEYMAPS:
-        raise KeymapError(f"key map {where}: unknown base {base!r}: choose {', '.join(KEYMAPS)}")
-    keys = content.get("keys", {})
-    if not isinstance(keys, dict):
-        raise KeymapError(f"key map {where}: 'keys' must be a table")
-    bindings = _rebind(KEYMAPS[base], _parse_keys(keys, where), changed=set(keys))
-    _check(bindings, where)
-    return Keymap(name, bindings)
+    try:
+        unknown = set(content) - {"base", "keys"}
+        if unknown:
+            raise KeymapError(f"unknown entry {min(unknown)!r}: choose base, keys")
+        base = content.get("base", "standard")
+        if not isinstance(base, str) or base not in KEYMAPS:
+            raise KeymapError(f"unknown base {base!r}: choose {', '.join(KEYMAPS)}")
+        keys = content.get("keys", {})
+        if not isinstance(keys, dict):
+            raise KeymapError("'keys' must be a table")
+        return rebind(Keymap(name, KEYMAPS[base]), keys)
+    except KeymapError as error:
+        raise KeymapError(f"key map {where}: {error}") from error
 
 
-def _parse_keys(keys: Mapping[str, object], where: str) -> dict[str, str]:
-    """Return key -> action id for everything that the file binds."""
+def rebind(base: Keymap, keys: Mapping[str, object]) -> Keymap:
+    """Return the base map, in which each action of the table `keys` has the keys named there only.
+
+    Raises KeymapError.
+    """
+    table = flatten(keys)
+    bound = parse_bindings(table)
+    kept = {key: action for key, action in base.bindings.items() if action not in table and key not in bound}
+    bindings = kept | bound
+    for action_id in REQUIRED_ACTIONS:
+        if not {key for key, action in bindings.items() if action == action_id} - {"escape"}:
+            raise KeymapError(f"{action_id} needs a key other than escape")
+    return Keymap(base.name, bindings)
+
+
+def flatten(keys: Mapping[str, object]) -> dict[str, object]:
+    """Return action id -> keys. Without quotes TOML reads `drive.forward = "e"` as a table in a table."""
+    flat: dict[str, object] = {}
+    for name, value in keys.items():
+        inside = {f"{name}.{inner}": each for inner, each in value.items()} if isinstance(value, dict) else {}
+        flat |= inside or {name: value}
+    return flat
+
+
+def parse_bindings(keys: Mapping[str, object]) -> dict[str, str]:
+    """Return key -> action id for everything that the flat table `keys` binds. Raises KeymapError."""
     bound: dict[str, str] = {}
     for action_id, value in keys.items():
         if action_id not in ACTIONS:
-            raise KeymapError(f"key map {where}: unknown action {action_id!r}: choose {', '.join(ACTIONS)}")
+            raise KeymapError(f"unknown action {action_id!r}: {_suggest(action_id)}")
         for key in value if isinstance(value, list) else [value]:
-            name = parse_key(key, where)
+            name = parse_key(key)
             if bound.setdefault(name, action_id) != action_id:
-                raise KeymapError(f"key map {where}: key {key!r} is bound to {bound[name]} and to {action_id}")
+                raise KeymapError(f"key {key!r} is bound to {bound[name]} and to {action_id}")
     return bound
 
 
-def _rebind(base: Mapping[str, str], bound: Mapping[str, str], changed: Set[str]) -> dict[str, str]:
-    """Return the base map, in which each action in `changed` has the keys of `bound` only."""
-    kept = {key: action_id for key, action_id in base.items() if action_id not in changed and key not in bound}
-    return kept | dict(bound)
+def _suggest(action_id: str) -> str:
+    near = difflib.get_close_matches(action_id, ACTIONS, n=1, cutoff=0.8)
+    return f"did you mean {near[0]}?" if near else f"choose {', '.join(ACTIONS)}"
 
 
-def parse_key(key: object, where: str) -> str:
+def parse_key(key: object) -> str:
     """Return Textual's name of a key in any accepted spelling: "e", ",", "comma", "ctrl+x". Raises KeymapError."""
     if not isinstance(key, str) or not key:
-        raise KeymapError(f"key map {where}: a key must be a string, not {key!r}")
+        raise KeymapError(f"a key must be a string, not {key!r}")
     match = _MODIFIERS.match(key)
     modifiers = match.group() if match and len(match.group()) < len(key) else ""
     plain = key[len(modifiers) :]
     plain = PUNCTUATION.get(plain, plain)
     if plain not in NAMED_KEYS and not (len(plain) == 1 and plain.isprintable()):
         raise KeymapError(
-            f"key map {where}: unknown key {key!r}: choose a character, up, down, left, right, space, comma, "
+            f"unknown key {key!r}: choose a character, up, down, left, right, space, comma, "
             "full_stop, plus, minus, enter, tab, home, end, pageup, pagedown, insert, delete, backspace, "
             "f1 to f24, ctrl+..."
         )
     return modifiers + plain
-
-
-def _check(bindings: Mapping[str, str], where: str) -> None:
-    for action_id in REQUIRED_ACTIONS:
-        keys = {key for key, bound in bindings.items() if bound == action_id}
-        if not keys - {"escape"}:
-            raise KeymapError(f"key map {where}: {action_id} needs a key other than escape")

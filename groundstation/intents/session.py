@@ -41,7 +41,10 @@ class Watch(Intent, frozen=True):
 
 
 class StartSimulator(Intent, frozen=True):
-    """Start a simulated rover as a child of the station process and let it connect to us."""
+    """Start simulated rovers as children of the station process and let them connect to us."""
+
+    kind: str = "rover"
+    """A row of groundstation.simulators.SIMULATORS."""
 
 
 class Quit(Intent, frozen=True):

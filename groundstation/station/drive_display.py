@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dialects.enums import MissionType
-from dialects.messages import Heartbeat, Message
+from dialects.messages import Heartbeat, Message, RoverDriveStatus
 from groundstation.station.operator import OperatorSession
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
@@ -21,10 +21,11 @@ DEMANDS_COUNT = 10.0
 
 
 class DriveDisplay:
-    """Joins what the vehicle tells with what this station sends to it."""
+    """Joins what the vehicle tells with what this station sends to it. `system` is our system id."""
 
-    def __init__(self, fleet: Fleet, operator: OperatorSession, timesync: TimesyncClient) -> None:
+    def __init__(self, fleet: Fleet, operator: OperatorSession, timesync: TimesyncClient, system: int) -> None:
         self._fleet = fleet
+        self._system = system
         self._operator = operator
         self._timesync = timesync
         self._beat_at: float | None = None
@@ -40,6 +41,9 @@ class DriveDisplay:
     def receive(self, contact: Contact, received: Received, now: float) -> None:
         """Handle a message of a vehicle."""
         contact.drive.receive(received, self._round_trip(contact), now)
+        message = received.message
+        if isinstance(message, RoverDriveStatus) and message.source_system == self._system:
+            contact.state.latency.record_applied(message.source_seq, now, message.demand_age_ms / 1000)
 
     def tick(self, now: float) -> None:
         """Choose the parameters to read, and add to the series."""
@@ -59,6 +63,9 @@ class DriveDisplay:
         settings: Mapping[str, float] = contact.settings_check.values if contact.settings_check else {}
         facts = drive.build_facts(settings, age, self._quiet(contact, now), self._input_age(contact, now), now)
         return {
+            "without_link": contact.without_link,
+            "obeys": contact.settings_check.obeys if contact.settings_check else None,
+            "warnings": contact.warnings,
             "command_age": age[0],
             "command_age_estimated": age[1] and age[0] is not None,
             "speed_demand": drive.speed_demand(now),

@@ -151,8 +151,8 @@ class DrivingController:
             return f"another program with our id {self._system} is in control"
         if not self.is_in_control(contact):
             return f"GCS {state.driver} is in control" if state.driver else "not in control"
-        if contact.releasing:
-            return "releasing control"
+        if contact.releasing or contact.closing:
+            return "releasing control" if contact.releasing else "its link is being closed"
         return None if state.mode in DRIVABLE_MODES else f"mode {state.mode}"
 
     def _may_stream(self, contact: Contact) -> bool:
@@ -161,7 +161,7 @@ class DrivingController:
         A silent driver with our system id is this program before a restart: neutral demands take over from it.
         """
         state = contact.state
-        if self._ending or contact.releasing or not self._operator.live:
+        if self._ending or contact.releasing or contact.closing or not self._operator.live:
             return False
         if self._commander.is_arming(state.system):
             return state.driver in (None, self._system)

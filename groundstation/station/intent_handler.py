@@ -25,6 +25,7 @@ from groundstation.intents.driving import (
     SetStyle,
     Stop,
 )
+from groundstation.intents.links import CloseLink
 from groundstation.intents.services import CancelRequest, ServiceIntent
 from groundstation.intents.session import Quit, RenewLease, ReportKeyReleases, SetKeyGate, Watch
 from groundstation.intents.union import AnyIntent
@@ -43,6 +44,7 @@ from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
 from groundstation.station.handover import Handover
+from groundstation.station.link_closing import LinkClosing
 from groundstation.station.operator import OperatorSession
 from groundstation.station.service_calls import SERVICE_CALLS
 from groundstation.station.service_desk import ServiceDesk
@@ -81,6 +83,7 @@ class IntentHandler:
         log: MessageLog,
         views: ViewFeed,
         services: ServiceDesk,
+        link_closing: LinkClosing,
     ) -> None:
         self._operator = operator
         self._fleet = fleet
@@ -91,6 +94,7 @@ class IntentHandler:
         self._log = log
         self._views = views
         self._services = services
+        self._link_closing = link_closing
         self._emergency_at = -math.inf
 
     def handle(self, intent: AnyIntent, now: float) -> None:
@@ -205,6 +209,10 @@ class IntentHandler:
     def _cancel_request(self, intent: CancelRequest, now: float) -> None:
         self._services.cancel(intent.request, now)
 
+    def _close_link(self, intent: CloseLink, now: float) -> None:
+        """Go neutral for the vehicles behind the link; the shell closes it after that."""
+        self._link_closing.begin(intent.link, now)
+
     def _quit(self, intent: Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
@@ -245,7 +253,9 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     GiveControl: IntentHandler._give_control,
     KeepControl: IntentHandler._keep_control,
     CancelRequest: IntentHandler._cancel_request,
+    CloseLink: IntentHandler._close_link,
     Quit: IntentHandler._quit,
     **dict.fromkeys(SERVICE_CALLS, IntentHandler._start_request),
 }
-"""Intent -> method, for all that are not commands to a vehicle. StartSimulator is handled in station_process.py."""
+"""Intent -> method, for all that are not commands to a vehicle. AddLink, StartSimulator and
+the rest of CloseLink are the shell's, groundstation/connect."""

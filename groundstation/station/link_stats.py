@@ -32,12 +32,28 @@ class LinkStats:
         self._samples: dict[int, deque[_Sample]] = {}
 
     def update(self, reports: Sequence[LinkReport], system: int | None, now: float) -> None:
-        """Add the reports; `system` is the vehicle whose loss is counted."""
+        """Add the reports of all links; `system` is the vehicle whose loss is counted."""
+        reported = {report.index for report in reports}
+        self._samples = {link: samples for link, samples in self._samples.items() if link in reported}
         for report in reports:
             samples = self._samples.setdefault(report.index, deque())
             samples.append(_Sample(now, report, _count(report, system)))
             while now - samples[0].time > LOSS_WINDOW:
                 samples.popleft()
+
+    def remove(self, link: int) -> None:
+        """Forget a link that was closed."""
+        self._samples.pop(link, None)
+
+    def systems(self, link: int) -> frozenset[int]:
+        """Return the systems from which frames arrived on a link."""
+        samples = self._samples.get(link)
+        return frozenset(system for system, _ in samples[-1].report.sources) if samples else frozenset()
+
+    @property
+    def all_systems(self) -> frozenset[int]:
+        """The systems from which frames arrived on any link."""
+        return frozenset[int]().union(*map(self.systems, self._samples))
 
     def build_views(self, round_trip: float | None) -> tuple[LinkView, ...]:
         """Build the links' part of the snapshot."""
@@ -108,6 +124,9 @@ def _sum(report: LinkReport, systems: Collection[int]) -> SourceCount:
 def _row(samples: deque[_Sample], vehicles: Collection[int], round_trip: float | None, jitter: float | None) -> LinkRow:
     report = samples[-1].report
     return LinkRow(
+        index=report.index,
+        watch_only=report.watch_only,
+        retry_in=report.retry_in,
         name=report.name,
         peers=tuple(_address(peer) for peer in report.audience if peer.address != report.name)[:MAX_PEERS],
         peer_count=report.peers,
@@ -156,4 +175,5 @@ def _view(samples: deque[_Sample], round_trip: float | None) -> LinkView:
         dropped=newest.report.dropped,
         systems=tuple(sorted({system for system, _ in newest.report.sources})),
         problem=link_problem(newest.report),
+        watch_only=newest.report.watch_only,
     )

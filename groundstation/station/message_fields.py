@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from dialects.enum_names import enum_names, flag_names
-from dialects.messages import Message, StatusText, SysStatus, decode_text, printable
+from dialects.messages import ExtraMessage, Message, StatusText, SysStatus, decode_text, printable
 from groundstation.views.messages import MessageField
 
 MAX_TEXT = 200
@@ -38,7 +38,7 @@ def build_fields(message: Message) -> tuple[MessageField, ...]:
 
 def _build(message: Message, name: str) -> MessageField:
     kind = type(message)
-    value = decode_text(message) if isinstance(message, StatusText) and name == "text" else getattr(message, name)
+    value = _value(message, name)
     unit = kind.fieldunits_by_name.get(name, "")
     enum = kind.fieldenums_by_name.get(name, "")
     if isinstance(message, SysStatus) and name == HEALTH:
@@ -50,6 +50,12 @@ def _build(message: Message, name: str) -> MessageField:
             return MessageField(name, f"0x{value:x}", "", summary, () if name in JOINED else flags)
         return MessageField(name, str(value), "", enum_names(enum).get(value, f"not in {enum}"))
     return MessageField(name, _text(value), unit, _in_usual_unit(value, unit))
+
+
+def _value(message: Message, name: str) -> Any:
+    if isinstance(message, ExtraMessage):
+        return message.values[name]
+    return decode_text(message) if isinstance(message, StatusText) and name == "text" else getattr(message, name)
 
 
 def _health(message: SysStatus) -> tuple[str, tuple[str, ...]]:

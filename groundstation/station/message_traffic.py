@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 
@@ -11,6 +11,7 @@ from dialects.enum_names import enum_names
 from dialects.messages import Message
 from groundstation.station.message_fields import build_fields
 from groundstation.station.message_filter import parse_filter, sorted_rows
+from groundstation.station.unknown_messages import UnknownMessages
 from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
 from link.core import LinkReport, SourceCount
 from link.protocol.rate import RateMeter
@@ -53,6 +54,7 @@ class MessageTraffic:
     def __init__(self, system: int, component: int) -> None:
         self._own = (True, system, component)
         self._kinds: dict[Source, dict[str, _Kind]] = {}
+        self._unknown = UnknownMessages(WINDOW)
         self._size = 0
         self._not_shown = 0
         self._losses: dict[tuple[int, int], SourceCount] = {}
@@ -72,19 +74,21 @@ class MessageTraffic:
 
     def _count(self, source: Source, message: Message, now: float, *, known: bool) -> None:
         kinds = self._kinds.get(source)
-        kind = None if kinds is None else kinds.get(message.msgname)
+        name = type(message).msgname
+        kind = None if kinds is None else kinds.get(name)
         if kind is None:
             if self._size >= MAX_KINDS and not known:
                 self._not_shown += 1
                 return
             self._size += not known
-            kind = self._kinds.setdefault(source, {})[message.msgname] = _Kind(message)
+            kind = self._kinds.setdefault(source, {})[name] = _Kind(message)
         kind.newest, kind.at = message, now
         kind.count += 1
         kind.meter.add(now)
 
-    def observe(self, reports: Iterable[LinkReport]) -> None:
-        """Take what was lost of each source, from the link that has received most of it."""
+    def observe(self, reports: Sequence[LinkReport], now: float) -> None:
+        """Take the unknown messages, and what was lost of each source, from the link that has received most of it."""
+        self._unknown.observe(reports, now)
         for report in reports:
             for ids, counted in report.sources.items():
                 if ids not in self._losses or counted.received >= self._losses[ids].received:
@@ -98,7 +102,7 @@ class MessageTraffic:
 
     def build_page(self, request: MessagesRequest, now: float, wall: float) -> MessagesPage:
         """Return the rows that a screen shows."""
-        every = [row for source in sorted(self._kinds) for row in self._message_rows(source, now)]
+        every = [row for source in self._sources() for row in self._message_rows(source, now)]
         rows = self._arrange(request, every, now)
         count = max(1, min(request.count, MAX_ROWS))
         first = max(0, min(request.first, len(rows) - count))
@@ -111,22 +115,27 @@ class MessageTraffic:
         source = (request.sent, request.system, request.component)
         kind = self._kinds.get(source, {}).get(request.name)
         if kind is None:
-            return None
+            return self._unknown.build_message(request, now)
         return MessageView(
             request.system, request.component, request.sent, request.name, type(kind.newest).id,
             kind.meter.rate(now), kind.count, now - kind.at, kind.length, build_fields(kind.newest),
         )  # fmt: skip
 
+    def _sources(self) -> list[Source]:
+        return sorted(self._kinds.keys() | {(False, *ids) for ids in self._unknown.sources})
+
     def _message_rows(self, source: Source, now: float) -> list[MessageRow]:
         rows: list[MessageRow] = []
-        for name, kind in sorted(self._kinds[source].items()):
+        for name, kind in sorted(self._kinds.get(source, {}).items()):
             rate = kind.meter.rate(now)
             rows.append(_row(source, name, rate, rate * kind.length if rate else 0.0, kind.count, now - kind.at))
+        if not source[0]:
+            rows += self._unknown.build_rows(source[1:], now)
         return rows
 
     def _arrange(self, request: MessagesRequest, every: list[MessageRow], now: float) -> list[MessageRow]:
         matches = parse_filter(request.text)
-        rows = [row for row in every if matches(row, type(self._kinds[_source(row)][row.name].newest).fieldnames)]
+        rows = [row for row in every if matches(row, self._field_names(row))]
         if request.order == "source":
             return self._tree(rows, request.closed)
         at, what, order = self._order
@@ -135,6 +144,9 @@ class MessageTraffic:
             self._order = now, (request.order, request.text), order
         found = {(_source(row), row.name): row for row in rows}
         return [found[key] for key in order if key in found]
+
+    def _field_names(self, row: MessageRow) -> Sequence[str]:
+        return () if row.unknown else type(self._kinds[_source(row)][row.name].newest).fieldnames
 
     def _tree(self, rows: Sequence[MessageRow], closed: Sequence[tuple[int, int, bool]]) -> list[MessageRow]:
         """Return the sources, each followed by its messages where it is open."""

@@ -148,6 +148,11 @@ class OperatorSession:
             return NEUTRAL
         return self.sticks.axes(now)
 
+    @property
+    def sent_demand(self) -> Axes:
+        """The last demand sent to the selected vehicle."""
+        return self._sent_demand
+
     def record_demand(self, axes: Axes) -> bool:
         """Record the demand sent to the selected vehicle. Returns whether it differs from the one before."""
         changed, self._sent_demand = axes != self._sent_demand, axes

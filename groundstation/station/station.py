@@ -18,10 +18,12 @@ from groundstation.station.handover import Handover
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.station.id_conflict import IdConflict
 from groundstation.station.intent_handler import IntentHandler
+from groundstation.station.link_closing import LinkClosing
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
+from groundstation.station.operator_log import OperatorLog
 from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
@@ -37,6 +39,8 @@ from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
 
 DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
+
+NO_LINK = "no link yet: Connect opens one"
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -60,6 +64,7 @@ class Station:
         self.fleet = Fleet(self.log, system, COMPONENT)
         self._traffic = MessageTraffic(system, COMPONENT)
         self._endpoints = tuple(endpoints)
+        self._not_open: tuple[LinkReport, ...] = ()
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
@@ -70,7 +75,7 @@ class Station:
         self._links = LinkStats()
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self._services)
         self._timesync = TimesyncClient(system)
-        self._display = DriveDisplay(self.fleet, self.operator, self._timesync)
+        self._display = DriveDisplay(self.fleet, self.operator, self._timesync, system)
         self._link_views = LinkViews(
             self.fleet,
             self._commander,
@@ -92,7 +97,7 @@ class Station:
                 **self._display.sources,
             }
         )
-        """Request -> its source."""
+        self.link_closing = LinkClosing(self.operator, self.fleet, self._links)
         self._intents = IntentHandler(
             self.operator,
             self.fleet,
@@ -103,7 +108,9 @@ class Station:
             self.log,
             self.views,
             self._services,
+            self.link_closing,
         )
+        self._operator_log = OperatorLog(self.log)
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
@@ -132,11 +139,8 @@ class Station:
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
         self._services.receive(contact, received, now)
-        match received.message:
-            case m.StatusText() as message:
-                self._handle_statustext(message, contact, now)
-            case m.RoverDriveStatus() as message if message.source_system == self._system:
-                contact.state.latency.record_applied(message.source_seq, now, message.demand_age_ms / 1000)
+        if isinstance(received.message, m.StatusText):
+            self._handle_statustext(received.message, contact, now)
         if contact is self.fleet.selected:
             self._timesync.receive(received, now)
         self._outbox += handle_request(received, now, (self._system, COMPONENT))
@@ -157,14 +161,16 @@ class Station:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
         self._driving.update(now)
+        self._log_driving(now)
         self._departure.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
+        reports = [*reports, *self._not_open]
         selected = self.fleet.selected
         self._links.update(reports, selected.state.system if selected else None, now)
         self.fleet.observe(reports, now)
-        self._traffic.observe(reports)
+        self._traffic.observe(reports, now)
         self._traffic.set_labels({(each.state.system, each.state.component): each.state.name for each in self.fleet})
         for report in reports:
             event = self._link_events.update(report)
@@ -191,8 +197,6 @@ class Station:
         """Return False for a demand that was made before the process stood still."""
         return not isinstance(message, DEMANDS) or not self.operator.stall.is_stalled(now)
 
-    # ---- the shell around the core ----
-
     def report_to_watchdog(self, now: float) -> tuple[DrivenVehicle, ...]:
         """Return the vehicles that the watchdog stops if no further call follows within STALL_TIMEOUT."""
         self._expire_lease(now)
@@ -200,19 +204,22 @@ class Station:
         return self._driving.driven_vehicles(now)
 
     def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
-        """Carry out what the operator wants; the resulting messages are ready to be sent.
-
-        `read_at`: when the screen read the key of the intent; without it only now.
-        """
+        """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""
         self._expire_lease(now)
+        self._operator_log.handle(intent, now)
         if intent.is_input:
             self._driving.key_read_at = now if read_at is None else read_at
         self._intents.handle(intent, now)
         self._driving.key_read_at = None
+        self._log_driving(now)
 
     def set_simulator_state(self, state: str | None) -> None:
         """Record the state of the simulator, for the next snapshot."""
         self._simulator_state = state
+
+    def set_endpoints(self, endpoints: Sequence[str], not_open: Sequence[LinkReport]) -> None:
+        """Record the endpoints of all links, and the reports of those that are not open."""
+        self._endpoints, self._not_open = tuple(endpoints), tuple(not_open)
 
     def set_addresses(self, addresses: tuple[str, ...]) -> None:
         """Record the addresses of this machine, for the next snapshot."""
@@ -260,6 +267,10 @@ class Station:
         if any(contact.ours and contact.state.armed for contact in self.fleet):
             self.log.add(now, "station", f"{lapse}: neutral, release the keys", Severity.CRITICAL)
 
+    def _log_driving(self, now: float) -> None:
+        selected = self.fleet.selected
+        self._operator_log.tick(self.operator.sent_demand, selected.state.latency if selected else None, now)
+
     def _handle_statustext(self, message: m.StatusText, contact: Contact, now: float) -> None:
         system = contact.state.system
         text = self.log.handle_statustext(message, system, now)
@@ -277,10 +288,7 @@ class Station:
             control_wait=self._handover.waits_for(contact, now),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
-            without_link=contact.without_link,
             refusal=commander.last_refusal(state.system, now),
-            obeys=contact.settings_check.obeys if contact.settings_check else None,
-            warnings=contact.warnings,
             **self._display.build_fields(contact, now),
         )
 
@@ -289,4 +297,4 @@ class Station:
             return None
         if self._links.has_traffic:
             return "receiving data, but no HEARTBEAT of a vehicle yet"
-        return f"waiting for a vehicle on {', '.join(self._endpoints)}"
+        return f"waiting for a vehicle on {', '.join(self._endpoints)}" if self._endpoints else NO_LINK

@@ -33,8 +33,12 @@ class ViewFeed:
     """Answers the newest requests of the screen, one of a kind at a time."""
 
     def __init__(self, sources: Mapping[type[ViewRequest], ViewSource]) -> None:
-        self._sources = sources
+        self._sources = dict(sources)
         self._watched: dict[type[ViewRequest], _Watched] = {}
+
+    def add(self, kind: type[ViewRequest], source: ViewSource) -> None:
+        """Add the source of one more kind of request."""
+        self._sources[kind] = source
 
     def watch(self, requests: Sequence[ViewRequest]) -> None:
         """Answer these requests from now on and no others. A changed request keeps the rate of its kind."""

@@ -83,6 +83,7 @@ class ConsoleApp(App[int]):
         self._ascii = AsciiFilter(enabled=ascii_only)
         self._watched: tuple[ViewRequest, ...] = ()
         context = ScreenContext(keymap, self._send, self.perform_action, self._display_state, folder)
+        self._kept = context.kept
         self.drive = DriveScreen(context)
         self._navigator = ScreenNavigator(self, context)
         self._actions = {"app.quit": self.request_quit, **self._navigator.actions, **self.drive.actions}
@@ -203,6 +204,7 @@ class ConsoleApp(App[int]):
             terminal_round_trip=self.gate.ping.round_trip,
             terminal_silence=self.gate.ping.waited(self._clock()),
             ascii=self._ascii.enabled,
+            kept=self._kept,
         )
 
     def get_line_filters(self) -> Sequence[LineFilter]:

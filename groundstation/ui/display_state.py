@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.input.keymap import Keymap
@@ -69,6 +71,8 @@ class DisplayState:
     screen: ScreenInfo = DRIVE_INFO
     ascii: bool = False
     """The terminal shows ASCII characters only."""
+    kept: Mapping[type, Any] = field(default_factory=dict)
+    """What screens keep while they are closed, by its class (ScreenContext.keep)."""
 
     def key(self, action: str) -> str:
         """Return the main key of an action as it is printed, "?" where it has none."""

@@ -20,7 +20,7 @@ WARNING = 4
 SEVERITIES = ("EMERG", "ALERT", "CRIT", "ERROR", "WARN", "NOTE", "INFO", "DEBUG")
 """Names of MAV_SEVERITY 0 to 7."""
 
-LABELS = {"ack": "ACK", "state": "STATE", "station": "GCS"}
+LABELS = {"ack": "ACK", "state": "STATE", "station": "GCS", "you": "YOU"}
 """Label of a line -> its tag below severity WARNING; STATUSTEXT lines have the name of their severity."""
 
 
@@ -47,10 +47,14 @@ class LogFilter:
     """Must occur in the text or the tag, upper or lower case."""
     warnings: bool = False
     """Warnings and worse only."""
+    labels: tuple[str, ...] = ()
+    """Only lines with one of these labels; empty: all."""
 
     def matches(self, line: LogLine) -> bool:
         """Return whether the line is shown."""
         if self.warnings and line.severity > WARNING:
+            return False
+        if self.labels and line.label not in self.labels:
             return False
         return self.text.lower() in f"{tag_of(line)} {line.text}".lower()
 

@@ -11,12 +11,11 @@ from dataclasses import dataclass, replace
 
 from groundstation.intents.services import CancelRequest, FetchParams, WriteParams
 from groundstation.intents.union import AnyIntent
+from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.views.params import ParamPage, ParamPageRequest, ParamRow
 from groundstation.views.requests import RequestLine
 
 MAX_UNDO = 100
-ANSWER_WITHIN = 10.0
-"""s within which a question for writing must be answered."""
 INTEGERS = ("UINT8", "INT8", "UINT16", "INT16", "UINT32", "INT32")
 
 
@@ -44,7 +43,8 @@ class ParamTableValue:
 class ParamModel:
     """The newest page, the selected row, and the pending changes."""
 
-    def __init__(self) -> None:
+    def __init__(self, numbers: RequestNumbers) -> None:
+        self._numbers = numbers
         self.page: ParamPage | None = None
         self.filter = ""
         self.changed_only = False
@@ -52,11 +52,9 @@ class ParamModel:
         self._undo: list[dict[str, PendingChange]] = []
         self._top = self._selected = 0
         self._height = 1
-        self._count = 0
         self._fetched: set[int] = set()
         """Systems whose parameters were requested by opening the screen."""
         self._writing: tuple[int, tuple[PendingChange, ...]] | None = None
-        self._asked_at = -math.inf
 
     # ---- the page ----
 
@@ -177,35 +175,24 @@ class ParamModel:
 
     def fetch(self) -> AnyIntent:
         """Return the intent that reads all parameters again."""
-        self._count += 1
-        return FetchParams(self._count)
+        return FetchParams(self._numbers.take())
 
     def cancel(self) -> tuple[AnyIntent, ...]:
         """Return the intents that cancel what runs."""
         return tuple(CancelRequest(line.number) for line in self.page.running) if self.page else ()
 
-    def ask(self, now: float) -> bool:
-        """Ask whether to write the pending changes; return whether there are any that are not being written."""
-        self._asked_at = now if self.pending and self._writing is None else -math.inf
-        return self.is_asking(now)
+    @property
+    def may_write(self) -> bool:
+        """There are pending changes, and none are being written."""
+        return bool(self.pending) and self._writing is None and self.page is not None
 
-    def is_asking(self, now: float) -> bool:
-        """Return whether the question waits for its answer."""
-        return now - self._asked_at < ANSWER_WITHIN
-
-    def withdraw(self) -> None:
-        """End the question."""
-        self._asked_at = -math.inf
-
-    def write(self, now: float) -> tuple[AnyIntent, ...]:
-        """Write the pending changes, if that was asked in time."""
-        if not self.is_asking(now) or self.page is None:
+    def write(self) -> tuple[AnyIntent, ...]:
+        """Write the pending changes."""
+        if not self.may_write or self.page is None:
             return ()
-        self.withdraw()
-        self._count += 1
-        changes = tuple(self.pending.values())
-        self._writing = self._count, changes
-        return (WriteParams(self._count, self.page.system, tuple((each.name, each.value) for each in changes)),)
+        changes, number = tuple(self.pending.values()), self._numbers.take()
+        self._writing = number, changes
+        return (WriteParams(number, self.page.system, tuple((each.name, each.value) for each in changes)),)
 
     def _finish_write(self, page: ParamPage) -> None:
         """Keep what was not set pending; undo makes the old values of the others pending."""

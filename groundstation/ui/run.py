@@ -12,10 +12,11 @@ from groundstation.ui.key_gate import StationConnection
 from groundstation.ui.tty_output import redirect_output
 
 
-def run(client: StationConnection, *, keymap: Keymap, log_file: Path | None = None, ascii_only: bool = False) -> int:
+def run(
+    client: StationConnection, *, keymap: Keymap, folder: Path, log_file: Path | None = None, ascii_only: bool = False
+) -> int:
     """Run the UI to its end. Return 0 after a quit, 128 + n after signal n, 1 after an internal error."""
     with redirect_output(log_file) as terminal:
-        folder = log_file.parent if log_file else Path.home()
         app = ConsoleApp(client, keymap, terminal=terminal, folder=folder, ascii_only=ascii_only)
         with exit_on_signals(app.end_threadsafe, terminal):
             # No mouse events for widgets: mouse.py captures the mouse and discards its reports.

@@ -50,6 +50,8 @@ class Contact:
     """This station has armed or driven the vehicle since the vehicle was last disarmed."""
     releasing: bool = False
     """Control is being released: the final neutrals go out, and no demand follows."""
+    closing: bool = False
+    """The link to it is being closed: the final neutrals go out, and no demand follows."""
     demanded_at: float = -math.inf
     """When the newest demand was sent to it."""
     lost_at: float | None = None
@@ -171,6 +173,17 @@ class Fleet:
             return
         at = systems.index(self._selected.state.system)
         self.select(systems[(at + 1) % len(systems)], now)
+
+    def forget(self, system: int, now: float) -> None:
+        """Forget a vehicle, e.g. because the operator closed the link to it. The next one is selected in its place."""
+        contact = self._contacts.pop(system, None)
+        if contact is None:
+            return
+        self._log.add(now, "station", f"{contact.state.name} left out: its link is closed", Severity.NOTICE)
+        if contact is self._selected:
+            self._selected = None
+            if self._contacts:
+                self.select(self.system_ids[0], now)
 
     def get_or_add(self, received: Received, now: float) -> Contact | None:
         """Return the contact that sent a message; the HEARTBEAT of a new vehicle adds one."""

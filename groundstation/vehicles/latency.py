@@ -34,6 +34,8 @@ class LatencyMeter:
     def __init__(self, timings: KeyTimings) -> None:
         self.latest: float | None = None
         """s"""
+        self.reports = 0
+        """Reports that gave a latency."""
         self._timings = timings
         self._sent: OrderedDict[int, SentDemand] = OrderedDict()
 
@@ -52,5 +54,6 @@ class LatencyMeter:
         demand = self._sent.pop(sequence, None)
         if demand is None or now - demand.made > TOO_OLD:
             return
+        self.reports += 1
         self.latest = max(0.0, now - demand.made - age)
         self._timings.add(demand.key, max(0.0, now - demand.sent - age) / 2, age)

@@ -24,6 +24,9 @@ PAGE = 250
 STATE = "state"
 """Label of changes of mode, arming and control."""
 
+OPERATOR = "you"
+"""Label of what the operator did."""
+
 CHUNK = 50
 """Bytes of text in one STATUSTEXT (common.xml)."""
 
@@ -115,9 +118,10 @@ class MessageLog:
     def build_lines(self, now: float, wall: float) -> tuple[LogLine, ...]:
         """Return the NEWEST lines, oldest first; `now` and `wall` are the same moment on both clocks.
 
-        Changes of state are left out: the screen shows the state itself, and they would push warnings out.
+        Changes of state and what the operator did are left out: the screen shows the state itself, and they would push
+        warnings out.
         """
-        lines = (line for line in reversed(self._lines) if line.label != STATE)
+        lines = (line for line in reversed(self._lines) if line.label not in (STATE, OPERATOR))
         newest = [_build_line(line, now, wall) for line in islice(lines, NEWEST)]
         return tuple(reversed(newest))
 

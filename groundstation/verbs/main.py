@@ -8,9 +8,16 @@ import logging
 import os
 import signal
 import sys
-from collections.abc import Sequence
+import time
+from collections.abc import Mapping, Sequence
 
+from dialects.extra.errors import DialectError
+from dialects.extra.option import use_dialect
+from groundstation.config.config_file import ConfigError
+from groundstation.config.effective import ENDPOINT_VARIABLE, load_config, merge, resolve_endpoints
+from groundstation.config.settings import DEFAULT_ENDPOINT
 from groundstation.formats.errors import FileFormatError
+from groundstation.recent.recent_file import RecentFile
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession, run_session
@@ -21,8 +28,6 @@ from link.runtime.command_line import CommandLineParser
 from link.runtime.event_loop import run_loop
 from link.transport.transport import LinkError
 
-DEFAULT_ENDPOINT = "udpin:127.0.0.1:14550"
-ENDPOINT_VARIABLE = "MAVHELM_ENDPOINT"
 SYSTEM = 254
 """Our MAVLink system id: not the 255 of a ground station that drives beside, whose commands would then be ours too."""
 
@@ -31,7 +36,8 @@ exit codes: 0 done and confirmed; 1 this program failed; 2 wrong arguments; 3 no
 5 no answer; 7 differs, or no such thing; 8 partly done
 
 A port that a running ground station listens on is taken: connect the verb by another link of the vehicle, or by
-`bridge`. Endpoints come from -e, else from {ENDPOINT_VARIABLE} (separated by spaces), else {DEFAULT_ENDPOINT}.
+`bridge`. Endpoints, or names of the config file, come from -e, else from {ENDPOINT_VARIABLE} (separated by spaces),
+else from `open` in the config file; else it is the endpoint used last, else {DEFAULT_ENDPOINT}.
 """
 
 
@@ -43,9 +49,14 @@ def run(arguments: Sequence[str]) -> int:
     logging.basicConfig(handlers=[logging.NullHandler()])  # what is worth knowing is printed
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a transfer ends in order, and can be resumed
     try:
+        use_dialect(options.dialect)
         code = run_loop(_run(VERBS[arguments[0]][options.action], options, output))
         sys.stdout.flush()
-    except (VerbError, FileFormatError, EndpointError, LinkError) as error:
+    except ConfigError as error:
+        for problem in error.problems:
+            output.error(problem)
+        return int(ExitCode.USAGE)
+    except (VerbError, FileFormatError, DialectError, EndpointError, LinkError) as error:
         output.error(str(error))
         return int(error.code if isinstance(error, VerbError) else ExitCode.USAGE)
     except KeyboardInterrupt:
@@ -58,10 +69,15 @@ def run(arguments: Sequence[str]) -> int:
 
 
 async def _run(action: VerbAction, options: argparse.Namespace, output: Output) -> int:
-    endpoints = options.endpoints or os.environ.get(ENDPOINT_VARIABLE, "").split() or [DEFAULT_ENDPOINT]
+    recent = RecentFile()
+    endpoints = choose_endpoints(options.endpoints, options.config, os.environ, recent)
+    if recent.warning:
+        output.note(recent.warning)
 
     async def script(session: VerbSession) -> int:
         await session.find_vehicle(options.wait, options.vehicle, " ".join(endpoints))
+        if options.endpoints:
+            recent.update(lambda known: known.add_all(endpoints, time.time(), session.vehicle.name))
         return await action.run(session, options, output)
 
     try:
@@ -69,6 +85,23 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output) 
             return await run_session(endpoints, options.system, options.vehicle, script, output.progress)
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
+
+
+def choose_endpoints(
+    texts: Sequence[str] | None, config: str | None, environment: Mapping[str, str], recent: RecentFile
+) -> list[str]:
+    """Return the endpoints of -e, of MAVHELM_ENDPOINT, of the config file, or the one used last.
+
+    The config file is read only where it matters: a mistake in it does not keep a verb from a vehicle that -e names.
+    Raises ConfigError, EndpointError.
+    """
+    texts = texts or environment.get(ENDPOINT_VARIABLE, "").split()
+    if texts and all(":" in text for text in texts):
+        return list(texts)
+    effective = merge(load_config(config, environment, VERBS), environment, {})
+    if not texts and "open" not in effective.sources:
+        return [recent.load().last or DEFAULT_ENDPOINT]
+    return resolve_endpoints(texts or effective.settings.open, effective.settings)
 
 
 def build_parser(verb: str) -> CommandLineParser:
@@ -101,13 +134,15 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
         "--endpoint",
         dest="endpoints",
         action="append",
-        metavar="ENDPOINT",
+        metavar="ENDPOINT|NAME",
         help="where the vehicle is; more than once for several links",
     )
+    add("--config", metavar="FILE", help="config file with names of endpoints")
     add("-v", "--vehicle", type=_system_id, metavar="ID", help="its system id (default: the only vehicle)")
     add("--wait", type=_seconds, default=10.0, metavar="S", help="for the vehicle's heartbeat (default: 10)")
     add("--timeout", type=_seconds, metavar="S", help="end after this time in any case")
     add("--system", type=_system_id, default=SYSTEM, metavar="ID", help=f"our system id (default: {SYSTEM})")
+    add("--dialect", metavar="FILE.xml", help="definitions of a vehicle that sends messages of its own")
     add("--json", action="store_true", help="print one JSON object a line")
     add("-q", "--quiet", action="store_true", help="print no progress and no notes")  # fmt: skip
 

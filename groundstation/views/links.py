@@ -66,6 +66,12 @@ class LinkRow(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     """The endpoint as the user wrote it."""
+    index: int = 0
+    """Its number, for intents; below 0 while it cannot be opened."""
+    watch_only: bool = False
+    """Nothing is ever sent on it."""
+    retry_in: float | None = None
+    """s until the next attempt to open it; None while it is open."""
     peers: tuple[str, ...] = ()
     """Addresses of the first other ends that sent a HEARTBEAT, without one that the endpoint names."""
     peer_count: int = 0
@@ -102,7 +108,7 @@ class LinkRow(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class LinksView(View, frozen=True):
-    """All links, in the order of the command line."""
+    """All links, in the order in which they were opened."""
 
     rows: tuple[LinkRow, ...]
 

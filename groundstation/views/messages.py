@@ -47,6 +47,8 @@ class MessageRow(msgspec.Struct, frozen=True):
     loss: float | None = None
     """Share of the frames of the source that were lost, 0..1; None for messages and for what is sent."""
     lost: int = 0
+    unknown: bool = False
+    """Its id is in no dialect that the station knows: the name is "#" and the id, the label the length of a frame."""
 
 
 class MessagesPage(View, frozen=True):
@@ -105,3 +107,4 @@ class MessageView(View, frozen=True):
     length: int
     """Bytes of its frame."""
     fields: tuple[MessageField, ...]
+    """None for an id that is in no dialect that the station knows."""

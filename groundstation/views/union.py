@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias, Union
 
-from groundstation.views import drive, links, log, messages, params, requests  # noqa: F401 - defines the classes
+from groundstation.views import connect, drive, links, log, messages, params, requests  # noqa: F401 - defines the classes
 from groundstation.views.base import View, ViewRequest
 
 if TYPE_CHECKING:

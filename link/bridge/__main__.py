@@ -13,6 +13,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+from dialects.enums import Severity
+from dialects.extra.errors import DialectError
+from dialects.extra.option import use_dialect
 from link.bridge.bridge import Bridge
 from link.bridge.recorder import RecorderError, open_recorder
 from link.bridge.screens import StatusLogger, StatusWriter, print_json
@@ -60,9 +63,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     _check(options.endpoints, parser)
     logging.basicConfig(level=logging.INFO, format="bridge: %(message)s", stream=sys.stderr)
     try:
+        for note in use_dialect(options.dialect):
+            log.log(logging.WARNING if note.severity <= Severity.WARNING else logging.INFO, note.text)
         with ExitStack() as stack:
             asyncio.run(_serve(options, stack))
-    except (LinkError, RecorderError) as error:
+    except (DialectError, LinkError, RecorderError) as error:
         parser.exit(2, f"bridge: {error}\n")
     except KeyboardInterrupt:  # before the loop handles signals
         return 0
@@ -157,6 +162,11 @@ def _parser() -> CommandLineParser:
         "--one-frame",
         action="store_true",
         help="send each frame in its own datagram, for receivers that read only the first frame",
+    )
+    parser.add_argument(
+        "--dialect",
+        metavar="FILE.xml",
+        help="definitions of a vehicle that sends messages of its own: verify them, and route them by their target",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     return parser

@@ -230,6 +230,7 @@ class Channel:
             crc_errors=counts.crc_errors,
             resync_bytes=counts.resync_bytes,
             unknown=counts.unknown,
+            unknown_ids=counts.unknown_ids,
             duplicates=self._duplicates,
             late=self._late,
             rate_limited=self._rate_limited,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from link.protocol.frame import FramerCounts
+from link.protocol.frame import FramerCounts, UnknownKey
 
 MAX_MISMATCHES = 64
 """Message ids whose frames arrive complete but with the checksum of another definition, that are counted one by one."""
@@ -14,9 +14,10 @@ MAX_MISMATCHES = 64
 class _FailedFrame:
     end: int
     """Position where it claims to end."""
+    size: int
     message_id: int
-    known: bool
-    """Its id is in the dialect."""
+    unknown: UnknownKey | None
+    """Its source and id, if that is outside the dialect."""
     noise: int
     """`resync_bytes` before its first byte: the value to go back to if it was a complete frame of an unknown id."""
     crc_errors: int = 0
@@ -39,9 +40,9 @@ class FailedFrames:
         self.newest: _FailedFrame | None = None
         """The failed frame that is not decided yet. No property, because the framer reads it for each frame."""
 
-    def add_unknown(self, start: int, end: int, message_id: int) -> None:
+    def add_unknown(self, start: int, end: int, key: UnknownKey) -> None:
         """Add a frame with an id outside the dialect."""
-        self._add(start, end, message_id, known=False)
+        self._add(start, end, key[2], key)
 
     def add_bad_crc(self, start: int, end: int, message_id: int) -> None:
         """Add a frame of a known id with a wrong checksum."""
@@ -50,7 +51,7 @@ class FailedFrames:
             outer.crc_errors += 1
             return
         self._counts.crc_errors += 1
-        self._add(start, end, message_id, known=True)
+        self._add(start, end, message_id, None)
 
     def add_refused(self, start: int) -> None:
         """Add a frame with unknown flags, or a MAVLink 1 frame of the wrong length."""
@@ -84,20 +85,21 @@ class FailedFrames:
             return
         self.newest = None
         counts = self._counts
-        if not failed.known:
+        if failed.unknown is not None:
             counts.unknown += 1
+            counts.add_unknown(failed.unknown, 1, failed.size)
             counts.resync_bytes = failed.noise
         elif failed.message_id in counts.mismatches or len(counts.mismatches) < MAX_MISMATCHES:
             counts.mismatches[failed.message_id] = counts.mismatches.get(failed.message_id, 0) + 1
 
-    def _add(self, start: int, end: int, message_id: int, *, known: bool) -> None:
+    def _add(self, start: int, end: int, message_id: int, unknown: UnknownKey | None) -> None:
         """Keep a failed frame, unless it lies inside an earlier one that may still prove complete."""
         if self.newest is not None and self.newest.end <= start:
             self.settle(start)
         if self.newest is None:
-            self.newest = _FailedFrame(end, message_id, known, self._counts.resync_bytes)
+            self.newest = _FailedFrame(end, end - start, message_id, unknown, self._counts.resync_bytes)
 
     def _unknown_around(self, start: int) -> _FailedFrame | None:
         """Return the frame of an unknown id that contains `start`, if it may still prove complete."""
         outer = self.newest
-        return outer if outer is not None and not outer.known and start < outer.end else None
+        return outer if outer is not None and outer.unknown is not None and start < outer.end else None

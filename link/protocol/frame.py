@@ -54,6 +54,13 @@ def read_header(data: bytes, start: int = 0) -> Header | None:
     return Header(low | middle << 8 | high << 16, system, component, sequence, size)
 
 
+MAX_UNKNOWN = 64
+"""Messages with ids outside the dialect that are counted one by one."""
+
+UnknownKey = tuple[int, int, int]
+"""System, component, message id; of a frame that could not be verified."""
+
+
 @dataclass(slots=True)
 class FramerCounts:
     """What a framer has counted so far."""
@@ -68,6 +75,16 @@ class FramerCounts:
     """Frames with unknown flags, or MAVLink 1 frames of the wrong length."""
     mismatches: dict[int, int] = field(default_factory=dict)
     """Known id -> how many complete frames had the checksum of another definition."""
+    unknown_ids: dict[UnknownKey, tuple[int, int]] = field(default_factory=dict)
+    """Of `unknown`, by source and id: frames, and bytes of the newest one. Frames that are returned are left out."""
+
+    def add_unknown(self, key: UnknownKey, frames: int, size: int) -> None:
+        """Count frames with an id outside the dialect. `size`: bytes of the newest one."""
+        before = self.unknown_ids.get(key)
+        if before is not None:
+            self.unknown_ids[key] = before[0] + frames, size
+        elif len(self.unknown_ids) < MAX_UNKNOWN:
+            self.unknown_ids[key] = frames, size
 
     def add(self, more: FramerCounts) -> None:
         """Add the counts of another framer."""
@@ -78,6 +95,8 @@ class FramerCounts:
         self.refused += more.refused
         for number, times in more.mismatches.items():
             self.mismatches[number] = self.mismatches.get(number, 0) + times
+        for key, (frames, size) in more.unknown_ids.items():
+            self.add_unknown(key, frames, size)
 
 
 def noise_hint(name: str, received: int, frames: int) -> str | None:

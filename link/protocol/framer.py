@@ -25,7 +25,7 @@ from dialects.codec import (
     SIGNATURE_SIZE,
 )
 from link.protocol.failed_frame import FailedFrames
-from link.protocol.frame import Frame, FramerCounts, read_header
+from link.protocol.frame import Frame, FramerCounts, UnknownKey, read_header
 
 PARTIAL_DEADLINE = 0.1
 """s to wait for the rest of a frame on a stream. Longer than the longest frame takes at 57600 baud (280 bytes, 49 ms),
@@ -83,6 +83,7 @@ class Framer:
             extra = CRC_EXTRA.get(message_id)
             if extra is None and not self._unknown:  # one frame by its boundaries: not searched for others
                 self.counts.unknown += 1
+                self.counts.add_unknown((system, component, message_id), 1, len(data))
                 return []
             if extra is not None and mcrf4xx(data[1:-2] + extra) == data[-2] | data[-1] << 8:
                 self.counts.frames += 1
@@ -213,7 +214,7 @@ class Framer:
         end = crc_at + CRC_SIZE + (SIGNATURE_SIZE if flags else 0)
         extra = CRC_EXTRA.get(message_id)
         if flags > INCOMPAT_SIGNED or extra is None:
-            return self._foreign(start, end, flags, message_id)
+            return self._foreign(start, end, flags, (system, component, message_id))
         if end > size:
             return _Missing.BYTES
         if mcrf4xx(data[start + 1 : crc_at] + extra) != data[crc_at] | data[crc_at + 1] << 8:
@@ -221,12 +222,12 @@ class Framer:
             return _Missing.FRAME
         return (message_id, system, component, sequence, data[start:end])
 
-    def _foreign(self, start: int, end: int, flags: int, message_id: int) -> _Missing:
+    def _foreign(self, start: int, end: int, flags: int, key: UnknownKey) -> _Missing:
         """Handle unknown incompatibility flags (the frame must be dropped), or an id outside the dialect."""
         if flags > INCOMPAT_SIGNED:
             self._failed.add_refused(start)
         else:
-            self._failed.add_unknown(start, end, message_id)
+            self._failed.add_unknown(start, end, key)
         return _Missing.FRAME
 
     def _frame_v1(self, data: bytes, start: int, size: int) -> Frame | _Missing:
@@ -237,7 +238,7 @@ class Framer:
         end = crc_at + CRC_SIZE
         size_in_dialect = BASE_SIZE.get(message_id)
         if size_in_dialect is None:
-            self._failed.add_unknown(start, end, message_id)
+            self._failed.add_unknown(start, end, (system, component, message_id))
             return _Missing.FRAME
         if size_in_dialect != length:
             self._failed.add_refused(start)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from typing import NamedTuple
 
 from dialects.enums import Severity
+from dialects.messages import MESSAGES, read_by_programs
 from link.core import LinkReport
 
 CONNECTING = "connecting"
@@ -19,9 +20,17 @@ def link_problem(report: LinkReport) -> str | None:
     if report.own_id:
         return "another program sends with our system and component id: change --system of one of them"
     if report.dialect_mismatch:
-        names = ", ".join(report.dialect_mismatch[:5])
-        return f"messages arrive with another dialect's checksum and are dropped: {names}"
+        return _mismatch(report.dialect_mismatch)
     return None
+
+
+def _mismatch(names: Sequence[str]) -> str:
+    """Return what is wrong, and what helps: a user's dialect replaces no message that the programs read."""
+    fixed = {MESSAGES[each].msgname for each in read_by_programs()}
+    helps = (
+        "the vehicle must send the standard definition" if fixed.issuperset(names) else "start with --dialect FILE.xml"
+    )
+    return f"messages arrive with another dialect's checksum and are dropped: {', '.join(names[:5])}; {helps}"
 
 
 class LinkEvent(NamedTuple):

@@ -31,8 +31,6 @@ MAX_TARGETS = 256
 
 _EVERYBODY: SourceId = (0, 0)
 _INSPECTED = LOCAL | {SystemTime.id}
-_NOT_FOR_ALL = _INSPECTED | TARGETS.keys()
-"""Any other message is a broadcast, whatever its payload."""
 
 
 class Delivery(NamedTuple):
@@ -56,6 +54,8 @@ class Router:
         self.captured: list[bytes] | None = None
         """If a list: every frame that arrives, in order, for a recorder to take away."""
         self._own = own
+        self._not_for_all = _INSPECTED | TARGETS.keys()
+        """Any other message is a broadcast, whatever its payload."""
         self._recent: dict[SourceId, RecentFrames] = {}
         """One per source, shared by all peers, so that their frames can be compared."""
         self._untracked: dict[bytes, float] = {}
@@ -111,7 +111,7 @@ class Router:
         A frame of a known source costs no call here but list.append, dict.get and target_of.
         """
         peer.last_seen = now
-        sources, loaded, table = peer.sources, self._loaded, self.table
+        sources, loaded, table, not_for_all = peer.sources, self._loaded, self.table, self._not_for_all
         known: RoutedSource | None = None
         if self.captured is not None:
             self.captured += [raw for _, _, _, _, raw in frames]
@@ -136,7 +136,7 @@ class Router:
             elif self._is_untracked_copy(raw, now):
                 continue
             target = _EVERYBODY
-            if message_id in _NOT_FOR_ALL:
+            if message_id in not_for_all:
                 if message_id in _INSPECTED and self._is_link_local(source, message_id, raw):
                     continue
                 target = target_of(message_id, raw)

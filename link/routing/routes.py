@@ -113,13 +113,24 @@ class RouteTable:
         self.refused_peers = 0
         self.epoch = 0
         """Changes with every entry that is added or removed, and so invalidates what was derived from the table."""
-        self._streams = [stream for stream, _ in links]
-        self._peers: list[dict[Hashable, RoutedPeer]] = [{} for _ in links]
-        self._past = [TransportReport() for _ in links]
+        self._streams: dict[int, bool] = {}
+        self._peers: dict[int, dict[Hashable, RoutedPeer]] = {}
+        self._past: dict[int, TransportReport] = {}
         """Traffic of peers that were removed."""
         for link, (stream, fixed) in enumerate(links):
-            if fixed is not None:
-                self._peers[link][fixed] = RoutedPeer(link, fixed, 0.0, stream=stream, fixed=True)
+            self.add_link(link, stream, fixed)
+
+    def add_link(self, link: int, stream: bool, fixed: Hashable | None) -> None:
+        """Add a link; its index was not used before."""
+        self._streams[link], self._peers[link], self._past[link] = stream, {}, TransportReport()
+        if fixed is not None:
+            self._peers[link][fixed] = RoutedPeer(link, fixed, 0.0, stream=stream, fixed=True)
+        self.epoch += 1
+
+    def remove_link(self, link: int) -> None:
+        """Forget a link with all that was seen behind it."""
+        del self._streams[link], self._peers[link], self._past[link]
+        self.epoch += 1
 
     def peers_of(self, link: int) -> dict[Hashable, RoutedPeer]:
         """Return the peers of one link by address, to be read only."""
@@ -131,7 +142,7 @@ class RouteTable:
 
     def all_peers(self) -> Iterator[RoutedPeer]:
         """Yield all peers of all links."""
-        for peers in self._peers:
+        for peers in self._peers.values():
             yield from peers.values()
 
     def new_peer(self, link: int, address: Hashable, now: float) -> RoutedPeer | None:
@@ -213,9 +224,9 @@ class RouteTable:
         return exact or [peer for peer in self.all_peers() if peer.has_system(system)]
 
     def transport_reports(self) -> list[TransportReport]:
-        """Return the traffic of each link, by index."""
+        """Return the traffic of each link, in the order in which they were added."""
         reports: list[TransportReport] = []
-        for past, peers in zip(self._past, self._peers, strict=True):
+        for past, peers in zip(self._past.values(), self._peers.values(), strict=True):
             report = past.copy()
             report.peers = sum(1 for peer in peers.values() if peer.sources)
             for peer in peers.values():

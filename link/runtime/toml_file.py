@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from link.runtime.regular_file import read_regular_file
+
 MAX_INTEGER = 2**63 - 1
 """TOML's own limit for integers, which Python does not enforce."""
 MAX_DEPTH = 32
@@ -25,8 +27,14 @@ class TomlError(Exception):
 
 def read_toml(path: str | Path) -> dict[str, Any]:
     """Return the tables of a file. Raises TomlError."""
+    return parse_toml(read_text(path), str(path))
+
+
+def read_text(path: str | Path, limit: int | None = None) -> str:
+    """Return the text of a file; with `limit` only of a regular file of at most so many bytes. Raises TomlError."""
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")  # some editors begin a file with a byte order mark
+        data = Path(path).read_bytes() if limit is None else read_regular_file(path, limit)
+        return data.decode("utf-8-sig")  # some editors begin a file with a byte order mark
     except IsADirectoryError:
         raise TomlError(f"{path}: is a directory; name a file in it") from None
     except OSError as error:
@@ -34,7 +42,6 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         what = f"byte {error.start + 1} is not UTF-8 text"
         raise TomlError(f"{path}: {what}; save the file as UTF-8, or name another one") from error
-    return parse_toml(text, str(path))
 
 
 def parse_toml(text: str, name: str) -> dict[str, Any]:

@@ -73,11 +73,15 @@ class Link:
 
     transport: Transport
     channel: Channel
+    watch_only: bool = False
+    """Nothing is ever sent on it."""
     frames_sent: int = 0
     bytes_sent: int = 0
 
     def send(self, data: bytes, address: Hashable) -> None:
-        """Send one frame and count it."""
+        """Send one frame and count it; on a link that only watches drop it."""
+        if self.watch_only:
+            return
         self.frames_sent += 1
         self.bytes_sent += len(data)
         self.transport.send(data, address)

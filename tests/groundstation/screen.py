@@ -29,9 +29,10 @@ FORWARD = DriveKeyDown(key="i", throttle=1, steering=0)
 class Screen:
     """Starts a station process on a free port; renews the lease until `freeze`."""
 
-    def __init__(self, *endpoints: str, **options: Any) -> None:
+    def __init__(self, *endpoints: str, none: bool = False, **options: Any) -> None:
+        """`none`: without any link."""
         endpoints = endpoints or (f"udpin:127.0.0.1:{free_port()}",)
-        self.client = StationClient.start([] if options.get("sitl") else endpoints, **options)
+        self.client = StationClient.start([] if none or options.get("sitl") else endpoints, **options)
         self.snapshot = Snapshot()
         self.client.send(RenewLease(), SetKeyGate(open=True))
         self._stop = threading.Event()

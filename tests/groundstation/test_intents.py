@@ -10,14 +10,16 @@ import pytest
 from groundstation.actions import ACTIONS
 from groundstation.intents.base import Intent
 from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.links import AddLink
+from groundstation.intents.services import ServiceIntent
 from groundstation.intents.session import StartSimulator
 from groundstation.ipc import IntentBatch, decode_from_screen, encode
 from groundstation.station.intent_handler import HANDLERS, VEHICLE_COMMANDS
 
-KINDS = Intent.__subclasses__()
+KINDS = [each for each in (*Intent.__subclasses__(), *ServiceIntent.__subclasses__()) if each is not ServiceIntent]
 VALUES: dict[str, Any] = {
     "key": "i", "throttle": 1, "steering": -1, "open": True, "style": "latch", "mode": "HOLD", "system": 3,
-    "request": 5, "changes": (("FS_ACTION", 2.0),),
+    "request": 5, "endpoint": "udpin:127.0.0.1:14550", "link": 2, "changes": (("FS_ACTION", 2.0),),
 }  # fmt: skip
 """Field -> a value for fields without a default."""
 
@@ -34,7 +36,7 @@ def test_every_intent_travels_through_the_pipe(kind: type[Intent]) -> None:
 
 
 def test_every_intent_has_a_handler() -> None:
-    assert {*HANDLERS, *VEHICLE_COMMANDS, StartSimulator} == set(KINDS)
+    assert {*HANDLERS, *VEHICLE_COMMANDS, StartSimulator, AddLink} == set(KINDS)
     assert not set(HANDLERS) & set(VEHICLE_COMMANDS)
 
 

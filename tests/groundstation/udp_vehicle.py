@@ -21,7 +21,7 @@ class UdpVehicle:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.connect((host, int(port)))
         self._socket.settimeout(0.01)
-        self._channel = Channel("vehicle", 0, system=1, component=1, target="station")
+        self._channel = Channel("vehicle", 0, system=self.core.system, component=1, target="station")
         self._running = True
         self._thread = threading.Thread(target=self._run, daemon=True)
 

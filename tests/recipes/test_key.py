@@ -12,7 +12,7 @@ ANCHOR = '"minus": "speed.slower"'
 """In the standard key map."""
 PRESS_IT = """
 import asyncio
-from groundstation.intents import SetMode
+from groundstation.intents.vehicle import SetMode
 from tests.groundstation.ui.pilots import console
 
 async def main():

@@ -8,11 +8,11 @@ from typing import Any
 
 import msgspec
 
+from link.runtime.docstrings import field_docs
 from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
 from vehicle.accessories.settings import COMMON
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
-from vehicle.config.docstrings import field_docs
 from vehicle.config.template import parameter_help
 from vehicle.motors import MotorError
 from vehicle.motors.drivers import DRIVERS, profile_settings, settings_type

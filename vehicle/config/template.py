@@ -9,12 +9,12 @@ from typing import Any
 
 import msgspec
 
+from link.runtime.docstrings import field_docs, first_paragraph
 from vehicle.accessories.drivers import DRIVERS as ACCESSORY_DRIVERS
 from vehicle.accessories.drivers import FIRST_NUMBER, Kind
 from vehicle.accessories.settings import COMMON, Accessories
 from vehicle.accessories.settings import settings_type as settings_type_of
 from vehicle.config.config import Config
-from vehicle.config.docstrings import field_docs, first_paragraph
 from vehicle.motors import MotorError
 from vehicle.motors.drivers import DRIVERS, DriverEntry, settings_type
 from vehicle.motors.settings import CommonMotorSettings, NoSettings

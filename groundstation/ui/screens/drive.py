@@ -197,16 +197,18 @@ class DriveScreen(ConsoleScreen):
             if row.id == "keycaps":
                 self.show_row(row)
 
-    def on_key(self, event: events.Key) -> None:
+    def perform_key(self, event: events.Key) -> bool:
         """Handle actions of the app; keys that drive, stop or command were sent by the input thread."""
         if isinstance(event, KeyRepeat):
-            return
+            return False
         action = self.context.keymap.get_action(event.key)
         if action is not None and action.intent is None:
-            event.stop()  # else the app would handle it again, for the screen that opens now
             self.context.perform(action)
-        elif action is None and event.key == "enter" and self.snapshot.vehicle is None:
+            return True
+        if action is None and event.key == "enter" and self.snapshot.vehicle is None:
             self.context.send(StartSimulator())
+            return True
+        return False
 
 
 def format_arming(vehicle: VehicleView | None) -> str:

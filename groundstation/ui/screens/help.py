@@ -64,14 +64,14 @@ class HelpScreen(ConsoleScreen):
             page.border_subtitle = "↑ ↓ scroll · any other key goes back"
             yield Static(Content.assemble(*self._lines()))
 
-    def on_key(self, event: events.Key) -> None:
+    def perform_key(self, event: events.Key) -> bool:
         """Go back to the Drive screen."""
         action = self.context.keymap.get_action(event.key)
         if event.key in _SCROLL_KEYS or (action is not None and action.id in _OTHER_SCREENS):
-            return
-        event.stop()
+            return False
         if self.is_current:  # the second key of one read comes here too, and would close the Drive screen
             self.dismiss()
+        return True
 
     def _lines(self) -> Iterator[tuple[str, str]]:
         for group, title in TITLES.items():

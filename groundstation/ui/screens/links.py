@@ -14,6 +14,7 @@ from groundstation.ui.alerts import handover_text
 from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.keynames import format_key
+from groundstation.ui.list_keys import rows_to_move
 from groundstation.ui.panels import PanelHeights, share_rows
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.control_panel import ControlPanel, ControlPanelValue
@@ -36,8 +37,8 @@ CHROME_ROWS = 4
 TYPING_TIME = 1.0
 """s within which a further digit belongs to the same system id."""
 
-STEPS = {"up": -1, "down": 1, "pageup": -5, "pagedown": 5, "home": -1000, "end": 1000}
-"""Key -> rows by which it moves."""
+PAGE = 6
+"""Rows of a page: its keys move by one less."""
 
 COMMANDS = ("vehicle.next", "vehicle.control", "vehicle.release", "vehicle.give", "vehicle.keep")
 """Actions of the Drive screen whose keys work here too. None of them drives, and each is neutral first."""
@@ -46,7 +47,6 @@ COMMANDS = ("vehicle.next", "vehicle.control", "vehicle.release", "vehicle.give"
 class LinksScreen(ConsoleScreen):
     """Three panels; TAB chooses the one that has the arrows and the room."""
 
-    CSS_PATH = "links.tcss"
     KEYS = (
         ScreenKey("enter", "Choose", "Choose the vehicle under the cursor; the one before gets neutral first"),
         ScreenKey("tab", "Panel", "Next panel: vehicles, links, control"),
@@ -67,9 +67,8 @@ class LinksScreen(ConsoleScreen):
 
     def compose_body(self) -> Iterable[Widget]:
         """Lay out the panels below each other."""
-        for panel, title in zip(self._panels, ("vehicles", "links", "who is in control"), strict=True):
-            panel.border_title = title
-        return self._panels
+        titles = ("vehicles", "links", "who is in control")
+        return [self.build_panel(*pair) for pair in zip(self._panels, titles, strict=True)]
 
     def requests(self) -> tuple[ViewRequest, ...]:
         """Return the requests for all three views."""
@@ -104,7 +103,7 @@ class LinksScreen(ConsoleScreen):
         return ScreenInfo(info.id, (*info.keys, *extra), info.hint, info.text)
 
     @property
-    def hint(self) -> str:
+    def advice(self) -> str:
         """Return what ENTER would do, or how to move; first of all a request that waits for an answer."""
         if asks := handover_text(self._state):
             return asks
@@ -120,12 +119,12 @@ class LinksScreen(ConsoleScreen):
 
     # ---- keys ----
 
-    def on_key(self, event: events.Key) -> None:
-        """Handle the keys of this screen; those of other screens go on to the app."""
+    def perform_key(self, event: events.Key) -> bool:
+        """Handle the keys of this screen."""
         action = self.context.keymap.get_action(event.key)
         repeated = isinstance(event, KeyRepeat)
-        if event.key in STEPS:
-            self._step(STEPS[event.key])
+        if rows := rows_to_move(event.key, PAGE):
+            self._step(rows)
         elif event.key.isdecimal():
             self._type(event.key)
         elif event.key == "enter" and not repeated:
@@ -136,10 +135,9 @@ class LinksScreen(ConsoleScreen):
             self._cursor = None if action.id == "vehicle.next" else self._cursor
             self.context.send(action.intent)
         else:
-            return
-        event.stop()
-        self.show_state(self._state)
+            return False
         self._lay_out()
+        return True
 
     def _step(self, rows: int) -> None:
         if self._chosen:

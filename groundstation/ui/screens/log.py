@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from textual import events
 from textual.widget import Widget
-from textual.widgets import Input
 
 from groundstation.ui.alerts import active_alerts
 from groundstation.ui.display_state import DisplayState, ScreenKey
+from groundstation.ui.list_keys import rows_to_move
 from groundstation.ui.log_model import LogFilter, LogModel, format_lines
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.alert_list import AlertList, AlertListValue, alert_rows
+from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.ui.widgets.log import PREFIX, LogRows
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.log import LogPage
@@ -24,11 +27,12 @@ LEAST_ROWS = 4
 
 BORDERS = 2
 
-NOTE_TIME = 10.0
-"""s for which the result of a save is shown."""
-
-STEPS = {"up": -1, "down": 1, "pageup": -1, "pagedown": 1, "home": -1, "end": 1}
-"""Key -> direction in which it scrolls."""
+_SOURCES = {
+    "v": (("vehicle", "state"), "of vehicles"),
+    "h": (("station",), "of this ground station"),
+    "m": (("you", "ack"), "your keys and the answers"),
+}
+"""Key -> labels of the lines that it shows, and what they are."""
 
 
 class LogScreen(ConsoleScreen):
@@ -37,8 +41,11 @@ class LogScreen(ConsoleScreen):
     CSS_PATH = "log.tcss"
     KEYS = (
         ScreenKey("slash", "Filter", "Show the messages that contain a text"),
-        ScreenKey("w", "Warnings", "Show warnings and worse only"),
         ScreenKey("a", "All", "Show all messages"),
+        ScreenKey("w", "Warnings", "Show warnings and worse only"),
+        ScreenKey("v", "Vehicle", "Show what vehicles sent and how they changed only"),
+        ScreenKey("h", "Here", "Show the events of this ground station only"),
+        ScreenKey("m", "Mine", "Show what your keys did, and the answers to your commands only"),
         ScreenKey("S", "Save", "Save the messages that are shown to a file"),
         ScreenKey("tab", "Alerts", "Scroll the alerts, or the messages again"),
     )
@@ -48,17 +55,17 @@ class LogScreen(ConsoleScreen):
         self._model = LogModel()
         self._alerts = AlertList(AlertListValue(), id="alerts")
         self._rows = LogRows((), id="rows")
-        self._field = Input(id="filter", placeholder="text; ENTER keeps it, ESC shows all")
         self._scrolls_alerts = False
-        self._note, self._note_until = "", 0.0
 
     # ---- what all screens define ----
 
     def compose_body(self) -> Iterable[Widget]:
-        """Lay out the alerts, the messages and the text of the filter, which is hidden until it is asked for."""
-        self._alerts.border_title = "alerts"
-        self._rows.border_title = "log"
-        return self._alerts, self._rows, self._field
+        """Lay out the alerts over the messages."""
+        return self.build_panel(self._alerts, "alerts"), self.build_panel(self._rows, "log")
+
+    def on_mount(self) -> None:
+        """Mark the panel that the arrows scroll."""
+        self._mark_chosen()
 
     def requests(self) -> tuple[ViewRequest, ...]:
         """Return the request for new lines."""
@@ -85,61 +92,42 @@ class LogScreen(ConsoleScreen):
         self.show_body(self._state)
 
     @property
-    def hint(self) -> str:
-        """Return the result of a save for some seconds, else what the window shows."""
-        if time.monotonic() < self._note_until:
-            return self._note
+    def advice(self) -> str:
+        """Return what the window shows."""
         chosen = self._model.filter
         parts = ["live, newest below" if self._model.following else "scrolled: END follows the newest line"]
         parts += ["warnings and worse"] if chosen.warnings else []
+        parts += [text for labels, text in _SOURCES.values() if labels == chosen.labels]
         parts += [f"with “{chosen.text}”"] if chosen.text else []
         return " · ".join([*parts, "ESC goes back to Drive"])
 
-    @property
-    def takes_text(self) -> bool:
-        """Return whether the text of the filter is edited."""
-        return self._field.has_focus
-
     # ---- keys ----
 
-    def on_key(self, event: events.Key) -> None:
-        """Handle the keys of this screen; those of other screens go on to the app."""
-        if self.takes_text:
-            if event.key == "escape":
-                event.stop()
-                self._end_text("")
-            return
-        if event.key in STEPS:
-            event.stop()
-            self._scroll(event.key)
+    def perform_key(self, event: events.Key) -> bool:
+        """Handle the keys of this screen."""
+        widget: Widget = self._alerts if self._scrolls_alerts else self._rows
+        if rows := rows_to_move(event.key, widget.size.height):
+            self._scroll(rows)
         elif event.key in _ACTIONS:
-            event.stop()
             _ACTIONS[event.key](self)
-        self.show_state(self._state)
+        else:
+            return False
+        return True
 
-    def on_input_changed(self, event: Input.Changed) -> None:
-        """Filter while the text is typed."""
-        self._set_filter(LogFilter(event.value, self._model.filter.warnings))
+    def _open_filter(self) -> None:
+        use = FieldUse(self._filter_text, self._filter_text, cancel=lambda: self._filter_text(""))
+        self.field.open(use, text=self._model.filter.text, placeholder="text; ENTER keeps it, ESC shows all")
 
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Keep the text."""
-        self._end_text(event.value)
-
-    def _begin_text(self) -> None:
-        self._field.display = True
-        self._field.focus()
-
-    def _end_text(self, text: str) -> None:
-        self._field.value = text
-        self._field.display = bool(text)
-        self.set_focus(None)
-        self._set_filter(LogFilter(text, self._model.filter.warnings))
+    def _filter_text(self, text: str) -> None:
+        self._set_filter(replace(self._model.filter, text=text))
 
     def _show_warnings(self) -> None:
         self._set_filter(LogFilter(self._model.filter.text, warnings=True))
 
+    def _show_labels(self, labels: tuple[str, ...]) -> None:
+        self._set_filter(LogFilter(self._model.filter.text, labels=labels))
+
     def _show_all(self) -> None:
-        self._end_text("")
         self._set_filter(LogFilter())
 
     def _set_filter(self, chosen: LogFilter) -> None:
@@ -148,14 +136,15 @@ class LogScreen(ConsoleScreen):
 
     def _swap_scrolling(self) -> None:
         self._scrolls_alerts = not self._scrolls_alerts
-        self.set_class(self._scrolls_alerts, "-alerts")
+        self._mark_chosen()
 
-    def _scroll(self, key: str) -> None:
-        widget: Widget = self._alerts if self._scrolls_alerts else self._rows
-        height = max(1, widget.size.height)
-        rows = STEPS[key] * {"up": 1, "down": 1, "home": 10**6, "end": 10**6}.get(key, max(1, height - 1))
+    def _mark_chosen(self) -> None:
+        self._alerts.set_class(self._scrolls_alerts, "-chosen")
+        self._rows.set_class(not self._scrolls_alerts, "-chosen")
+
+    def _scroll(self, rows: int) -> None:
         if not self._scrolls_alerts:
-            self._model.scroll(rows, height)
+            self._model.scroll(rows, max(1, self._rows.size.height))
             return
         value = self._alerts.value
         top = max(0, min(self._last_alert_row(len(value.alerts)), value.top + rows))
@@ -179,16 +168,16 @@ class LogScreen(ConsoleScreen):
         path = self.context.folder / time.strftime("messages-%Y%m%d-%H%M%S.txt")
         try:
             path.write_text(format_lines(lines), "utf-8")
-            self._note = f"saved {len(lines)} lines to {short_path(path)}"
+            self.say(f"saved {len(lines)} lines to {short_path(path)}")
         except OSError as error:
-            self._note = f"not saved: {error.strerror}: {short_path(path)}"
-        self._note_until = time.monotonic() + NOTE_TIME
+            self.say(f"not saved: {error.strerror}: {short_path(path)}")
 
 
-_ACTIONS = {
-    "slash": LogScreen._begin_text,
-    "w": LogScreen._show_warnings,
+_ACTIONS: dict[str, Callable[[LogScreen], None]] = {
+    "slash": LogScreen._open_filter,
     "a": LogScreen._show_all,
+    "w": LogScreen._show_warnings,
+    **{key: partial(LogScreen._show_labels, labels=labels) for key, (labels, _) in _SOURCES.items()},
     "S": LogScreen._save,
     "tab": LogScreen._swap_scrolling,
 }

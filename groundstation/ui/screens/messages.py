@@ -7,11 +7,12 @@ from collections.abc import Iterable
 from textual import events
 from textual.containers import Horizontal
 from textual.widget import Widget
-from textual.widgets import Input
 
 from groundstation.ui.display_state import ScreenKey
+from groundstation.ui.list_keys import rows_to_move
 from groundstation.ui.messages_model import MessagesModel, key_of
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.ui.widgets.message_detail import MessageDetail, MessageDetailValue, detail_lines
 from groundstation.ui.widgets.message_table import MessageTable, MessageTableValue, format_age
 from groundstation.views.base import View, ViewRequest
@@ -22,9 +23,6 @@ TITLES = 1
 
 WIDE = 120
 """Columns from which on the table has more of its columns, and the fields have columns."""
-
-STEPS = {"up": -1, "down": 1, "pageup": -1, "pagedown": 1, "home": -1, "end": 1}
-"""Key -> direction in which it moves."""
 
 
 class MessagesScreen(ConsoleScreen):
@@ -44,16 +42,18 @@ class MessagesScreen(ConsoleScreen):
         self._model = MessagesModel()
         self._table = MessageTable(MessageTableValue(), id="table")
         self._detail = MessageDetail(MessageDetailValue(), id="detail")
-        self._field = Input(id="filter", placeholder="name, >5Hz, age>3, src:1/1, field:volt; ENTER keeps, ESC clears")
         self._in_detail = self._frozen = False
 
     # ---- what all screens define ----
 
     def compose_body(self) -> Iterable[Widget]:
-        """Lay out the table, the detail and the text of the filter, which is hidden until it is asked for."""
-        self._table.border_title = "messages"
-        self._detail.border_title = "fields"
-        return Horizontal(self._table, self._detail, id="panels"), self._field
+        """Lay out the table beside the detail."""
+        panels = self.build_panel(self._table, "messages"), self.build_panel(self._detail, "fields")
+        return (Horizontal(*panels, id="panels"),)
+
+    def on_mount(self) -> None:
+        """Mark the panel that the arrows scroll."""
+        self._mark_chosen()
 
     def requests(self) -> tuple[ViewRequest, ...]:
         """Return the requests for the rows around the window and for the selected message; none while frozen."""
@@ -78,7 +78,7 @@ class MessagesScreen(ConsoleScreen):
         self.call_after_refresh(self._show_table)
 
     @property
-    def hint(self) -> str:
+    def advice(self) -> str:
         """Return what the table shows."""
         parts = ["FROZEN, z goes on"] if self._frozen else []
         parts += [f"order: {self._model.order}"] if self._model.order != MESSAGE_ORDERS[0] else []
@@ -87,57 +87,24 @@ class MessagesScreen(ConsoleScreen):
             parts.append(f"{self._model.page.not_shown} messages of further sources not listed")
         return " · ".join([*parts, "ESC goes back to Drive"])
 
-    @property
-    def takes_text(self) -> bool:
-        """Return whether the text of the filter is edited."""
-        return self.focused is self._field
-
     # ---- keys ----
 
-    def on_key(self, event: events.Key) -> None:
-        """Handle the keys of this screen; those of other screens go on to the app."""
-        if self.takes_text:
-            self._handle_text_key(event)
-            return
-        if event.key in STEPS:
-            event.stop()
-            self._move(event.key)
+    def perform_key(self, event: events.Key) -> bool:
+        """Handle the keys of this screen."""
+        if rows := rows_to_move(event.key, self._detail.size.height if self._in_detail else self._height):
+            self._move(rows)
         elif event.key in _ACTIONS:
-            event.stop()
             _ACTIONS[event.key](self)
+        else:
+            return False
         self._show_table()
-        self.show_state(self._state)
+        return True
 
-    def _handle_text_key(self, event: events.Key) -> None:
-        """Handle what the field has not: Escape, and the keys behind "/" in one read, which come here."""
-        if event.key == "escape":
-            event.stop()
-            self._end_text("")
-        elif event.key == "enter":
-            event.stop()
-            self._end_text(self._field.value)
-        elif event.is_printable and event.character:
-            event.stop()
-            self._field.insert_text_at_cursor(event.character)
-
-    def on_input_changed(self, event: Input.Changed) -> None:
-        """Filter while the text is typed."""
-        self._model.set_filter(event.value)
-
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Keep the text."""
-        self._end_text(event.value)
-
-    def _begin_text(self) -> None:
+    def _open_filter(self) -> None:
         self._frozen = False
-        self._field.display = True
-        self.set_focus(self._field)  # at once: the next keys of the same read are text
-
-    def _end_text(self, text: str) -> None:
-        self._field.value = text
-        self._field.display = bool(text)
-        self.set_focus(None)
-        self._model.set_filter(text)
+        use = FieldUse(self._model.set_filter, self._model.set_filter, cancel=lambda: self._model.set_filter(""))
+        placeholder = "name, >5Hz, age>3, src:1/1, field:volt; ENTER keeps, ESC clears"
+        self.field.open(use, text=self._model.text, placeholder=placeholder)
 
     def _next_order(self) -> None:
         self._frozen = False
@@ -151,11 +118,13 @@ class MessagesScreen(ConsoleScreen):
 
     def _swap_panel(self) -> None:
         self._in_detail = not self._in_detail
-        self.set_class(self._in_detail, "-detail")
+        self._mark_chosen()
 
-    def _move(self, key: str) -> None:
-        page = (self._detail.size.height if self._in_detail else self._height) - 1
-        rows = STEPS[key] * {"up": 1, "down": 1, "home": 10**6, "end": 10**6}.get(key, max(1, page))
+    def _mark_chosen(self) -> None:
+        self._detail.set_class(self._in_detail, "-chosen")
+        self._table.set_class(not self._in_detail, "-chosen")
+
+    def _move(self, rows: int) -> None:
         if self._in_detail:
             self._scroll_detail(rows)
             return
@@ -194,14 +163,14 @@ class MessagesScreen(ConsoleScreen):
 
     def _show_message(self, view: MessageView) -> None:
         self._detail.show(MessageDetailValue(view, self._detail.value.top if self._in_detail else 0))
-        self._detail.border_title = f"{view.name} #{view.id}"
+        self._detail.border_title = f"{view.name} #{view.id}" if view.fields else view.name
         self._detail.border_subtitle = (
             f"{view.system}/{view.component} · {view.rate:.1f} Hz · {view.length} B · {format_age(view.age)} s ago"
         )
 
 
 _ACTIONS = {
-    "slash": MessagesScreen._begin_text,
+    "slash": MessagesScreen._open_filter,
     "enter": MessagesScreen._toggle_source,
     "o": MessagesScreen._next_order,
     "z": MessagesScreen._freeze,

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
+from textual import events
 from textual.app import ComposeResult
 from textual.screen import Screen
 from textual.widget import Widget
@@ -17,10 +19,17 @@ from groundstation.intents.union import AnyIntent
 from groundstation.screens import find_screen
 from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
 from groundstation.ui.instruments import CHROME, InstrumentRow
+from groundstation.ui.key_parser import KeyRepeat
+from groundstation.ui.question import ANSWER_WITHIN, Question
+from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.ui.widgets.instrument import Instrument
+from groundstation.ui.widgets.line_field import LineField
 from groundstation.views.base import View, ViewRequest
 
 Kept = TypeVar("Kept")
+
+NOTE_TIME = 10.0
+"""s for which a note is shown in the hint line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,12 +45,19 @@ class ScreenContext:
     """Returns the newest display state: what a screen shows first."""
     folder: Path
     """Where screens save files."""
+    numbers: RequestNumbers = field(default_factory=RequestNumbers)
+    """Numbers for requests to the station."""
     kept: dict[type, Any] = field(default_factory=dict)
     """What screens keep while they are closed, by its class."""
 
-    def keep(self, kind: type[Kept]) -> Kept:
-        """Return the object of this class that lives as long as the app: a screen itself ends when it is closed."""
-        found: Kept = self.kept.setdefault(kind, kind())
+    def keep(self, kind: type[Kept], *args: Any) -> Kept:
+        """Return the object of this class that lives as long as the app: a screen itself ends when it is closed.
+
+        `args` are for its constructor, the first time.
+        """
+        if kind not in self.kept:
+            self.kept[kind] = kind(*args)
+        found: Kept = self.kept[kind]
         return found
 
 
@@ -55,6 +71,13 @@ class ConsoleScreen(Screen[None]):
     DEFAULT_CSS = """
     ConsoleScreen { background: $background; }
     ConsoleScreen #status, ConsoleScreen #tabs, ConsoleScreen #hint, ConsoleScreen #footer { height: 1; }
+    ConsoleScreen .panel {
+        border: round #3a4350;
+        border-title-color: $primary;
+        border-subtitle-color: #6b7684;
+        background: $background;
+    }
+    ConsoleScreen .panel.-chosen { border: round $primary; }
     """
     ROWS: ClassVar[tuple[InstrumentRow, ...]] = CHROME
     """Instruments that the screen builds by their place, and shows."""
@@ -67,6 +90,9 @@ class ConsoleScreen(Screen[None]):
         self.context = context
         self._built: dict[str, Instrument[Any]] = {}
         self._state = context.newest()
+        self.field = LineField()
+        self._question: Question | None = None
+        self._note, self._note_until = "", 0.0
 
     # ---- what a screen defines ----
 
@@ -85,22 +111,80 @@ class ConsoleScreen(Screen[None]):
         """Show a view that it has requested."""
 
     @property
-    def hint(self) -> str:
+    def advice(self) -> str:
         """What to do next on this screen."""
         return self.HINT
 
-    @property
-    def takes_text(self) -> bool:
-        """A text field of the screen has the keys: characters are no stop keys then."""
+    def perform_key(self, event: events.Key) -> bool:
+        """Handle a key of this screen; return False for any other, which goes on to the app."""
         return False
 
+    # ---- what a screen uses ----
+
+    def build_panel(self, widget: Widget, title: str) -> Widget:
+        """Return a widget with the frame of a panel; class `-chosen` marks the one that has the arrows."""
+        widget.add_class("panel")
+        widget.border_title = title
+        return widget
+
+    def say(self, text: str | None) -> None:
+        """Show a note in the hint line for some seconds; None: there is nothing to say."""
+        if text is not None:
+            self._note, self._note_until = text, time.monotonic() + NOTE_TIME
+
+    def ask(self, text: str | Callable[[], str], perform: Callable[[], None], *, word: str = "") -> None:
+        """Ask before an action: `y`, or `word` letter by letter, performs it."""
+        shown = (lambda: text) if isinstance(text, str) else text
+        self._question = Question(shown, perform, word, time.monotonic() + ANSWER_WITHIN)
+
     # ---- what all of them do ----
+
+    @property
+    def question(self) -> Question | None:
+        """The question that waits for an answer."""
+        if self._question is not None and time.monotonic() >= self._question.until:
+            self._question = None
+        return self._question
+
+    @property
+    def hint(self) -> str:
+        """Return the question, a note, or what to do."""
+        if self.question is not None:
+            return self.question.hint
+        return self._note if time.monotonic() < self._note_until else self.advice
+
+    @property
+    def takes_text(self) -> bool:
+        """Letters are text and no stop keys: in the field, and in a question that is answered by a word."""
+        return (self.field.is_attached and self.field.is_open) or bool(self.question and self.question.word)
+
+    def on_key(self, event: events.Key) -> None:
+        """Give a key to the field, the question or the screen; those of other screens go on to the app."""
+        if self.field.is_attached and self.field.is_open:
+            self.field.take_key(event)
+            return
+        if not self._answer(event) and not self.perform_key(event):
+            return
+        event.stop()
+        if self.is_current:
+            self.show_state(self._state)
+
+    def _answer(self, event: events.Key) -> bool:
+        question = self.question
+        if question is None:
+            return False
+        if not isinstance(event, KeyRepeat):  # the key that asked may still be held
+            self._question = None
+            if question.answer(event.key, time.monotonic()):
+                self._question = question
+        return True
 
     def compose(self) -> ComposeResult:
         """Lay out the screen."""
         self._state = replace(self._state, screen=self.describe())
         yield from self.build_place("top")
         yield from self.compose_body()
+        yield self.field
         yield from self.build_place("bottom")
 
     def build_place(self, place: str) -> Iterator[Instrument[Any]]:

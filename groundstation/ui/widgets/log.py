@@ -8,7 +8,7 @@ from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.snapshot import LogLine
-from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, badge, style
+from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, YELLOW, badge, style
 from groundstation.ui.log_model import LABELS, LogRow, tag_of
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.wrap import clean
@@ -18,6 +18,8 @@ PREFIX = 16
 
 _COLOURS = (RED, RED, RED, RED, AMBER, BLUE, BLUE, DIM)
 """By MAV_SEVERITY."""
+
+_LABEL_COLOURS = {"ack": GREEN, "you": YELLOW}
 
 
 class LogPanel(Instrument[tuple[LogLine, ...]]):
@@ -54,7 +56,7 @@ def _head(line: LogLine) -> list[Part]:
     severity = max(0, min(7, line.severity))
     colour = _COLOURS[severity]
     if severity > 4 and line.label in LABELS:
-        colour = GREEN if line.label == "ack" else BLUE
+        colour = _LABEL_COLOURS.get(line.label, BLUE)
     when = time.strftime("%H:%M:%S", time.localtime(line.time))
     return [(f" {when} ", style(DIM)), (f"{tag_of(line):<5} ", style(colour, bold=severity <= 3))]
 

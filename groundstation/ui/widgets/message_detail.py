@@ -20,6 +20,7 @@ VALUE, UNIT, MEANING = 16, 7, 14
 INDENT = 3
 SHARE = 0.55
 """Of the width: the longest name of a field in the narrow form."""
+UNKNOWN = "this id is in no dialect known here: start with --dialect FILE.xml, the file of the vehicle's dialect"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +47,8 @@ def detail_lines(view: MessageView, width: int) -> list[list[Part]]:
     names = max((len(each.name) for each in view.fields), default=0)
     room = min(names, int(width * SHARE)) + 1
     lines: list[list[Part]] = []
+    if not view.fields:
+        return [[(f" {line}", style(DIM))] for line in wrap(UNKNOWN, width - 1)]
     for each in view.fields:
         lines += (
             _wide(each, min(names + 1, width - VALUE - UNIT - MEANING - 2), width)

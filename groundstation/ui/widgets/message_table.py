@@ -61,9 +61,11 @@ class MessageTable(Instrument[MessageTableValue]):
                 (f"{source} ", style(colour, ground, bold=True)),
                 (clean(row.label), style(DIM, ground)),
             ]
-        name = (f"{row.name} >" if row.sent else row.name, style(AMBER if row.sent else TEXT, ground, bold=chosen))
+        colour_of_name = AMBER if row.sent else DIM if row.unknown else TEXT
+        name = (f"{row.name} >" if row.sent else row.name, style(colour_of_name, ground, bold=chosen))
+        length_of_frame = [(f"  {row.label}", style(DIM, ground))] if row.unknown else []
         lead = [] if self.value.tree else [(f"{source} ", style(colour, ground))]
-        return [(f"{mark}  " if self.value.tree else f"{mark} ", style(DIM, ground)), *lead, name]
+        return [(f"{mark}  " if self.value.tree else f"{mark} ", style(DIM, ground)), *lead, name, *length_of_frame]
 
 
 def _titles(width: int) -> Strip:

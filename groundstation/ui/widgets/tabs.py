@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from textual.strip import Strip
 
@@ -11,6 +12,7 @@ from groundstation.screens import SCREENS, ScreenRow
 from groundstation.ui.colours import DIM, FAINT, WHITE, YELLOW, style
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.keynames import format_key, main_key
+from groundstation.ui.tab_marks import TabMark, find_marks
 from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 WIDE = 120
@@ -19,15 +21,17 @@ WIDE = 120
 
 @dataclass(frozen=True, slots=True)
 class TabBarValue:
-    """The screen on top."""
+    """The screen on top, and the marks of all screens."""
 
     keymap: Keymap
     screen: str = "drive"
+    marks: Mapping[str, TabMark] = field(default_factory=dict)
+    """By the id of the screen."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> TabBarValue:
         """Return the tab bar of a display state."""
-        return cls(now.keymap, now.screen.id)
+        return cls(now.keymap, now.screen.id, find_marks(now))
 
 
 class TabBar(Instrument[TabBarValue]):
@@ -47,9 +51,13 @@ class TabBar(Instrument[TabBarValue]):
     def _tab(self, row: ScreenRow, width: int) -> list[Part]:
         key = main_key(self.value.keymap, row.action) if width >= WIDE else row.digit
         shown = format_key(key) if key else ""
+        mark = self.value.marks.get(row.id)
+        text = "" if mark is None else mark.text if width >= WIDE else mark.short or mark.text
+        colour = DIM if mark is None else mark.colour
         if row.id == self.value.screen:
-            return [(f" {shown} {row.title} ", style(WHITE, FAINT, bold=True))]
-        return [(f" {shown} ", style(YELLOW)), (f"{row.title} ", style(DIM))]
+            name = (f" {shown} {row.title}", style(WHITE, FAINT, bold=True))
+            return [name, (text, style(colour, FAINT, bold=True)), (" ", style(WHITE, FAINT))]
+        return [(f" {shown} ", style(YELLOW)), (row.title, style(DIM)), (text, style(colour)), (" ", style(DIM))]
 
 
 def goto_parts(keymap: Keymap) -> list[Part]:

@@ -6,7 +6,7 @@ import pytest
 
 from groundstation.cli.unknown_options import describe_unknown
 
-OPTIONS = ("--sitl", "--keys", "--style", "--speed", "--system", "--log-file")
+OPTIONS = ("--sitl", "--keys", "--style", "--speed", "--system", "--log-file", "--dialect")
 
 
 @pytest.mark.parametrize(
@@ -16,6 +16,7 @@ OPTIONS = ("--sitl", "--keys", "--style", "--speed", "--system", "--log-file")
         (["--sytem=3"], "unrecognized arguments: --sytem=3: did you mean --system?"),
         (["--fly", "--spede"], "unrecognized arguments: --fly --spede: did you mean --speed?"),
         (["--console"], "unrecognized arguments: --console: the screen shows what it would; leave it out"),
+        (["--dialct=a.xml"], "unrecognized arguments: --dialct=a.xml: did you mean --dialect?"),
         (["--fly"], "unrecognized arguments: --fly"),
         (["-x"], "unrecognized arguments: -x"),
         (["--baud"], "unrecognized arguments: --baud: write serial:PATH:BAUD, e.g. serial:/dev/ttyUSB0:57600"),

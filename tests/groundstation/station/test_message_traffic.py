@@ -66,7 +66,8 @@ def test_the_loss_is_that_of_the_source() -> None:
         [
             LinkReport("udp", sources={(1, 1): SourceCount(90, 10)}),
             LinkReport("tcp", 1, sources={(1, 1): SourceCount(9, 9)}),
-        ]
+        ],
+        9.9,
     )
     vehicle, attitude, *_, ours, _ = rows(made)
     assert (vehicle.loss, vehicle.lost) == (0.1, 10)

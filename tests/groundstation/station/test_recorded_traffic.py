@@ -42,7 +42,7 @@ def replay() -> tuple[MessageTraffic, Counter[tuple[int, int, str]], dict[tuple[
         if message.get_type() in KNOWN:
             counts[key] += 1
             newest[key] = message
-    traffic.observe([channel.report()])
+    traffic.observe([channel.report()], now)
     return traffic, counts, newest, now
 
 

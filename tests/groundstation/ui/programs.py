@@ -106,7 +106,7 @@ def main(report: str, *options: str) -> int:
         ConsoleDriver._enable_mouse_support = LinuxDriver._enable_mouse_support  # type: ignore[method-assign]
     station.offer(snapshot())
     print("a library prints this")
-    return run(station, keymap=STANDARD)
+    return run(station, keymap=STANDARD, folder=Path())
 
 
 if __name__ == "__main__":

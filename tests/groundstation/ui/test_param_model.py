@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from groundstation.intents.services import FetchParams, WriteParams
-from groundstation.ui.param_model import ANSWER_WITHIN, MAX_UNDO, ParamModel
+from groundstation.ui.param_model import MAX_UNDO, ParamModel
+from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.views.params import ParamPage, ParamPageRequest, ParamRow
 from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.examples import param_page
@@ -21,7 +22,7 @@ def page(first: int, count: int, matching: int = 100, ended: tuple[RequestLine, 
 
 
 def shown(height: int = 10) -> ParamModel:
-    model = ParamModel()
+    model = ParamModel(RequestNumbers())
     model.set_height(height)
     model.show_page(page(0, height))
     return model
@@ -76,16 +77,14 @@ def test_undo_goes_back_step_by_step_and_is_bounded() -> None:
     assert steps == MAX_UNDO
 
 
-def test_a_question_that_is_not_answered_ends() -> None:
+def test_one_write_at_a_time() -> None:
     model = shown()
-    assert not model.ask(0.0), "nothing to write"
+    assert not model.may_write, "nothing to write"
+    assert model.write() == ()
     model.change("5")
-    assert model.ask(0.0)
-    assert model.write(ANSWER_WITHIN) == ()
-    assert model.ask(20.0)
-    [intent] = model.write(20.0 + ANSWER_WITHIN - 0.1)
-    assert intent == WriteParams(1, 1, (("P000", 5.0),))
-    assert not model.ask(21.0), "it is being written"
+    assert model.write() == (WriteParams(1, 1, (("P000", 5.0),)),)
+    assert not model.may_write, "it is being written"
+    assert model.write() == ()
 
 
 def test_numbers_of_requests_rise() -> None:
@@ -96,18 +95,17 @@ def test_numbers_of_requests_rise() -> None:
 def test_old_ends_of_other_requests_do_not_end_a_write() -> None:
     model = shown()
     model.change("5")
-    model.ask(0.0)
-    model.write(0.0)
+    model.write()
     model.show_page(page(0, 10, ended=(RequestLine(7, "accepted", "set 1 parameter"),)))
     assert list(model.pending) == ["P000"]
     model.show_page(page(0, 10, ended=(RequestLine(1, "no answer", "set 1 parameter", "after 8 tries", 0, 1),)))
     assert list(model.pending) == ["P000"], "it was not set"
     assert model.status == "no answer: after 8 tries"
-    assert model.ask(1.0), "and can be written again"
+    assert model.may_write, "and can be written again"
 
 
 def test_the_examples_have_changes() -> None:
-    model = ParamModel()
+    model = ParamModel(RequestNumbers())
     model.set_height(10)
     model.show_page(param_page())
     assert model.change_to_default() is None

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from dialects import rover
 from dialects.messages import Attitude, Heartbeat, ManualControl
-from link.protocol.frame import payload_of
+from link.protocol.frame import MAX_UNKNOWN, FramerCounts, payload_of
 from link.protocol.framer import PARTIAL_DEADLINE, Framer
 from tests.link.frames import demand, frame, heartbeat, version_1
 
@@ -237,6 +237,22 @@ def test_a_sound_frame_of_an_unknown_id_is_no_damage(old: bool, piece: int) -> N
     assert len(found) == len(INSIDE)
     counts = framer.counts
     assert (counts.unknown, counts.crc_errors, counts.refused, counts.resync_bytes) == (len(INSIDE), 0, 0, 0)
+    number = 213 if old else 0xB3AF
+    assert counts.unknown_ids == {(1, 1, number): (len(INSIDE), len(foreign(0, INSIDE[-1] + b"xx", old=old)))}
+
+
+def test_unknown_ids_in_datagrams_are_counted_by_their_source_up_to_a_bound() -> None:
+    framer = Framer(stream=False)
+    for number in range(2 * MAX_UNKNOWN):
+        for size in (3, 5):
+            body = bytes([0xFD, size, 0, 0, 0, 7, 1, number, 0xFF, 0xFF]) + bytes(size)
+            framer.feed(body + b"\x12\x34", 0.0)
+    counts = FramerCounts()
+    counts.add(framer.counts)
+    counts.add(framer.counts)
+    assert len(counts.unknown_ids) == MAX_UNKNOWN
+    assert counts.unknown_ids[7, 1, 0xFFFF00] == (4, 17)
+    assert counts.unknown == 8 * MAX_UNKNOWN
 
 
 def test_damage_inside_what_was_no_frame_still_counts() -> None:

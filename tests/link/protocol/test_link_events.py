@@ -7,7 +7,7 @@ from typing import Any
 from dialects.enums import Severity
 from link.core import LinkReport
 from link.protocol.channel import Channel
-from link.protocol.link_events import LinkEvent, LinkEvents, UpDownEvents
+from link.protocol.link_events import LinkEvent, LinkEvents, UpDownEvents, link_problem
 
 
 def report(received: int, **changes: Any) -> LinkReport:
@@ -58,6 +58,15 @@ def test_a_wrong_dialect_is_told_once() -> None:
     wrong = report(0, dialect_mismatch=("HEARTBEAT",))
     told = [troubles.update(each) for each in (wrong, report(1), wrong)]
     assert [each is not None for each in told] == [True, False, False]
+
+
+def test_a_wrong_dialect_is_told_with_what_helps() -> None:
+    texts = [link_problem(report(0, dialect_mismatch=names)) or "" for names in (("DEBUG_VECT",), ("HEARTBEAT",))]
+    assert texts == [
+        "messages arrive with another dialect's checksum and are dropped: DEBUG_VECT; start with --dialect FILE.xml",
+        "messages arrive with another dialect's checksum and are dropped: HEARTBEAT; "
+        "the vehicle must send the standard definition",
+    ]
 
 
 def test_a_wrong_baud_rate_is_told_once_however_much_noise_there_is() -> None:

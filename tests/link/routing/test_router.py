@@ -341,3 +341,18 @@ def test_byte_soup_never_raises_and_nothing_comes_out_that_did_not_go_in(soup: l
                 assert raw[0] in (0xFD, 0xFE)
     data = frame(BROADCAST, 9, 77, 7)  # a sender that no soup has
     assert {each.link for each in router.receive(SERIAL, [(data + data, "tty")], 1e4) if data in each.frames} >= {OTHER}
+
+
+def test_a_link_may_be_added_and_removed_while_frames_pass() -> None:
+    rig = Rig()
+    rig.router.table.add_link(7, stream=False, fixed="new")
+    data = frame(BROADCAST, 1, 1, 1)
+    assert rig.send(SERIAL, data) == {(UDP, GCS): data, (OTHER, "out"): data, (7, "new"): data}
+    rig.router.receive(7, [(heartbeat(0, 9, 1), "new")], 1.0)
+    to_it = command(9, 1)
+    assert rig.send(UDP, to_it) == {(7, "new"): to_it}
+    rig.router.table.remove_link(7)
+    data = frame(BROADCAST, 2, 1, 1)
+    assert rig.send(SERIAL, data) == {(UDP, GCS): data, (OTHER, "out"): data}
+    assert rig.send(UDP, command(9, 1, 2)) == {}
+    assert {report.system for report in rig.router.table.route_reports(2.0)} == {1, 255}

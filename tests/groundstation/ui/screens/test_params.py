@@ -94,9 +94,9 @@ async def test_a_change_is_sent_after_the_question_only() -> None:
         await change(screen, "0")
         await until(lambda: "2 → 0" in screen.text)
         await screen.press("W")
-        await until(lambda: "write 1 change to the vehicle, which is ARMED · y writes" in screen.text)
+        await until(lambda: "write 1 change to the vehicle, which is ARMED · y does it" in screen.text)
         await screen.press("n")
-        await until(lambda: "y writes" not in screen.text)
+        await until(lambda: "y does it" not in screen.text)
         await screen.press("y")
         assert screen.station.of(WriteParams) == []
         await screen.press("W", "y")

@@ -1,0 +1,136 @@
+"""The options of `groundstation`: those of the table of settings, and a few that hold for one run only."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import msgspec
+
+from groundstation.cli.verb_help import verb_help
+from groundstation.config.settings import DEFAULT_ENDPOINT, ROWS, SettingRow
+from link.endpoint import endpoint_help
+from link.runtime.command_line import CommandLineParser
+
+EXAMPLES = f"""\
+examples:
+  groundstation --sitl                     start a simulated rover and drive it
+  groundstation                            wait for a vehicle on {DEFAULT_ENDPOINT}
+  groundstation udpin:0.0.0.0:14550        the same, from any machine of the network
+  groundstation udpout:192.168.1.20:14550  send first, to a vehicle that listens
+  groundstation --style latch --speed 0.3  a key drives until the next key, slowly
+  groundstation --keys teleop              the keys of teleop_twist_keyboard
+  groundstation --keys my.toml             your own keys; see below
+  groundstation --dialect mine.xml         name the messages of your vehicle's dialect; see below
+
+first drive: hold `r` for a second to arm, hold `i` (or w, or the up arrow) to drive, release to stop;
+one press of `r` disarms. Space stops, `!` is the emergency stop on every screen, `?` shows all keys, Ctrl-Q quits.
+Keys drive on the Drive screen only. F6 lists all alerts and messages, F3 every MAVLink message,
+Ctrl-G goes to the other screens, Escape back.
+
+verbs, which open no screen (groundstation VERB --help):
+{verb_help()}
+
+endpoints:
+{endpoint_help()}
+
+key map file (--keys my.toml): replaces the keys of the actions it names
+  base = "standard"            # or "teleop"
+  [keys]
+  "drive.forward" = ["e", "up"]
+
+dialect file (--dialect mine.xml): MAVLink definitions in XML, read at each start and not compiled. It may include
+the definitions that come with pymavlink, such as common.xml; --dialect ardupilotmega.xml names one of them.
+
+status line: link: four bars up to 2 % loss, three up to 10 %, two up to 25 %; loss: lost frames of the last 5 s;
+rtt: round trip to the vehicle; sent: demands per second; cmd: age of the demand that the motors obey;
+key→motor: time from a changed demand to the vehicle that applies it; tty: round trip to this terminal;
+pre-arm: the vehicle's checks before arming; gps: fix and satellites; batt: voltage and charge
+
+size: 80x24 and more; below that a strip with what a driver must see; below 40x10 keys neither drive nor arm.
+
+key release: terminals with the kitty keyboard protocol report it, and driving ends with the key.
+In others, and inside tmux, driving ends when the key has stopped repeating; the screen shows the time.
+With that protocol a Cyrillic or Greek keyboard drives by the position of its keys; elsewhere choose a Latin layout.
+
+exit codes: 0 after a session, 1 if the station crashed, 2 for wrong arguments, 128 + n after signal n
+"""
+
+
+class _Version(argparse.Action):
+    """Prints the version. Looking it up takes 30 ms, so only here."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Print the version and exit."""
+        from importlib.metadata import version
+
+        sys.stdout.write(f"{parser.prog} {version('mavhelm')}\n")
+        parser.exit()
+
+
+def build_parser() -> tuple[CommandLineParser, list[str]]:
+    """Return the parser and the names of all options."""
+    parser = CommandLineParser(
+        prog="groundstation",
+        description="Drive a MAVLink rover from the terminal.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add = parser.add_argument
+    actions = [
+        add("endpoints", nargs="*", metavar="ENDPOINT|NAME",
+            help=f"where vehicles are, or a name of the config file (default: {DEFAULT_ENDPOINT})"),
+        add("--sitl", action="store_true", help="start a simulated rover, and end it with the ground station"),
+        *add_settings(parser),
+        add_config(parser),
+        add("--version", action=_Version, nargs=0, help="show the version and exit"),
+    ]  # fmt: skip
+    return parser, ["--help", *(name for action in actions for name in action.option_strings)]
+
+
+def add_config(parser: argparse.ArgumentParser) -> argparse.Action:
+    """Add --config."""
+    return parser.add_argument("--config", metavar="FILE", help="config file (`groundstation config path` prints it)")
+
+
+def add_settings(parser: argparse.ArgumentParser) -> list[argparse.Action]:
+    """Add the options of the table of settings. What is not given is None."""
+    return [_add_setting(parser, row) for row in ROWS.values() if row.option is not None]
+
+
+def _add_setting(parser: argparse.ArgumentParser, row: SettingRow) -> argparse.Action:
+    assert row.option is not None
+    details: dict[str, Any] = {"metavar": row.option.metavar}
+    if row.is_switch:
+        details = {"action": argparse.BooleanOptionalAction}
+    elif row.choices:
+        details = {"choices": row.choices}
+    else:
+        details["type"] = _parse(row)
+    return parser.add_argument(row.option.flag, dest=row.name, default=None, help=_help(row), **details)
+
+
+def _help(row: SettingRow) -> str:
+    text = row.help.rstrip(".").replace("%", "%%")
+    text = text if text[1].isupper() else text[0].lower() + text[1:]
+    allowed = f", {row.allowed}" if row.allowed.startswith("a number") else ""
+    return f"{text}{allowed}{f' (default: {row.default_text})' if row.default_text else ''}"
+
+
+def _parse(row: SettingRow) -> Callable[[str], Any]:
+    def parse(text: str) -> Any:
+        try:
+            return row.convert(text, strict=False)
+        except msgspec.ValidationError:
+            raise argparse.ArgumentTypeError(f"{text!r} is not {row.allowed}") from None
+
+    return parse
+
+
+def given_settings(options: argparse.Namespace) -> Mapping[str, Any]:
+    """Return the settings that the command line gives."""
+    found = {name: getattr(options, name, None) for name, row in ROWS.items() if row.option is not None}
+    found["open"] = getattr(options, "endpoints", None) or None
+    return {name: value for name, value in found.items() if value is not None}

@@ -1,0 +1,1 @@
+"""Settings of the ground station: their table, the file groundstation.toml, and which value wins."""

@@ -1,0 +1,90 @@
+"""The settings in force: the command line wins over the environment, that over the file, that over the defaults."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from groundstation.config.config_file import ConfigFile, choose_path, read_config
+from groundstation.config.settings import DEFAULT_ENDPOINT, ROWS, Settings, ThemeName
+from groundstation.input.keymap import Keymap
+from groundstation.input.keymap_file import load_keymap, rebind
+from link.endpoint import EndpointError, parse_endpoint
+from link.runtime.toml_errors import suggest
+
+ENDPOINT_VARIABLE = "MAVHELM_ENDPOINT"
+"""Endpoints or their names, separated by spaces."""
+
+
+@dataclass(frozen=True, slots=True)
+class Effective:
+    """The settings of one run."""
+
+    settings: Settings
+    sources: Mapping[str, str]
+    """Setting -> where its value is from; a setting that is missing has its default."""
+
+
+def load_config(
+    option: str | None, environment: Mapping[str, str], reserved: Collection[str] = ()
+) -> ConfigFile | None:
+    """Return the file that --config or MAVHELM_CONFIG names, or the user's own if there is one. Raises ConfigError."""
+    path, named = choose_path(option, environment)
+    return read_config(path, reserved) if named or path.exists() else None
+
+
+def merge(file: ConfigFile | None, environment: Mapping[str, str], options: Mapping[str, Any]) -> Effective:
+    """Return the settings in force. `options` are those of the command line that were given."""
+    values: dict[str, Any] = {}
+    sources: dict[str, str] = {}
+    if file is not None:
+        values |= file.values
+        sources |= {name: file.place(name) for name in file.values}
+    for name, (variable, value) in _from_environment(environment).items():
+        values[name], sources[name] = value, variable
+    for name, value in options.items():
+        option = ROWS[name].option
+        values[name], sources[name] = value, option.flag if option is not None else "command line"
+    if "keymap" in options:  # a key map that was asked for is not changed by the file
+        values.pop("keys", None)
+        sources.pop("keys", None)
+    return Effective(msgspec.convert(values, Settings), sources)
+
+
+def _from_environment(environment: Mapping[str, str]) -> dict[str, tuple[str, Any]]:
+    """Return setting -> variable and value. An empty variable counts as none (https://no-color.org)."""
+    found: dict[str, tuple[str, Any]] = {}
+    if endpoints := environment.get(ENDPOINT_VARIABLE, "").split():
+        found["open"] = ENDPOINT_VARIABLE, endpoints
+    if environment.get("NO_COLOR"):
+        found["theme"] = "NO_COLOR", ThemeName.NO_COLOUR
+    return found
+
+
+def build_keymap(settings: Settings) -> Keymap:
+    """Return the key map with the changes of [keys]. Raises KeymapError."""
+    base = load_keymap(settings.keymap)
+    return rebind(base, settings.keys) if settings.keys else base
+
+
+def resolve_endpoints(texts: str | Sequence[str], settings: Settings) -> list[str]:
+    """Return the endpoints that the texts are or name. Raises EndpointError."""
+    endpoints: list[str] = []
+    for text in [texts] if isinstance(texts, str) else texts:
+        named = settings.endpoints.get(text)
+        if named is not None:
+            endpoints += [named] if isinstance(named, str) else named
+        else:
+            endpoints.append(text)
+            _check_endpoint(text, settings.endpoints)
+    return endpoints
+
+
+def _check_endpoint(text: str, names: Collection[str]) -> None:
+    if ":" not in text and "/" not in text:
+        hint = f", nor a name of [endpoints]; {suggest(text, names)}" if names else " (groundstation --help lists them)"
+        raise EndpointError(f"{text!r} is not an endpoint such as {DEFAULT_ENDPOINT}{hint}")
+    parse_endpoint(text)

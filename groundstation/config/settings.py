@@ -1,0 +1,148 @@
+"""Settings: the table of all settings of the ground station.
+
+A row is a field: its name is the key in groundstation.toml, its type has the range, its docstring is the help of the
+file and of the command line, and Option the option of the command line. To add a setting, add a field here.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+import msgspec
+
+from groundstation.input.style import HIGHEST_LIMIT, LOWEST_LIMIT, Style
+from link.runtime.docstrings import field_docs
+
+DEFAULT_ENDPOINT = "udpin:127.0.0.1:14550"
+"""The port that vehicles and simulators usually send to; this machine only, because MAVLink has no password."""
+
+
+TEXTS = 'text in "quotes", or a list of texts'
+
+
+class ThemeName(StrEnum):
+    """The themes; groundstation/ui/themes.py has their colours."""
+
+    DARK = "dark"
+    LIGHT = "light"
+    HIGH_CONTRAST = "high-contrast"
+    COLOUR_BLIND = "colour-blind"
+    NO_COLOUR = "no-colour"
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """The option of the command line for a setting."""
+
+    flag: str
+    metavar: str | None = None
+    default: str = ""
+    """What the help says about the default; "" for the default value itself."""
+
+
+class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """All settings."""
+
+    open: str | tuple[str, ...] = DEFAULT_ENDPOINT
+    """Where vehicles are, if the command line does not say so: endpoints, or names of [endpoints]."""
+    system: Annotated[int, msgspec.Meta(ge=1, le=255), Option("--system", "ID")] = 255
+    """Our MAVLink system id."""
+    style: Annotated[Style, Option("--style")] = Style.HOLD
+    """How keys drive. hold: while a key is held; latch: until the next key; step: each press adds 10 %."""
+    speed: Annotated[float, msgspec.Meta(ge=LOWEST_LIMIT, le=HIGHEST_LIMIT), Option("--speed", "FRACTION")] = 0.6
+    """Limit of the sticks."""
+    keymap: Annotated[str, Option("--keys", "NAME|FILE")] = "standard"
+    """Key map: standard, teleop, or a TOML file."""
+    theme: Annotated[ThemeName | None, Option("--theme", None, "dark; no-colour if NO_COLOR is set")] = None
+    """Colours of the screen."""
+    ascii: Annotated[bool | None, Option("--ascii", None, "where the locale is not UTF-8, and with TERM=linux")] = None
+    """Draw with ASCII characters only."""
+    reduce_motion: Annotated[bool, Option("--reduce-motion")] = False
+    """Nothing on the screen moves by itself: no spinners, no animations, no blinking cursor."""
+    folder: Annotated[str | None, Option("--folder", "FOLDER", "that of the log file")] = None
+    """Folder in which the screens save files."""
+    log_file: Annotated[str | None, Option("--log-file", "FILE", "groundstation.log in the user's log folder")] = None
+    """Log of the program itself."""
+    dialect: Annotated[str | None, Option("--dialect", "FILE.xml", "the built-in one alone")] = None
+    """MAVLink definitions of a vehicle that sends messages of its own."""
+    endpoints: dict[str, str | tuple[str, ...]] = {}
+    """Names for endpoints: `groundstation field` opens what `field` names, one endpoint or a list."""
+    keys: dict[str, Any] = {}
+    """Keys of single actions, in place of those of the key map. --keys on the command line leaves them out."""
+
+
+@dataclass(frozen=True, slots=True)
+class SettingRow:
+    """One row of the table."""
+
+    name: str
+    kind: Any
+    """Its type, for msgspec."""
+    default: Any
+    help: str
+    option: Option | None
+
+    @property
+    def is_switch(self) -> bool:
+        """It is true or false."""
+        return isinstance(self._info, msgspec.inspect.BoolType)
+
+    @property
+    def choices(self) -> list[str] | None:
+        """Its values, where they are listed."""
+        info = self._info
+        return [str(each.value) for each in info.cls] if isinstance(info, msgspec.inspect.EnumType) else None
+
+    @property
+    def allowed(self) -> str:
+        """What is allowed, for people: "a number from 0.1 to 1"."""
+        info = self._info
+        if isinstance(info, msgspec.inspect.IntType | msgspec.inspect.FloatType):
+            return f"a number from {info.ge:g} to {info.le:g}"
+        if self.choices:
+            return f"one of {', '.join(self.choices)}"
+        if self.is_switch:
+            return "true or false"
+        return TEXTS if self.name == "open" else 'text in "quotes"'
+
+    @property
+    def default_text(self) -> str:
+        """What holds without the setting, for people; "" if there is nothing to say."""
+        if self.option is not None and self.option.default:
+            return self.option.default
+        return "" if self.is_switch or not self.default else format_value(self.default)
+
+    @property
+    def _info(self) -> msgspec.inspect.Type:
+        info = msgspec.inspect.type_info(self.kind)
+        if not isinstance(info, msgspec.inspect.UnionType):
+            return info
+        return next(each for each in info.types if not isinstance(each, msgspec.inspect.NoneType))
+
+    def convert(self, value: object, *, strict: bool = True) -> Any:
+        """Return a value of its type; without `strict` a number may be a text. Raises msgspec.ValidationError."""
+        return msgspec.convert(value, self.kind, strict=strict)
+
+
+def format_value(value: Any) -> str:
+    """Return a value for people: texts without quotes, a list or a table as JSON."""
+    return str(value) if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
+def _rows() -> tuple[SettingRow, ...]:
+    docs, kinds = field_docs(Settings), get_type_hints(Settings, include_extras=True)
+    rows = []
+    for each in msgspec.structs.fields(Settings):
+        kind = kinds[each.name]
+        notes = get_args(kind)[1:] if get_origin(kind) is Annotated else ()
+        option = next((note for note in notes if isinstance(note, Option)), None)
+        default = {} if each.default_factory is not msgspec.NODEFAULT else each.default
+        rows.append(SettingRow(each.name, kind, default, docs[each.name], option))
+    return tuple(rows)
+
+
+ROWS = {row.name: row for row in _rows()}
+"""The table by name, in the order of the template."""

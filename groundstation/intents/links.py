@@ -1,0 +1,22 @@
+"""Intents that open and close links. The station's shell handles them (groundstation/connect), not its core."""
+
+from __future__ import annotations
+
+from groundstation.intents.base import Intent
+
+
+class AddLink(Intent, frozen=True):
+    """Open a link; while that fails, it is tried again until the link is closed."""
+
+    request: int
+    """Number by which ConnectView.attempts reports how it stands; see ui/request_numbers.py."""
+    endpoint: str
+    watch_only: bool = False
+    """Never send a byte on it."""
+
+
+class CloseLink(Intent, frozen=True):
+    """Close a link: neutral first to the vehicles that it leads to."""
+
+    link: int
+    """LinkRow.index."""

@@ -1,0 +1,34 @@
+"""SIMULATORS: the simulated rovers that can be started. A new one is a row here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatorRow:
+    """One choice of the Connect screen."""
+
+    kind: str
+    """Its name in StartSimulator."""
+    key: str
+    label: str
+    help: str
+    options: tuple[tuple[str, ...], ...]
+    """Options of `vehicle --sim`, one tuple for each process."""
+
+
+SIMULATORS: tuple[SimulatorRow, ...] = (
+    SimulatorRow("rover", "s", "rover", "skid steering, 1 battery", ((),)),
+    SimulatorRow("car", "c", "car", "steers like a car", (("--param", "DRIVE_TYPE=2"),)),
+    SimulatorRow("mecanum", "m", "mecanum rover", "also moves sideways", (("--param", "DRIVE_TYPE=4"),)),
+    SimulatorRow("low", "l", "rover, battery low", "20 % charge left", (("--sim-battery", "0.2"),)),
+    SimulatorRow("three", "v", "three rovers", "ids 1 2 3",
+                 (("--system", "1"), ("--system", "2", "--sim-seed", "2"), ("--system", "3", "--sim-seed", "3"))),
+)  # fmt: skip
+"""In the order of the screen; ENTER with nothing heard starts the first."""
+
+
+def find_simulator(kind: str) -> SimulatorRow:
+    """Return the row of this name; the first one for a name that is not there."""
+    return next((row for row in SIMULATORS if row.kind == kind), SIMULATORS[0])

@@ -1,0 +1,40 @@
+"""TAB_MARKS: marks behind the names of screens in the tab bar, such as a pencil while changes are not sent.
+
+A mark is a function of the display state: of the snapshot, or of what a screen keeps while it is closed (`kept`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from groundstation.ui.colours import BLUE
+from groundstation.ui.display_state import DisplayState
+from groundstation.ui.param_model import ParamModel
+
+
+@dataclass(frozen=True, slots=True)
+class TabMark:
+    """A mark behind the name of a screen."""
+
+    text: str
+    colour: str
+    short: str = ""
+    """Where the tab bar is narrow; empty: `text`."""
+
+
+def _pending_params(now: DisplayState) -> TabMark | None:
+    """Return a pencil with the number of parameter changes that are not written."""
+    model = now.kept.get(ParamModel)
+    pending = len(model.pending) if isinstance(model, ParamModel) else 0
+    return TabMark(f"✎{pending}", BLUE, short="✎") if pending else None
+
+
+TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {"params": _pending_params}
+"""Id of a row in SCREENS -> its mark, None for no mark."""
+
+
+def find_marks(now: DisplayState) -> dict[str, TabMark]:
+    """Return the marks of a display state, by the id of the screen."""
+    found = {screen: mark(now) for screen, mark in TAB_MARKS.items()}
+    return {screen: mark for screen, mark in found.items() if mark is not None}

@@ -1,0 +1,111 @@
+"""The serial ports of this machine: what is plugged in, its driver, and which program has it open.
+
+Reading them takes some milliseconds: callers that must not wait use a thread.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from serial.tools import list_ports
+
+PROC = Path("/proc")
+TTY_CLASS = Path("/sys/class/tty")
+LOGINS = ("getty", "agetty")
+"""Programs that wait for a login on a port: the arguments name it. They belong to root, who hides their descriptors."""
+
+
+@dataclass(frozen=True, slots=True)
+class SerialPort:
+    """One port."""
+
+    path: str
+    description: str = ""
+    """What is plugged in, as it describes itself; "" if it does not."""
+    ids: str = ""
+    """USB vendor and product, e.g. "0403:6015"."""
+    driver: str = ""
+    """Name of the kernel's driver, e.g. "ftdi_sio"."""
+    holder: str = ""
+    """Program that has it open, with its process id."""
+    allowed: bool = True
+    """This user may open it."""
+
+
+def find_serial_ports(proc: Path = PROC) -> list[SerialPort]:
+    """Return all ports, by path."""
+    ports = sorted(list_ports.comports(), key=lambda port: str(port.device))
+    holders = find_holders([str(port.device) for port in ports], proc)
+    return [
+        SerialPort(
+            path=str(port.device),
+            description=_description(str(port.description or "")),
+            ids=f"{port.vid:04x}:{port.pid:04x}" if port.vid is not None and port.pid is not None else "",
+            driver=_driver(Path(str(port.device)).name),
+            holder=holders.get(str(port.device), ""),
+            allowed=os.access(str(port.device), os.R_OK | os.W_OK),
+        )
+        for port in ports
+    ]
+
+
+def find_holders(paths: list[str], proc: Path = PROC) -> dict[str, str]:
+    """Return which program has each of these files open, e.g. "screen (pid 412)". Ours are left out.
+
+    Processes of other users hide what they have open, except a login that names the port in its arguments.
+    """
+    real = {os.path.realpath(path): path for path in paths}
+    found: dict[str, str] = {}
+    if not real:
+        return found
+    for process in _processes(proc):
+        opened = {os.path.realpath(target) for target in _open_files(process)}
+        for path in [real[each] for each in opened & real.keys()] + _login_ports(process, paths):
+            found.setdefault(path, f"{_name(process)} (pid {process.name})")
+    return found
+
+
+def _processes(proc: Path) -> Iterator[Path]:
+    with contextlib.suppress(OSError):
+        for entry in sorted(os.listdir(proc)):
+            if entry.isdigit() and int(entry) != os.getpid():
+                yield proc / entry
+
+
+def _open_files(process: Path) -> Iterator[str]:
+    with contextlib.suppress(OSError):
+        for descriptor in os.listdir(process / "fd"):
+            with contextlib.suppress(OSError):
+                target = os.readlink(process / "fd" / descriptor)
+                if target.startswith("/dev/"):
+                    yield target
+
+
+def _login_ports(process: Path, paths: list[str]) -> list[str]:
+    if _name(process) not in LOGINS:
+        return []
+    with contextlib.suppress(OSError):
+        words = (process / "cmdline").read_bytes().decode("utf-8", "replace").split("\0")
+        return [path for path in paths if Path(path).name in words or path in words]
+    return []
+
+
+def _name(process: Path) -> str:
+    with contextlib.suppress(OSError):
+        return "".join(filter(str.isprintable, (process / "comm").read_text("utf-8", "replace").strip()))
+    return "?"
+
+
+def _description(text: str) -> str:
+    """Return the description without pyserial's word for none."""
+    return "" if text == "n/a" else "".join(filter(str.isprintable, text))
+
+
+def _driver(name: str) -> str:
+    with contextlib.suppress(OSError):
+        return os.path.basename(os.readlink(TTY_CLASS / name / "device" / "driver"))
+    return ""

@@ -1,0 +1,32 @@
+"""The file of `groundstation config init`: it runs unchanged, and every example in it is valid."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import msgspec
+
+from groundstation.config.config_file import read_config
+from groundstation.config.effective import merge
+from groundstation.config.settings import ROWS, Settings
+from groundstation.config.template import EXAMPLES, build_template
+
+
+def test_unchanged_it_sets_nothing(tmp_path: Path) -> None:
+    (tmp_path / "my.toml").write_text(build_template())
+    assert merge(read_config(tmp_path / "my.toml"), {}, {}).settings == Settings()
+
+
+def test_with_every_line_set_it_has_all_settings_and_their_defaults(tmp_path: Path) -> None:
+    text = re.sub(r"^#(\S)", r"\1", build_template(), flags=re.MULTILINE)
+    (tmp_path / "my.toml").write_text(text)
+    values = read_config(tmp_path / "my.toml").values
+    assert set(values) == set(ROWS)
+    defaults = msgspec.to_builtins(Settings())
+    for name in set(ROWS) - set(EXAMPLES) - {"endpoints", "keys"}:
+        assert values[name] == defaults[name]
+
+
+def test_no_line_is_wider_than_the_code() -> None:
+    assert max(map(len, build_template().splitlines())) <= 120
