@@ -46,14 +46,15 @@ class Timing(msgspec.Struct, frozen=True, array_like=True):
 
 
 class KeyToMotor(msgspec.Struct, frozen=True, array_like=True):
-    """The way of a key press to the motors. Half of a round trip counts for each direction."""
+    """The way of a key press to the motors. Half of a round trip counts for each direction.
+
+    `heard_motor` and `total` are upper bounds: until the report that shows it, which may wait for its turn.
+    """
 
     key_sent: Timing = Timing()
     sent_heard: Timing = Timing()
     heard_motor: Timing = Timing()
     total: Timing = Timing()
-    at_most: bool = False
-    """`heard_motor` and `total` are upper bounds: until the first output that changed arrived."""
 
 
 class HealthLine(msgspec.Struct, frozen=True, array_like=True):

@@ -44,7 +44,7 @@ class DriveReadings:
             return
         self.health.receive(received.message, now)
         self.mission.receive(received.message, now)
-        if isinstance(received.message, OUTPUT_REPORTS):
+        if isinstance(received.message, OUTPUT_REPORTS) and not self._state.has_rover_dialect:
             self.steps.record_outputs(self._state.foreign.raw_outputs, round_trip, now)
 
     def tick(self, now: float) -> None:

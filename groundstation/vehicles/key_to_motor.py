@@ -42,6 +42,6 @@ class KeyTimings:
             self._heard.add(heard)
             self._motor.add(motor)
 
-    def build_view(self, *, at_most: bool) -> KeyToMotor:
-        """Build the part of the snapshot. `at_most`: the times to the motors are upper bounds."""
-        return KeyToMotor(self._key.view, self._heard.view, self._motor.view, self._total.view, at_most)
+    def build_view(self) -> KeyToMotor:
+        """Build the part of the snapshot."""
+        return KeyToMotor(self._key.view, self._heard.view, self._motor.view, self._total.view)

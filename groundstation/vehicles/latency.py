@@ -18,6 +18,10 @@ TOO_OLD = 2.0
 """s after which a report on a demand is ignored: its sequence number may have been used again."""
 
 
+AGE_STEP = 0.001
+"""s: resolution of `demand_age_ms`. A demand that is reported with the age 0 was obeyed within it."""
+
+
 class SentDemand(NamedTuple):
     """A demand that was changed by a key, or by a timer."""
 
@@ -56,4 +60,4 @@ class LatencyMeter:
             return
         self.reports += 1
         self.latest = max(0.0, now - demand.made - age)
-        self._timings.add(demand.key, max(0.0, now - demand.sent - age) / 2, age)
+        self._timings.add(demand.key, max(0.0, now - demand.sent - age) / 2, age + AGE_STEP)

@@ -142,7 +142,7 @@ class VehicleState:
             outputs=self.foreign.outputs(now) if drive is None else self._outputs(drive),
             limits=flag_words(DriveLimit, drive.limits) if drive else (),
             latency=self.latency.latest,
-            key_to_motor=self.key_timings.build_view(at_most=not self.has_rover_dialect),
+            key_to_motor=self.key_timings.build_view(),
             failsafes=flag_words(Failsafe, self._failsafe.active) if self._failsafe else (),
             failsafe_in=self._failsafe_in(now),
             **self._values,

@@ -117,7 +117,9 @@ class DriveScreen(ConsoleScreen):
     def show_body(self, now: DisplayState) -> None:
         """Show what depends on the size, the vehicle and the alerts."""
         self._show_small()
-        self.set_class(now.snapshot.vehicle is None, "-waiting")
+        vehicle = now.snapshot.vehicle
+        self.set_class(vehicle is None, "-waiting")
+        self.set_class(vehicle is None or vehicle.mission is None or not vehicle.mission.legs, "-no-legs")
         self.set_class(bool(active_alerts(now)), "-alert")
 
     # ---- panes ----

@@ -53,9 +53,7 @@ def command_limit(vehicle: VehicleView) -> float | None:
 
 
 def _rounded_way(way: KeyToMotor) -> KeyToMotor:
-    return KeyToMotor(
-        _rounded(way.key_sent), _rounded(way.sent_heard), _rounded(way.heard_motor), _rounded(way.total), way.at_most
-    )
+    return KeyToMotor(*map(_rounded, (way.key_sent, way.sent_heard, way.heard_motor, way.total)))
 
 
 def _rounded(timing: Timing) -> Timing:
@@ -71,11 +69,11 @@ class WayPanel(Instrument[WayValue]):
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw bars of one scale, and the age of the demand on a line that ends at its limit."""
         value = self.value
-        way, total = value.way, self._part("key to motor", value.way.total, width, value.way.at_most)
+        way, total = value.way, self._part("key to motor", value.way.total, width, at_most=True)
         parts = [
             self._part("key to sent", way.key_sent, width),
             self._part("sent to heard", way.sent_heard, width),
-            self._part("heard to motor", way.heard_motor, width, way.at_most),
+            self._part("heard to motor", way.heard_motor, width, at_most=True),
         ]
         age, note = self._age(width), strip((self._note(), style(DIM)))
         if height >= len(parts) + 4:
@@ -123,7 +121,7 @@ class WayPanel(Instrument[WayValue]):
         if self.value.age is None:
             return "no demand is in use"
         if self.value.estimated:
-            return "≤ and ~: estimates, it does not tell"
+            return "~ an estimate: the vehicle does not tell"
         return f"the motors obey a demand {_ms(self.value.age)} ms old"
 
 

@@ -113,7 +113,7 @@ def wheels(left: float, right: float) -> tuple[OutputView, ...]:
 
 
 WAY = KeyToMotor(Timing(0.0003, 0.0009), Timing(0.0058, 0.009), Timing(0.0021, 0.011), Timing(0.0082, 0.021))
-FOREIGN_WAY = KeyToMotor(Timing(0.0003, 0.0009), Timing(0.004, 0.01), Timing(0.11, 0.19), Timing(0.12, 0.2), True)
+FOREIGN_WAY = KeyToMotor(Timing(0.0003, 0.0009), Timing(0.004, 0.01), Timing(0.11, 0.19), Timing(0.12, 0.2))
 STOPS = (
     StopBound("no command", "neutral", "MAN_TIMEOUT", 0.45, 0.042),
     StopBound("no command", "HOLD", "FS_TIMEOUT", 1.95, 0.042),

@@ -105,8 +105,8 @@ def way(**changes: object) -> WayPanel:
 def test_the_parts_of_the_way_and_the_age_against_its_limit() -> None:
     lines = texts(way().draw(40, 7))
     assert [line.split()[:4] for line in lines[:4]] == [
-        ["key", "to", "sent", "0.3"], ["sent", "to", "heard", "5.8"], ["heard", "to", "motor", "2.1"],
-        ["key", "to", "motor", "8.2"],
+        ["key", "to", "sent", "0.3"], ["sent", "to", "heard", "5.8"], ["heard", "to", "motor", "≤2.1"],
+        ["key", "to", "motor", "≤8.2"],
     ]  # fmt: skip
     assert lines[3].endswith("p99 21")
     assert "42 ━" in lines[5]
