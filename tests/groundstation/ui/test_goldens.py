@@ -196,7 +196,7 @@ def test_ascii_frames_are_ascii(name: str) -> None:
     assert (GOLDEN / f"{name}.txt").read_text("utf-8").isascii()
 
 
-@pytest.mark.parametrize("name", ["drive_80x24", "log_80x24", "log_140x45", "links_80x24", "strip_60x15"])
+@pytest.mark.parametrize("name", ["drive_80x24", "drive_140x45", "log_80x24", "log_140x45", "links_80x24", "strip_60x15"])
 async def test_without_colours_the_text_is_the_same_and_everything_is_grey(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
