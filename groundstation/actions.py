@@ -103,7 +103,7 @@ _ROWS = (
                    "vehicle", KeepControl(), ("N",)),
     OperatorAction("vehicle.next", "Next vehicle", "Stop this vehicle and select the next one", "vehicle",
                    SelectNextVehicle(), ("n",)),
-    OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator(), ("f5",)),
+    OperatorAction("app.simulator", "Simulator", "Start a simulated rover", "app", StartSimulator()),
     *(OperatorAction(screen.action, screen.title, screen.help, "app", keys=screen.keys) for screen in SCREENS),
     OperatorAction("app.goto", "Go to", "Menu of the screens; then the digit of one", "app", keys=("ctrl+g",)),
     OperatorAction("app.next_screen", "Next screen", "Screen to the right in the tab bar", "app",

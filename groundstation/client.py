@@ -72,6 +72,7 @@ class StationClient:
         sitl: bool = False,
         log_file: Path | None = None,
         dialect: str | None = None,
+        param_docs: Path | None = None,
         terminal: str | None = None,
         meanwhile: Callable[[], object] = lambda: None,
     ) -> StationClient:
@@ -85,6 +86,8 @@ class StationClient:
             options.append(f"--log-file={log_file}")
         if dialect is not None:
             options.append(f"--dialect={dialect}")
+        if param_docs is not None:
+            options.append(f"--param-docs={param_docs}")
         if terminal is not None:
             options.append(f"--terminal={terminal}")
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

@@ -34,6 +34,7 @@ def station_parser() -> argparse.ArgumentParser:
     parser.add_argument("--sitl", action="store_true")
     parser.add_argument("--log-file", type=Path)
     parser.add_argument("--dialect", metavar="FILE.xml")
+    parser.add_argument("--param-docs", type=Path, help="file with texts of parameters")
     parser.add_argument("--terminal", help="path of the screen's terminal, which is reset if the screen is killed")
     parser.add_argument("endpoints", nargs="*")
     return parser

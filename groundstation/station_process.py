@@ -20,6 +20,7 @@ from dialects.extra.errors import DialectError
 from dialects.extra.option import Note, use_dialect
 from dialects.messages import printable
 from groundstation.connect.desk import ConnectDesk
+from groundstation.disk.desk import DiskDesk
 from groundstation.input.style import Style
 from groundstation.intents.driving import Stop
 from groundstation.intents.session import Quit, RenewLease
@@ -39,6 +40,8 @@ from groundstation.station.departure import DISARM_AFTER, DISARM_TIMEOUT
 from groundstation.station.lasting_alerts import LastingAlerts
 from groundstation.station.station import COMPONENT, Station
 from groundstation.station_options import log_to, station_parser
+from groundstation.texts_folder import load_texts
+from groundstation.vehicles.fleet import PLACES
 from groundstation.watchdog.feed import WatchdogFeed
 from link.endpoint import EndpointError, parse_endpoint
 from link.protocol.sent_frames import SentFrames
@@ -79,6 +82,7 @@ class StationProcess:
         self._watchdog = watchdog
         self._core = CrashNeutral(station)
         self._runner = Runner(self._core, links, period=TICK, broken=self._handle_crash, sent=watchdog.record_sent)
+        self._disk = DiskDesk(station, self._runner.flush)
         self.connect = ConnectDesk(self._runner, station, ids, sent)
         self._last_snapshot = Snapshot()
         self._addresses = LocalAddresses()
@@ -99,6 +103,7 @@ class StationProcess:
             show.cancel()
             loop.remove_reader(self._pipe)
             self.connect.close()
+            self._disk.close()
             self._watchdog.close()
         return 1 if self._broken else 0
 
@@ -143,6 +148,7 @@ class StationProcess:
             else:
                 self._station.handle_intent(intent, now, read_at=batch.time)
                 self.connect.handle(intent, now)
+        self._disk.run()
 
     async def _send_snapshots(self) -> None:
         """Send snapshots at absolute deadlines, and do what is due for the links."""
@@ -164,6 +170,7 @@ class StationProcess:
     def _send_snapshot(self, now: float) -> None:
         self._report(now)
         self.connect.tick(now)
+        self._disk.run()
         self._station.set_addresses(self._addresses.find(now))
         self._last_snapshot = self._station.snapshot(now, time.time())
         for text in self._lasting_alerts.new_in(self._last_snapshot):
@@ -253,7 +260,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         log_to(options.log_file)
         notes = use_dialect(options.dialect)
         sent = SentFrames()
-        links = open_links(endpoints, system=options.system, component=COMPONENT, sent=sent)
+        links = open_links(endpoints, system=options.system, component=COMPONENT, sent=sent, places=PLACES)
         known = tuple(parse_endpoint(text).text for text in endpoints)
     except (DialectError, EndpointError, LinkError, OSError) as error:
         pipe.send(encode(StationFailed(_one_line(error))))
@@ -273,11 +280,21 @@ def _run(
 ) -> int:
     started = time.monotonic()  # the loop's clock
     session = secrets.randbits(32)
-    style = Style(options.style)
-    station = Station(endpoints, system=options.system, style=style, speed=options.speed, session=session, now=started)
+    texts = load_texts(options.param_docs)
+    station = Station(
+        endpoints,
+        system=options.system,
+        style=Style(options.style),
+        speed=options.speed,
+        session=session,
+        texts=texts,
+        now=started,
+    )
     process = StationProcess(station, links, pipe, watchdog, ids=(options.system, COMPONENT), sent=sent)
     for note in notes:
         process.add_to_log(started, note.text, note.severity)
+    for problem in texts.problems:
+        process.add_to_log(started, problem, Severity.WARNING)
     if options.sitl:
         process.connect.start_simulator(started)
     gc.collect()

@@ -15,6 +15,7 @@ from link.core import Core, LinkReport, Outgoing, PlaceKeeper, Received, SendGua
 from link.protocol.channel import Channel
 from link.protocol.link_events import LinkEvents
 from link.protocol.log_tap import LogTap
+from link.protocol.peer_table import MAX_PEERS
 from link.protocol.sent_frames import SentFrames
 from link.routing.router import Delivery, Router
 from link.transport.transport import Link, Transport
@@ -37,11 +38,12 @@ def open_links(
     component: int,
     wanted: frozenset[int] | None = None,
     sent: SentFrames | None = None,
+    places: int = MAX_PEERS,
 ) -> list[Link]:
-    """Open all endpoints, or none. Raises EndpointError or LinkError. `wanted`, `sent`: see Channel."""
+    """Open all endpoints, or none. Raises EndpointError or LinkError. `wanted`, `sent`, `places`: see Channel."""
     sent = sent or SentFrames()
     return [
-        build_link(transport, index, system=system, component=component, wanted=wanted, sent=sent)
+        build_link(transport, index, system=system, component=component, wanted=wanted, sent=sent, places=places)
         for index, transport in enumerate(open_transports(endpoints))
     ]
 
@@ -55,6 +57,7 @@ def build_link(
     wanted: frozenset[int] | None = None,
     sent: SentFrames | None = None,
     watch_only: bool = False,
+    places: int = MAX_PEERS,
 ) -> Link:
     """Return a link over an open transport. `index` is unique among the links of a runner."""
     channel = Channel(
@@ -67,6 +70,7 @@ def build_link(
         target=None if watch_only else transport.fixed_address,
         capacity=transport.capacity,
         sent=sent,
+        places=places,
     )
     return Link(transport, channel, watch_only)
 

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from groundstation.cli import config_verb
 from groundstation.cli import options as station_options
+from groundstation.cli.verb_help import LOCAL_HELP
 from groundstation.verbs import main as verbs_main
 from groundstation.verbs.table import VERBS
 from link.bridge import __main__ as bridge_main
@@ -83,6 +85,8 @@ def test_a_command_that_a_document_shows_is_understood(doc: str, program: str, w
         options.build_parser().parse_intermixed_args(options.join_home_option(words))
     elif program == "groundstation" and words and words[0] in VERBS:
         verbs_main.build_parser(words[0]).parse_args(words[1:])
+    elif program == "groundstation" and words and words[0] in LOCAL_HELP:
+        config_verb.build_parser().parse_args(words[1:])
     elif program == "groundstation":
         station_options.build_parser()[0].parse_args(words)
     else:

@@ -37,7 +37,7 @@ class _Code(IntEnum):
 
 def run(arguments: Sequence[str]) -> int:
     """Run `groundstation config`; return the exit code."""
-    parser = _build_parser()
+    parser = build_parser()
     options = parser.parse_args(parser.reject_empty(arguments))
     try:
         return ACTIONS[options.action](options)
@@ -111,7 +111,8 @@ _HELP = {
 _FORMAT = argparse.RawDescriptionHelpFormatter
 
 
-def _build_parser() -> CommandLineParser:
+def build_parser() -> CommandLineParser:
+    """Return the parser for the arguments behind `config`."""
     parser = CommandLineParser(prog="groundstation config", epilog=EPILOG, formatter_class=_FORMAT)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=CommandLineParser)
     for name, text in _HELP.items():

@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from platformdirs import user_log_path
 
@@ -20,12 +21,15 @@ from groundstation.cli.unknown_options import describe_unknown
 from groundstation.cli.verb_help import LOCAL_HELP, RESERVED, VERB_HELP
 from groundstation.client import StationClient, StationError
 from groundstation.config.config_file import ConfigError
-from groundstation.config.effective import build_keymap, load_config, merge, resolve_endpoints
-from groundstation.config.settings import Settings
+from groundstation.config.effective import Effective, build_keymap, load_config, merge, resolve_endpoints
+from groundstation.config.settings import Settings, ThemeName
 from groundstation.input.keymap import KeymapError
 from groundstation.recent.recent_file import RecentFile
 from link.endpoint import EndpointError
 from link.runtime import stdio
+
+if TYPE_CHECKING:
+    from groundstation.ui.appearance import Look  # the UI is imported while the station starts
 
 MIN_TERMINAL_SIZE = (40, 10)
 """Columns and rows below which not even the message fits that the terminal is too small."""
@@ -66,9 +70,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
     config = load_config(options.config, os.environ, RESERVED)
-    settings = merge(config, os.environ, given_settings(options)).settings
+    effective = merge(config, os.environ, given_settings(options))
+    settings = effective.settings
     keymap = build_keymap(settings)
-    endpoints = _endpoints(options, settings, names)
+    endpoints = _endpoints(options, effective, names)
     _check_terminal()
     log_file = _log_file(settings.log_file)
     folder = _folder(settings.folder, log_file)
@@ -80,6 +85,7 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         sitl=options.sitl,
         log_file=log_file,
         dialect=os.path.expanduser(settings.dialect) if settings.dialect else None,
+        param_docs=_docs_file(settings.param_docs),
         terminal=_terminal_path(),
         meanwhile=_import_screen,
     )
@@ -87,12 +93,22 @@ def _run(options: argparse.Namespace, names: Sequence[str]) -> int:
         from groundstation.ui.run import run
 
         _remember(endpoints)
-        ascii_only = needs_ascii() if settings.ascii is None else settings.ascii
-        return run(client, keymap=keymap, log_file=log_file, folder=folder, ascii_only=ascii_only)
+        first = "drive" if endpoints or options.sitl else "connect"
+        return run(client, keymap=keymap, log_file=log_file, folder=folder, look=_look(settings), first=first)
     finally:
         client.close()
         _remember(endpoints, client.vehicle_name)
         report_armed(client.left_armed)
+
+
+def _look(settings: Settings) -> Look:
+    from groundstation.ui.appearance import Look
+
+    return Look(
+        theme=settings.theme or ThemeName.DARK,
+        ascii=needs_ascii() if settings.ascii is None else settings.ascii,
+        reduce_motion=settings.reduce_motion,
+    )
 
 
 def _remember(endpoints: Sequence[str], vehicle: str = "") -> None:
@@ -115,9 +131,13 @@ def report_armed(lines: Sequence[str]) -> None:
             print(f"groundstation: {line}", file=sys.stderr, flush=True)
 
 
-def _endpoints(options: argparse.Namespace, settings: Settings, names: Sequence[str]) -> list[str]:
-    """Return what to open. A simulator alone opens nothing that the command line does not name."""
-    if options.sitl and not options.endpoints:
+def _endpoints(options: argparse.Namespace, effective: Effective, names: Sequence[str]) -> list[str]:
+    """Return what to open. Without an endpoint on the command line or in the settings, the Connect screen comes first.
+
+    A simulator alone opens nothing that the command line does not name.
+    """
+    settings = effective.settings
+    if not options.endpoints and (options.sitl or "open" not in effective.sources):
         return []
     for text in options.endpoints:
         if f"--{text}" in names and text not in settings.endpoints:
@@ -180,6 +200,18 @@ def _log_file(requested: str | None) -> Path | None:
         if requested is None:
             return None
         raise UsageError(f"log file {path}: {error.strerror}") from error
+
+
+def _docs_file(requested: str | None) -> Path | None:
+    """Return the file with texts of parameters. Raises UsageError if it cannot be read."""
+    if requested is None:
+        return None
+    path = Path(requested).expanduser()
+    try:
+        with path.open("rb"):
+            return path.absolute()
+    except OSError as error:
+        raise UsageError(f"--param-docs {path}: {error.strerror}") from error
 
 
 if __name__ == "__main__":

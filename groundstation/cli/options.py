@@ -17,8 +17,8 @@ from link.runtime.command_line import CommandLineParser
 EXAMPLES = f"""\
 examples:
   groundstation --sitl                     start a simulated rover and drive it
-  groundstation                            wait for a vehicle on {DEFAULT_ENDPOINT}
-  groundstation udpin:0.0.0.0:14550        the same, from any machine of the network
+  groundstation                            choose what to connect to: vehicles heard, recent endpoints, serial ports
+  groundstation udpin:0.0.0.0:14550        wait for vehicles, from any machine of the network
   groundstation udpout:192.168.1.20:14550  send first, to a vehicle that listens
   groundstation --style latch --speed 0.3  a key drives until the next key, slowly
   groundstation --keys teleop              the keys of teleop_twist_keyboard

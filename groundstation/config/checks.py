@@ -32,12 +32,20 @@ def find_problems(values: Mapping[str, Any], reserved: Collection[str]) -> Itera
             yield (name,), f"{name}: unknown setting; {suggest(name, ROWS)}"
         elif name in TABLES and isinstance(value, dict):
             for key, each in value.items():
-                yield from (((name, key), f"{name}.{key}: {what}") for what in TABLES[name](key, each, reserved))
+                yield from (
+                    ((name, key), f"{name}.{key}: {what}") for what in _entry_problems(name, key, each, reserved)
+                )
         elif name in TABLES:
             yield (name,), f"{name}: must be a table, [{name}]"
         else:
             yield from (((name,), f"{name}: {what}") for what in _value_problems(name, value, values))
     yield from _together(values)
+
+
+def _entry_problems(table: str, key: str, value: Any, reserved: Collection[str]) -> list[str]:
+    """Return the mistakes in one entry of a table. TOML takes each line below [table] as an entry of it."""
+    found = list(TABLES[table](key, value, reserved))
+    return [f"{key} is a setting: move its line above [{table}]"] if found and key in ROWS else found
 
 
 def _together(values: Mapping[str, Any]) -> Iterator[Problem]:

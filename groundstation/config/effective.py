@@ -37,13 +37,16 @@ def load_config(
 
 
 def merge(file: ConfigFile | None, environment: Mapping[str, str], options: Mapping[str, Any]) -> Effective:
-    """Return the settings in force. `options` are those of the command line that were given."""
+    """Return the settings in force. `options` are those of the command line that were given.
+
+    Raises EndpointError for MAVHELM_ENDPOINT.
+    """
     values: dict[str, Any] = {}
     sources: dict[str, str] = {}
     if file is not None:
         values |= file.values
         sources |= {name: file.place(name) for name in file.values}
-    for name, (variable, value) in _from_environment(environment).items():
+    for name, (variable, value) in _from_environment(environment, options).items():
         values[name], sources[name] = value, variable
     for name, value in options.items():
         option = ROWS[name].option
@@ -54,14 +57,26 @@ def merge(file: ConfigFile | None, environment: Mapping[str, str], options: Mapp
     return Effective(msgspec.convert(values, Settings), sources)
 
 
-def _from_environment(environment: Mapping[str, str]) -> dict[str, tuple[str, Any]]:
+def _from_environment(environment: Mapping[str, str], given: Collection[str]) -> dict[str, tuple[str, Any]]:
     """Return setting -> variable and value. An empty variable counts as none (https://no-color.org)."""
     found: dict[str, tuple[str, Any]] = {}
-    if endpoints := environment.get(ENDPOINT_VARIABLE, "").split():
+    if "open" not in given and (endpoints := environment_endpoints(environment)):
         found["open"] = ENDPOINT_VARIABLE, endpoints
     if environment.get("NO_COLOR"):
         found["theme"] = "NO_COLOR", ThemeName.NO_COLOUR
     return found
+
+
+def environment_endpoints(environment: Mapping[str, str]) -> list[str]:
+    """Return the endpoints and names in MAVHELM_ENDPOINT. Raises EndpointError, which names the variable."""
+    texts = environment.get(ENDPOINT_VARIABLE, "").split()
+    try:
+        for text in texts:
+            if ":" in text:
+                parse_endpoint(text)
+    except EndpointError as error:
+        raise EndpointError(f"{ENDPOINT_VARIABLE}: {error}") from error
+    return texts
 
 
 def build_keymap(settings: Settings) -> Keymap:

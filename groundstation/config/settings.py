@@ -68,6 +68,8 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Log of the program itself."""
     dialect: Annotated[str | None, Option("--dialect", "FILE.xml", "the built-in one alone")] = None
     """MAVLink definitions of a vehicle that sends messages of its own."""
+    param_docs: Annotated[str | None, Option("--param-docs", "FILE", "those in the configuration folder")] = None
+    """Texts of parameters: apm.pdef.xml, apm.pdef.json or PX4's parameters.json."""
     endpoints: dict[str, str | tuple[str, ...]] = {}
     """Names for endpoints: `groundstation field` opens what `field` names, one endpoint or a list."""
     keys: dict[str, Any] = {}

@@ -23,6 +23,7 @@ EXAMPLES: dict[str, Any] = {
     "folder": "~/rover",
     "log_file": "~/rover/groundstation.log",
     "dialect": "mine.xml",
+    "param_docs": "apm.pdef.xml",
 }
 """Setting without a default -> what the file shows."""
 

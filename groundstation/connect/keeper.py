@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from dialects.enums import Severity
 from groundstation.intents.links import AddLink
 from groundstation.station.station import Station
+from groundstation.vehicles.fleet import PLACES
 from groundstation.views.connect import LinkAttempt
 from link.core import LinkReport
 from link.endpoint import EndpointError, parse_endpoint, parse_endpoints
@@ -157,7 +158,15 @@ class LinkKeeper:
         index, self._next_index = self._next_index, self._next_index + 1
         system, component = self._ids
         self._runner.add(
-            build_link(transport, index, system=system, component=component, sent=self._sent, watch_only=watch_only)
+            build_link(
+                transport,
+                index,
+                system=system,
+                component=component,
+                sent=self._sent,
+                watch_only=watch_only,
+                places=PLACES,
+            )
         )
         return index
 

@@ -7,7 +7,7 @@ from typing import Any, NoReturn, TypeVar
 
 from groundstation.formats.errors import FileFormatError
 from link.services.mission.items import MAX_LATITUDE, MAX_LONGITUDE
-from link.services.param.values import is_float32
+from link.services.param.float32 import is_float32
 
 T = TypeVar("T")
 _NAMES: dict[type, str] = {str: "a text", bool: "true or false", dict: "an object", list: "a list"}

@@ -15,7 +15,8 @@ from enum import Enum
 
 from groundstation.formats.errors import FileFormatError, shown
 from link.services.param.client import Param
-from link.services.param.values import NAME_SIZE, REAL32, is_float32, name_to_wire, same_float32, value_text
+from link.services.param.float32 import is_float32, same_float32, value_text
+from link.services.param.values import NAME_SIZE, REAL32, name_to_wire
 
 MAX_LINES = 20_000
 """Lines of a file; ten times the parameters of the largest autopilot. More is not a parameter file."""

@@ -11,7 +11,7 @@ from typing import Any
 
 from dialects.enums import Autopilot, Command, MissionType
 from link.services.mission.items import DEGREES_SCALE, Items, MissionItem, to_int32
-from link.services.param.values import shortest_float32
+from link.services.param.float32 import shortest_float32
 
 GLOBAL = 0
 """MAV_FRAME_GLOBAL."""

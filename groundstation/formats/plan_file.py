@@ -23,7 +23,7 @@ from link.services.mission.items import (
     MissionItem,
     to_int32,
 )
-from link.services.param.values import shortest_float32
+from link.services.param.float32 import shortest_float32
 
 MAX_ITEMS = 10_000
 RELATIVE = 3

@@ -12,7 +12,7 @@ from groundstation.formats.errors import FileFormatError
 from groundstation.formats.plan import Plan, as_home, home_item, looks_like_home, move_jumps
 from link.services.mission.files import HEADER, PlanFileError, decode_plan
 from link.services.mission.items import DEGREES_SCALE, GLOBAL_FRAMES, LOCAL_SCALE, MissionItem
-from link.services.param.values import same_float32, shortest_float32
+from link.services.param.float32 import same_float32, shortest_float32
 
 _AT_LINE = re.compile(r"line (\d+):? ?")
 

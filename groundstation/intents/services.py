@@ -30,6 +30,42 @@ class WriteParams(ServiceIntent, frozen=True, tag=True):
     """Names and values."""
 
 
+class CompareParams(ServiceIntent, frozen=True, tag=True):
+    """Compare the parameters with those of a file."""
+
+    name: str = ""
+    """Name of the file. Empty: compare no more."""
+    text: str = ""
+
+
+class StoreParams(ServiceIntent, frozen=True, tag=True):
+    """Have the vehicle store all parameters."""
+
+
+class ResetParams(ServiceIntent, frozen=True, tag=True):
+    """Have the vehicle reset all parameters to their defaults."""
+
+
+class SetMessageRate(ServiceIntent, frozen=True, tag=True):
+    """Request a message at a rate."""
+
+    component: int = 1
+    message: int = 0
+    """Its id."""
+    name: str = ""
+    rate: float = 0.0
+    """Hz; 0: the default of the vehicle, below 0: not at all."""
+
+
+class RequestMessage(ServiceIntent, frozen=True, tag=True):
+    """Request a message once."""
+
+    component: int = 1
+    message: int = 0
+    """Its id."""
+    name: str = ""
+
+
 class CancelRequest(Intent, frozen=True):
     """Cancel a request; what was set or sent before stays."""
 

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias, Union
 
-from groundstation.intents import driving, links, services, session, vehicle  # noqa: F401 - defines the classes
+from groundstation.intents import (  # noqa: F401 - defines the classes
+    charts,
+    driving,
+    files,
+    links,
+    services,
+    session,
+    vehicle,
+)
 from groundstation.intents.base import Intent
 from groundstation.intents.services import ServiceIntent
 

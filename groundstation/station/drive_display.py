@@ -97,7 +97,7 @@ class DriveDisplay:
 
     def _build_track(self, request: TrackRequest, now: float, wall: float) -> TrackView | None:
         selected = self._fleet.selected
-        return TrackView(selected.state.system, selected.state.track) if selected else None
+        return TrackView(selected.state.system, selected.state.trail.points) if selected else None
 
     def _build_speeds(self, request: SpeedRequest, now: float, wall: float) -> SpeedView | None:
         selected = self._fleet.selected

@@ -14,6 +14,7 @@ from typing import Any
 from dialects.enums import Severity
 from dialects.modes import Mode
 from groundstation.intents.base import Intent
+from groundstation.intents.charts import PinSeries
 from groundstation.intents.driving import (
     HOLD_TIME,
     STOP_KEY,
@@ -40,6 +41,7 @@ from groundstation.intents.vehicle import (
     SelectVehicle,
     SetMode,
 )
+from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.driving import DrivingController
@@ -83,6 +85,7 @@ class IntentHandler:
         log: MessageLog,
         views: ViewFeed,
         services: ServiceDesk,
+        charts: ChartDesk,
         link_closing: LinkClosing,
     ) -> None:
         self._operator = operator
@@ -94,6 +97,7 @@ class IntentHandler:
         self._log = log
         self._views = views
         self._services = services
+        self._charts = charts
         self._link_closing = link_closing
         self._emergency_at = -math.inf
 
@@ -206,6 +210,9 @@ class IntentHandler:
     def _start_request(self, intent: ServiceIntent, now: float) -> None:
         self._services.start(intent, now)
 
+    def _pin_series(self, intent: PinSeries, now: float) -> None:
+        self._charts.pin(intent.fields)
+
     def _cancel_request(self, intent: CancelRequest, now: float) -> None:
         self._services.cancel(intent.request, now)
 
@@ -253,6 +260,7 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     GiveControl: IntentHandler._give_control,
     KeepControl: IntentHandler._keep_control,
     CancelRequest: IntentHandler._cancel_request,
+    PinSeries: IntentHandler._pin_series,
     CloseLink: IntentHandler._close_link,
     Quit: IntentHandler._quit,
     **dict.fromkeys(SERVICE_CALLS, IntentHandler._start_request),

@@ -59,14 +59,18 @@ def _value(message: Message, name: str) -> Any:
 
 
 def _health(message: SysStatus) -> tuple[str, tuple[str, ...]]:
-    """Return a summary and one line for each sensor that is present: healthy, not healthy, or not enabled."""
+    """Return a summary and one line for each sensor: marks for present, enabled and healthy, and its name.
+
+    Bad ones come first, then those that are healthy, then those that are not enabled.
+    """
     present, enabled = message.onboard_control_sensors_present, message.onboard_control_sensors_enabled
     bad = enabled & ~message.onboard_control_sensors_health
     lines: list[str] = []
     for bit, name in enum_names("MAV_SYS_STATUS_SENSOR").items():
         if (present | enabled) & bit:
-            lines.append(f"{'✗' if bad & bit else '✓' if enabled & bit else '·'} {name}")
-    lines.sort(key=lambda line: "✗✓·".index(line[0]))
+            health = "✗" if bad & bit else "✓" if enabled & bit else "·"
+            lines.append(f"{'✓' if present & bit else '·'}{'✓' if enabled & bit else '·'}{health} {name}")
+    lines.sort(key=lambda line: "✗✓·".index(line[2]))
     count = bad.bit_count()
     return (f"{count} of {enabled.bit_count()} enabled not healthy" if count else "all enabled healthy"), tuple(lines)
 

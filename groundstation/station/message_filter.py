@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 
+from groundstation.station.fuzzy import is_match
 from groundstation.views.messages import MessageRow
 
 _NUMBER = re.compile(r"(?P<what>|age)(?P<sign>[<>])(?P<limit>\d+(?:\.\d+)?)(?:hz|s)?")
@@ -24,8 +25,8 @@ SORT_KEYS: dict[str, Callable[[MessageRow], tuple[float, str]]] = {
 def parse_filter(text: str) -> Matches:
     """Return a filter. All of its words must match.
 
-    A word is a part of a message's name, or ">5Hz", "<1Hz", "age>3" (s), "src:1" or "src:1/1", "field:volt" (part of
-    the name of a field), "sent".
+    A word is a part of a message's name or pieces of its words (fuzzy.py), or ">5Hz", "<1Hz", "age>3" (s), "src:1" or
+    "src:1/1", "field:volt" (the same for the name of a field), "sent".
     """
     tests = [_parse_word(word) for word in text.lower().split()]
     return lambda row, fields: all(test(row, fields) for test in tests)
@@ -47,5 +48,5 @@ def _parse_word(word: str) -> Matches:
         return lambda row, _: str(row.system) == system and component in ("", str(row.component))
     if word.startswith("field:"):
         part = word.removeprefix("field:")
-        return lambda _, fields: any(part in field for field in fields)
-    return lambda row, _: word in row.name.lower()
+        return lambda _, fields: any(is_match(part, field) for field in fields)
+    return lambda row, _: is_match(word, row.name)

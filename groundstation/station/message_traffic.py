@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
-from dialects.codec import CRC_SIZE, HEADER_V2, EncodeError, encode_payload
 from dialects.enum_names import enum_names
 from dialects.messages import Message
-from groundstation.station.message_fields import build_fields
 from groundstation.station.message_filter import parse_filter, sorted_rows
+from groundstation.station.message_kind import BUCKET, BUCKETS, WINDOW, MessageKind, Tap
 from groundstation.station.unknown_messages import UnknownMessages
-from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
+from groundstation.views.messages import MessageRow, MessagesPage, MessagesRequest
 from link.core import LinkReport, SourceCount
-from link.protocol.rate import RateMeter
-
-WINDOW = 3.0
-"""s over which rates are counted: a 1 Hz message then shows as 1.0 and not as 0 or 1."""
 
 MAX_KINDS = 1000
 """Kinds of messages of sources that are no known vehicle: a flood of invented ids must not grow a table."""
@@ -32,20 +26,8 @@ Source = tuple[bool, int, int]
 """Sent by us, system, component: received ones first, by their ids."""
 
 
-@dataclass(slots=True)
-class _Kind:
-    newest: Message
-    at: float = 0.0
-    count: int = 0
-    meter: RateMeter = field(default_factory=lambda: RateMeter(WINDOW))
-
-    @property
-    def length(self) -> int:
-        """Bytes of the newest frame, as MAVLink 2 without a signature."""
-        try:
-            return HEADER_V2 + len(encode_payload(self.newest)) + CRC_SIZE
-        except EncodeError:
-            return 0
+Place = tuple[Source, str]
+"""A kind of message: its source and its name."""
 
 
 class MessageTraffic:
@@ -53,14 +35,16 @@ class MessageTraffic:
 
     def __init__(self, system: int, component: int) -> None:
         self._own = (True, system, component)
-        self._kinds: dict[Source, dict[str, _Kind]] = {}
-        self._unknown = UnknownMessages(WINDOW)
+        self._kinds: dict[Source, dict[str, MessageKind]] = {}
+        self.unknown = UnknownMessages(WINDOW)
         self._size = 0
         self._not_shown = 0
         self._losses: dict[tuple[int, int], SourceCount] = {}
         self._labels: dict[tuple[int, int], str] = {}
         self._order: tuple[float, tuple[str, str], list[tuple[Source, str]]] = (0.0, ("", ""), [])
         """When rows were last sorted, for which order and filter, and the result."""
+        self._taps: dict[str, Mapping[Place, Tap]] = {}
+        self._bucket_ends = 0.0
 
     # ---- counting ----
 
@@ -73,6 +57,8 @@ class MessageTraffic:
         self._count(self._own, message, now, known=True)
 
     def _count(self, source: Source, message: Message, now: float, *, known: bool) -> None:
+        if now >= self._bucket_ends:  # no call for each message
+            self._end_buckets(now)
         kinds = self._kinds.get(source)
         name = type(message).msgname
         kind = None if kinds is None else kinds.get(name)
@@ -81,14 +67,28 @@ class MessageTraffic:
                 self._not_shown += 1
                 return
             self._size += not known
-            kind = self._kinds.setdefault(source, {})[name] = _Kind(message)
+            taps = self._taps_of((source, name))
+            kind = self._kinds.setdefault(source, {})[name] = MessageKind(message, taps=taps)
         kind.newest, kind.at = message, now
         kind.count += 1
-        kind.meter.add(now)
+        for tap in kind.taps:
+            tap(message, now)
+
+    def _end_buckets_until(self, now: float) -> None:
+        if now >= self._bucket_ends:
+            self._end_buckets(now)
+
+    def _end_buckets(self, now: float) -> None:
+        """End the buckets that are over; after a long silence all that count."""
+        ended = min(BUCKETS + 1, 1 + int((now - self._bucket_ends) / BUCKET))
+        self._bucket_ends = BUCKET * (now // BUCKET + 1)
+        for _, kind in self.kinds():
+            for _ in range(ended):
+                kind.end_bucket()
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Take the unknown messages, and what was lost of each source, from the link that has received most of it."""
-        self._unknown.observe(reports, now)
+        self.unknown.observe(reports, now)
         for report in reports:
             for ids, counted in report.sources.items():
                 if ids not in self._losses or counted.received >= self._losses[ids].received:
@@ -98,10 +98,32 @@ class MessageTraffic:
         """Set the names of vehicles, by system and component."""
         self._labels = labels
 
+    # ---- for others ----
+
+    def kinds(self) -> Iterator[tuple[Place, MessageKind]]:
+        """Yield all kinds with their places."""
+        for source, kinds in self._kinds.items():
+            for name, kind in kinds.items():
+                yield (source, name), kind
+
+    def find(self, place: Place) -> MessageKind | None:
+        """Return a kind; None before its first message."""
+        return self._kinds.get(place[0], {}).get(place[1])
+
+    def set_taps(self, owner: str, taps: Mapping[Place, Tap]) -> None:
+        """Give each message of these kinds to their taps, in place of those that `owner` set before."""
+        self._taps[owner] = taps
+        for place, kind in self.kinds():
+            kind.taps = self._taps_of(place)
+
+    def _taps_of(self, place: Place) -> tuple[Tap, ...]:
+        return tuple(taps[place] for taps in self._taps.values() if place in taps)
+
     # ---- for the screen ----
 
     def build_page(self, request: MessagesRequest, now: float, wall: float) -> MessagesPage:
         """Return the rows that a screen shows."""
+        self._end_buckets_until(now)
         every = [row for source in self._sources() for row in self._message_rows(source, now)]
         rows = self._arrange(request, every, now)
         count = max(1, min(request.count, MAX_ROWS))
@@ -110,27 +132,16 @@ class MessageTraffic:
         totals = sum(row.rate for row in every), sum(row.bytes for row in every)
         return MessagesPage(shown, first, len(rows), len(every), *totals, self._not_shown, request.order, request.text)
 
-    def build_message(self, request: MessageRequest, now: float, wall: float) -> MessageView | None:
-        """Return the newest message of a kind with its fields."""
-        source = (request.sent, request.system, request.component)
-        kind = self._kinds.get(source, {}).get(request.name)
-        if kind is None:
-            return self._unknown.build_message(request, now)
-        return MessageView(
-            request.system, request.component, request.sent, request.name, type(kind.newest).id,
-            kind.meter.rate(now), kind.count, now - kind.at, kind.length, build_fields(kind.newest),
-        )  # fmt: skip
-
     def _sources(self) -> list[Source]:
-        return sorted(self._kinds.keys() | {(False, *ids) for ids in self._unknown.sources})
+        return sorted(self._kinds.keys() | {(False, *ids) for ids in self.unknown.sources})
 
     def _message_rows(self, source: Source, now: float) -> list[MessageRow]:
         rows: list[MessageRow] = []
         for name, kind in sorted(self._kinds.get(source, {}).items()):
-            rate = kind.meter.rate(now)
+            rate = kind.rate
             rows.append(_row(source, name, rate, rate * kind.length if rate else 0.0, kind.count, now - kind.at))
         if not source[0]:
-            rows += self._unknown.build_rows(source[1:], now)
+            rows += self.unknown.build_rows(source[1:], now)
         return rows
 
     def _arrange(self, request: MessagesRequest, every: list[MessageRow], now: float) -> list[MessageRow]:

@@ -6,7 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from groundstation.intents.services import FetchParams, ServiceIntent, WriteParams
+from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, ListLogs, PutFile, RemoveFile
+from groundstation.intents.services import (
+    CompareParams,
+    FetchParams,
+    RequestMessage,
+    ResetParams,
+    ServiceIntent,
+    SetMessageRate,
+    StoreParams,
+    WriteParams,
+)
 from groundstation.vehicles.services import VehicleServices
 
 
@@ -30,6 +40,66 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
         "params",
         "set parameters",
         lambda services, intent, now: services.param_writer.write(intent.request, intent.changes, now),
+    ),
+    CompareParams: ServiceCall(
+        "params",
+        "compare parameters",
+        lambda services, intent, now: services.param_file.open(intent.request, intent.name, intent.text, now),
+    ),
+    StoreParams: ServiceCall(
+        "params", "store parameters", lambda services, intent, now: services.param_storage.store(intent.request, now)
+    ),
+    ResetParams: ServiceCall(
+        "params", "reset parameters", lambda services, intent, now: services.param_storage.reset(intent.request, now)
+    ),
+    ListFolder: ServiceCall(
+        "folders",
+        "list a folder",
+        lambda services, intent, now: services.folders.list_folder(intent.request, intent.path, now),
+    ),
+    GetFile: ServiceCall(
+        "files",
+        "download a file",
+        lambda services, intent, now: services.transfers.get_file(
+            intent.request, intent.path, intent.folder, intent.name, now, overwrite=intent.overwrite
+        ),
+    ),
+    PutFile: ServiceCall(
+        "files",
+        "upload a file",
+        lambda services, intent, now: services.transfers.put_file(intent.request, intent.path, intent.file, now),
+    ),
+    RemoveFile: ServiceCall(
+        "files",
+        "remove a file",
+        lambda services, intent, now: services.files.remove(intent.request, intent.path, now),
+    ),
+    ListLogs: ServiceCall(
+        "folders", "list logs", lambda services, intent, now: services.logs.list_logs(intent.request, now)
+    ),
+    GetLog: ServiceCall(
+        "files",
+        "download a log",
+        lambda services, intent, now: services.transfers.get_log(
+            intent.request, intent.log, intent.folder, intent.name, now, overwrite=intent.overwrite
+        ),
+    ),
+    EraseLogs: ServiceCall(
+        "files", "erase all logs", lambda services, intent, now: services.logs.erase(intent.request, now)
+    ),
+    SetMessageRate: ServiceCall(
+        "messages",
+        "set the rate of a message",
+        lambda services, intent, now: services.messages.set_rate(
+            intent.request, intent.component, intent.message, intent.name, intent.rate, now
+        ),
+    ),
+    RequestMessage: ServiceCall(
+        "messages",
+        "request a message",
+        lambda services, intent, now: services.messages.request_once(
+            intent.request, intent.component, intent.message, intent.name, now
+        ),
     ),
 }
 """Intent -> call."""

@@ -6,17 +6,21 @@ The services of a vehicle exist from the first request on: a vehicle that is onl
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable, Mapping, MutableMapping
 
 from dialects.enums import Command, Severity
 from groundstation.intents.services import ServiceIntent
 from groundstation.station.commander import Commander
-from groundstation.station.param_view import build_param_page
+from groundstation.station.file_view import build_files
 from groundstation.station.service_calls import SERVICE_CALLS
+from groundstation.station.view_feed import ViewSource
+from groundstation.vehicles.disk_jobs import DiskJob, DiskResult
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
-from groundstation.views.params import ParamPage, ParamPageRequest
+from groundstation.views.base import ViewRequest
+from groundstation.views.files import FilesRequest, FilesView
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from link.core import Outgoing, Received
 
@@ -27,13 +31,26 @@ _SEVERITIES = {RequestState.REFUSED: Severity.WARNING, RequestState.NO_ANSWER: S
 
 
 class ServiceDesk:
-    """The services of all vehicles. `system` and `component` are our ids."""
+    """The services of all vehicles. `system` and `component` are our ids; `texts`: see VehicleServices."""
 
-    def __init__(self, fleet: Fleet, commander: Commander, log: MessageLog, system: int, component: int) -> None:
+    def __init__(
+        self,
+        fleet: Fleet,
+        commander: Commander,
+        log: MessageLog,
+        system: int,
+        component: int,
+        *,
+        texts: MutableMapping[int, bytes] | None = None,
+        is_held: Callable[[Contact, float], bool] = lambda contact, now: False,
+    ) -> None:
+        """`is_held` says whether the transfers of a vehicle wait: for the operator who drives over a slow line."""
+        self._is_held = is_held
         self._fleet = fleet
         self._commander = commander
         self._log = log
         self._ids = (system, component)
+        self._texts: MutableMapping[int, bytes] = {} if texts is None else texts
         self._service_of: dict[int, str] = {}
         """Number of a request -> name of its service."""
         self._ended: dict[str, deque[RequestLine]] = {}
@@ -77,40 +94,81 @@ class ServiceDesk:
             if contact.services is not None:
                 contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
                 pending = self._commander.is_pending(Command.REQUEST_MESSAGE, contact.state)
-                contact.services.tick(now, may_query=not pending)
+                alive, held = contact.state.monitor.is_alive(now), self._is_held(contact, now)
+                contact.services.tick(now, may_query=not pending, alive=alive, held=held)
         self._collect(now)
 
     def is_querying(self, contact: Contact) -> bool:
         """Return whether a REQUEST_MESSAGE to this vehicle is under way: another would be taken for it."""
         return contact.services is not None and contact.services.commands.is_waiting(Command.REQUEST_MESSAGE)
 
+    def is_setting_rate(self, contact: Contact) -> bool:
+        """Return whether a SET_MESSAGE_INTERVAL of the operator is under way: another would be taken for it."""
+        return contact.services is not None and contact.services.commands.is_waiting(Command.SET_MESSAGE_INTERVAL)
+
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now and clear the queue."""
         found = (contact.services for contact in self._fleet if contact.services is not None)
         return [outgoing for services in found for outgoing in services.messages_to_send()]
 
+    # ---- the disk ----
+
+    def pop_disk_jobs(self) -> list[DiskJob]:
+        """Return what the disk shall do for the transfers, once."""
+        found = (contact.services for contact in self._fleet if contact.services is not None)
+        return [job for services in found for job in services.transfers.pop_disk_jobs()]
+
+    def handle_disk(self, result: DiskResult, now: float) -> None:
+        """Take what the disk has answered."""
+        for contact in self._fleet:
+            if contact.services is not None:
+                contact.services.transfers.handle_disk(result, now)
+        self._collect(now)
+
+    def cancel_transfers(self, now: float) -> None:
+        """Cancel all transfers when the station ends; what has arrived is kept."""
+        for contact in self._fleet:
+            if contact.services is not None:
+                contact.services.transfers.cancel_all(now)
+
     # ---- views ----
+
+    @property
+    def sources(self) -> Mapping[type[ViewRequest], ViewSource]:
+        """Request -> its source."""
+        return {
+            RequestsRequest: ViewSource(self.build_requests, period=0.25),
+            FilesRequest: ViewSource(self.build_files, period=0.25),
+        }
+
+    @property
+    def progress(self) -> float | None:
+        """How far the downloads and uploads under way are, 0..1; None without one."""
+        running = [line for line in self._running() if line.service == "files"]
+        known = [(line.done, line.total) for line in running if line.total]
+        whole = sum(total for _, total in known)
+        return None if not running else sum(done for done, _ in known) / whole if whole else 0.0
+
+    def build_files(self, request: FilesRequest, now: float, wall: float) -> FilesView | None:
+        """Build the view of the files of the selected vehicle; None without a vehicle."""
+        selected = self._fleet.selected
+        return None if selected is None else build_files(selected, request)
 
     def build_requests(self, request: RequestsRequest, now: float, wall: float) -> RequestsView:
         """Build the view of all requests."""
         return RequestsView(tuple(self._running()), tuple(line for lines in self._ended.values() for line in lines))
 
-    def build_param_page(self, request: ParamPageRequest, now: float, wall: float) -> ParamPage | None:
-        """Build the page of the selected vehicle; None without a vehicle."""
-        selected = self._fleet.selected
-        if selected is None:
-            return None
-        running = tuple(
-            line for line in self._running() if line.service == "params" and line.system == selected.state.system
-        )
-        return build_param_page(selected, request, RequestsView(running, tuple(self._ended.get("params", ()))))
+    def requests_of(self, service: str, system: int) -> RequestsView:
+        """Return the requests of one service: what runs at this vehicle, and what has ended."""
+        running = (line for line in self._running() if line.service == service and line.system == system)
+        return RequestsView(tuple(running), tuple(self._ended.get(service, ())))
 
     # ---- parts ----
 
     def _running(self) -> list[RequestLine]:
         """Return the requests under way; steps of a request have numbers below 0."""
         return [
-            self._line(report, contact.state.system)
+            self._line(report, contact.state.system, _waits(contact.services, report.number))
             for contact in self._fleet
             if contact.services is not None
             for report in contact.services.book.running
@@ -119,7 +177,7 @@ class ServiceDesk:
 
     def _services(self, contact: Contact) -> VehicleServices:
         if contact.services is None:
-            contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component))
+            contact.services = VehicleServices(*self._ids, (contact.state.system, contact.state.component), self._texts)
             contact.services.autopilot, contact.services.kind = contact.state.autopilot, contact.state.kind
         return contact.services
 
@@ -139,7 +197,7 @@ class ServiceDesk:
             self._ended.setdefault(line.service, deque(maxlen=KEPT_REPORTS)).append(line)
             self._service_of.pop(report.number, None)
 
-    def _line(self, report: RequestReport, system: int) -> RequestLine:
+    def _line(self, report: RequestReport, system: int, waits: str = "") -> RequestLine:
         """Return a report for a screen; one that has a reason of the vehicle shows it last."""
         return RequestLine(
             number=report.number,
@@ -149,5 +207,12 @@ class ServiceDesk:
             done=report.done,
             total=report.total,
             service=self._service_of.get(report.number, ""),
+            waits=waits,
             system=system,
         )
+
+
+def _waits(services: VehicleServices, number: int) -> str:
+    if services.transfers.waits(number):
+        return "waits for the vehicle to be back"
+    return "waits while you drive: the line is slow" if services.held else ""

@@ -9,6 +9,7 @@ from dialects.enums import Severity
 from groundstation.input.style import Style
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import Snapshot, VehicleView
+from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.drive_display import DriveDisplay
@@ -21,19 +22,20 @@ from groundstation.station.intent_handler import IntentHandler
 from groundstation.station.link_closing import LinkClosing
 from groundstation.station.link_stats import LinkStats
 from groundstation.station.link_views import LinkViews
+from groundstation.station.message_detail import MessageDetail
 from groundstation.station.message_traffic import MessageTraffic
 from groundstation.station.operator import OperatorSession
 from groundstation.station.operator_log import OperatorLog
+from groundstation.station.param_texts import ParamTexts
+from groundstation.station.param_views import ParamViews
 from groundstation.station.service_desk import ServiceDesk
+from groundstation.station.transfer_hold import TransferHold
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
-from groundstation.views.messages import MessageRequest, MessagesRequest
-from groundstation.views.params import ParamPageRequest
-from groundstation.views.requests import RequestsRequest
 from link.core import LinkReport, Outgoing, Received
 from link.protocol.link_events import LinkEvents
 from link.services.timesync import TimesyncClient, handle_request
@@ -57,6 +59,7 @@ class Station:
         style: Style = Style.HOLD,
         speed: float = 0.6,
         session: int = 0,
+        texts: ParamTexts = ParamTexts(),  # noqa: B008 - frozen
         now: float = 0.0,
     ) -> None:
         self.log = MessageLog()
@@ -68,12 +71,15 @@ class Station:
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
-        self._services = ServiceDesk(self.fleet, self._commander, self.log, system, COMPONENT)
+        self._links = LinkStats()
+        hold = TransferHold(self.fleet, self.operator, self._links)
+        self.services = ServiceDesk(
+            self.fleet, self._commander, self.log, system, COMPONENT, texts=texts.cache, is_held=hold.is_held
+        )
         self._driving = DrivingController(self.operator, self.fleet, self._commander, (system, COMPONENT))
         self._departure = Departure(self.fleet, self._commander, self._driving)
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
-        self._links = LinkStats()
-        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self._services)
+        self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self.services)
         self._timesync = TimesyncClient(system)
         self._display = DriveDisplay(self.fleet, self.operator, self._timesync, system)
         self._link_views = LinkViews(
@@ -86,14 +92,16 @@ class Station:
             self._timesync,
             Program(system, COMPONENT, session),
         )
+        self._detail = MessageDetail(self._traffic)
+        self._charts = ChartDesk(self.fleet, self._traffic, self.operator, self._links, self._timesync)
         self.views = ViewFeed(
             {
                 LogRequest: ViewSource(self.log.build_page, period=0.1),
-                ParamPageRequest: ViewSource(self._services.build_param_page, period=0.25),
-                RequestsRequest: ViewSource(self._services.build_requests, period=0.25),
-                MessagesRequest: ViewSource(self._traffic.build_page, period=0.5),
-                MessageRequest: ViewSource(self._traffic.build_message, period=0.25),
+                **self.services.sources,
                 **self._link_views.sources,
+                **ParamViews(self.fleet, self.services, texts.files).sources,
+                **self._charts.sources,
+                **self._detail.sources,
                 **self._display.sources,
             }
         )
@@ -107,7 +115,8 @@ class Station:
             self._handover,
             self.log,
             self.views,
-            self._services,
+            self.services,
+            self._charts,
             self.link_closing,
         )
         self._operator_log = OperatorLog(self.log)
@@ -138,7 +147,7 @@ class Station:
         self._display.receive(contact, received, now)
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
-        self._services.receive(contact, received, now)
+        self.services.receive(contact, received, now)
         if isinstance(received.message, m.StatusText):
             self._handle_statustext(received.message, contact, now)
         if contact is self.fleet.selected:
@@ -156,13 +165,15 @@ class Station:
         self._handover.tick(now)
         if self.operator.live:
             self._queries.tick(now)
-            self._services.tick(now)
+            self.services.tick(now)
         if self.operator.live and not self._driving.ending:
             self._timesync.tick(now)
             self._outbox += self._heartbeat.tick(now, driving=self._driving.drives_any)
         self._driving.update(now)
         self._log_driving(now)
         self._departure.tick(now)
+        self._charts.tick(now)
+        self._detail.tick(now)
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
@@ -182,7 +193,7 @@ class Station:
         outbox, self._outbox = self._outbox, []
         demands = self._driving.messages_to_send()
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
-        services = self._services.messages_to_send()  # repeated later if they are dropped here
+        services = self.services.messages_to_send()  # repeated later if they are dropped here
         return (
             demands + commands + self._timesync.messages_to_send() + outbox + (services if self.operator.live else [])
         )
@@ -206,6 +217,7 @@ class Station:
     def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
         """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""
         self._expire_lease(now)
+        self._charts.mark_key(intent, now)
         self._operator_log.handle(intent, now)
         if intent.is_input:
             self._driving.key_read_at = now if read_at is None else read_at
@@ -253,6 +265,7 @@ class Station:
             links=self._links.build_views(self._timesync.round_trip),
             texts=self.log.build_lines(now, wall),
             simulator=self._simulator_state,
+            transfers=self.services.progress,
         )
 
     def _expire_lease(self, now: float) -> None:
@@ -277,7 +290,7 @@ class Station:
         if text is not None:
             contact.state.handle_text(text)
             self._commander.handle_statustext(system, text, message.severity, now)
-            self._services.handle_text(contact, text, message.severity, now)
+            self.services.handle_text(contact, text, message.severity, now)
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
         state, commander = contact.state, self._commander

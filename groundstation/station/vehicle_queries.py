@@ -107,7 +107,8 @@ class VehicleQueries:
             return
         capacity = self._links.capacity(contact.link)
         self._outbox += [Outgoing(message) for message in contact.stream_requests.due_group_requests(capacity, now)]
-        if self._commander.is_pending(Command.SET_MESSAGE_INTERVAL, contact.state):
+        pending = self._commander.is_pending(Command.SET_MESSAGE_INTERVAL, contact.state)
+        if pending or self._services.is_setting_rate(contact):
             return
         message = contact.stream_requests.next_message(contact.state.autopilot, now)
         if message is not None:

@@ -222,6 +222,13 @@ def _settings(now: DisplayState) -> Iterator[Alert]:
         yield Alert(AlertLevel.WARNING, warning)
 
 
+def _watched(now: DisplayState) -> Iterator[Alert]:
+    vehicle = now.snapshot.vehicle
+    links = [link for link in now.snapshot.links if vehicle is not None and vehicle.system in link.systems]
+    if vehicle is not None and links and all(link.watch_only for link in links):
+        yield Alert(AlertLevel.WARNING, f"{vehicle.name} is only watched: nothing is sent on {links[0].name}")
+
+
 def _vehicles(now: DisplayState) -> Iterator[Alert]:
     further = now.snapshot.not_shown
     if further:
@@ -231,7 +238,7 @@ def _vehicles(now: DisplayState) -> Iterator[Alert]:
 
 RULES: tuple[Rule, ...] = (
     _station, _hold, _silence, _emergency, _failsafe, _handover, _state, _key, _gate, _obeys, _operator, _driver,
-    _refusal, _id_conflict, _limits, _settings, _vehicles,
+    _refusal, _id_conflict, _limits, _watched, _settings, _vehicles,
 )  # fmt: skip
 """Most urgent first."""
 

@@ -23,15 +23,15 @@ from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import ReleaseControl
 from groundstation.snapshot import Snapshot
 from groundstation.ui import garbage
-from groundstation.ui.ascii import AsciiFilter
-from groundstation.ui.colours import THEME
+from groundstation.ui.appearance import PLAIN, Appearance, Look
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.gate_checks import AppCondition, find_closure
 from groundstation.ui.key_gate import OTHER_SCREEN, GateClosure, GateLevel, KeyGate, StationConnection
 from groundstation.ui.key_hint import KeyHint
 from groundstation.ui.key_parser import KeyRepeat, KeyUp
-from groundstation.ui.navigation import ScreenNavigator
-from groundstation.ui.palette import ActionProvider, action_commands
+from groundstation.ui.navigation import ROOT, ScreenNavigator, find_row
+from groundstation.ui.palette import STYLE as PALETTE_STYLE
+from groundstation.ui.palette import ActionProvider, action_commands, theme_commands
 from groundstation.ui.pressed_keys import PressedKeys
 from groundstation.ui.screens.drive import DriveScreen
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
@@ -57,6 +57,7 @@ class ConsoleApp(App[int]):
     """One operator at one terminal."""
 
     COMMANDS: ClassVar[Any] = {ActionProvider}
+    CSS = PALETTE_STYLE
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+z", "suspend_process", "Suspend", show=False)]
 
     def __init__(
@@ -66,10 +67,13 @@ class ConsoleApp(App[int]):
         *,
         terminal: TerminalFile | None = None,
         folder: Path = Path(),
-        ascii_only: bool = False,
+        look: Look = PLAIN,
+        first: str = ROOT.id,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
+        """`first` is the id of the screen that is shown at first."""
         self.gate = KeyGate(client, keymap, clock)
+        self._first = first
         driver: type[Driver] | None = None if terminal is None else ConsoleDriver.bind(self.gate, terminal)
         super().__init__(driver_class=driver)
         self._client, self._keys, self._terminal, self._clock = client, keymap, terminal, clock
@@ -80,7 +84,7 @@ class ConsoleApp(App[int]):
         self._leaving: GateClosure | None = None
         self._own_loop: asyncio.AbstractEventLoop | None = None
         self._tmux = TmuxSession.from_environment()
-        self._ascii = AsciiFilter(enabled=ascii_only)
+        self._appearance = Appearance(self, look)
         self._watched: tuple[ViewRequest, ...] = ()
         context = ScreenContext(keymap, self._send, self.perform_action, self._display_state, folder)
         self._kept = context.kept
@@ -92,9 +96,9 @@ class ConsoleApp(App[int]):
 
     def on_mount(self) -> None:
         """Open the Drive screen, connect the station and start the timers."""
-        self.register_theme(THEME)
-        self.theme = THEME.name
         self.push_screen(self.drive)
+        if self._first != ROOT.id:
+            self.call_after_refresh(self._navigator.open, find_row(self._first))
         self._own_loop = asyncio.get_running_loop()
         self._own_loop.add_reader(self._client.fileno(), self._readable)
         # In this loop and not in a thread: a UI that hangs must lose its lease.
@@ -141,6 +145,8 @@ class ConsoleApp(App[int]):
         if screen is not self.drive:
             self.gate.set_closure(OTHER_SCREEN)
             self.gate.screen_opened()
+        if isinstance(screen, Screen):
+            self._appearance.settle(screen)
         return super().push_screen(screen, *arguments, **options)
 
     # ---- the station ----
@@ -203,13 +209,14 @@ class ConsoleApp(App[int]):
             key_hint=self._key_hint.text(self._clock()),
             terminal_round_trip=self.gate.ping.round_trip,
             terminal_silence=self.gate.ping.waited(self._clock()),
-            ascii=self._ascii.enabled,
+            ascii=self._appearance.look.ascii,
+            still=self._appearance.look.reduce_motion,
             kept=self._kept,
         )
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """Return the filters of all that is drawn."""
-        return [*super().get_line_filters(), *([self._ascii] if self._ascii.enabled else [])]
+        return self._appearance.filters(super().get_line_filters())
 
     # ---- timers ----
 
@@ -297,7 +304,8 @@ class ConsoleApp(App[int]):
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """Return the palette's commands."""
-        return action_commands(self.choose_action)
+        yield from action_commands(self.choose_action)
+        yield from theme_commands(self._appearance.choose_theme)
 
     def choose_action(self, action: OperatorAction) -> None:
         """Perform an action from the palette: no key has sent its intent."""

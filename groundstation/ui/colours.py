@@ -1,58 +1,80 @@
-"""Colours of the console by meaning: green is good, amber a warning, red needs action.
-
-Over SSH and in tmux COLORTERM is often missing, and Textual then uses 256 colours; some terminals have 16. The greys
-are chosen so that the nearest of 256 colours is a grey, too, and that text and background differ with 16 colours.
-"""
+"""The colours in use: the roles by their usual names, and the style of a text in the theme that is chosen."""
 
 from __future__ import annotations
 
 from functools import cache
 
 from rich.style import Style
-from textual.theme import Theme
 
-BACKGROUND = "#0b0e14"
-PANEL = "#10151f"
-LINE = "#3a4350"
-TEXT = "#c9d1d9"
-DIM = "#6b7684"
-FAINT = "#2f353d"
-MUTED = "#8f99a6"
-"""Text on FAINT that is out of use: DIM and FAINT are one colour of 16."""
-WARNING = "#302c24"
-"""Background of warnings."""
-BLUE = "#58b6ff"
-GREEN = "#4ed07e"
-AMBER = "#ffb04d"
-YELLOW = "#ffd75f"
-RED = "#ff5f5f"
-DEEP_RED = "#b3261e"
-SKY, GROUND = "#2b7cb8", "#875f2f"
-WHITE = "#ffffff"
-BLACK = "#0b0e14"
+from groundstation.config.settings import ThemeName
+from groundstation.ui.roles import Role
+from groundstation.ui.themes import THEMES, choose_colours
 
-THEME = Theme(
-    name="helm",
-    primary=BLUE,
-    secondary=AMBER,
-    accent=YELLOW,
-    foreground=TEXT,
-    background=BACKGROUND,
-    surface=BACKGROUND,
-    panel=PANEL,
-    success=GREEN,
-    warning=AMBER,
-    error=RED,
-    dark=True,
-)
+BACKGROUND, PANEL, LINE = Role.BACKGROUND, Role.PANEL, Role.LINE
+TEXT, DIM, FAINT, MUTED, WHITE, BLACK = (
+    Role.TEXT, Role.DIM, Role.SELECTED, Role.MUTED, Role.STRONG, Role.ON_BADGE
+)  # fmt: skip
+WARNING, DEEP_RED = Role.NOTE, Role.DANGER
+BLUE, GREEN, AMBER, YELLOW, RED = Role.INFO, Role.GOOD, Role.CAUTION, Role.KEY, Role.BAD
+SKY, GROUND = Role.SKY, Role.EARTH
+
+
+class _InUse:
+    """The theme of the one screen of this process."""
+
+    def __init__(self) -> None:
+        self.name, self.sixteen = ThemeName.DARK, False
+        self.colours = choose_colours(self.name, sixteen=False)
+        self.changes = 0
+
+
+_in_use = _InUse()
+
+
+def use_theme(name: ThemeName, *, sixteen: bool = False) -> None:
+    """Draw in this theme from now on; `sixteen`: the terminal has 16 colours."""
+    _in_use.name, _in_use.sixteen = name, sixteen
+    _in_use.colours = choose_colours(name, sixteen=sixteen)
+    _in_use.changes += 1
+    style.cache_clear()
+
+
+def theme_changes() -> int:
+    """Return how often the theme has changed: what was drawn before is out of date."""
+    return _in_use.changes
 
 
 @cache
 def style(colour: str = TEXT, on: str = BACKGROUND, *, bold: bool = False) -> Style:
-    """Return a cached style, because creating one per segment is expensive. Textual fills no background by itself."""
-    return Style(color=colour, bgcolor=on, bold=bold or None)
+    """Return the style of text with the role `colour` on the role `on`. Textual fills no background by itself.
+
+    It is cached, because creating one per segment is expensive: do not keep it in a constant.
+    """
+    ink, ground = Role(colour), Role(on)
+    if THEMES[_in_use.name].attributes:
+        return _attributes(ink, ground, bold)
+    if ground is Role.SELECTED:
+        ink = Role.ON_SELECTED if _in_use.sixteen else Role.MUTED if ink is Role.DIM else ink
+    return Style(color=_in_use.colours[ink], bgcolor=_in_use.colours[ground], bold=bold or None)
+
+
+_BADGES = frozenset({Role.DANGER, Role.BAD, Role.CAUTION, Role.KEY, Role.GOOD, Role.INFO, Role.EARTH})
+"""Grounds that are drawn in reverse without colours, for badges and for the part of a bar in one cell."""
+
+_LOUD = frozenset({Role.BAD, Role.CAUTION, Role.KEY, Role.STRONG})
+"""Text that is bold without colours."""
+
+
+def _attributes(ink: Role, ground: Role, bold: bool) -> Style:
+    """Return the style without colours: loud badges in reverse, the selected row and what is bad underlined."""
+    quiet = ink is Role.ON_BADGE and ground in (Role.INFO, Role.GOOD)  # beside ARMED, which must stand out
+    return Style(
+        bold=bold or quiet or ink in _LOUD or ground is Role.DANGER or None,
+        reverse=(ground in _BADGES and not quiet) or None,
+        underline=ground in (Role.SELECTED, Role.BAD) or ink is Role.BAD or None,
+    )
 
 
 def badge(colour: str) -> Style:
-    """Return dark text on a colour, or white bold text on dark red. Bold black is grey where there are 16 colours."""
-    return style(WHITE, colour, bold=True) if colour == DEEP_RED else style(BLACK, colour)
+    """Return a style for text on a colour. Bold black is grey where there are 16 colours, so it is not bold."""
+    return style(Role.ON_DANGER, colour, bold=True) if colour == DEEP_RED else style(BLACK, colour)

@@ -71,6 +71,8 @@ class DisplayState:
     screen: ScreenInfo = DRIVE_INFO
     ascii: bool = False
     """The terminal shows ASCII characters only."""
+    still: bool = False
+    """Nothing may move by itself."""
     kept: Mapping[type, Any] = field(default_factory=dict)
     """What screens keep while they are closed, by its class (ScreenContext.keep)."""
 

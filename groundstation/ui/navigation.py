@@ -19,6 +19,11 @@ ROOT = SCREENS[0]
 """The Drive screen: always open, at the bottom."""
 
 
+def find_row(name: str) -> ScreenRow:
+    """Return the row of this id."""
+    return next(row for row in SCREENS if row.id == name)
+
+
 def load_screen(row: ScreenRow) -> type[ConsoleScreen]:
     """Import the class of a row."""
     module, _, name = row.target.partition(":")
@@ -73,7 +78,7 @@ class ScreenNavigator:
         if choice == BEFORE:
             self.open_before()
         elif choice:
-            self.open(next(row for row in SCREENS if row.id == choice))
+            self.open(find_row(choice))
 
     def closure(self) -> GateClosure | None:
         """Return why what is on top keeps keys from driving; None on the Drive screen."""

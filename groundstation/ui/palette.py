@@ -9,7 +9,16 @@ from textual.app import SystemCommand
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
 from groundstation.actions import ACTIONS, OperatorAction
+from groundstation.config.settings import ThemeName
 from groundstation.intents.driving import DriveKeyDown
+from groundstation.ui.themes import THEMES
+
+STYLE = """
+CommandPalette { background: transparent; }
+CommandPalette > .command-palette--help-text { color: $dim; text-style: none; }
+CommandPalette SearchIcon { display: none; }
+"""
+"""No veil, which would make ARMED hard to read, no dim help texts, and no icon of two cells."""
 
 
 def action_commands(choose: Callable[[OperatorAction], None]) -> Iterator[SystemCommand]:
@@ -17,6 +26,12 @@ def action_commands(choose: Callable[[OperatorAction], None]) -> Iterator[System
     for action in ACTIONS.values():
         if not isinstance(action.intent, DriveKeyDown) and not action.confirm:
             yield SystemCommand(action.label, action.help, partial(choose, action))
+
+
+def theme_commands(choose: Callable[[ThemeName], None]) -> Iterator[SystemCommand]:
+    """Yield a command for every theme."""
+    for name, theme in THEMES.items():
+        yield SystemCommand(f"Theme {name}", theme.help, partial(choose, name))
 
 
 class ActionProvider(Provider):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from groundstation.ui.colours import BLUE
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.param_model import ParamModel
+from groundstation.ui.params.model import ParamModel
 
 
 @dataclass(frozen=True, slots=True)

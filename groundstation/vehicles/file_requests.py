@@ -65,6 +65,11 @@ class FileRequests:
         """Return the outcome of a request that has ended, once."""
         return self._results.pop(number, None)
 
+    def beginning_of(self, number: int) -> bytes:
+        """Return what has arrived of a request without a gap from the start; nothing if it is not under way."""
+        job = self._jobs.get(number)
+        return self._client.beginning if job is not None and job == self._client.number else b""
+
     @property
     def beginning(self) -> bytes:
         """What arrived of the download under way without a gap from the start."""

@@ -22,9 +22,13 @@ from groundstation.vehicles.vehicle_details import VehicleDetails
 from groundstation.vehicles.vehicle_params import VehicleParams
 from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
 from link.core import LinkReport, Received
+from link.protocol.peer_table import MAX_PEERS
 
-MAX_VEHICLES = 16
-"""More would not fit on the screen, and a flood of invented system ids must not grow a table."""
+MAX_VEHICLES = 128
+"""A hundred and some. A flood of invented system ids must not grow a table."""
+
+PLACES = MAX_VEHICLES + MAX_PEERS
+"""Peers on one link: each vehicle may have an address of its own, and ground stations come beside them."""
 
 
 SIGNING = "signs its frames; this ground station cannot sign: it may ignore commands"

@@ -1,4 +1,4 @@
-"""What a vehicle says about itself on request: AUTOPILOT_VERSION with its capabilities, AVAILABLE_MODES.
+"""What a vehicle says about itself on request: AUTOPILOT_VERSION, AVAILABLE_MODES, COMPONENT_METADATA.
 
 Requests for messages are answered by COMMAND_ACK one at a time, so whoever owns the vehicle's commands sends them.
 """
@@ -29,6 +29,7 @@ class RequestedMessage:
 
 
 VERSION = RequestedMessage(m.AutopilotVersion.id)
+METADATA = RequestedMessage(m.ComponentMetadata.id)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +53,9 @@ class VehicleIdentity:
     def __init__(self, component: int) -> None:
         self._component = component
         self.version: m.AutopilotVersion | None = None
+        self.metadata: m.ComponentMetadata | None = None
+        """Where its files with texts are."""
+        self._wants_metadata = False
         self._modes: dict[int, AvailableMode] = {}
         self._mode_count: int | None = None
         self._monitor: int | None = None
@@ -94,6 +98,10 @@ class VehicleIdentity:
         """Request the modes, if they are not known."""
         self._wants_modes = True
 
+    def want_metadata(self) -> None:
+        """Request where the files with texts are, if that is not known."""
+        self._wants_metadata = True
+
     def receive(self, received: Received) -> None:
         """Take what the vehicle says; other messages are ignored."""
         if received.component != self._component:
@@ -101,6 +109,8 @@ class VehicleIdentity:
         match received.message:
             case m.AutopilotVersion() as message:
                 self.version, self._due = message, 0.0
+            case m.ComponentMetadata() as message:
+                self.metadata, self._due = message, 0.0
             case m.AvailableModes() as message:
                 self._add_mode(message)
             case m.AvailableModesMonitor() as message:
@@ -126,7 +136,8 @@ class VehicleIdentity:
 
     def _wanted(self) -> list[RequestedMessage]:
         version = [VERSION] if self.version is None else []
-        return version + (self._mode_requests() if self._wants_modes and self.modes is None else [])
+        modes = self._mode_requests() if self._wants_modes and self.modes is None else []
+        return version + modes + ([METADATA] if self._wants_metadata and self.metadata is None else [])
 
     def _mode_requests(self) -> list[RequestedMessage]:
         """Return how to request what is missing: all at once, or the lost ones one by one."""

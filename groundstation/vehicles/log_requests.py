@@ -9,6 +9,9 @@ from groundstation.vehicles.requests import RequestBook
 from link.core import Outgoing, Received
 from link.services.log.client import LogClient, LogOutcome, RemoteLog
 
+MAX_LEFT = 1
+"""Logs that stay after all were erased: the one that is being written."""
+
 _Begin = Callable[[float], None]
 
 
@@ -23,6 +26,8 @@ class LogRequests:
         self._number: int | None = None
         """Request under way."""
         self._data: dict[int, bytes] = {}
+        self._erasing: set[int] = set()
+        """Requests that erase, and list then."""
 
     def list_logs(self, number: int, now: float) -> None:
         """Request the list."""
@@ -34,8 +39,15 @@ class LogRequests:
         if self._book.begin(number, f"download log {log.number}"):
             self._add(number, lambda later: self._client.download(log, later, have), now)
 
+    def erase(self, number: int, now: float) -> None:
+        """Erase all logs; as nothing answers that, the list shows afterwards whether it was done."""
+        if self._book.begin(number, "erase all logs"):
+            self._erasing.add(number)
+            self._add(number, self._client.erase, now)
+
     def cancel(self, number: int, now: float) -> None:
         """Cancel a request."""
+        self._erasing.discard(number)
         if number == self._number:
             self._client.cancel()
             self._number = None
@@ -48,6 +60,10 @@ class LogRequests:
     def pop_data(self, number: int) -> bytes:
         """Return what a download that has ended brought, once."""
         return self._data.pop(number, b"")
+
+    def beginning_of(self, number: int) -> bytes:
+        """Return what has arrived of a request without a gap from the start; nothing if it is not under way."""
+        return self._client.beginning if number == self._number else b""
 
     @property
     def beginning(self) -> bytes:
@@ -84,15 +100,22 @@ class LogRequests:
         for outcome in self._client.outcomes():
             number, self._number = self._number, None
             if number is not None:
-                self._end(number, outcome)
+                self._end(number, outcome, now)
             self._begin_next(now)
 
-    def _end(self, number: int, outcome: LogOutcome) -> None:
-        if outcome.log is None:
+    def _end(self, number: int, outcome: LogOutcome, now: float) -> None:
+        erased = number in self._erasing
+        self._erasing.discard(number)
+        before = self.logs
+        if outcome.log is None and outcome.done:
             self.logs = outcome.logs
         else:
             self._data = {number: outcome.data}  # only the newest is kept
-        if outcome.done:
+        if erased and outcome.done and len(outcome.logs) > MAX_LEFT and len(outcome.logs) >= len(before or ()):
+            self._book.refuse(number, f"{len(outcome.logs)} logs are still there", now)
+        elif erased and outcome.done:
+            self._book.accept(number, f"{len(outcome.logs)} left" if outcome.logs else "")
+        elif outcome.done:
             self._book.accept(number)
         else:
             self._book.fail(number, f"after {outcome.tries} tries")

@@ -16,8 +16,9 @@ from groundstation.vehicles.requests import RequestBook
 from link.core import Outgoing, Received
 from link.services.ftp.job import FtpOutcome
 from link.services.param.client import ParamClient, ParamOutcome
+from link.services.param.float32 import value_text
 from link.services.param.unpack import PATH_WITH_DEFAULTS, unpack
-from link.services.param.values import is_bytewise, value_text
+from link.services.param.values import is_bytewise
 
 FILE_PATIENCE = 3
 """Requests for param.pck without a reply before the list is requested: 2 s, for vehicles without a file service."""
@@ -60,8 +61,9 @@ class ParamRequests:
     # ---- requests ----
 
     def fetch(self, number: int, now: float) -> None:
-        """Fetch all parameters: as a file, which brings the defaults, else as a list."""
-        if not self._book.begin(number, "fetch parameters"):
+        """Fetch all parameters: as a file, which brings the defaults, else as a list; or what a list still lacks."""
+        missing = len(self.client.missing)
+        if not self._book.begin(number, f"fetch {missing} missing parameters" if missing else "fetch parameters"):
             return
         if self._fetch is not None:
             self._book.refuse(number, "parameters are being fetched already", now, by_vehicle=False)
@@ -96,6 +98,11 @@ class ParamRequests:
         if self._fetch is None and not self._access:
             self.client.forget()
 
+    @property
+    def fetching(self) -> bool:
+        """Whether all parameters are being fetched."""
+        return self._fetch is not None
+
     # ---- core ----
 
     def receive(self, received: Received, now: float) -> None:
@@ -124,7 +131,9 @@ class ParamRequests:
     def _begin_fetch(self, now: float) -> None:
         if self._fetch is None:  # cancelled while it waited
             return
-        if self._identity.may_have_files:
+        if self.client.missing:
+            self.client.fetch_missing(now)
+        elif self._identity.may_have_files:
             self._file = self._files.start_download(PATH_WITH_DEFAULTS, self._take_file, now, patience=FILE_PATIENCE)
         else:
             self.client.fetch(now)

@@ -5,16 +5,24 @@ Each request has a number and ends in `book`. Nothing is sent before the first r
 
 from __future__ import annotations
 
+from collections.abc import MutableMapping
+
 from dialects.enums import Autopilot, Command, Result, VehicleType
 from groundstation.vehicles.command_requests import CommandRequests
 from groundstation.vehicles.file_requests import FileRequests
+from groundstation.vehicles.folder_cache import FolderCache
 from groundstation.vehicles.identity import VehicleIdentity
 from groundstation.vehicles.log_requests import LogRequests
+from groundstation.vehicles.message_requests import MessageRequests
+from groundstation.vehicles.metadata_requests import MetadataRequests
 from groundstation.vehicles.mode_requests import ModeRequests
+from groundstation.vehicles.param_comparing import ParamComparing
 from groundstation.vehicles.param_requests import ParamRequests
+from groundstation.vehicles.param_storage import ParamStorage
 from groundstation.vehicles.param_writer import ParamWriter
 from groundstation.vehicles.plan_requests import PlanRequests
 from groundstation.vehicles.requests import RequestBook, RequestReport
+from groundstation.vehicles.transfer_requests import TransferRequests
 from link.core import Outgoing, Received
 from link.services.command.client import CommandClient
 from link.services.ftp.client import FtpClient
@@ -24,9 +32,14 @@ from link.services.param.client import ParamClient
 
 
 class VehicleServices:
-    """Services of the component `target` (system, component). `system` and `component` are our ids."""
+    """Services of the component `target` (system, component). `system` and `component` are our ids.
 
-    def __init__(self, system: int, component: int, target: tuple[int, int]) -> None:
+    `texts` keeps downloaded texts of parameters, by the checksum of the vehicle's general metadata file.
+    """
+
+    def __init__(
+        self, system: int, component: int, target: tuple[int, int], texts: MutableMapping[int, bytes] | None = None
+    ) -> None:
         to, at = target
         self.autopilot: int = Autopilot.GENERIC
         """MAV_AUTOPILOT of its HEARTBEAT."""
@@ -35,6 +48,7 @@ class VehicleServices:
         self.book = RequestBook()
         self.identity = VehicleIdentity(at)
         self.commands = CommandRequests(CommandClient(system, component), self.book, target)
+        self.messages = MessageRequests(self.commands, self.book)
         self.modes = ModeRequests(self.commands, self.identity, self.book, lambda: (self.autopilot, self.kind))
         self.files = FileRequests(FtpClient(system, component, target_system=to, target_component=at), self.book)
         self.plans = PlanRequests(MissionClient(system, component, target_system=to, target_component=at), self.book)
@@ -42,8 +56,15 @@ class VehicleServices:
         params = ParamClient(system, component, target_system=to, target_component=at)
         self.params = ParamRequests(params, self.files, self.identity, self.book, lambda: self.autopilot)
         self.param_writer = ParamWriter(self.params, self.book)
+        self.param_storage = ParamStorage(self.commands)
+        self.param_file = ParamComparing(self.book)
+        self.metadata = MetadataRequests(self.files, self.identity, {} if texts is None else texts)
+        self.folders = FolderCache(self.files)
+        self.transfers = TransferRequests(self.files, self.logs, self.book)
         self._services = (self.commands, self.files, self.logs, self.plans, self.params)
         self._used = False
+        self.held = False
+        """The transfers wait: the line is slow, and the operator drives."""
 
     def receive(self, received: Received, now: float) -> None:
         """Handle a message of the vehicle."""
@@ -62,17 +83,24 @@ class VehicleServices:
         for service in self._services:
             service.cancel(number, now)
         self.param_writer.cancel(number)
+        self.transfers.cancel(number, now)
 
-    def tick(self, now: float, *, may_query: bool = True) -> None:
+    def tick(self, now: float, *, may_query: bool = True, alive: bool = True, held: bool = False) -> None:
         """Repeat what is overdue, report progress, give up at last.
 
         `may_query`: no other REQUEST_MESSAGE of ours is under way, whose COMMAND_ACK would be taken for ours.
+        `alive`: the vehicle is heard. `held`: parameters, plans, files and logs wait, commands do not.
         """
         self._used = self._used or bool(self.book.running)
+        self.held = held
+        self.transfers.alive, self.transfers.autopilot = alive, self.autopilot
         for service in self._services:
-            service.tick(now)
+            if not held or service is self.commands:
+                service.tick(now)
+        self.transfers.tick(now)
         self._take_queries(now)
         self.modes.tick(now)
+        self.metadata.tick(now)
         if self._used and may_query:
             self._query_identity(now)
         self.book.tick(now)
@@ -83,12 +111,16 @@ class VehicleServices:
         while reports := self.book.pop_changes():  # a request of several steps goes on when one has ended
             for report in reports:
                 self.param_writer.handle_report(report, now)
-                found[report.number] = report
+                self.transfers.handle_report(report, now)
+                self.folders.handle_report(report)
+                if not self.transfers.owns(report.number):
+                    found[report.number] = report
         return list(found.values())
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
-        return [outgoing for service in self._services for outgoing in service.messages_to_send()]
+        sending = (self.commands,) if self.held else self._services
+        return [outgoing for service in sending for outgoing in service.messages_to_send()]
 
     def _query_identity(self, now: float) -> None:
         if self.commands.is_waiting(Command.REQUEST_MESSAGE):

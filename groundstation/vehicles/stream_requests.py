@@ -12,6 +12,7 @@ WAIT --foreign, or nothing arrives--> REQUEST --every message requested--> DONE
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from dataclasses import dataclass
 
@@ -38,6 +39,10 @@ GROUP_TRIES, GROUP_PERIOD = 3, 1.0
 
 REBOOT_STEP = 5000
 """ms by which time_boot_ms must go back to count as a reboot."""
+
+REBOOT_PERIOD = 5.0
+"""Least time between two reboots, s. With two vehicles of one system id, or a clock that jumps, each message would
+otherwise start all requests again: 200 PARAM_REQUEST_READ/s to each such vehicle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +85,7 @@ class StreamRequests:
         self._target = target
         self._since = now
         self._boot = 0
+        self._rebooted_at = -math.inf
         self._received: set[int] = set()
         self._pending: list[int] | None = None
         """Messages still to be requested; None until it is known whether any are."""
@@ -99,9 +105,10 @@ class StreamRequests:
         boot = getattr(message, "time_boot_ms", None)
         if boot is None:
             return False
-        rebooted = bool(boot < self._boot - REBOOT_STEP)
+        rebooted = bool(boot < self._boot - REBOOT_STEP) and now - self._rebooted_at >= REBOOT_PERIOD
         self._boot = boot
         if rebooted:
+            self._rebooted_at = now
             self.restart(now)
         return rebooted
 

@@ -63,7 +63,7 @@ class VehicleState:
         self._drive: m.RoverDriveStatus | None = None
         self._failsafe: m.RoverFailsafeStatus | None = None
         self._frame = LocalFrame()
-        self._track = Track()
+        self.trail = Track()
         self._velocity: tuple[float, float] | None = None
         self._ground_speed: float | None = None
         self._values: dict[str, Any] = {}
@@ -102,6 +102,11 @@ class VehicleState:
         return self.armed and self.mode not in DRIVABLE_MODES | STANDING_MODES
 
     @property
+    def failsafes(self) -> tuple[str, ...]:
+        """Names of the failsafes that are active."""
+        return flag_words(Failsafe, self._failsafe.active) if self._failsafe else ()
+
+    @property
     def driver(self) -> int | None:
         """System id of the ground station in control, 0: none; None: the vehicle does not tell."""
         return self.control.driver
@@ -113,7 +118,7 @@ class VehicleState:
 
     def restart(self) -> None:
         """Forget where the vehicle was: it has restarted, and its origin and home may be others."""
-        self._frame, self._track, self._velocity = LocalFrame(), Track(), None
+        self._frame, self.trail, self._velocity = LocalFrame(), Track(), None
         for name in ("position", "home", "prearm", "prearm_reason"):
             self._values.pop(name, None)
         self.ready_at = None
@@ -143,7 +148,7 @@ class VehicleState:
             limits=flag_words(DriveLimit, drive.limits) if drive else (),
             latency=self.latency.latest,
             key_to_motor=self.key_timings.build_view(),
-            failsafes=flag_words(Failsafe, self._failsafe.active) if self._failsafe else (),
+            failsafes=self.failsafes,
             failsafe_in=self._failsafe_in(now),
             **self._values,
             **station,
@@ -227,11 +232,6 @@ class VehicleState:
         """Return a reading by its field in VehicleView; None where it is not known."""
         return self._values.get(name)
 
-    @property
-    def track(self) -> tuple[tuple[float, float], ...]:
-        """Earlier positions, oldest first: north, east of the origin, m."""
-        return self._track.points
-
     def _outputs(self, drive: m.RoverDriveStatus) -> tuple[OutputView, ...]:
         count = min(4, self.drive_info.motor_count) if self.drive_info else 2
         names = drive_names(self.drive_info, count)
@@ -256,7 +256,7 @@ class VehicleState:
 
     def _move(self, north: float, east: float) -> None:
         self._values["position"] = (north, east)
-        self._track.add((north, east))
+        self.trail.add((north, east))
 
     def _fresh(self, kind: type[m.Message], now: float) -> bool:
         at = self._times.get(kind)

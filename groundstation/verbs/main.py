@@ -14,7 +14,13 @@ from collections.abc import Mapping, Sequence
 from dialects.extra.errors import DialectError
 from dialects.extra.option import use_dialect
 from groundstation.config.config_file import ConfigError
-from groundstation.config.effective import ENDPOINT_VARIABLE, load_config, merge, resolve_endpoints
+from groundstation.config.effective import (
+    ENDPOINT_VARIABLE,
+    environment_endpoints,
+    load_config,
+    merge,
+    resolve_endpoints,
+)
 from groundstation.config.settings import DEFAULT_ENDPOINT
 from groundstation.formats.errors import FileFormatError
 from groundstation.recent.recent_file import RecentFile
@@ -95,13 +101,13 @@ def choose_endpoints(
     The config file is read only where it matters: a mistake in it does not keep a verb from a vehicle that -e names.
     Raises ConfigError, EndpointError.
     """
-    texts = texts or environment.get(ENDPOINT_VARIABLE, "").split()
+    texts = texts or environment_endpoints(environment)
     if texts and all(":" in text for text in texts):
         return list(texts)
-    effective = merge(load_config(config, environment, VERBS), environment, {})
+    effective = merge(load_config(config, environment, VERBS), environment, {"open": texts} if texts else {})
     if not texts and "open" not in effective.sources:
         return [recent.load().last or DEFAULT_ENDPOINT]
-    return resolve_endpoints(texts or effective.settings.open, effective.settings)
+    return resolve_endpoints(effective.settings.open, effective.settings)
 
 
 def build_parser(verb: str) -> CommandLineParser:

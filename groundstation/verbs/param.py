@@ -6,6 +6,7 @@ import argparse
 import fnmatch
 from collections.abc import Iterable, Sequence
 
+from groundstation.formats.param_compare import compare
 from groundstation.formats.param_file import ParamFile, ParamForm, format_params, parse_params
 from groundstation.vehicles.param_requests import param_type_name
 from groundstation.vehicles.requests import RequestState
@@ -14,7 +15,7 @@ from groundstation.verbs.local_file import check_new_file, read_text, write_text
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
 from link.services.param.client import Param
-from link.services.param.values import same_float32, value_text
+from link.services.param.float32 import same_float32, value_text
 
 WILDCARDS = "*?["
 
@@ -163,18 +164,8 @@ def _changed(params: Sequence[Param]) -> list[Param]:
 
 def _compare(file: ParamFile, session: VerbSession) -> tuple[list[tuple[str, float, Param]], list[str]]:
     """Return what differs (name, value of the file, parameter of the vehicle), and what the vehicle lacks."""
-    params, component = session.services.params.client.params, session.vehicle.component
-    differing: list[tuple[str, float, Param]] = []
-    missing: list[str] = []
-    for line in file.lines:
-        if line.component not in (None, component):
-            continue
-        param = params.get(line.name)
-        if param is None:
-            missing.append(line.name)
-        elif not same_float32(param.value, line.value):
-            differing.append((line.name, line.value, param))
-    return differing, missing
+    found = compare(file, session.services.params.client.params, session.vehicle.component)
+    return list(found.different), list(found.only_file)
 
 
 def _read(path: str) -> ParamFile:

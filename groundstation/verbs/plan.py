@@ -18,7 +18,7 @@ from groundstation.verbs.local_file import check_new_file, read_text, write_text
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
 from link.services.mission.items import GLOBAL_FRAMES, UNSET_COORDINATE, Items, MissionItem
-from link.services.param.values import shortest_float32
+from link.services.param.float32 import shortest_float32
 
 Run = Callable[[VerbSession, argparse.Namespace, Output], Awaitable[int]]
 

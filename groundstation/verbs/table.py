@@ -16,7 +16,7 @@ from groundstation.formats.param_file import ParamForm
 from groundstation.verbs import ftp, log, mode, param, plan, reboot
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
-from link.services.param.values import is_float32
+from link.services.param.float32 import is_float32
 
 Argument = tuple[str, dict[str, Any]]
 """Name and settings for argparse."""

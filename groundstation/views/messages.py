@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from groundstation.views.base import View, ViewRequest
+from groundstation.views.charts import FieldInfo
 
 
 class MessagesRequest(ViewRequest, frozen=True):
@@ -78,6 +79,10 @@ class MessageRequest(ViewRequest, frozen=True):
     component: int
     sent: bool
     name: str
+    field: str = ""
+    """The field whose last minute is wanted; "": none."""
+    index: int = 0
+    """Item of it, where it is an array."""
 
 
 class MessageField(msgspec.Struct, frozen=True, array_like=True):
@@ -90,6 +95,20 @@ class MessageField(msgspec.Struct, frozen=True, array_like=True):
     """The name of an enum value, or the value in a usual unit."""
     flags: tuple[str, ...] = ()
     """Names of the bits of a bitmask that are set."""
+    spark: str = ""
+    """Up to nine bars: what the value was in the last minute."""
+
+
+class FieldPlot(msgspec.Struct, frozen=True):
+    """The last minute of one field."""
+
+    info: FieldInfo
+    now: float
+    """s of the station's clock."""
+    times: bytes
+    """By the same clock, as 8-byte floats of this machine."""
+    values: bytes
+    """In the unit of `info`, as 8-byte floats of this machine."""
 
 
 class MessageView(View, frozen=True):
@@ -108,3 +127,30 @@ class MessageView(View, frozen=True):
     """Bytes of its frame."""
     fields: tuple[MessageField, ...]
     """None for an id that is in no dialect that the station knows."""
+    payload: bytes = b""
+    """Without its trailing zeros, as MAVLink 2 sends it."""
+    plot: FieldPlot | None = None
+
+
+class CaptureRequest(ViewRequest, frozen=True):
+    """Every message of a kind as a line of CSV."""
+
+    system: int
+    component: int
+    sent: bool
+    name: str
+    after: int = 0
+    """Lines after this state: CapturePage.state of the newest page."""
+
+
+class CapturePage(View, frozen=True):
+    """Lines of CSV, oldest first."""
+
+    titles: str
+    lines: tuple[str, ...]
+    state: int
+    """State after these lines. A screen that requests those after it gets none twice."""
+    after: int
+    """That of the request."""
+    lost: int = 0
+    """Messages before them for which there was no room."""

@@ -9,15 +9,19 @@ from groundstation.views.requests import RequestLine
 
 
 class ParamPageRequest(ViewRequest, frozen=True):
-    """Parameters of the selected vehicle, sorted by name."""
+    """Parameters of the selected vehicle, sorted by name; the best matches of a filter come first."""
 
     filter: str = ""
-    """Words, one of which must be in the name; upper or lower case. Empty: all."""
+    """Words, one of which must be in the name or the texts; upper or lower case. Empty: all."""
     changed_only: bool = False
     """Only those that are not at their default."""
     first: int = 0
     """First row, counted among those that match."""
     rows: int = 0
+    group: str = ""
+    """Only those of this group. Empty: all."""
+    names: tuple[str, ...] | None = None
+    """Only these. None: all."""
 
 
 class ParamRow(msgspec.Struct, frozen=True):
@@ -31,6 +35,20 @@ class ParamRow(msgspec.Struct, frozen=True):
     """None: not known."""
     changed: bool
     """It is not at its default."""
+    unit: str = ""
+    meaning: str = ""
+    """Name of its value, or of its bits."""
+    file: float | None = None
+    """Its value in the file that is compared; None: it is not in it, or there is none."""
+
+
+class ParamGroup(msgspec.Struct, frozen=True):
+    """Parameters whose names begin alike."""
+
+    name: str
+    count: int
+    changed: int
+    """Those that are not at their default."""
 
 
 class ParamPage(View, frozen=True):
@@ -49,3 +67,93 @@ class ParamPage(View, frozen=True):
     running: tuple[RequestLine, ...]
     ended: tuple[RequestLine, ...]
     """The last requests that have ended, oldest first."""
+    groups: tuple[ParamGroup, ...] = ()
+    """All groups, whatever the filter."""
+    changed: int = 0
+    """Parameters that are not at their default."""
+    missing: tuple[int, ...] = ()
+    """Indexes that have not arrived although the list has ended."""
+    autopilot: str = ""
+    """"ardupilot", "px4" or "other": for whom the operator has favourites."""
+    texts: str = ""
+    """Where the texts come from, or why there are none."""
+    file: str = ""
+    """The file that is compared; empty: none."""
+
+
+class ParamInfoRequest(ViewRequest, frozen=True):
+    """What is known of some parameters: the selected one, and those whose changes are shown."""
+
+    names: tuple[str, ...] = ()
+
+
+class ParamInfo(msgspec.Struct, frozen=True):
+    """What is known of a parameter. What is not known is empty or None."""
+
+    name: str
+    value: float
+    kind: str
+    index: int | None = None
+    default: float | None = None
+    title: str = ""
+    text: str = ""
+    unit: str = ""
+    low: float | None = None
+    high: float | None = None
+    step: float | None = None
+    values: tuple[tuple[float, str], ...] = ()
+    """Values with a name."""
+    bits: tuple[tuple[int, str], ...] = ()
+    """Bits with a name."""
+    reboot: bool = False
+    read_only: bool = False
+    not_armed: bool = False
+    """The vehicle refuses changes while it is armed."""
+    file: float | None = None
+    """Its value in the file that is compared."""
+
+
+class ParamInfos(View, frozen=True):
+    """What is known of the requested parameters that the vehicle has."""
+
+    system: int
+    infos: tuple[ParamInfo, ...]
+
+
+class ParamDiffRequest(ViewRequest, frozen=True):
+    """Where the vehicle and the file that is compared differ."""
+
+
+class ParamDiff(View, frozen=True):
+    """All differences, by name."""
+
+    system: int
+    file: str
+    """Empty: no file is compared."""
+    same: int = 0
+    different: tuple[tuple[str, float, float], ...] = ()
+    """Name, value on the vehicle, value in the file."""
+    only_vehicle: int = 0
+    only_file: tuple[str, ...] = ()
+
+
+class ParamExportRequest(ViewRequest, frozen=True):
+    """The text of a parameter file."""
+
+    number: int
+    """Counts the requests: each is answered once."""
+    form: str
+    """"mavproxy", "qgc" or "mp"."""
+    changed_only: bool = False
+    group: str = ""
+
+
+class ParamExport(View, frozen=True):
+    """The text of a parameter file."""
+
+    number: int
+    text: str
+    count: int
+    """Parameters in it."""
+    problem: str = ""
+    """Why there is none."""

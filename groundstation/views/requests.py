@@ -22,6 +22,8 @@ class RequestLine(msgspec.Struct, frozen=True):
     total: int | None = None
     service: str = ""
     """Which service it is for, e.g. "params"; see station/service_calls.py."""
+    waits: str = ""
+    """What it waits for, e.g. the operator's hands on a slow line; "" if it goes on."""
     system: int = 0
     """System id of the vehicle; 0: there was none."""
 

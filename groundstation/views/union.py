@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias, Union
 
-from groundstation.views import connect, drive, links, log, messages, params, requests  # noqa: F401 - defines the classes
+from groundstation.views import (  # noqa: F401 - defines the classes
+    charts,
+    connect,
+    drive,
+    files,
+    links,
+    log,
+    messages,
+    params,
+    requests,
+)
 from groundstation.views.base import View, ViewRequest
 
 if TYPE_CHECKING:

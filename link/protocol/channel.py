@@ -19,7 +19,7 @@ from link.protocol.frame import Frame, FramerCounts, noise_hint, payload_of
 from link.protocol.framer import Framer
 from link.protocol.log_tap import LogTap
 from link.protocol.peer import PeerState, count_sources, find_signing
-from link.protocol.peer_table import PeerTable
+from link.protocol.peer_table import MAX_PEERS, PeerTable
 from link.protocol.sent_frames import SentFrames
 from link.protocol.sequence import NEW, FrameOrder
 from link.protocol.stops import find_stops
@@ -38,6 +38,7 @@ class Channel:
     `system` and `component` (1..255) are ours. `stream`: bytes have no datagram boundaries. `wanted`: message ids that
     the core handles (None: all); others are counted and not decoded. `target`: the address that the user named, for
     links that send first. `capacity`: bytes/s that the link carries, where known. `sent`: shared by all channels.
+    `places`: peers at once.
     """
 
     def __init__(
@@ -52,6 +53,7 @@ class Channel:
         target: Hashable | None = None,
         capacity: float | None = None,
         sent: SentFrames | None = None,
+        places: int = MAX_PEERS,
     ) -> None:
         self.name = name
         self.index = index
@@ -64,7 +66,7 @@ class Channel:
         self._stream = stream
         self._wanted = wanted
         self._new_peer_framer = Framer(stream=False)
-        self._peers = PeerTable(index, stream=stream)
+        self._peers = PeerTable(index, stream=stream, places=places)
         self._bytes_received = 0
         self._duplicates = self._late = self._rate_limited = 0
         self._own_id = False

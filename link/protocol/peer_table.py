@@ -22,9 +22,9 @@ PEER_SILENCE = 10.0
 
 
 class PeerTable:
-    """The peers of link `index` by address. `stream`: bytes have no datagram boundaries."""
+    """The peers of link `index` by address, at most `places`. `stream`: bytes have no datagram boundaries."""
 
-    def __init__(self, index: int, *, stream: bool) -> None:
+    def __init__(self, index: int, *, stream: bool, places: int = MAX_PEERS) -> None:
         self.past_counts = FramerCounts()
         """Of the peers that have gone."""
         self.refused = 0
@@ -35,6 +35,7 @@ class PeerTable:
         """The newest sender of a stop for whom there was no place, so that the stop can be acknowledged."""
         self._index = index
         self._stream = stream
+        self._places = places
         self._states: dict[Hashable, PeerState] = {}
         self._conversations = count()
 
@@ -52,7 +53,7 @@ class PeerTable:
     def admit(self, address: Hashable, frames: Iterable[Frame], now: float) -> PeerState | None:
         """Make room for a new address: a free place, or that of a silent peer or one without HEARTBEAT."""
         reserved = self._is_reserved(frames)
-        if len(self._states) >= MAX_PEERS + (RESERVED_PLACES if reserved else 0):
+        if len(self._states) >= self._places + (RESERVED_PLACES if reserved else 0):
             leaving = min(
                 (each for each in self._states.values() if not each.fixed and self._is_evictable(each, now)),
                 key=lambda each: each.last_seen,

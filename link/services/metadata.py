@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import lzma
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -23,6 +24,8 @@ VERSION = 1
 DICTIONARY = 1 << 16
 """Bytes of the compressor's window: the files are smaller, and compressing with the default 8 MB window takes 94 MB."""
 DECIMALS = 3
+_CHOICE = re.compile(r"(?:^|: |, )(\d+):? ([^,;]+)")
+"""A value with its name in a description."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +74,17 @@ def _parameter(setting: ParamDefinition) -> dict[str, Any]:
         "group": setting.name.partition("_")[0].rstrip("0123456789"),
         "category": "Standard",
     }
-    return described | ({"increment": 1} if setting.whole else {})
+    return described | ({"increment": 1} if setting.whole else {}) | _choices(setting)
+
+
+def _choices(setting: ParamDefinition) -> dict[str, Any]:
+    """Return the names of values or bits that the description lists: "Ground station lost: 0 no action, 1 HOLD"."""
+    listed = [(int(code), name.strip()) for code, name in _CHOICE.findall(setting.description)]
+    if not setting.whole or len(listed) < 2 or not all(setting.low <= code <= setting.high for code, _ in listed):
+        return {}
+    if setting.description.startswith("Bits: "):
+        return {"bitmask": [{"index": code.bit_length() - 1, "description": name} for code, name in listed]}
+    return {"values": [{"value": code, "description": name} for code, name in listed]}
 
 
 def _compressed(content: dict[str, Any]) -> bytes:

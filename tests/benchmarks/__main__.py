@@ -17,6 +17,7 @@ from typing import Any
 from tests.benchmarks import (
     bridge,
     cost,
+    fleet,
     foreign_params,
     framer,
     key_to_motor,
@@ -44,6 +45,7 @@ BENCHMARKS: dict[str, tuple[Callable[[Options], Report], str]] = {
     "services": (services.run, "parameters, a mission and a log from a real vehicle, by UDP and at 57600 baud"),
     "foreign_params": (foreign_params.run, "1200 parameters of an ArduPilot-like vehicle, as a file and as a list"),
     "stations": (stations.run, "what 1, 4 and 16 ground stations cost the vehicle"),
+    "fleet": (fleet.run, "one driven rover among 15 and 99 further vehicles: key to motor and CPU"),
     "strangers": (strangers.run, "CPU, demands and stops of a vehicle that strangers flood"),
     "mission": (mission.run, "ten minutes of AUTO in real time: how far the rover really is beside its lines"),
     "link_loss": (link_loss.run, "key to motor over a network that delays and loses"),

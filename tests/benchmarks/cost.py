@@ -32,6 +32,12 @@ FLOOD = 1000
 """Messages a second, the highest rate in performance.md; ArduPilot can be asked for as many."""
 FLOOD_STEP = 0.01
 
+CHARTED = """
+roll pitch yaw rollspeed pitchspeed yawspeed airspeed groundspeed servo1_raw servo2_raw servo3_raw servo4_raw
+servo5_raw servo6_raw servo7_raw servo8_raw lat lon alt relative_alt vx vy vz hdg
+"""
+"""Fields of the flood, four for each chart."""
+
 SIZE = (140, 45)
 BARE_PYTHON = [sys.executable, "-c", "input('bare python ready')"]
 GROUND, VEHICLE, PYTHON, TEXTUAL = "groundstation", "vehicle --sim", "bare python", "bare Textual app"
@@ -149,7 +155,7 @@ class Ledger:
 def _running_costs(options: Options, goals: list[Goal]) -> Table:
     ledger = Ledger(QUICK_WINDOW if options.quick else WINDOW)
     for number in range(ROUNDS):
-        for state in (_bare, _waiting, _connected, _flooded, _flooded_table):
+        for state in (_bare, _waiting, _connected, _flooded, _flooded_table, _flooded_charts):
             options.say(f"cost: round {number + 1} of {ROUNDS}, {state.__name__.strip('_')}")
             state(ledger)
     goals += _goals(ledger.costs)
@@ -163,6 +169,7 @@ def _goals(costs: dict[str, Cost]) -> Iterator[Goal]:
         ("groundstation, CPU with a rover that stands", f"{GROUND}, rover disarmed", 2.0),
         ("groundstation, CPU at 1000 messages/s", f"{GROUND}, {FLOOD} messages/s", 15.0),
         ("groundstation, CPU at 1000 messages/s, Messages screen", f"{GROUND}, {FLOOD} messages/s, Messages", 20.0),
+        ("groundstation, CPU at 1000 messages/s, Charts with 24 lines", f"{GROUND}, {FLOOD} messages/s, Charts", 20.0),
         ("vehicle, CPU disarmed", f"{VEHICLE}, disarmed", 1.5),
         ("vehicle, CPU driving", f"{VEHICLE}, driving", 1.5),
     ):
@@ -209,6 +216,12 @@ def _flooded(ledger: Ledger) -> None:
 def _flooded_table(ledger: Ledger) -> None:
     """Measure with the Messages screen on top and a message chosen in it."""
     _flood(ledger, f"{GROUND}, {FLOOD} messages/s, Messages", b"\x1b[13~", b"\x1b[B" * 3)
+
+
+def _flooded_charts(ledger: Ledger) -> None:
+    """Measure with the Charts screen on top and all lines drawn that it can have."""
+    names = (f"{name} {number // 4 + 1}" for number, name in enumerate(CHARTED.split()))
+    _flood(ledger, f"{GROUND}, {FLOOD} messages/s, Charts", b"\x1b[15~", *(f"a{name}\r".encode() for name in names))
 
 
 def _flood(ledger: Ledger, name: str, *keys: bytes) -> None:

@@ -114,11 +114,13 @@ def run(options: Options) -> Report:
 class Rig:
     """A ground station on a terminal and a vehicle whose motors are watched, connected."""
 
-    def __init__(self, ground: Program, vehicle: Program, feed: MotorFeed, watch: Watch) -> None:
+    def __init__(self, ground: Program, vehicle: Program, feed: MotorFeed, watch: Watch, port: int) -> None:
         self.ground = ground
         self.vehicle = vehicle
         self.feed = feed
         self.watch = watch
+        self.port = port
+        """UDP port of the ground station."""
 
     def arm(self) -> None:
         """Arm with keys, as a driver does; then drive once, so that nothing happens for the first time later."""
@@ -188,7 +190,7 @@ def running(contender: Contender, network: Network | None = None) -> Iterator[Ri
         vehicle = on_pipe(watch, vehicle_argv)
         stack.callback(vehicle.end)
         ground.wait_for("DISARMED" if contender.arms else "ready", 20)
-        yield Rig(ground, vehicle, feed, watch)
+        yield Rig(ground, vehicle, feed, watch, ground_port)
 
 
 # ---- report ----

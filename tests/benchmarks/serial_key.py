@@ -119,7 +119,7 @@ def wired(baud: int) -> Iterator[Wired]:
         vehicle = on_pipe(watch, python("vehicle", "--sim", f"serial:{ends[0]}:{baud}", *log))
         stack.callback(vehicle.end)
         ground.wait_for("DISARMED", 30)
-        rig = Rig(ground, vehicle, feed, watch)
+        rig = Rig(ground, vehicle, feed, watch, 0)
         rig.arm()
         yield Wired(rig, cable, baud)
 

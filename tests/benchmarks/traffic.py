@@ -45,13 +45,15 @@ def _length(data: bytes, at: int) -> int:
 
 
 def mix(count: int, seed: int = 1) -> list[bytes]:
-    """Return `count` frames of system 1, as a rover sends them: fast state often, slow state seldom, all values
-    changing."""
-    chance = random.Random(seed)
+    """Return `count` frames of system 1, as `telemetry` makes them."""
+    return [framed(message, number & 0xFF) for number, message in enumerate(telemetry(random.Random(seed), count))]
+
+
+def telemetry(chance: random.Random, count: int) -> Iterator[Message]:
+    """Yield `count` messages, as a rover sends them: fast state often, slow state seldom, all values changing."""
     makers = list(_MAKERS)
     weights = [_MAKERS[maker] for maker in makers]
-    messages = (maker(chance) for maker in chance.choices(makers, weights, k=count))
-    return [framed(message, number & 0xFF) for number, message in enumerate(messages)]
+    return (maker(chance) for maker in chance.choices(makers, weights, k=count))
 
 
 def framed(message: Message, sequence: int, system: int = 1, component: int = 1) -> bytes:

@@ -164,12 +164,32 @@ def test_the_messages_of_the_simulator(tmux: Callable[..., Tmux], columns: int, 
     terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
 
 
+def test_charts_of_the_simulator_while_it_is_driven(tmux: Callable[..., Tmux]) -> None:
+    terminal = tmux(140, 45, "--sitl")
+    terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
+    terminal.press("F5")
+    terminal.until(lambda screen: "drive   speed, throttle" in screen, PATIENCE)
+    terminal.press("v")
+    terminal.until(lambda screen: "1 speed" in screen and "groundspeed 0.00" in screen, PATIENCE)
+    terminal.press("p", "Down", "p", "F1")  # two fields are recorded while the rover is driven
+    terminal.until(lambda screen: "hold r to arm" in screen, PATIENCE)
+    terminal.hold_until("r", lambda screen: " ARMED" in screen, PATIENCE)
+    terminal.until(lambda screen: re.search(r"0\.[3-9]\d? m/s", screen) is not None, PATIENCE, holding="i")
+    terminal.press("F5")
+    recorded = re.compile(r"groundspeed +0\.00 +\d\.\d\d +0\.[3-9]")
+    shown = terminal.until(lambda screen: recorded.search(screen) is not None and "━ MANUAL ━" in screen, PATIENCE)
+    assert "━●groundspeed" in shown
+    assert "▲" in shown
+    assert re.search(r"marks .*\bi\b", shown)
+
+
 def test_waiting_offers_the_simulator(tmux: Callable[..., Tmux]) -> None:
     port = free_port()
     terminal = tmux(80, 24, f"udpin:127.0.0.1:{port}")
     waiting = terminal.until(lambda screen: "waiting for a vehicle" in screen, PATIENCE)
     assert str(port) in waiting
-    terminal.press("F5")
+    assert "ENTER starts a simulated rover" in waiting
+    terminal.press("Enter")
     terminal.until(lambda screen: "DISARMED" in screen, PATIENCE)
 
 

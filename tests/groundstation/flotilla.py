@@ -7,6 +7,7 @@ from typing import TypeVar
 from groundstation.intents.session import RenewLease, SetKeyGate, Watch
 from groundstation.station.crash_neutral import CrashNeutral
 from groundstation.station.station import Station
+from groundstation.vehicles.fleet import PLACES
 from groundstation.views.base import View, ViewRequest
 from link.protocol.channel import Channel
 from tests.groundstation.fake_vehicle import FakeVehicle
@@ -23,7 +24,7 @@ class Flotilla:
     def __init__(self, count: int) -> None:
         self.now = 100.0
         self.station = Station(["udpin:127.0.0.1:14550"], session=SESSION, now=self.now)
-        self.near = Host(CrashNeutral(self.station), Channel("near", 0, system=255, component=190), STEP)
+        self.near = Host(CrashNeutral(self.station), Channel("near", 0, system=255, component=190, places=PLACES), STEP)
         self.vehicles = {system: FakeVehicle(system=system) for system in range(1, count + 1)}
         self.far: dict[str, Host] = {}
         for system, vehicle in self.vehicles.items():

@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 
 from dialects import messages as m
 from link.services.pacing import BulkPacer
+from link.services.param.float32 import shortest_float32
 from link.services.param.server import ParamServer
-from link.services.param.values import REAL32, shortest_float32
+from link.services.param.values import REAL32
 from tests.link.services_world import from_gcs, messages
 
 

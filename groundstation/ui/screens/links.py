@@ -9,6 +9,7 @@ from textual import events
 from textual.widget import Widget
 
 from groundstation.actions import ACTIONS
+from groundstation.intents.links import CloseLink
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.ui.alerts import handover_text
 from groundstation.ui.display_state import DisplayState, ScreenInfo, ScreenKey
@@ -37,6 +38,9 @@ CHROME_ROWS = 4
 TYPING_TIME = 1.0
 """s within which a further digit belongs to the same system id."""
 
+LINKS_PANEL = 1
+"""Number of the panel of the links."""
+
 PAGE = 6
 """Rows of a page: its keys move by one less."""
 
@@ -50,6 +54,8 @@ class LinksScreen(ConsoleScreen):
     KEYS = (
         ScreenKey("enter", "Choose", "Choose the vehicle under the cursor; the one before gets neutral first"),
         ScreenKey("tab", "Panel", "Next panel: vehicles, links, control"),
+        ScreenKey("a", "Add", "Open a link: goes to the Connect screen"),
+        ScreenKey("x", "Close", "Close the link under the cursor, after a question"),
     )
 
     def __init__(self, context: ScreenContext) -> None:
@@ -62,6 +68,8 @@ class LinksScreen(ConsoleScreen):
         self._cursor: int | None = None
         """System id under the cursor; None: it follows the selected vehicle."""
         self._typed, self._typed_at = "", 0.0
+        self._link: int | None = None
+        """Index of the link under the cursor."""
 
     # ---- what all screens define ----
 
@@ -80,7 +88,7 @@ class LinksScreen(ConsoleScreen):
             case VehiclesView():
                 self._show_vehicles(view)
             case LinksView():
-                self._links.show(LinkTableValue(view, self._links.value.top))
+                self._show_links(view)
                 self._links.border_subtitle = describe_links(view)
             case ControlView():
                 keys = (self._state.key("vehicle.control"), self._state.key("vehicle.release"))
@@ -110,7 +118,8 @@ class LinksScreen(ConsoleScreen):
         chosen, under = self._selected_name(), self._vehicles.value.under_cursor
         drive = format_key(next(iter(self.context.keymap.get_keys("app.drive")), "escape"))
         if self._chosen:
-            return "↑ ↓ scrolls · TAB goes on to the next panel · ESC goes back to Drive"
+            close = "x closes the link, a adds one · " if self._chosen == LINKS_PANEL else ""
+            return f"↑ ↓ scrolls · {close}TAB goes on to the next panel · ESC goes back to Drive"
         if under is not None and under.system != self._vehicles.value.selected:
             return f"ENTER chooses {under.name}; {chosen or 'the one before'} gets neutral first"
         if len(self._rows) > 1:
@@ -131,6 +140,9 @@ class LinksScreen(ConsoleScreen):
             self._choose()
         elif event.key == "tab" and not repeated:
             self._chosen = (self._chosen + 1) % len(self._panels)
+            self._show_links(self._links.value.view)
+        elif event.key in ("a", "x") and not repeated:
+            self._add() if event.key == "a" else self._close()
         elif action is not None and action.id in COMMANDS and action.intent is not None and not repeated:
             self._cursor = None if action.id == "vehicle.next" else self._cursor
             self.context.send(action.intent)
@@ -150,14 +162,33 @@ class LinksScreen(ConsoleScreen):
 
     def _scroll(self, rows: int) -> None:
         """Scroll the links or the lines about control, as far as there is something to see."""
-        if self._panels[self._chosen] is self._links:
-            last = self._links.wanted(self._links.size.width) - self._links.size.height
-            top = max(0, min(last, self._links.value.top + rows))
-            self._links.show(LinkTableValue(self._links.value.view, top))
+        if self._chosen == LINKS_PANEL:
+            self._move_link(rows)
             return
         value = self._control.value
         top = max(0, min(self._control.wanted - self._control.size.height, value.top + rows))
         self._control.show(ControlPanelValue(value.view, value.request_key, value.release_key, top))
+
+    def _move_link(self, rows: int) -> None:
+        """Move the cursor in the links."""
+        view = self._links.value.view
+        indexes = [link.index for link in view.rows] if view else []
+        if indexes:
+            at = indexes.index(self._link) if self._link in indexes else 0
+            self._link = indexes[max(0, min(len(indexes) - 1, at + rows))]
+            self._show_links(view)
+
+    def _add(self) -> None:
+        self.context.perform(ACTIONS["app.connect"])
+
+    def _close(self) -> None:
+        view = self._links.value.view
+        link = next((each for each in view.rows if each.index == self._links.value.cursor), None) if view else None
+        if link is None:
+            self.say("TAB to the links first, then x closes the one under the cursor")
+            return
+        neutral = "; what is driven over it gets neutral first" if link.frames_in else ""
+        self.ask(f"close {link.name}{neutral}", lambda: self.context.send(CloseLink(link=link.index)))
 
     def _type(self, digit: str) -> None:
         """Move to the vehicle whose system id is typed."""
@@ -193,6 +224,19 @@ class LinksScreen(ConsoleScreen):
         self._vehicles.show(VehicleTableValue(view, selected, cursor, snapshot.waiting or ""))
         more = f" of {len(known) + view.not_shown}" if view and view.not_shown else ""
         self._vehicles.border_subtitle = f"{len(known)}{more} heard" if view and known else ""
+
+    def _show_links(self, view: LinksView | None) -> None:
+        """Show the links with the cursor in sight, if it is in this panel."""
+        indexes = [link.index for link in view.rows] if view else []
+        if self._link not in indexes:
+            self._link = indexes[0] if indexes else None
+        cursor = self._link if self._chosen == LINKS_PANEL else None
+        top, width, room = self._links.value.top, max(1, self._links.size.width), max(1, self._links.size.height - 1)
+        if cursor is not None:
+            self._links.show(LinkTableValue(view, top, cursor))
+            line, last = self._links.line_of(cursor, width), self._links.wanted(width) - 1 - room
+            top = max(0, min(line, max(top, line - room + 2), max(0, last)))
+        self._links.show(LinkTableValue(view, top, cursor))
 
     def _lay_out(self) -> None:
         """Share the rows: all panels as they need it, else the chosen one gets the room."""

@@ -2,63 +2,84 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
+from platformdirs import user_state_path
 from textual import events
+from textual.containers import Container
 from textual.widget import Widget
 
+from groundstation.intents.services import CompareParams, ResetParams, StoreParams
 from groundstation.intents.union import AnyIntent
-from groundstation.ui.display_state import DisplayState, ScreenKey
+from groundstation.ui.display_state import DisplayState
 from groundstation.ui.list_keys import rows_to_move
-from groundstation.ui.param_model import ParamModel
+from groundstation.ui.params.favourites import Favourites
+from groundstation.ui.params.files import parse_save, read_file
+from groundstation.ui.params.model import ParamModel
+from groundstation.ui.params.panels import PARAM_KEYS, ParamPanels
+from groundstation.ui.params.saving import ParamSaving
+from groundstation.ui.params.scope import ALL, CHANGED, group_of
+from groundstation.ui.params.status import question_text
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.line_field import FieldUse
-from groundstation.ui.widgets.params import ParamTable, PendingList, value_text
+from groundstation.ui.widgets.params.panels import MAX_PENDING, ParamWidgets
 from groundstation.views.base import View, ViewRequest
-from groundstation.views.params import ParamPage
+from groundstation.views.params import ParamDiff, ParamExport, ParamInfos, ParamPage
 
-MAX_PENDING = 6
-"""Rows of the list of changes."""
+WIDE, SIDE = 120, 180
+"""Columns from which on the groups stand beside the table, and the pending changes, too."""
+
+TALL = 36
+"""Rows of the terminal from which on the pending changes have a fifth of them, and titles."""
 
 
 class ParamsScreen(ConsoleScreen):
-    """The table over the pending changes. Nothing is sent before W and y."""
+    """Groups, table, detail, comparison with a file, pending changes. Nothing is sent before W and y."""
 
     CSS_PATH = "params.tcss"
-    KEYS = (
-        ScreenKey("slash", "Filter", "Show the parameters with one of these words in the name"),
-        ScreenKey("enter", "Edit", "Change the value of the selected parameter, here first"),
-        ScreenKey("W", "Write", "Write the changes to the vehicle, after a question"),
-        ScreenKey("c", "Changed", "Show only what is not at its default, or all again"),
-        ScreenKey("d", "Default", "Change the selected parameter to its default"),
-        ScreenKey("x", "Drop", "Drop the change of the selected parameter"),
-        ScreenKey("u", "Undo", "Undo the last change; after a write the old values are changes again"),
-        ScreenKey("R", "Read", "Read all parameters again"),
-        ScreenKey("X", "Cancel", "Cancel the reading or writing that runs"),
-    )
+    KEYS = PARAM_KEYS
 
     def __init__(self, context: ScreenContext) -> None:
         super().__init__(context)
-        self._model = context.keep(ParamModel, context.numbers)
-        self._table = ParamTable(self._model.table, id="table")
-        self._pending = PendingList((), id="pending")
+        favourites = context.keep(Favourites, user_state_path("mavhelm"))
+        self._model = context.keep(ParamModel, context.numbers, favourites)
+        self._saving = context.keep(ParamSaving, context.numbers)
+        self._panels = ParamPanels(self._model)
+        self._widgets = ParamWidgets()
+        self._warned = False
 
     # ---- what all screens define ----
 
     def compose_body(self) -> Iterable[Widget]:
-        """Lay out the table over the changes."""
-        self._table.add_class("-chosen")
-        return self.build_panel(self._table, "parameters"), self.build_panel(self._pending, "changes that are not sent")
+        """Lay out the panels."""
+        widgets, panel = self._widgets, self.build_panel
+        side = Container(panel(widgets.detail, "detail"), panel(widgets.compare, "compare with a file"), id="side")
+        upper = Container(panel(widgets.groups, "groups"), panel(widgets.table, "parameters"), side, id="upper")
+        pending = panel(widgets.pending, "pending · nothing is written before W")
+        return (Container(upper, pending, id="all"),)
 
     def requests(self) -> tuple[ViewRequest, ...]:
-        """Return the request for the rows that fit."""
-        return (self._model.request,)
+        """Return the requests for the rows that fit, their texts, the comparison, and a file to save."""
+        return (*self._model.requests, *self._saving.requests)
 
     def show_view(self, view: View) -> None:
-        """Show a page, and fetch the parameters if none are known."""
-        if isinstance(view, ParamPage):
-            self._send(self._model.show_page(view))
-            self._show()
+        """Show a view; parameters that are not known are fetched."""
+        match view:
+            case ParamPage():
+                self._send(self._model.show_page(view))
+            case ParamInfos():
+                self._model.show_infos(view)
+            case ParamDiff():
+                self._model.show_diff(view)
+            case ParamExport():
+                self.say(self._saving.take(view))
+        self._show()
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Lay out the panels, and show the rows at the size that the table has then."""
+        self.set_class(event.size.width >= WIDE, "-wide")
+        self.set_class(event.size.width >= SIDE, "-side")
+        self.call_after_refresh(self._show)
 
     def show_body(self, now: DisplayState) -> None:
         """Show the model: a page may have arrived, or a question ended."""
@@ -67,36 +88,44 @@ class ParamsScreen(ConsoleScreen):
     @property
     def advice(self) -> str:
         """Return how the last request stands, or what to do."""
-        return self._model.status or "ENTER edits · W writes · ESC goes back to Drive"
+        if editor := self._model.editor:
+            return editor.advice
+        waiting = len(self._model.pending)
+        if status := self._model.status:
+            return status
+        if waiting:
+            return f"{waiting} {'edit waits' if waiting == 1 else 'edits wait'}: W writes after one more look, x drops"
+        return "ENTER edits · TAB groups · / finds any of the words · ESC goes back to Drive"
 
     # ---- keys ----
 
     def perform_key(self, event: events.Key) -> bool:
         """Handle the keys of this screen."""
-        if rows := rows_to_move(event.key, self._table.size.height):
-            self._model.move(rows)
+        height = self._widgets.height_of(self._panels.chosen)
+        if rows := rows_to_move(event.key, height):
+            self._panels.move(rows)
         elif event.key in _ACTIONS:
             _ACTIONS[event.key](self)
-        else:
+        elif not (event.key == "escape" and self._panels.go_back()):
             return False
         self._show()
         return True
 
     def _open_filter(self) -> None:
         use = FieldUse(self._model.set_filter, self._model.set_filter, cancel=lambda: self._model.set_filter(""))
-        self.field.open(use, text=self._model.filter, placeholder="words of names; ENTER keeps them, ESC shows all")
+        placeholder = "words of names and texts, any of them; ENTER keeps them, ESC shows all"
+        self.field.open(use, text=self._model.filter, placeholder=placeholder)
 
-    def _open_value(self) -> None:
-        row = self._model.selected
-        if row is not None:
-            pending = self._model.pending.get(row.name)
-            text = value_text(pending.value if pending else row.value)
-            placeholder = f"value of {row.name}; ENTER keeps it, ESC leaves it"
-            self.field.open(FieldUse(self._change), text=text, placeholder=placeholder)
-
-    def _change(self, text: str) -> None:
-        self.say(self._model.change(text.strip()))
-        self._show()
+    def _enter(self) -> None:
+        if not self._panels.enter() and (editor := self._model.open_editor()) is not None:
+            use = FieldUse(
+                lambda text: self.say(self._model.close_editor(keep=True)),
+                editor.type,
+                cancel=lambda: self.say(self._model.close_editor(keep=False)),
+                key=self._panels.edit_key,
+            )
+            placeholder = f"number, 0x…, or a name of the list for {editor.row.name}; ENTER keeps, ESC leaves"
+            self.field.open(use, text=editor.text, placeholder=placeholder)
 
     def _ask_to_write(self) -> None:
         if self._model.may_write:
@@ -105,32 +134,98 @@ class ParamsScreen(ConsoleScreen):
             self.say("there are no changes to write")
 
     def _question_text(self) -> str:
-        count, vehicle = len(self._model.pending), self._state.snapshot.vehicle
-        to = "the vehicle, which is ARMED" if vehicle is not None and vehicle.armed else "the vehicle"
-        return f"write {count} {'change' if count == 1 else 'changes'} to {to}"
+        return question_text(self._model.pending, self._model.infos, armed=self._armed)
+
+    @property
+    def _armed(self) -> bool:
+        vehicle = self._state.snapshot.vehicle
+        return vehicle is not None and vehicle.armed
 
     def _toggle_changed(self) -> None:
         page = self._model.page
         if page is not None and page.known and not page.has_defaults:
             self.say("this vehicle does not report defaults")
         else:
-            self._model.set_filter(self._model.filter, changed_only=not self._model.changed_only)
+            self._model.set_scope(ALL if self._model.changed_only else CHANGED)
 
     def _set_default(self) -> None:
         self.say(self._model.change_to_default())
 
     def _drop(self) -> None:
-        self._model.drop()
+        if not self._model.drop():
+            self.say("the selected parameter has no change")
 
     def _undo(self) -> None:
-        if not self._model.undo():
+        if not self._model.changes.undo():
             self.say("nothing to undo")
+
+    def _redo(self) -> None:
+        if not self._model.changes.redo():
+            self.say("nothing to redo")
+
+    def _toggle_favourite(self) -> None:
+        self.say(self._model.toggle_favourite())
 
     def _read(self) -> None:
         self._send((self._model.fetch(),))
 
     def _cancel(self) -> None:
         self._send(self._model.cancel())
+
+    # ---- files and the vehicle's memory ----
+
+    def _take_all(self) -> None:
+        count = self._model.take_from_file()
+        self.say(f"{count} values of the file are pending" if count else "no file is compared, or nothing differs")
+
+    def _open_file(self) -> None:
+        placeholder = "parameter file to compare with; empty: none"
+        self.field.open(FieldUse(self._compare), placeholder=placeholder)
+
+    def _compare(self, text: str) -> None:
+        found = read_file(text, self.context.folder) if text.strip() else ("", "")
+        page = self._model.page
+        if isinstance(found, str) or page is None:
+            self.say(found if isinstance(found, str) else "no vehicle yet")
+        else:
+            self._send((CompareParams(self._model.take_number(), page.system, *found),))
+
+    def _open_save(self) -> None:
+        placeholder = "FILE [all|changed|group] [mavproxy|qgc|mp]"
+        self.field.open(FieldUse(self._save), placeholder=placeholder)
+
+    def _save(self, text: str) -> None:
+        choice, row, page = parse_save(text, self.context.folder), self._model.selected, self._model.page
+        if isinstance(choice, str) or page is None or not page.known:
+            self.say(choice if isinstance(choice, str) else "there is nothing to save")
+            return
+        group = self._model.scope.group or (group_of(row.name, page) if row else "")
+        if choice.path.exists():
+            self.ask(f"overwrite {choice.path}", lambda: self._saving.start(choice, group), word="overwrite")
+        else:
+            self._saving.start(choice, group)
+
+    def _open_memory(self) -> None:
+        placeholder = "store: the vehicle stores all values; reset: all go back to their defaults"
+        self.field.open(FieldUse(self._ask_memory), placeholder=placeholder)
+
+    def _ask_memory(self, text: str) -> None:
+        word, page = text.strip().lower(), self._model.page
+        if page is None or word not in ("store", "reset"):
+            self.say("no vehicle yet" if page is None else "type store or reset")
+        elif word == "store":
+            self.ask("store all parameters in the vehicle", self._store)
+        else:
+            self.ask("reset ALL parameters of the vehicle to their defaults, without undo", self._reset, word="reset")
+
+    def _store(self) -> None:
+        if self._model.page is not None:
+            self._send((StoreParams(self._model.take_number(), self._model.page.system),))
+
+    def _reset(self) -> None:
+        if self._model.page is not None:
+            self._model.fetch_after = number = self._model.take_number()
+            self._send((ResetParams(number, self._model.page.system),))
 
     # ---- parts ----
 
@@ -140,28 +235,41 @@ class ParamsScreen(ConsoleScreen):
 
     def _show(self) -> None:
         """Show the model at the size that the widgets have now."""
-        self._model.set_height(max(1, self._table.size.height))
-        pending = tuple(self._model.pending.values())
-        self._pending.styles.display = "block" if pending else "none"
-        self._pending.styles.height = 2 + min(MAX_PENDING, max(1, len(pending)))
-        self._pending.show(pending)
-        self._table.show(self._model.table)
-        page = self._model.page
-        if page is not None:
-            shown = f"{page.matching} of " if page.matching != page.known else ""
-            missing = f" of {page.total}" if page.total is not None and page.total != page.known else ""
-            self._table.border_subtitle = f"{shown}{page.known}{missing} · system {page.system}"
+        if not self._warned and self._model.favourites_warning:
+            self._warned = True
+            self.say(self._model.favourites_warning)
+        self._model.set_height(self._widgets.height_of("table"))
+        self._panels.has_file = bool(self._model.page and self._model.page.file)
+        for name in ("groups", "compare"):
+            self.set_class(self._panels.chosen == name, f"-at-{name}")
+        self.set_class(self._panels.has_file, "-file")
+        self._widgets.show(self._model, self._panels, armed=self._armed, room=self._pending_room)
+
+    @property
+    def _pending_room(self) -> int:
+        """Rows for the pending changes below the table: half of the screen while it is asked whether to write them."""
+        if self.has_class("-side"):
+            return 0
+        whole = self.size.height
+        return whole // 2 if self.question is not None else MAX_PENDING if whole < TALL else whole // 5
 
 
-_ACTIONS = {
+_ACTIONS: dict[str, Callable[[ParamsScreen], None]] = {
     "slash": ParamsScreen._open_filter,
-    "enter": ParamsScreen._open_value,
+    "enter": ParamsScreen._enter,
+    "tab": lambda screen: screen._panels.next(),
     "W": ParamsScreen._ask_to_write,
     "c": ParamsScreen._toggle_changed,
     "d": ParamsScreen._set_default,
     "x": ParamsScreen._drop,
     "u": ParamsScreen._undo,
+    "ctrl+r": ParamsScreen._redo,
+    "asterisk": ParamsScreen._toggle_favourite,
+    "a": ParamsScreen._take_all,
+    "O": ParamsScreen._open_file,
+    "S": ParamsScreen._open_save,
+    "E": ParamsScreen._open_memory,
     "R": ParamsScreen._read,
     "X": ParamsScreen._cancel,
 }
-"""Key -> what it does; ParamsScreen.KEYS has their names."""
+"""Key -> what it does; PARAM_KEYS has their names."""

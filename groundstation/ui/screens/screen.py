@@ -72,12 +72,12 @@ class ConsoleScreen(Screen[None]):
     ConsoleScreen { background: $background; }
     ConsoleScreen #status, ConsoleScreen #tabs, ConsoleScreen #hint, ConsoleScreen #footer { height: 1; }
     ConsoleScreen .panel {
-        border: round #3a4350;
+        border: round $line;
         border-title-color: $primary;
-        border-subtitle-color: #6b7684;
+        border-subtitle-color: $dim;
         background: $background;
     }
-    ConsoleScreen .panel.-chosen { border: round $primary; }
+    ConsoleScreen .panel.-chosen { border: round $primary; border-title-style: bold reverse; }
     """
     ROWS: ClassVar[tuple[InstrumentRow, ...]] = CHROME
     """Instruments that the screen builds by their place, and shows."""

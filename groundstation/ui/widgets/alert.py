@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from rich.style import Style
 from textual.strip import Strip
@@ -12,10 +14,10 @@ from groundstation.ui.colours import AMBER, DEEP_RED, PANEL, TEXT, WARNING, YELL
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.widgets.instrument import Instrument, strip
 
-LOOKS: dict[AlertLevel, Style] = {
-    AlertLevel.WARNING: style(AMBER, WARNING, bold=True),
-    AlertLevel.DANGER: badge(DEEP_RED),
-    AlertLevel.QUESTION: badge(YELLOW),
+LOOKS: dict[AlertLevel, Callable[[], Style]] = {
+    AlertLevel.WARNING: partial(style, AMBER, WARNING, bold=True),
+    AlertLevel.DANGER: partial(badge, DEEP_RED),
+    AlertLevel.QUESTION: partial(badge, YELLOW),
 }
 MARKS = {AlertLevel.WARNING: "!", AlertLevel.DANGER: "■", AlertLevel.QUESTION: "?"}
 
@@ -42,7 +44,7 @@ class AlertLine(Instrument[AlertValue]):
         if not self.value.alerts:
             return []
         first, *others = self.value.alerts
-        look = LOOKS[first.level]
+        look = LOOKS[first.level]()
         text = f" {MARKS[first.level]} {first.text}"
         more = f" +{len(others)}" if others else "" if len(text) <= width else " …"
         right = f"{more} {self.value.list_key} " if more else ""

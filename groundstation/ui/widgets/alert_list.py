@@ -39,6 +39,6 @@ class AlertList(Instrument[AlertListValue]):
         if not rows:
             return [strip((" no alerts", style(DIM)))]
         return [
-            strip((f" {MARKS[alert.level] if part == 0 else ' '} {text}".ljust(width), LOOKS[alert.level]))
+            strip((f" {MARKS[alert.level] if part == 0 else ' '} {text}".ljust(width), LOOKS[alert.level]()))
             for alert, part, text in rows
         ]

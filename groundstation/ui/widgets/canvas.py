@@ -14,7 +14,11 @@ from groundstation.ui.colours import style as style_of
 _BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """Bit of each dot in U+2800, by row and column of the cell (Unicode standard, Braille patterns)."""
 
-_BLANK = style_of()
+_RUNS = tuple(
+    tuple(tuple(sum(bits[side] for bits in _BITS[above : below + 1]) for below in range(4)) for above in range(4))
+    for side in range(2)
+)
+"""Bits of the dots of one column of a cell, by column, first and last row."""
 
 Point = tuple[float, float]
 
@@ -26,7 +30,7 @@ class Canvas:
         self.width, self.height = width, height
         self.across, self.down = width * 2, height * 4
         self._dots = [bytearray(width) for _ in range(height)]
-        self._styles: list[list[Style]] = [[_BLANK] * width for _ in range(height)]
+        self._styles: list[list[Style]] = [[style_of()] * width for _ in range(height)]
         self._texts: list[dict[int, tuple[str, Style]]] = [{} for _ in range(height)]
 
     def dot(self, x: int, y: int, style: Style) -> None:
@@ -34,6 +38,17 @@ class Canvas:
         if 0 <= x < self.across and 0 <= y < self.down:
             row, column = y >> 2, x >> 1
             self._dots[row][column] |= _BITS[y & 3][x & 1]
+            self._styles[row][column] = style
+
+    def run(self, x: int, top: int, bottom: int, style: Style) -> None:
+        """Set the dots of one column from `top` down to `bottom`: cell by cell, which is faster than dot by dot."""
+        if not 0 <= x < self.across:
+            return
+        top, bottom = max(0, top), min(self.down - 1, bottom)
+        column, side = x >> 1, x & 1
+        for row in range(top >> 2, (bottom >> 2) + 1):
+            above, below = max(0, top - row * 4), min(3, bottom - row * 4)
+            self._dots[row][column] |= _RUNS[side][above][below]
             self._styles[row][column] = style
 
     def line(self, start: Point, end: Point, style: Style) -> None:
@@ -75,7 +90,7 @@ class Canvas:
 
     def _segments(self, row: int) -> Iterable[Segment]:
         dots, styles, texts = self._dots[row], self._styles[row], self._texts[row]
-        run, run_style = "", _BLANK
+        run, run_style = "", style_of()
         for column in range(self.width):
             character, style = texts.get(column) or (
                 chr(0x2800 + dots[column]) if dots[column] else " ",

@@ -9,7 +9,7 @@ from itertools import groupby
 from textual.strip import Strip
 
 from groundstation.snapshot import VehicleView
-from groundstation.ui.colours import DIM, GROUND, SKY, YELLOW, style
+from groundstation.ui.colours import DIM, GROUND, SKY, WHITE, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 
 HALF_VIEW = math.radians(25)
@@ -63,6 +63,6 @@ class Horizon(Instrument[HorizonValue | None]):
             cells.append((_BLOCKS[eighths], style(GROUND, SKY)))
         if row == height // 2:
             on = GROUND if ground_fraction(attitude, 0.0, row, height) > 0.5 else SKY
-            cells[(width - 1) // 2] = ("●", style(YELLOW, on, bold=True))
+            cells[(width - 1) // 2] = ("●", style(WHITE, on, bold=True))
         runs = groupby(cells, key=lambda cell: cell[1])
         return strip(*(("".join(text for text, _ in run), look) for look, run in runs))

@@ -12,7 +12,7 @@ from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
-from groundstation.ui.colours import style
+from groundstation.ui.colours import style, theme_changes
 
 Value = TypeVar("Value")
 
@@ -46,7 +46,7 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         super().__init__(id=id, classes=classes)
         self._value = value
         self._strips: list[Strip] = []
-        self._drawn_for = Size(0, 0)
+        self._drawn_for = (Size(0, 0), theme_changes())
 
     @property
     def value(self) -> Value:
@@ -58,8 +58,8 @@ class Instrument(Widget, Generic[Value], can_focus=False):
         if value == self._value:
             return
         self._value = value
-        if not self.size or self.size != self._drawn_for:  # not laid out yet, or hidden: render_line draws later
-            self._drawn_for = Size(0, 0)
+        if not self.size or self._drawn_for != (self.size, theme_changes()):  # hidden, or new: render_line draws later
+            self._drawn_for = (Size(0, 0), 0)
             self.refresh()
             return
         old, new = self._strips, self.draw(*self.size)
@@ -76,7 +76,7 @@ class Instrument(Widget, Generic[Value], can_focus=False):
 
     def render_line(self, y: int) -> Strip:
         """Return one line; Textual calls this for each line that it must paint."""
-        if self.size != self._drawn_for:
-            self._drawn_for = self.size
+        if self._drawn_for != (self.size, theme_changes()):
+            self._drawn_for = (self.size, theme_changes())
             self._strips = self.draw(*self.size) if self.size else []
         return self._strips[y] if y < len(self._strips) else Strip.blank(self.size.width, style())

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
+from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.input.keymap import Keymap
@@ -21,12 +24,12 @@ GRID = (
 )
 """Actions by position, as on the keyboard around `k`."""
 
-STYLES = {
-    "hold": ("HOLD to drive", style(GREEN, bold=True)),
-    "latch": (" LATCHED: drives on ", badge(RED)),
-    "step": (" STEP: keeps driving ", badge(AMBER)),
+STYLES: dict[str, tuple[str, Callable[[], Style]]] = {
+    "hold": ("HOLD to drive", partial(style, GREEN, bold=True)),
+    "latch": (" LATCHED: drives on ", partial(badge, RED)),
+    "step": (" STEP: keeps driving ", partial(badge, AMBER)),
 }
-"""Drive style -> its label and colour; the styles that keep driving without a key held are in loud colours."""
+"""Drive style -> its label and look; the styles that keep driving without a key held are in loud colours."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +108,8 @@ class Keycaps(Instrument[KeycapsValue]):
 def style_parts(value: KeycapsValue) -> list[Part]:
     """Return the drive style and the key that changes it."""
     keys = value.keymap.get_keys("drive.style")
-    label = STYLES.get(value.style, (value.style, style(TEXT)))
+    text, look = STYLES.get(value.style, (value.style, style))
+    label = (text, look())
     return [(f"{format_key(keys[0])} ", style(DIM)), label] if keys else [label]
 
 

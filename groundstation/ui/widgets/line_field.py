@@ -13,6 +13,11 @@ def _ignore(text: str) -> None:
     """Do nothing with the text."""
 
 
+def _no_text(key: str) -> str | None:
+    """Do nothing with a key."""
+    return None
+
+
 @dataclass(frozen=True, slots=True)
 class FieldUse:
     """What a text is asked for."""
@@ -23,6 +28,8 @@ class FieldUse:
     """Called while the text is typed."""
     cancel: Callable[[], None] = lambda: None
     """Called when ESC ends it; the field is closed then."""
+    key: Callable[[str], str | None] = _no_text
+    """Called with a key that is no text, such as "down"; returns the new text, None if the key does nothing."""
 
 
 class LineField(Input):
@@ -35,6 +42,7 @@ class LineField(Input):
 
     def __init__(self) -> None:
         super().__init__(id="field", select_on_focus=False)
+        self.cursor_blink = False
         self._use: FieldUse | None = None
 
     def open(self, use: FieldUse, *, text: str = "", placeholder: str = "") -> None:
@@ -62,6 +70,9 @@ class LineField(Input):
         elif event.is_printable and event.character:
             event.stop()
             self.insert_text_at_cursor(event.character)
+        elif self._use is not None and (text := self._use.key(event.key)) is not None:
+            event.stop()
+            self.value, self.cursor_position = text, len(text)
 
     def on_input_changed(self, event: Input.Changed) -> None:
         """Pass the text on."""

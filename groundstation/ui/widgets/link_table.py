@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, DIM, GREEN, RED, TEXT, style
+from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, RED, TEXT, style
 from groundstation.ui.widgets.columns import Column, fit, header, row
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 from groundstation.ui.wrap import wrap
@@ -43,6 +43,8 @@ class LinkTableValue:
     view: LinksView | None = None
     """None until the first one has arrived."""
     top: int = 0
+    cursor: int | None = None
+    """Index of the link under the cursor; None: the cursor is in another panel."""
 
 
 class LinkTable(Instrument[LinkTableValue]):
@@ -64,10 +66,20 @@ class LinkTable(Instrument[LinkTableValue]):
     def _lines(self, width: int) -> list[Strip]:
         rows = self.value.view.rows if self.value.view else ()
         widths = fit(COLUMNS, width)
-        return [line for link in rows for line in (_row(link, widths), *_remarks(link, width))]
+        cursor = self.value.cursor
+        return [line for link in rows for line in (_row(link, widths, link.index == cursor), *_remarks(link, width))]
+
+    def line_of(self, index: int, width: int) -> int:
+        """Return the line of a link, counted from the first one below the titles."""
+        line = 0
+        for link in self.value.view.rows if self.value.view else ():
+            if link.index == index:
+                break
+            line += 1 + len(list(_remarks(link, width)))
+        return line
 
 
-def _row(link: LinkRow, widths: tuple[int, ...]) -> Strip:
+def _row(link: LinkRow, widths: tuple[int, ...], marked: bool) -> Strip:
     loss, trip, jitter, share = map(finite_or_none, (link.loss, link.round_trip, link.jitter, link.share))
     heard = link.frames_in > 0
     mark, colour = ("✗", RED) if link.problem else ("●", GREEN) if heard else ("·", DIM)
@@ -75,7 +87,7 @@ def _row(link: LinkRow, widths: tuple[int, ...]) -> Strip:
         COLUMNS,
         widths,
         [
-            (mark, style(colour, bold=True)),
+            ("›", style(BLUE, bold=True)) if marked else (mark, style(colour, bold=True)),
             (link.name, style(RED if link.problem else TEXT)),
             (_peers(link), style(DIM)),
             (f"{link.frames_in:.0f}", style(TEXT if heard else DIM)),
@@ -98,6 +110,10 @@ def _remarks(link: LinkRow, width: int) -> Iterator[Strip]:
     for line in wrap(link.problem or "", width - 4):
         if line:
             yield strip((f"    {line}", style(RED)))
+    if link.retry_in is not None:
+        yield strip((f"    next try in {link.retry_in:.0f} s", style(AMBER)))
+    if link.watch_only:
+        yield strip(("    watch only: nothing is sent", style(AMBER)))
     share = finite_or_none(link.share)
     if link.capacity and share is not None and (share >= FULL_LINE or link.headroom < 1.0):
         radio = f", the radio allows {100 * link.headroom:.0f}%" if link.headroom < 1.0 else ""

@@ -9,12 +9,13 @@ from rich.style import Style
 from textual.strip import Strip
 
 from groundstation.snapshot import Snapshot
-from groundstation.ui.colours import AMBER, BACKGROUND, BLUE, DIM, FAINT, GREEN, PANEL, TEXT, WHITE, style
+from groundstation.ui.colours import AMBER, BLUE, DIM, FAINT, GREEN, PANEL, TEXT, WHITE, style
 from groundstation.ui.widgets.instrument import Instrument, Part, finite_or_none, strip
 
 LABEL, FIGURES = 9, 6
 """Cells left (at least) and right of a bar."""
 
+MARK = "┃"
 _PARTIAL = " ▏▎▍▌▋▊▉"
 
 
@@ -45,38 +46,40 @@ def _percent(value: float | None) -> int | None:
     return None if value is None else round(100 * max(-1.0, min(1.0, value)))
 
 
+Cell = tuple[str, str, str]
+"""Text, its colour, and the colour of its ground."""
+
+
 def bar_cells(bar: Bar, width: int) -> Iterator[Part]:
     """Return the cells of a bar that grows from its middle, in eighths of a cell."""
     half = (width - 1) // 2
     filled = abs(bar.percent or 0) / 100 * half
     whole, eighths = int(filled), int(filled % 1 * 8)
-    on, trough = style(bar.colour, PANEL), style(FAINT, PANEL)
     rest = half - whole - (1 if eighths else 0)
+    full, trough = ("█" * whole, bar.colour, PANEL), ("░" * rest, FAINT, PANEL)
+    empty: Cell = ("░" * half, FAINT, PANEL)
+    middle: Cell = ("│", DIM, PANEL)
     if (bar.percent or 0) < 0:
         # No block characters grow from the right: the complementary block with swapped colours looks the same.
         part = _PARTIAL[8 - eighths] if eighths else ""
-        left = [("░" * rest, trough), (part, style(PANEL, bar.colour)), ("█" * whole, on)]
-        right = [("░" * half, trough)]
+        cells: list[Cell] = [trough, (part, PANEL, bar.colour), full, middle, empty]
     else:
         part = _PARTIAL[eighths] if eighths else ""
-        left = [("░" * half, trough)]
-        right = [("█" * whole, on), (part, on), ("░" * rest, trough)]
-    parts = [*left, ("│", style(DIM, PANEL)), *right]
-    yield from parts if bar.obeyed is None else _marked(parts, half + round(bar.obeyed / 100 * half))
+        cells = [empty, middle, full, (part, bar.colour, PANEL), trough]
+    marked = cells if bar.obeyed is None else _marked(cells, half + round(bar.obeyed / 100 * half))
+    return ((text, style(colour, ground, bold=text == MARK)) for text, colour, ground in marked)
 
 
-def _marked(parts: list[Part], at: int) -> Iterator[Part]:
-    """Yield the parts with the mark of the obeyed demand over one cell, on the background of that cell."""
+def _marked(cells: list[Cell], at: int) -> Iterator[Cell]:
+    """Yield the cells with the mark of the obeyed demand over one of them, on the ground of that cell."""
     start = 0
-    for text, look in parts:
+    for text, colour, ground in cells:
         if start <= at < start + len(text):
-            yield text[: at - start], look
-            under = look.color if text[at - start] == "█" else look.bgcolor
-            ground = under.name if under is not None else BACKGROUND
-            yield "┃", style(WHITE, ground, bold=True)
-            yield text[at - start + 1 :], look
+            yield text[: at - start], colour, ground
+            yield MARK, WHITE, colour if text[at - start] == "█" else ground
+            yield text[at - start + 1 :], colour, ground
         else:
-            yield text, look
+            yield text, colour, ground
         start += len(text)
 
 

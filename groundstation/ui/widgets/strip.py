@@ -88,10 +88,10 @@ class DrivingStrip(Instrument[StripValue]):
         for alert in self.value.alerts.alerts:
             for number, line in enumerate(wrap(alert.text, width - 3)):
                 mark = MARKS[alert.level] if number == 0 else " "
-                yield strip((f" {mark} {line}".ljust(width), LOOKS[alert.level]))
+                yield strip((f" {mark} {line}".ljust(width), LOOKS[alert.level]()))
 
     def _more(self, width: int) -> Strip:
-        look = LOOKS[self.value.alerts.alerts[-1].level]
+        look = LOOKS[self.value.alerts.alerts[-1].level]()
         return strip((f" … {self.value.alerts.list_key} lists all".ljust(width), look)).crop(0, width)
 
 

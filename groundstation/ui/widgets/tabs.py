@@ -49,8 +49,8 @@ class TabBar(Instrument[TabBarValue]):
         return [strip(*parts, (" " * gap, style()), *right).crop(0, width)]
 
     def _tab(self, row: ScreenRow, width: int) -> list[Part]:
-        key = main_key(self.value.keymap, row.action) if width >= WIDE else row.digit
-        shown = format_key(key) if key else ""
+        key = main_key(self.value.keymap, row.action) if width >= WIDE else None
+        shown = format_key(key) if key else row.digit
         mark = self.value.marks.get(row.id)
         text = "" if mark is None else mark.text if width >= WIDE else mark.short or mark.text
         colour = DIM if mark is None else mark.colour

@@ -15,6 +15,8 @@ from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 
 _NO_SNAPSHOT = Snapshot()
 _SPINNER = "⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏"
+STILL = "·"
+"""In place of the spinner."""
 _COLOURS = {AdviceKind.TEXT: DIM, AdviceKind.WARNING: AMBER}
 
 
@@ -25,13 +27,17 @@ class WaitingValue:
     snapshot: Snapshot = _NO_SNAPSHOT
     simulator_key: str = "?"
     quit_key: str = "?"
+    still: bool = False
+    """The spinner does not turn."""
+    connect_keys: str = "?"
+    """Of the Connect screen, in the go-to menu."""
 
     @classmethod
     def from_state(cls, now: DisplayState) -> WaitingValue:
         """Return the page of a display state."""
         if now.snapshot.vehicle is not None:
             return cls()
-        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"))
+        return cls(now.snapshot, now.key("app.simulator"), now.key("app.quit"), now.still, f"{now.key('app.goto')} c")
 
 
 class WaitingPage(Instrument[WaitingValue]):
@@ -49,7 +55,7 @@ class WaitingPage(Instrument[WaitingValue]):
 
     def _lines(self, width: int) -> list[list[Part]]:
         snapshot = self.value.snapshot
-        turn = _SPINNER[int(snapshot.uptime * 4) % len(_SPINNER)]
+        turn = STILL if self.value.still else _SPINNER[int(snapshot.uptime * 4) % len(_SPINNER)]
         lines: list[list[Part]] = [
             [("  m a v h e l m", style(BLUE, bold=True)), ("   the helm of a MAVLink vehicle", style(DIM))],
             [],
@@ -74,12 +80,12 @@ class WaitingPage(Instrument[WaitingValue]):
         return [self._simulator(), [], *(line for each in advice for line in _advice(each, width))]
 
     def _simulator(self) -> list[Part]:
-        """Return how to start a simulated rover; it can send only to a UDP port that listens."""
-        if not any(endpoint.startswith("udpin:") for endpoint in self.value.snapshot.endpoints):
-            return [("  groundstation --sitl", style(TEXT, bold=True)), (" starts a simulated rover.", style(DIM))]
+        """Return how to start a simulated rover, and where to connect to another vehicle."""
         key = style(YELLOW, bold=True)
-        keys: list[Part] = [("  ENTER", key), (" or ", style(DIM)), (self.value.simulator_key, key)]
-        return [*keys, (" starts a simulated rover.", style(TEXT))]
+        own = self.value.simulator_key  # "?": no key map file has bound one
+        keys: list[Part] = [("  ENTER", key), *([(" or ", style(DIM)), (own, key)] if own != "?" else [])]
+        connect: list[Part] = [(self.value.connect_keys, key), (" connects to another vehicle.", style(TEXT))]
+        return [*keys, (" starts a simulated rover, ", style(TEXT)), *connect]
 
 
 def _advice(advice: Advice, width: int) -> list[list[Part]]:

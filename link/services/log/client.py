@@ -78,6 +78,11 @@ class LogClient:
         self._job, self._tries = _Listing(), 0
         self._request(now)
 
+    def erase(self, now: float) -> None:
+        """Erase all logs, then request the list: no message acknowledges LOG_ERASE."""
+        self._send(m.LogErase(*self._target))
+        self.list_logs(now)
+
     def download(self, log: RemoteLog, now: float, have: bytes = b"") -> None:
         """Download a log of the list; `have` is its beginning, from an earlier job."""
         job = _LogDownload(log.number, FileReassembly(min(log.size, MAX_SIZE)))

@@ -12,16 +12,9 @@ from dataclasses import dataclass, replace
 from dialects import messages as m
 from dialects.enums import ParamErrorCode
 from link.core import Outgoing, Received
+from link.services.param.float32 import same_float32
 from link.services.param.listing import ParamListing
-from link.services.param.values import (
-    REAL32,
-    from_wire,
-    name_from_wire,
-    name_to_wire,
-    same_float32,
-    to_wire,
-    value_fault,
-)
+from link.services.param.values import REAL32, from_wire, name_from_wire, name_to_wire, to_wire, value_fault
 
 REPEAT_AFTER = 0.7
 """s without an answer before a set or read is repeated: ArduPilot answers a read in 0.1 s, a radio adds 0.4 s."""
@@ -120,6 +113,15 @@ class ParamClient:
     def fetch(self, now: float) -> None:
         """Start to fetch all parameters by PARAM_REQUEST_LIST."""
         self._outbox += self._listing.start(now)
+
+    def fetch_missing(self, now: float) -> None:
+        """Fetch what is `missing`, by index."""
+        self._listing.resume(now)
+
+    @property
+    def missing(self) -> tuple[int, ...]:
+        """Indexes that have not arrived although the list has ended."""
+        return self._listing.missing
 
     def stop_fetch(self) -> None:
         """End the list as it is."""

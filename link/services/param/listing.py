@@ -54,6 +54,19 @@ class ParamListing:
         self.active = True
         return self._request_list(now)
 
+    def resume(self, now: float) -> None:
+        """Request only what is missing of a list that has ended incomplete."""
+        self.active, self.problem, self._filling = True, None, True
+        self._tries, self._lists, self._due = 0, MAX_LISTS, now
+        self._asked.clear()
+
+    @property
+    def missing(self) -> tuple[int, ...]:
+        """Indexes that have not arrived although the list has ended."""
+        if self.active or self.total is None or self.complete:
+            return ()
+        return tuple(index for index in range(self.total) if index not in self.received)
+
     def stop(self) -> None:
         """End the list as it is."""
         self.active = False

@@ -11,8 +11,8 @@ from __future__ import annotations
 import struct
 from collections.abc import Mapping, Sequence
 
+from link.services.param.float32 import same_float32
 from link.services.param.server import ParamDefinition, ParamValues
-from link.services.param.values import same_float32
 
 MAGIC, MAGIC_DEFAULTS = 0x671B, 0x671C
 FLOAT = 4

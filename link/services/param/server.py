@@ -16,7 +16,8 @@ from dialects import messages as m
 from dialects.enums import ParamErrorCode
 from link.core import Outgoing, Peer, Received
 from link.services.pacing import MAVLINK2_OVERHEAD, BulkPacer
-from link.services.param.values import NAME_SIZE, REAL32, same_float32, shortest_float32
+from link.services.param.float32 import same_float32, shortest_float32
+from link.services.param.values import NAME_SIZE, REAL32
 
 RUN_PERIOD = 1.0
 """s between the starts of two lists to one peer: less than the 2 s after which MAVProxy repeats its request."""

@@ -6,8 +6,9 @@ import struct
 from dataclasses import dataclass
 
 from link.services.param.client import MAX_PARAMS, Param
+from link.services.param.float32 import shortest_float32
 from link.services.param.pack import HAS_DEFAULT, MAGIC, MAGIC_DEFAULTS
-from link.services.param.values import NAME_SIZE, REAL32, name_from_wire, shortest_float32
+from link.services.param.values import NAME_SIZE, REAL32, name_from_wire
 
 PATH = "@PARAM/param.pck"
 PATH_WITH_DEFAULTS = f"{PATH}?withdefaults=1"

@@ -1,12 +1,12 @@
-"""Names and values of PARAM_VALUE: several types inside one float, and the shortest decimal form of a float32."""
+"""Names and values of PARAM_VALUE: several types inside one float."""
 
 from __future__ import annotations
 
-import math
 import re
 import struct
 
 from dialects.enums import Autopilot, Capability, ParamErrorCode
+from link.services.param.float32 import is_float32, shortest_float32
 
 REAL32 = 9
 """MAV_PARAM_TYPE_REAL32."""
@@ -81,37 +81,3 @@ def to_wire(value: float, kind: int, *, bytewise: bool) -> float:
     if not bytewise or kind not in _FORMATS:
         return value
     return float(_FLOAT.unpack(struct.pack(_FORMATS[kind][0], round(value)))[0])
-
-
-def shortest_float32(value: float) -> float:
-    """Return the number with the fewest digits that is the same float32: 0.45, not 0.44999998807907104."""
-    try:
-        packed = _FLOAT.pack(value)
-    except OverflowError:  # beyond every float32
-        return value
-    for digits in range(6, 10):  # nine digits tell all float32 apart
-        short = float(f"{value:.{digits}g}")
-        if _FLOAT.pack(short) == packed:
-            return short
-    return value
-
-
-def is_float32(value: float) -> bool:
-    """Return whether a finite float32 is near `value`."""
-    try:
-        return math.isfinite(_FLOAT.unpack(_FLOAT.pack(value))[0])
-    except OverflowError:
-        return False
-
-
-def same_float32(one: float, other: float) -> bool:
-    """Return whether both are the same float32."""
-    try:
-        return bool(_FLOAT.unpack(_FLOAT.pack(one)) == _FLOAT.unpack(_FLOAT.pack(other)))
-    except OverflowError:  # beyond every float32
-        return one == other
-
-
-def value_text(value: float) -> str:
-    """Return a value for people and files: whole numbers exactly, others with up to nine digits."""
-    return f"{value:.0f}" if math.isfinite(value) and value == int(value) and abs(value) < 1e15 else f"{value:.9g}"

@@ -108,6 +108,8 @@ def test_a_dialect_beside_the_file_or_with_a_folder_is_a_path(tmp_path: Path) ->
         ('theme = "dark"\n[keys]\ndrive.stop = []', "2: keys: drive.stop needs a key other than escape"),
         ('[keys]\nstop.emergency = "escape"', "1: keys: stop.emergency needs a key other than escape"),
         ('[keys]\napp.log = "h"\napp.help = "h"', "1: keys: key 'h' is bound to app.log and to app.help"),
+        ("[keys]\nspeed = 0.3", "2: keys.speed: speed is a setting: move its line above [keys]"),
+        ("[endpoints]\nstyle = 'hold'", "2: endpoints.style: style is a setting: move its line above [endpoints]"),
         ("keys = []", "1: keys: must be a table, [keys]"),
         ("speed = 0.3\nspeed = 0.4\nsystem = 1", "2: the key is set already"),
         ("speed = 0.3\nstyle =\n", "2: Invalid value"),

@@ -59,6 +59,12 @@ def test_the_command_line_wins_over_the_environment(file: ConfigFile) -> None:
     assert (effective.sources["open"], effective.sources["speed"]) == ("command line", "--speed")
 
 
+def test_a_mistake_in_the_variable_names_it() -> None:
+    with pytest.raises(EndpointError, match=r"^MAVHELM_ENDPOINT: endpoint 'carrier:pigeon'"):
+        merge(None, {"MAVHELM_ENDPOINT": "carrier:pigeon"}, {})
+    assert merge(None, {"MAVHELM_ENDPOINT": "carrier:pigeon"}, {"open": ["a"]}).settings.open == ("a",), "it loses"
+
+
 def test_empty_variables_say_nothing(file: ConfigFile) -> None:
     assert merge(file, {"MAVHELM_ENDPOINT": " ", "NO_COLOR": ""}, {}) == merge(file, {}, {})
 

@@ -28,5 +28,12 @@ def test_with_every_line_set_it_has_all_settings_and_their_defaults(tmp_path: Pa
         assert values[name] == defaults[name]
 
 
+def test_the_example_of_the_document_is_valid(tmp_path: Path) -> None:
+    text = (Path(__file__).parents[3] / "docs" / "groundstation.md").read_text()
+    [example] = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "my.toml").write_text(example)
+    assert set(read_config(tmp_path / "my.toml").values) == {"open", "speed", "theme", "endpoints", "keys"}
+
+
 def test_no_line_is_wider_than_the_code() -> None:
     assert max(map(len, build_template().splitlines())) <= 120

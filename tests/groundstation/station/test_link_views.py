@@ -12,6 +12,7 @@ from groundstation.intents.driving import DriveKeyDown
 from groundstation.intents.session import ReportKeyReleases
 from groundstation.intents.vehicle import SelectVehicle
 from groundstation.ipc import MAX_PACKET, encode
+from groundstation.vehicles.fleet import MAX_VEHICLES
 from groundstation.views.base import ViewRequest
 from groundstation.views.links import (
     ControlRequest,
@@ -160,12 +161,14 @@ def test_a_lost_vehicle_that_was_armed_stays_in_the_list(two: Flotilla) -> None:
     assert row.silence > 9.0
 
 
-def test_twenty_vehicles_are_sixteen_rows_and_four_counted_and_fit_the_pipe() -> None:
-    flotilla = Flotilla(20)
-    flotilla.run(2.0)
+def test_vehicles_beyond_the_limit_are_counted_and_all_rows_fit_the_pipe() -> None:
+    flotilla = Flotilla(MAX_VEHICLES + 4)
+    for vehicle in flotilla.vehicles.values():
+        vehicle.armed = True
+    flotilla.run(1.5)
     flotilla.watch(*ALL)
     view = flotilla.newest(VehiclesView)
-    assert [row.system for row in view.rows] == list(range(1, 17))
+    assert [row.system for row in view.rows] == list(range(1, MAX_VEHICLES + 1))
     assert view.not_shown == 4
     assert len(encode(view)) < MAX_PACKET
     assert len(encode(flotilla.station.snapshot(flotilla.now, 0.0))) < 8000

@@ -45,7 +45,7 @@ def test_a_bitmask_is_given_as_flags() -> None:
 def test_the_health_of_sensors_says_which_are_bad_and_which_are_not_enabled() -> None:
     found = field(sys_status(health=0x1000021), "onboard_control_sensors_health")
     assert found.meaning == "1 of 3 enabled not healthy"
-    assert found.flags == ("✗ RC_RECEIVER", "✓ 3D_GYRO", "✓ LOGGING", "· GPS")
+    assert found.flags == ("✓✓✗ RC_RECEIVER", "✓✓✓ 3D_GYRO", "✓✓✓ LOGGING", "✓·· GPS")
     assert field(sys_status(health=0x1010001), "onboard_control_sensors_health").meaning == "all enabled healthy"
 
 

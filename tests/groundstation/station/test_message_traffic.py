@@ -7,6 +7,7 @@ import pytest
 from dialects import messages as m
 from groundstation.intents.session import Watch
 from groundstation.ipc import MAX_PACKET, encode
+from groundstation.station.message_detail import MessageDetail
 from groundstation.station.message_traffic import MAX_KINDS, MAX_ROWS, MessageTraffic
 from groundstation.views.base import View
 from groundstation.views.messages import MessageRequest, MessageRow, MessagesPage, MessagesRequest, MessageView
@@ -88,6 +89,7 @@ def test_the_loss_is_that_of_the_source() -> None:
         ("field:rssi", ["51/68", "RADIO_STATUS"]),
         ("sent", ["255/190", "HEARTBEAT"]),
         (">xHz", []),
+        ("rs", ["51/68", "RADIO_STATUS"]),
         ("nothing like it", []),
     ],
 )
@@ -137,11 +139,12 @@ def test_a_flood_of_invented_ids_has_a_bound_and_a_vehicle_still_a_place() -> No
 
 
 def test_a_message_comes_with_its_fields() -> None:
-    view = traffic().build_message(MessageRequest(1, 1, False, "HEARTBEAT"), 9.9, 0.0)
-    assert view is not None
+    build = MessageDetail(traffic()).sources[MessageRequest].build
+    view = build(MessageRequest(1, 1, False, "HEARTBEAT"), 9.9, 0.0)
+    assert isinstance(view, MessageView)
     assert (view.id, view.count, view.length) == (0, 10, 21)
     assert view.fields[0].meaning == "GROUND_ROVER"
-    assert traffic().build_message(MessageRequest(2, 1, False, "HEARTBEAT"), 9.9, 0.0) is None
+    assert build(MessageRequest(2, 1, False, "HEARTBEAT"), 9.9, 0.0) is None
 
 
 def test_the_station_sends_pages_and_the_message_at_their_rates_while_they_are_watched() -> None:

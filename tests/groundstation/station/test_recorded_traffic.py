@@ -11,8 +11,9 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega
 
 from dialects.messages import MESSAGES
+from groundstation.station.message_detail import MessageDetail
 from groundstation.station.message_traffic import MessageTraffic
-from groundstation.views.messages import MessageRequest, MessagesRequest
+from groundstation.views.messages import MessageRequest, MessagesRequest, MessageView
 from link.protocol.channel import Channel
 from link.tlog.tlog import read_records
 
@@ -46,6 +47,12 @@ def replay() -> tuple[MessageTraffic, Counter[tuple[int, int, str]], dict[tuple[
     return traffic, counts, newest, now
 
 
+def build(traffic: MessageTraffic, request: MessageRequest, now: float, wall: float) -> MessageView | None:
+    view = MessageDetail(traffic).sources[MessageRequest].build(request, now, wall)
+    assert view is None or isinstance(view, MessageView)
+    return view
+
+
 def test_every_kind_of_every_source_has_its_row_with_its_count() -> None:
     traffic, counts, _, now = replay()
     page = traffic.build_page(MessagesRequest(count=200), now, 0.0)
@@ -66,7 +73,7 @@ def test_the_filter_finds_what_arrives_often() -> None:
 def test_the_fields_are_those_that_were_sent() -> None:
     traffic, counts, newest, now = replay()
     for system, component, name in counts:
-        view = traffic.build_message(MessageRequest(system, component, False, name), now, 0.0)
+        view = build(traffic, MessageRequest(system, component, False, name), now, 0.0)
         assert view is not None
         sent = newest[system, component, name]
         for field in view.fields:
@@ -80,8 +87,8 @@ def test_the_fields_are_those_that_were_sent() -> None:
 
 def test_enums_and_units_of_ardurover_are_named() -> None:
     traffic, _, _, now = replay()
-    beat = traffic.build_message(MessageRequest(1, 1, False, "HEARTBEAT"), now, 0.0)
-    status = traffic.build_message(MessageRequest(1, 1, False, "SYS_STATUS"), now, 0.0)
+    beat = build(traffic, MessageRequest(1, 1, False, "HEARTBEAT"), now, 0.0)
+    status = build(traffic, MessageRequest(1, 1, False, "SYS_STATUS"), now, 0.0)
     assert beat is not None
     assert status is not None
     fields = {field.name: field for field in (*beat.fields, *status.fields)}

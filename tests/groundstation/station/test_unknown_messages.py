@@ -46,11 +46,11 @@ def test_the_filter_finds_them_by_number_and_rate_and_never_by_field() -> None:
 
 
 def test_one_of_them_comes_without_fields() -> None:
-    view = traffic().build_message(MessageRequest(1, 1, False, "#51000"), 10.0, 0.0)
+    view = traffic().unknown.build_message(MessageRequest(1, 1, False, "#51000"), 10.0)
     assert view is not None
     assert (view.id, view.count, view.length, view.fields) == (51000, 40, 31, ())
     for name in ("#1", "#", "51000", "#x", "ATTITUDE"):
-        assert traffic().build_message(MessageRequest(1, 1, False, name), 10.0, 0.0) is None
+        assert traffic().unknown.build_message(MessageRequest(1, 1, False, name), 10.0) is None
 
 
 def test_a_channel_reports_them() -> None:

@@ -1,4 +1,4 @@
-"""The screen's tests run in one time zone: the log shows local times."""
+"""The screen's tests run in one time zone, with all colours, and keep nothing in the home folder."""
 
 from __future__ import annotations
 
@@ -12,10 +12,12 @@ from tests.groundstation.ui.programs import Program
 
 
 @pytest.fixture(autouse=True)
-def _utc(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def _utc(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     with monkeypatch.context() as patch:
         patch.setenv("TZ", "UTC")
+        patch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
         patch.delenv("NO_COLOR", raising=False)
+        patch.setenv("COLORTERM", "truecolor")
         time.tzset()
         yield
     time.tzset()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import socket
+from array import array
 from typing import Any, TypeVar
 
 import msgspec
@@ -21,9 +22,10 @@ from groundstation.snapshot import (
     VehicleView,
 )
 from groundstation.views.base import View
+from groundstation.views.charts import FieldId, FieldInfo
 from groundstation.views.drive import SpeedView, TrackRequest, TrackView
 from groundstation.views.log import LogPage
-from groundstation.views.messages import MessageField, MessageRow, MessagesPage, MessageView
+from groundstation.views.messages import FieldPlot, MessageField, MessageRow, MessagesPage, MessageView
 from groundstation.views.params import ParamPage, ParamRow
 from groundstation.views.requests import RequestLine
 
@@ -273,10 +275,16 @@ SYS_STATUS_VIEW = MessageView(
     (
         MessageField("onboard_control_sensors_present", "0x5361fc2f", "", "3 flags", ("3D_GYRO", "RC_RECEIVER", "GPS")),
         MessageField("onboard_control_sensors_health", "1398930479", "", "1 of 2 enabled not healthy",
-                     ("✗ RC_RECEIVER", "✓ 3D_GYRO", "· GPS")),
-        MessageField("load", "412", "d%", "41.2 %"), MessageField("voltage_battery", "12104", "mV", "12.104 V"),
-        MessageField("battery_remaining", "76", "%"), MessageField("errors_comm", "3", ""),
+                     ("✓✓✗ RC_RECEIVER", "✓✓✓ 3D_GYRO", "✓✓✓ 3D_ACCEL", "✓✓✓ BATTERY", "✓·· GPS")),
+        MessageField("load", "412", "d%", "41.2 %", spark="▃▃▄▃▃▅▃▃▂"),
+        MessageField("voltage_battery", "12104", "mV", "12.104 V", spark="█▇▇▆▅▄▃▂▁"),
+        MessageField("battery_remaining", "76", "%", spark="▁▁▁▁▁▁▁▁▁"), MessageField("errors_comm", "3", ""),
         MessageField("a_long_text", "a text that is longer than the room beside the name of its field", ""),
+    ),
+    bytes.fromhex("2ffc61532ffc61532fdc61539c014830ba0003"),
+    FieldPlot(
+        FieldInfo(FieldId(1, 1, False, "SYS_STATUS", "load"), "%", 1), 60.0,
+        array("d", range(61)).tobytes(), array("d", (35 + at % 7 for at in range(61))).tobytes(),
     ),
 )  # fmt: skip
 """What the Messages screen gets."""

@@ -67,7 +67,7 @@ def svg(app: App[Any]) -> str:
 
 def _row(row: list[Cell], top: int) -> Iterator[str]:
     for column, (_, look) in enumerate(row):
-        _, ground = _colours(look)
+        _, ground = colours(look)
         if ground != GROUND:
             yield _rectangle(column * WIDTH, top, WIDTH + 0.3, HEIGHT + 0.3, ground)
     for column, (character, look) in enumerate(row):
@@ -76,7 +76,7 @@ def _row(row: list[Cell], top: int) -> Iterator[str]:
 
 
 def _glyph(character: str, look: Style, left: int, top: int) -> Iterator[str]:
-    ink, _ = _colours(look)
+    ink, _ = colours(look)
     code = ord(character)
     if _BRAILLE <= code < _BRAILLE + 256:
         for bit, (x, y) in enumerate(_DOTS):
@@ -111,7 +111,7 @@ def _box(ends: str, x: float, y: float, ink: str) -> str:
     return f'<path d="{way}" stroke="{ink}" stroke-width="{width}" fill="none"/>'
 
 
-def _colours(look: Style) -> tuple[str, str]:
+def colours(look: Style) -> tuple[str, str]:
     ink = look.color.get_truecolor().hex if look.color is not None else INK
     ground = look.bgcolor.get_truecolor().hex if look.bgcolor is not None else GROUND
     return (ground, ink) if look.reverse else (ink, ground)

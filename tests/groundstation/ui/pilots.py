@@ -15,6 +15,7 @@ from textual.pilot import Pilot
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.snapshot import Snapshot
 from groundstation.ui.app import ConsoleApp
+from groundstation.ui.appearance import PLAIN, Look
 from groundstation.ui.key_gate import STARTING
 from groundstation.ui.key_parser import KeyEventParser
 from groundstation.ui.screens.help import HelpScreen
@@ -62,11 +63,11 @@ async def console(
     keymap: str = "standard",
     folder: Path = Path(),
     *,
-    ascii_only: bool = False,
+    look: Look = PLAIN,
 ) -> AsyncIterator[Console]:
     """The app at work: a picture is shown and, where the size allows, keys drive."""
     station = Recorder()
-    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, ascii_only=ascii_only)
+    app = ConsoleApp(station, Keymap(keymap, KEYMAPS[keymap]), folder=folder, look=look)
     try:
         async with app.run_test(size=size) as pilot:
             await until(lambda: app.gate.closure != STARTING)

@@ -18,6 +18,7 @@ from typing import TypeVar
 
 from groundstation.input.keymap import KEYMAPS, Keymap
 from groundstation.ui.app import ConsoleApp
+from groundstation.ui.appearance import PLAIN, Look
 from groundstation.ui.tty_output import TerminalFile
 from tests.groundstation.ui.examples import Recorder
 
@@ -102,14 +103,14 @@ async def until(wanted: Callable[[], Value], within: float = PATIENCE) -> Value:
 
 @contextlib.asynccontextmanager
 async def app_on_a_pty(
-    size: tuple[int, int] = (100, 30), *, ascii_only: bool = False, folder: Path = Path()
+    size: tuple[int, int] = (100, 30), *, look: Look = PLAIN, folder: Path = Path()
 ) -> AsyncIterator[tuple[ConsoleApp, Recorder, Terminal]]:
     """The app with the Drive screen up and its gate open; on leaving it is quit if it has not ended by itself."""
     master, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
     handlers = {number: signal.getsignal(number) for number in (signal.SIGTSTP, signal.SIGCONT, signal.SIGWINCH)}
     recorder, terminal = Recorder(), Terminal(master, slave)
-    app = ConsoleApp(recorder, STANDARD, terminal=TerminalFile(slave, slave), folder=folder, ascii_only=ascii_only)
+    app = ConsoleApp(recorder, STANDARD, terminal=TerminalFile(slave, slave), folder=folder, look=look)
     running = asyncio.create_task(app.run_async(mouse=False))
     try:
         await until(lambda: app.gate.closure is None or running.done())

@@ -10,7 +10,7 @@ import argparse
 import asyncio
 import shutil
 import subprocess
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -69,12 +69,30 @@ async def pictures(size: tuple[int, int]) -> dict[str, str]:
     """Name -> SVG."""
     made = {}
     async with armed_app(size) as (app, pilot):
+        await pilot.press("f5")
+        await pilot.pause(1.0)
+        await pilot.press("v")
+        for _ in range(6):
+            await pilot.press("p", "down")
+        await pilot.pause(1.0)
+        await pilot.press("f1")
+        await pilot.pause(1.0)
         for key, seconds in DRIVE:
             await _hold(pilot, key, seconds)
         made["drive"] = frames.svg(app)
         await pilot.press("f6")
         await pilot.pause(1.0)
         made["log"] = frames.svg(app)
+        await pilot.press("f3", *"/sysstat", "enter")
+        await pilot.pause(1.5)
+        await pilot.press("down", "tab", *["down"] * 4)
+        await pilot.pause(12.0)
+        made["messages"] = frames.svg(app)
+        await pilot.press("f5")
+        await pilot.pause(0.5)
+        await pilot.press("z", "shift+left")
+        await pilot.pause(0.5)
+        made["charts"] = frames.svg(app)
         await pilot.press("f1")
         await pilot.press("exclamation_mark")
         await pilot.pause(1.0)
@@ -85,13 +103,13 @@ async def pictures(size: tuple[int, int]) -> dict[str, str]:
     return made
 
 
-def main() -> None:
-    """Write them all."""
+def write_pictures(make: Callable[[tuple[int, int]], Awaitable[dict[str, str]]]) -> None:
+    """Write what `make` returns for each size into the folder of the command line."""
     parser = argparse.ArgumentParser(description="Make the pictures of the documents.")
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args().folder
     for width, height in SIZES:
-        for name, svg in asyncio.run(pictures((width, height))).items():
+        for name, svg in asyncio.run(_await(make((width, height)))).items():
             file = folder / f"{name}_{width}x{height}.svg"
             file.write_text(svg, "utf-8")
             if converter := shutil.which("rsvg-convert"):
@@ -99,5 +117,9 @@ def main() -> None:
             print(file)
 
 
+async def _await(made: Awaitable[dict[str, str]]) -> dict[str, str]:
+    return await made
+
+
 if __name__ == "__main__":
-    main()
+    write_pictures(pictures)

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
+from groundstation.ui.appearance import Look
 from groundstation.ui.ascii import to_ascii
 from tests.groundstation.ui.ptys import app_on_a_pty, until
 
@@ -34,7 +35,7 @@ def test_what_stands_for_what(drawn: str, shown: str) -> None:
 
 @pytest.mark.parametrize("ascii_only", [True, False])
 async def test_a_terminal_gets_no_other_byte(ascii_only: bool) -> None:
-    async with app_on_a_pty(ascii_only=ascii_only) as (app, _, terminal):
+    async with app_on_a_pty(look=Look(ascii=ascii_only)) as (app, _, terminal):
         terminal.type("\x1b[17~")
         await until(lambda: app.screen is not app.drive)
         terminal.type("\x1b")

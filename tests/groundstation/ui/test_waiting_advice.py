@@ -123,7 +123,6 @@ async def test_the_page_shows_problem_traffic_and_wraps_long_lines() -> None:
         assert "tcpout:10.0.0.9:5760: not connected (Connection refused); trying again" in text
         assert "vehicle --config rover.toml udpout:192.168.1.5:24999" in text
         assert "0 bytes" not in text
-        assert "ENTER or F5 starts a simulated rover" in text
+        assert "ENTER starts a simulated rover" in text
         await screen.show(waiting(endpoints=("tcpout:10.0.0.9:5760",)))
-        assert "groundstation --sitl starts a simulated rover" in screen.text
-        assert "ENTER" not in screen.text
+        assert "ENTER or F5 starts a simulated rover, ^g c connects to another vehicle" in screen.text

@@ -57,7 +57,7 @@ def test_vehicles_without_a_place_are_counted_while_they_are_heard_and_the_first
             assert fleet.get_or_add(beat(system), now) is None
         fleet.update(now)
     assert fleet.not_shown == 2
-    assert texts(log)[-1] == "more than 16 vehicles: vehicle 201 and further ones are not shown"
+    assert texts(log)[-1] == f"more than {MAX_VEHICLES} vehicles: vehicle 201 and further ones are not shown"
     fleet.update(5.4)
     assert fleet.not_shown == 2
     fleet.update(5.6)

@@ -146,6 +146,16 @@ def test_a_clock_that_starts_anew_is_a_reboot() -> None:
     assert requests.next_message(Autopilot.ARDUPILOT, 3.0) is not None
 
 
+def test_a_clock_that_jumps_does_not_restart_all_requests_each_time() -> None:
+    requests = StreamRequests((1, 1), 0.0)
+    clocks = [60_000 * (number % 2) for number in range(100)]
+    reboots = [
+        requests.handle_message(m.Attitude(boot, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 20 + number / 10)
+        for number, boot in enumerate(clocks)
+    ]
+    assert sum(reboots) == 2, "one in REBOOT_PERIOD"
+
+
 # ---- the link ----
 
 

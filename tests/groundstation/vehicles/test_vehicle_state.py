@@ -98,7 +98,7 @@ def test_global_position_is_used_where_there_is_no_local_one() -> None:
     seen = view(at(0, 0), at(600000000, 100000000), at(600010000, 100000000))
     assert seen.position is not None
     assert seen.position[0] == pytest.approx(111.3, abs=0.1)
-    assert state(at(600000000, 100000000), at(600010000, 100000000)).track[0] == (0.0, 0.0)
+    assert state(at(600000000, 100000000), at(600010000, 100000000)).trail.points[0] == (0.0, 0.0)
 
 
 def battery(volts: list[int], current: int, remaining: int, number: int = 0) -> m.BatteryStatus:
@@ -156,10 +156,10 @@ def test_a_restart_forgets_where_the_vehicle_was() -> None:
     there = m.LocalPositionNed(1000, 50.0, 60.0, 0.0, 0.0, 0.0, 0.0)
     vehicle = state(heartbeat(), there, m.HomePosition(0, 0, 0, 1.0, 2.0, 0.0, [1, 0, 0, 0], 0, 0, 0), sys_status())
     before = vehicle.build_view(10.0)
-    assert (before.position, before.home, len(vehicle.track)) == ((50.0, 60.0), (1.0, 2.0), 1)
+    assert (before.position, before.home, len(vehicle.trail.points)) == ((50.0, 60.0), (1.0, 2.0), 1)
     vehicle.restart()
     after = vehicle.build_view(10.0)
-    assert (after.position, after.home, vehicle.track, after.prearm) == (None, None, (), None)
+    assert (after.position, after.home, vehicle.trail.points, after.prearm) == (None, None, (), None)
     assert after.mode == before.mode
     assert state(heartbeat(), m.RoverDriveStatus(0, 0, 0, 0, [0] * 4, 64, 0, 0)).emergency_stop
     assert not state(heartbeat()).emergency_stop

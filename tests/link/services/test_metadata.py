@@ -111,3 +111,24 @@ def test_the_files_are_small_enough_for_a_radio() -> None:
         Line(f"PARAMETER_{number}", number, 0, 1000, "m/s", f"What it does, {number}") for number in range(100)
     )
     assert len(build_metadata(table, vendor="v", model="m", version="1.2.3").parameters) < 4000
+
+
+def test_the_names_of_values_come_from_the_description() -> None:
+    lines = (
+        Line("A", 0, 0, 2, "", "Lost: 0 no action, 1 HOLD, 2 HOLD except in AUTO; see B", whole=True),
+        Line("B", 0, 0, 1, "", "0: from arming until 15 s after disarming, 1: always", whole=True),
+        Line("C", 6, 0, 6, "", "Bits: 2 circle around home, 4 uploaded areas", whole=True),
+        Line("D", 0, 0, 255, "", "System id of the only station; 0: any", whole=True),
+        Line("E", 0, 0, 1, "", "Expo: 0 is linear, 1 is not"),
+    )
+    found = unpacked(build_metadata(lines, vendor="v", model="m", version="1.0.0").parameters)["parameters"]
+    assert [each.get("values", each.get("bitmask")) for each in found] == [
+        [
+            {"value": 0, "description": "no action"}, {"value": 1, "description": "HOLD"},
+            {"value": 2, "description": "HOLD except in AUTO"},
+        ],
+        [{"value": 0, "description": "from arming until 15 s after disarming"}, {"value": 1, "description": "always"}],
+        [{"index": 1, "description": "circle around home"}, {"index": 2, "description": "uploaded areas"}],
+        None,
+        None,
+    ]  # fmt: skip

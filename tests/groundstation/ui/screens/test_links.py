@@ -182,7 +182,7 @@ async def test_enter_chooses_nothing_while_another_panel_has_the_arrows() -> Non
 
 
 async def test_many_links_scroll() -> None:
-    links = LinksView(tuple(LinkRow(name=f"udpin:0.0.0.0:{14550 + number}") for number in range(12)))
+    links = LinksView(tuple(LinkRow(name=f"udpin:0.0.0.0:{14550 + number}", index=number) for number in range(12)))
     async with console(picture=FLEET) as screen:
         await open_links(screen, views=(SIX, links, CONTROL))
         await screen.press("tab", "end")

@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import msgspec
 import pytest
 
 from groundstation.actions import ACTIONS, OperatorAction
+from groundstation.intents.charts import PinSeries
 from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
+from groundstation.intents.services import RequestMessage, SetMessageRate
 from groundstation.intents.session import SetKeyGate, Watch
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.messages import MessagesScreen
-from groundstation.views.messages import MessageField, MessageRequest, MessageRow, MessagesPage, MessagesRequest
+from groundstation.views.messages import (
+    CapturePage,
+    CaptureRequest,
+    MessageField,
+    MessageRequest,
+    MessageRow,
+    MessagesPage,
+    MessagesRequest,
+)
+from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from tests.groundstation.ui.examples import DRIVE_WATCH, MESSAGES_PAGE, SYS_STATUS_VIEW, snapshot
 from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.groundstation.ui.ptys import STANDARD, until
@@ -48,7 +61,7 @@ async def test_it_requests_rows_and_the_selected_message_while_it_is_open() -> N
         screen.station.offer_view(SYS_STATUS_VIEW)
         await screen.show(snapshot())
         assert "SYS_STATUS #1" in screen.text
-        assert "12.104 V" in screen.text
+        assert "41.2 %" in screen.text
         await screen.press("escape")
         await until(lambda: newest(screen) == DRIVE_WATCH.requests)
 
@@ -59,13 +72,13 @@ async def test_the_fields_of_another_message_are_not_shown() -> None:
         await screen.press("down")
         screen.station.offer_view(SYS_STATUS_VIEW)
         await screen.show(snapshot())
-        assert "12.104 V" not in screen.text
+        assert "41.2 %" not in screen.text
         await screen.press(*["down"] * 7)
         screen.station.offer_view(SYS_STATUS_VIEW)
         await screen.show(snapshot())
-        assert "12.104 V" in screen.text
+        assert "41.2 %" in screen.text
         await screen.press("up")
-        assert "12.104 V" not in screen.text
+        assert "41.2 %" not in screen.text
 
 
 async def test_the_filter_is_requested_while_it_is_typed_enter_keeps_it_and_escape_clears_it() -> None:
@@ -171,3 +184,90 @@ async def test_in_the_filter_letters_are_text_and_stops_still_work() -> None:
         assert len(screen.station.of(Stop)) == before + 1
         await screen.press("f9")
         assert screen.station.of(EmergencyStop)
+
+
+def texts_in(folder: Path) -> list[str]:
+    return [each.read_text("utf-8") for each in folder.iterdir()]
+
+
+async def open_sys_status(screen: Console, *keys: str) -> None:
+    """Open the screen, choose SYS_STATUS and let its fields arrive."""
+    await open_messages(screen)
+    await screen.press(*["down"] * 8)
+    screen.station.offer_view(SYS_STATUS_VIEW)
+    await screen.show(snapshot())
+    await screen.press(*keys)
+
+
+async def test_the_first_number_is_plotted_and_tab_chooses_another_field() -> None:
+    async with console() as screen:
+        await open_sys_status(screen)
+        await until(lambda: msgspec.structs.replace(SYS_STATUS, field="load") in newest(screen))
+        assert "load 39.0" in screen.text
+        await screen.press("tab", "down")
+        await until(lambda: msgspec.structs.replace(SYS_STATUS, field="voltage_battery") in newest(screen))
+        await until(lambda: "›voltage_battery" in screen.text)
+        await screen.press("right")
+        await until(lambda: any(getattr(each, "index", 0) == 1 for each in newest(screen)))
+
+
+async def test_p_records_the_plotted_field_for_charts() -> None:
+    async with console() as screen:
+        await open_sys_status(screen, "p")
+        [pin] = screen.station.of(PinSeries)
+        assert [field.name for field in pin.fields] == ["SYS_STATUS.load"]
+        assert "is recorded for Charts" in screen.text
+        await screen.press("f5")
+        await until(lambda: "1 load" in screen.text)
+
+
+async def test_raw_values_have_no_units_that_people_use() -> None:
+    async with console() as screen:
+        await open_sys_status(screen)
+        assert "41.2 %" in screen.text
+        await screen.press("e")
+        await until(lambda: "412 d%" in screen.text and "41.2 %" not in screen.text)
+
+
+async def test_a_rate_is_requested_and_its_end_is_shown() -> None:
+    async with console() as screen:
+        await open_sys_status(screen, "R")
+        type_in(screen, "2.5\r")
+        await until(lambda: screen.station.of(SetMessageRate))
+        [sent] = screen.station.of(SetMessageRate)
+        assert (sent.system, sent.component, sent.message, sent.rate) == (1, 1, 1, 2.5)
+        await until(lambda: RequestsRequest() in newest(screen))
+        end = RequestLine(sent.request, "refused", "send SYS_STATUS at 2.5 Hz", "DENIED: not now")
+        screen.station.offer_view(RequestsView((), (end,)))
+        await screen.show(snapshot())
+        assert "send SYS_STATUS at 2.5 Hz: refused, DENIED: not now" in screen.text
+        await until(lambda: RequestsRequest() not in newest(screen))
+        await screen.press("Q")
+        assert [each.message for each in screen.station.of(RequestMessage)] == [1]
+
+
+async def test_a_wrong_rate_and_a_message_of_ours_are_not_requested() -> None:
+    async with console() as screen:
+        await open_sys_status(screen, "R", *"fast", "enter")
+        assert "“fast” is no rate" in screen.text
+        await screen.press("end")
+        screen.station.offer_view(msgspec.structs.replace(SYS_STATUS_VIEW, system=255, component=190, sent=True,
+                                                          name="MANUAL_CONTROL"))  # fmt: skip
+        await screen.show(snapshot())
+        await screen.press("R", "Q")
+        assert "this station sends it" in screen.text
+        assert screen.station.of(SetMessageRate) == []
+        assert screen.station.of(RequestMessage) == []
+
+
+async def test_each_message_is_written_to_a_file_until_s_or_the_end_of_the_screen(tmp_path: Path) -> None:
+    async with console(folder=tmp_path) as screen:
+        await open_sys_status(screen, "S")
+        await until(lambda: CaptureRequest(1, 1, False, "SYS_STATUS") in newest(screen))
+        screen.station.offer_view(CapturePage("time,load", ("1,412",), 1, 0))
+        await screen.show(snapshot())
+        await until(lambda: CaptureRequest(1, 1, False, "SYS_STATUS", 1) in newest(screen))
+        await screen.press("S")
+        assert "1 rows in" in " ".join(screen.text.split())
+        await until(lambda: not any(isinstance(each, CaptureRequest) for each in newest(screen)))
+    assert texts_in(tmp_path) == ["time,load\n1,412\n"]

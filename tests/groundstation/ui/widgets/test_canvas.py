@@ -30,3 +30,14 @@ def test_a_line_has_no_holes() -> None:
     canvas = Canvas(4, 1)
     canvas.line((0, 0), (7, 0), style())
     assert texts(canvas.strips()) == ["⠉⠉⠉⠉"]
+
+
+def test_a_run_sets_the_dots_of_its_column_and_no_others() -> None:
+    for x in range(-1, 5):
+        for top in range(-3, 13):
+            for bottom in range(top - 1, 15):
+                runs, dots = Canvas(2, 3), Canvas(2, 3)
+                runs.run(x, top, bottom, style())
+                for y in range(top, bottom + 1):
+                    dots.dot(x, y, style())
+                assert texts(runs.strips()) == texts(dots.strips()), (x, top, bottom)

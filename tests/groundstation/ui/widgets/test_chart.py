@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
+from groundstation.ui.roles import Role
 from groundstation.ui.widgets.chart import Chart, ChartValue, Samples, Series
 from tests.groundstation.ui.frames import texts
 
-SERIES = (Series("", "#ffffff"), Series("asked", "#ffffff", dotted=True))
+SERIES = (Series("", Role.GOOD), Series("asked", Role.CAUTION, dotted=True))
 
 
 def chart(samples: Samples, span: float = 60.0) -> list[str]:

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.snapshot import OutputView
+from groundstation.ui.roles import Role
 from groundstation.ui.widgets.sticks import Bar, StickBars, bar_cells, build_bars
 from tests.groundstation.ui.examples import snapshot, vehicle
 from tests.groundstation.ui.frames import texts
@@ -15,12 +16,12 @@ from tests.groundstation.ui.frames import texts
 @given(st.integers(-100, 100), st.none() | st.integers(-100, 100), st.integers(5, 60))
 def test_a_bar_always_has_its_width(percent: int, obeyed: int | None, width: int) -> None:
     width |= 1
-    assert len("".join(part for part, _ in bar_cells(Bar("x", "#ffffff", percent, obeyed), width))) == width
+    assert len("".join(part for part, _ in bar_cells(Bar("x", Role.GOOD, percent, obeyed), width))) == width
 
 
 @pytest.mark.parametrize(("percent", "full", "where"), [(0, 0, None), (50, 5, 11), (-50, 5, 5), (100, 10, 11)])
 def test_a_bar_grows_from_the_middle(percent: int, full: int, where: int | None) -> None:
-    cells = "".join(part for part, _ in bar_cells(Bar("x", "#123456", percent), 21))
+    cells = "".join(part for part, _ in bar_cells(Bar("x", Role.GOOD, percent), 21))
     assert cells.count("█") == full
     assert cells[10] == "│"
     assert where is None or cells.index("█") == where

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from groundstation.ui.display_state import DisplayState
-from groundstation.ui.param_model import ParamModel
+from groundstation.ui.params.model import ParamModel
 from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.ui.widgets.tabs import TabBar, TabBarValue
 from tests.groundstation.ui.examples import param_page, snapshot
@@ -27,5 +27,5 @@ def test_a_pencil_stands_there_while_changes_are_not_sent(width: int, mark: str)
     assert model.change_to_default() is None
     assert mark in bar(model, width)
     assert len(bar(model, width)) == width
-    model.undo()
+    model.changes.undo()
     assert "✎" not in bar(model, width)

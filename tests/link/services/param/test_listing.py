@@ -176,3 +176,23 @@ def test_what_was_loaded_from_a_file_is_complete_and_keeps_its_defaults() -> Non
 def test_where_single_reads_end_and_lists_begin(gaps: int) -> None:
     _, sent, _ = fetch(Lossy(500, range(gaps)))
     assert isinstance(sent[1], m.ParamRequestRead if gaps <= LIST_AGAIN else m.ParamRequestList)
+
+
+def test_only_what_is_missing_is_requested_again() -> None:
+    vehicle = Lossy(200, range(50, 60), never=range(50, 60))
+    client, _, now = fetch(vehicle)
+    assert client.missing == tuple(range(50, 60))
+    vehicle.never.clear()
+    client.fetch_missing(now)
+    assert client.missing == (), "they are being fetched"
+    sent: list[m.Message] = []
+    while client.fetching:
+        now += 0.1
+        client.tick(now)
+        for request in [each.message for each in client.messages_to_send()]:
+            sent.append(request)
+            for message in vehicle(request):
+                client.receive(from_vehicle(message), now)
+    assert client.complete
+    assert [each.param_index for each in sent if isinstance(each, m.ParamRequestRead)] == list(range(50, 60))
+    assert len(sent) == 10, "not the whole list"

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink import mavftp
 
+from link.services.param.float32 import shortest_float32
 from link.services.param.pack import pack
-from link.services.param.values import shortest_float32
 from tests.link.param_vehicle import TABLE, Line, Memory
 
 

@@ -13,8 +13,8 @@ from link.core import Received
 from link.protocol.channel import Channel
 from link.services.ftp.protocol import FtpOpcode, parse_packet
 from link.services.param.client import ParamClient
+from link.services.param.float32 import same_float32
 from link.services.param.unpack import unpack
-from link.services.param.values import same_float32
 from link.tlog.tlog import read_records
 
 RECORDING = Path(__file__).resolve().parents[5] / "shared" / "data" / "ardurover.tlog"

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from dialects import messages as m
 from dialects.enums import Autopilot, Capability, ParamErrorCode
+from link.services.param.float32 import same_float32, shortest_float32
 from link.services.param.values import (
     NAME_SIZE,
     REAL32,
@@ -15,8 +16,6 @@ from link.services.param.values import (
     is_bytewise,
     name_from_wire,
     name_to_wire,
-    same_float32,
-    shortest_float32,
     to_wire,
     value_fault,
 )

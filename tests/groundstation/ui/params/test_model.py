@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from groundstation.intents.services import FetchParams, WriteParams
-from groundstation.ui.param_model import MAX_UNDO, ParamModel
+from groundstation.ui.params.model import ParamModel
+from groundstation.ui.params.pending import MAX_UNDO
+from groundstation.ui.params.scope import CHANGED
 from groundstation.ui.request_numbers import RequestNumbers
 from groundstation.views.params import ParamPage, ParamPageRequest, ParamRow
 from groundstation.views.requests import RequestLine
@@ -26,6 +28,14 @@ def shown(height: int = 10) -> ParamModel:
     model.set_height(height)
     model.show_page(page(0, height))
     return model
+
+
+def change(model: ParamModel, text: str) -> str | None:
+    """Type a value for the selected parameter."""
+    editor = model.open_editor()
+    assert editor is not None
+    editor.type(text)
+    return model.close_editor(keep=True)
 
 
 def test_the_window_follows_the_selection() -> None:
@@ -55,24 +65,25 @@ def test_fewer_that_match_move_the_selection_up() -> None:
 def test_a_filter_begins_at_the_top() -> None:
     model = shown()
     model.move(50)
-    model.set_filter("FS", changed_only=True)
+    model.set_filter("FS")
+    model.set_scope(CHANGED)
     assert model.request == ParamPageRequest("FS", True, 0, 10)
 
 
 def test_a_value_as_it_was_is_no_change() -> None:
     model = shown()
-    assert model.change("0x05") is None
+    assert change(model, "0x05") is None
     assert [change.value for change in model.pending.values()] == [5.0]
-    assert model.change("0") is None
+    assert change(model, "0") is None
     assert model.pending == {}
 
 
 def test_undo_goes_back_step_by_step_and_is_bounded() -> None:
     model = shown()
     for value in range(1, MAX_UNDO + 50):
-        model.change(str(value))
+        change(model, str(value))
     steps = 0
-    while model.undo():
+    while model.changes.undo():
         steps += 1
     assert steps == MAX_UNDO
 
@@ -81,7 +92,7 @@ def test_one_write_at_a_time() -> None:
     model = shown()
     assert not model.may_write, "nothing to write"
     assert model.write() == ()
-    model.change("5")
+    change(model, "5")
     assert model.write() == (WriteParams(1, 1, (("P000", 5.0),)),)
     assert not model.may_write, "it is being written"
     assert model.write() == ()
@@ -94,7 +105,7 @@ def test_numbers_of_requests_rise() -> None:
 
 def test_old_ends_of_other_requests_do_not_end_a_write() -> None:
     model = shown()
-    model.change("5")
+    change(model, "5")
     model.write()
     model.show_page(page(0, 10, ended=(RequestLine(7, "accepted", "set 1 parameter"),)))
     assert list(model.pending) == ["P000"]

@@ -1,0 +1,1 @@
+"""Files on this machine that downloads write and uploads read."""

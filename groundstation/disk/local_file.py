@@ -1,0 +1,119 @@
+"""Files on this machine, read and written whole. Errors are one line for the user.
+
+A download that was interrupted leaves FILE.part, with which the next one resumes.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from pathlib import Path
+
+from link.services.ftp.job import MAX_SIZE as MAX_DOWNLOAD
+
+MAX_SIZE = 16 * 1024 * 1024
+"""Bytes of a file that is read: more is no parameter file and no plan, and takes hours to upload."""
+
+
+class LocalFileError(Exception):
+    """A file cannot be read or written; the message is one line that names it."""
+
+
+def read_text(path: str) -> str:
+    """Return the text of a file. Raises LocalFileError."""
+    try:
+        return read_bytes(path).decode("utf-8")
+    except UnicodeDecodeError:
+        raise LocalFileError(f"{path}: this is not a text file") from None
+
+
+def read_bytes(path: str) -> bytes:
+    """Return the content of a file. Raises LocalFileError."""
+    try:
+        with Path(path).open("rb") as file:
+            data = file.read(MAX_SIZE + 1)
+    except OSError as error:
+        raise LocalFileError(f"{path}: {error.strerror}") from error
+    if len(data) > MAX_SIZE:
+        raise LocalFileError(f"{path}: more than {MAX_SIZE} bytes")
+    return data
+
+
+def check_new_file(path: str, *, overwrite: bool) -> None:
+    """Raise LocalFileError if a file cannot be created there, before the work begins."""
+    target = Path(path)
+    if target.is_dir():
+        raise LocalFileError(f"{path}: this is a folder; name a file")
+    if target.exists() and not overwrite:
+        raise LocalFileError(f"{path}: exists already")
+    if not target.absolute().parent.is_dir():
+        raise LocalFileError(f"{path}: there is no folder {target.absolute().parent}")
+
+
+def write_text(path: str, text: str) -> None:
+    """Write a file, whole or not at all. Raises LocalFileError."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: str, data: bytes) -> None:
+    """Write a file, whole or not at all. Raises LocalFileError."""
+    target = Path(path).absolute()
+    if target.exists() and not target.is_file():  # a device or a pipe cannot be replaced
+        _write_directly(target, path, data)
+        return
+    temporary = ""
+    try:
+        descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(data)
+        Path(temporary).chmod(0o666 & ~_umask())
+        Path(temporary).replace(target)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            Path(temporary).unlink()
+        raise LocalFileError(f"{path}: {error.strerror}") from error
+
+
+def part_of(path: str) -> str:
+    """Return the name of the beginning that an interrupted download of this file leaves."""
+    return f"{path}.part"
+
+
+def read_part(path: str) -> bytes:
+    """Return what an earlier download of this file left; nothing if there was none. Raises LocalFileError."""
+    part = Path(part_of(path))
+    try:
+        with part.open("rb") as opened:
+            return opened.read(MAX_DOWNLOAD)
+    except FileNotFoundError:
+        return b""
+    except OSError as error:
+        raise LocalFileError(f"{part}: {error.strerror}") from error
+
+
+def keep_part(path: str, data: bytes) -> None:
+    """Keep the beginning of a file for the next download. Raises LocalFileError."""
+    if data:
+        write_bytes(part_of(path), data)
+
+
+def store(path: str, data: bytes) -> None:
+    """Write a whole download, and remove what was kept of it. Raises LocalFileError."""
+    write_bytes(path, data)
+    with contextlib.suppress(OSError):
+        Path(part_of(path)).unlink(missing_ok=True)
+
+
+def _write_directly(target: Path, path: str, data: bytes) -> None:
+    try:
+        target.write_bytes(data)
+    except OSError as error:
+        raise LocalFileError(f"{path}: {error.strerror}") from error
+
+
+def _umask() -> int:
+    """Return the process's umask, which can only be read by setting it."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

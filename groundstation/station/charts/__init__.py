@@ -1,0 +1,1 @@
+"""Recording of the fields that charts draw, and of the marks under their time axis."""

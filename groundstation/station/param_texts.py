@@ -1,0 +1,23 @@
+"""Where the texts of parameters come from, beside the vehicles themselves."""
+
+from __future__ import annotations
+
+from collections.abc import MutableMapping
+from dataclasses import dataclass, field
+
+from groundstation.formats.docs_files import DocsFile
+
+
+@dataclass(frozen=True, slots=True)
+class ParamTexts:
+    """Texts that the station's process has read before it starts."""
+
+    files: tuple[DocsFile, ...] = ()
+    """Files of the user; the first that fits counts."""
+    cache: MutableMapping[int, bytes] = field(default_factory=dict)
+    """Files that vehicles have served, by the checksum of the general file beside them."""
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What is wrong with files of the user, a line each."""
+        return tuple(file.problem for file in self.files if file.problem)

@@ -1,0 +1,1 @@
+"""What the Charts screen and the chart pane of Drive show, without widgets."""

@@ -1,0 +1,1 @@
+"""The Parameters screen without its widgets."""

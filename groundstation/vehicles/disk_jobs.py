@@ -1,0 +1,50 @@
+"""What the core wants of the disk, and the answers: values only, the shell runs them (groundstation/disk)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+from pathlib import PurePosixPath
+
+
+class DiskWork(Enum):
+    """Kinds of jobs."""
+
+    PREPARE = auto()
+    """Check that a file may be created; read what an earlier download left of it."""
+    READ = auto()
+    """Read a file to upload."""
+    KEEP = auto()
+    """Keep the beginning of a download."""
+    STORE = auto()
+    """Write a whole download under its name."""
+
+
+@dataclass(frozen=True, slots=True)
+class DiskJob:
+    """One job."""
+
+    number: int
+    """The request that it is for."""
+    work: DiskWork
+    path: str
+    data: bytes = b""
+    overwrite: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class DiskResult:
+    """The answer to a job."""
+
+    number: int
+    work: DiskWork
+    data: bytes = b""
+    problem: str = ""
+    """Why it failed, one line that names the file; "" after success."""
+
+
+def name_problem(name: str) -> str:
+    """Return why a file of the vehicle cannot have this name in a folder here; "" if it can."""
+    if not name or name in (".", "..") or name != PurePosixPath(name).name or "\\" in name:
+        return f"{name!r} would leave the folder"
+    return "" if name.isprintable() else f"{name!r} has control characters"

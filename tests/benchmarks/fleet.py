@@ -1,0 +1,82 @@
+"""One driven rover among other vehicles that are heard: key to motor, and the CPU time of the ground station."""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from statistics import median
+
+from tests.benchmarks.figures import ROUNDS, Goal, Options, Report, Row, Table, spread
+from tests.benchmarks.fleet_sender import RATE
+from tests.benchmarks.key_to_motor import CONTENDERS, OURS_WIDE, Outcome, Rig, running
+from tests.benchmarks.procfs import cpu_seconds, family
+from tests.benchmarks.programs import on_pipe, python
+
+OTHERS = (0, 15, 99)
+"""Numbers of vehicles beside the driven one."""
+
+KEYS, QUICK_KEYS = 40, 10
+SETTLE = 3.0
+"""s from the first messages of the others until all of them are known."""
+
+
+@dataclass(slots=True)
+class _Result:
+    outcome: Outcome = field(default_factory=lambda: Outcome([]))
+    cpu: list[float] = field(default_factory=list)
+
+
+def run(options: Options) -> Report:
+    """Measure each number of vehicles in turn, round by round."""
+    chance = random.Random(7)
+    results = {others: _Result() for others in OTHERS}
+    for number in range(ROUNDS):
+        for others, result in results.items():
+            options.say(f"fleet: round {number + 1} of {ROUNDS}, {others} further vehicles")
+            with running(CONTENDERS[OURS_WIDE]) as rig, _fleet(rig, others):
+                rig.arm()
+                rig.watch.pause(SETTLE)
+                pids = family(rig.ground.pid)
+                before, begun = cpu_seconds(pids), time.monotonic()
+                rig.measure(result.outcome, QUICK_KEYS if options.quick else KEYS, chance)
+                result.cpu.append(100 * (cpu_seconds(pids) - before) / (time.monotonic() - begun))
+    return _report(results)
+
+
+@contextmanager
+def _fleet(rig: Rig, others: int) -> Iterator[None]:
+    if not others:
+        yield
+        return
+    fleet = on_pipe(rig.watch, python("tests.benchmarks.fleet_sender", str(others), str(rig.port)))
+    try:
+        fleet.wait_for("fleet ready", 20)
+        yield
+    finally:
+        fleet.end()
+
+
+def _report(results: dict[int, _Result]) -> Report:
+    spreads = {others: spread(result.outcome.latencies) for others, result in results.items()}
+    rows: list[Row] = [
+        {
+            "further vehicles": others,
+            "messages/s": others * RATE,
+            "keys": spreads[others].samples,
+            "lost": result.outcome.lost,
+            "p50": spreads[others].p50,
+            "p99": spreads[others].p99,
+            "CPU %": median(result.cpu),
+        }
+        for others, result in results.items()
+    ]
+    note = "Key byte to motor outputs, ms, at 140x45. CPU: all processes of the ground station."
+    alone, all_of_them = spreads[OTHERS[0]], spreads[OTHERS[-1]]
+    goals = [
+        Goal(f"key to motor among {OTHERS[-1] + 1} vehicles / alone, p99", all_of_them.p99 / alone.p99, 4, "x"),
+        Goal(f"keys lost among {OTHERS[-1] + 1} vehicles", float(results[OTHERS[-1]].outcome.lost), 0, "keys"),
+    ]
+    return Report([Table("One driven rover among other vehicles", rows, note)], goals)

@@ -1,0 +1,169 @@
+"""The Connect screen: what ENTER opens, questions, endpoints used before; and closing links on the Links screen."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import msgspec
+import pytest
+
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.intents.links import AddLink, CloseLink
+from groundstation.intents.session import StartSimulator, Watch
+from groundstation.intents.vehicle import SelectVehicle
+from groundstation.recent.recent_file import RecentFile
+from groundstation.snapshot import Snapshot
+from groundstation.ui.screens.connect import ConnectScreen
+from groundstation.views.connect import ConnectRequest, ConnectView, LinkAttempt
+from tests.groundstation.ui.example_connect import (
+    CONNECT,
+    FAILED,
+    NOTHING,
+    UNCONNECTED,
+    forget,
+    remember,
+)
+from tests.groundstation.ui.link_examples import FLEET, VIEWS
+from tests.groundstation.ui.pilots import Console, console
+from tests.groundstation.ui.ptys import until
+
+
+@pytest.fixture(autouse=True)
+def recent() -> Iterator[None]:
+    remember(time.time())
+    yield
+    forget()
+
+
+async def open_connect(screen: Console, view: ConnectView = CONNECT, picture: Snapshot = UNCONNECTED) -> None:
+    await screen.press("ctrl+g", "c")
+    await until(lambda: screen.station.of(Watch))
+    assert screen.station.of(Watch)[-1] == Watch((ConnectRequest(),))
+    await offer(screen, view, picture)
+
+
+async def offer(screen: Console, view: ConnectView, picture: Snapshot = UNCONNECTED) -> None:
+    screen.station.offer_view(view)
+    await screen.show(picture)
+    await screen.show(picture)
+
+
+def attempt(add: AddLink, state: str, problem: str = "") -> LinkAttempt:
+    return LinkAttempt(add.request, add.endpoint, state, problem)
+
+
+async def test_nothing_is_sent_before_enter_and_enter_connects_to_the_marked_vehicle() -> None:
+    async with console(picture=UNCONNECTED) as screen:
+        await open_connect(screen)
+        await screen.press("down", "tab", "tab", "tab", "tab", "p", "i", "w", "r")
+        assert not [*screen.station.of(AddLink), *screen.station.of(StartSimulator)]
+        await screen.press("enter")
+        (add,) = screen.station.of(AddLink)
+        assert (add.endpoint, add.watch_only) == ("udpin:127.0.0.1:14551", False)
+        await offer(screen, msgspec.structs.replace(CONNECT, attempts=(attempt(add, "open"),)))
+        assert isinstance(screen.app.screen, ConnectScreen), "the vehicle was not heard there yet"
+        found = msgspec.structs.replace(FLEET, vehicles=(1, 3))
+        await screen.show(found)
+        await until(lambda: screen.app.screen is screen.app.drive)
+        assert screen.station.of(SelectVehicle) == [SelectVehicle(system=3)]
+    assert RecentFile().load().last == "udpin:127.0.0.1:14551"
+
+
+async def test_enter_with_nothing_heard_starts_a_simulator_and_keys_start_the_others() -> None:
+    async with console(picture=UNCONNECTED) as screen:
+        await open_connect(screen, NOTHING)
+        await screen.press("enter")
+        assert screen.station.of(StartSimulator) == [StartSimulator()]
+        assert screen.app.screen is screen.app.drive
+        await open_connect(screen, NOTHING)
+        await screen.press("v")
+        assert screen.station.of(StartSimulator)[-1] == StartSimulator(kind="three")
+        assert not screen.station.of(DriveKeyDown)
+
+
+async def test_watch_only() -> None:
+    async with console(picture=UNCONNECTED) as screen:
+        await open_connect(screen)
+        await screen.press("W")
+        assert screen.station.of(AddLink)[-1].watch_only
+        await offer(screen, NOTHING)
+        await screen.press("W", *"udpin:127.0.0.1:9", "enter")
+        assert screen.station.of(AddLink)[-1] == AddLink(request=2, endpoint="udpin:127.0.0.1:9", watch_only=True)
+
+
+async def test_a_typed_endpoint_is_checked_while_it_is_typed() -> None:
+    async with console((140, 45), UNCONNECTED) as screen:
+        await open_connect(screen)
+        await screen.press("colon", *"udp:10.0.0.7:1")
+        await until(lambda: "did you mean udpin:10.0.0.7:1?" in screen.text)
+        await screen.press("enter")
+        assert screen.station.of(AddLink) == []
+        await screen.press("colon", *"tcpout:10.0.0.7:5762", "enter")
+        assert screen.station.of(AddLink)[-1].endpoint == "tcpout:10.0.0.7:5762"
+
+
+async def test_the_whole_network_is_asked_for_once() -> None:
+    endpoint = "udpin:0.0.0.0:14777"
+    async with console((140, 45), UNCONNECTED) as screen:
+        await open_connect(screen)
+        await screen.press("colon", *endpoint, "enter")
+        assert "which everybody in the network can send to" in screen.text
+        await screen.press("n")
+        assert screen.station.of(AddLink) == []
+        await screen.press("colon", *endpoint, "enter", "y")
+        assert [add.endpoint for add in screen.station.of(AddLink)] == [endpoint]
+        await screen.press("colon", *endpoint, "enter")
+        assert len(screen.station.of(AddLink)) == 2
+        await screen.press("tab", "enter")  # the pinned one was agreed to when it was opened first
+        assert screen.station.of(AddLink)[-1].endpoint == "udpin:0.0.0.0:14550"
+
+
+async def test_what_cannot_be_opened_says_why_and_stays() -> None:
+    async with console((140, 45), UNCONNECTED) as screen:
+        await open_connect(screen)
+        await screen.press("tab", "down", "enter")
+        (add,) = screen.station.of(AddLink)
+        failed = attempt(add, "failed", "host '10.0.0.7' is not known")
+        await offer(screen, msgspec.structs.replace(CONNECT, attempts=(msgspec.structs.replace(failed, retry_in=3.0),)))
+        assert "› host '10.0.0.7' is not known" in screen.text
+        assert "next try in 3 s" in screen.text
+        assert isinstance(screen.app.screen, ConnectScreen)
+
+
+async def test_recent_endpoints_are_pinned_and_forgotten() -> None:
+    async with console(picture=UNCONNECTED) as screen:
+        await open_connect(screen)
+        await screen.press("x", "tab", "down", "p")
+        assert [each.endpoint for each in RecentFile().load().entries if each.pinned] == [
+            "udpin:0.0.0.0:14550",
+            "tcpout:10.0.0.7:5760",
+        ]
+        await screen.press("x")
+        assert RecentFile().load().find("tcpout:10.0.0.7:5760") is None
+
+
+async def test_a_serial_port_is_opened_with_the_chosen_baud_rate_and_an_open_one_drives() -> None:
+    async with console(picture=UNCONNECTED) as screen:
+        await open_connect(screen, FAILED)
+        await screen.press("tab", "tab", "b", "enter")
+        assert screen.station.of(AddLink)[-1].endpoint == "serial:/dev/ttyACM0:115200"
+        await screen.press("b", "b", "b", "b", "end", "enter")
+        assert len(screen.station.of(AddLink)) == 1
+        assert screen.app.screen is screen.app.drive
+
+
+async def test_a_link_is_closed_after_a_question() -> None:
+    async with console(picture=FLEET) as screen:
+        await screen.press("f7")
+        for view in VIEWS:
+            screen.station.offer_view(view)
+        await screen.show(FLEET)
+        await screen.press("x")
+        assert "TAB to the links first" in screen.text
+        await screen.press("tab", "x")
+        assert "close udpin:0.0.0.0:14550; what is driven over it gets neutral first" in screen.text
+        await screen.press("n", "x", "y")
+        assert screen.station.of(CloseLink) == [CloseLink(link=0)]
+        await screen.press("a")
+        assert isinstance(screen.app.screen, ConnectScreen)

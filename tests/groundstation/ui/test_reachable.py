@@ -1,0 +1,59 @@
+"""Everything can be done without function keys and without a mouse: terminals and keyboards lack either."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from groundstation.actions import ACTIONS, OperatorAction
+from groundstation.input.keymap import KEYMAPS, Keymap
+from groundstation.intents.driving import DriveKeyDown
+from groundstation.screens import SCREENS
+from groundstation.ui.navigation import load_screen
+from groundstation.ui.palette import action_commands
+from tests.groundstation.ui.pilots import console
+from tests.groundstation.ui.ptys import until
+from tests.groundstation.ui.test_goldens import SMALL, STANDING
+
+FUNCTION_KEY = re.compile(r"(?:\w+\+)*f\d+")
+
+
+def plain_keys(keys: tuple[str, ...]) -> list[str]:
+    """Return the keys that every keyboard has."""
+    return [key for key in keys if not FUNCTION_KEY.fullmatch(key)]
+
+
+@pytest.mark.parametrize("name", KEYMAPS)
+@pytest.mark.parametrize("action", ACTIONS.values(), ids=ACTIONS)
+def test_every_action_has_a_plain_key_or_is_in_a_menu(action: OperatorAction, name: str) -> None:
+    menu = {row.action for row in SCREENS if row.digit} | {command.title for command in action_commands(print)}
+    assert plain_keys(Keymap(name, KEYMAPS[name]).get_keys(action.id)) or {action.id, action.label} & menu
+
+
+@pytest.mark.parametrize("name", KEYMAPS)
+def test_what_the_menus_leave_out_and_what_stops_has_a_plain_key(name: str) -> None:
+    """Driving and confirming mean holding a key, which no menu can; a stop must not need one."""
+    keymap = Keymap(name, KEYMAPS[name])
+    held = [each.id for each in ACTIONS.values() if isinstance(each.intent, DriveKeyDown) or each.confirm]
+    assert len(held) == 10
+    for action in (*held, "drive.stop", "stop.emergency", "app.goto", "app.quit"):
+        assert plain_keys(keymap.get_keys(action)), action
+
+
+@pytest.mark.parametrize("row", SCREENS, ids=lambda row: row.id)
+def test_the_keys_of_every_screen_are_plain(row: object) -> None:
+    keys = tuple(key.key for key in load_screen(row).KEYS)  # type: ignore[arg-type]
+    assert plain_keys(keys) == list(keys)
+
+
+async def test_every_screen_opens_without_function_keys() -> None:
+    async with console(SMALL, STANDING) as screen:
+        for row in SCREENS:
+            if row.digit:
+                await screen.press("ctrl+g", row.digit)
+                assert isinstance(screen.app.screen, load_screen(row)), row.id
+        await screen.press("ctrl+p", *"keysandwhat")
+        await until(lambda: "Keys and what they do" in screen.text)
+        await screen.press("enter")
+        await until(lambda: "keys · map" in screen.text)
