@@ -75,6 +75,13 @@ def _attributes(ink: Role, ground: Role, bold: bool) -> Style:
     )
 
 
+def selected() -> Style:
+    """Return what the selected row adds to the style of its text."""
+    if THEMES[_in_use.name].attributes:
+        return Style(underline=True)
+    return Style(bgcolor=_in_use.colours[Role.SELECTED])
+
+
 def badge(colour: str) -> Style:
     """Return a style for text on a colour. Bold black is grey where there are 16 colours, so it is not bold."""
     return style(Role.ON_DANGER, colour, bold=True) if colour == DEEP_RED else style(BLACK, colour)

@@ -110,7 +110,7 @@ class WayPanel(Instrument[WayValue]):
         colour = DIM if share is None else GREEN if share < OLD else AMBER if share < STALE else RED
         room = max(0, width - NAME - FIGURES - LIMIT - 2)
         full = 0 if share is None else min(room, round(share * room))
-        line: list[Part] = [("━" * full, style(colour)), ("─" * (room - full), style(FAINT if limit else LINE))]
+        line: list[Part] = [("━" * full, style(colour)), ("·" * (room - full), style(FAINT if limit else LINE))]
         end = f"┤{_ms(limit)}" if limit else " --"
         return strip(
             (f"{'command age':<{NAME}}", style(TEXT)), (f"{text:>{FIGURES}} ", style(colour, bold=True)), *line,

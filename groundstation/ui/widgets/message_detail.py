@@ -9,7 +9,7 @@ import msgspec
 from rich.style import Style
 from textual.strip import Strip
 
-from groundstation.ui.colours import AMBER, BLUE, DIM, FAINT, GREEN, TEXT, style
+from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, TEXT, selected, style
 from groundstation.ui.widgets.instrument import Instrument, Part, strip
 from groundstation.ui.wrap import clean, wrap
 from groundstation.views.messages import MessageField, MessageView
@@ -19,7 +19,6 @@ WIDE = 70
 VALUE, UNIT, MEANING, SPARK = 16, 7, 11, 9
 """Cells of the columns; names that leave no room for the others are cut."""
 MARKS = "✓✗·"
-_CHOSEN = Style(bgcolor=FAINT)
 INDENT = 3
 SHARE = 0.55
 """Of the width: the longest name of a field in the narrow form."""
@@ -61,8 +60,8 @@ class MessageDetail(Instrument[MessageDetailValue]):
             return strip(*line.parts).crop(0, width)
         (first, look), *rest = line.parts
         marked = [(f"›{first[1:]}", look), *rest]
-        drawn = strip(*((text, look + _CHOSEN) for text, look in marked)).crop(0, width)
-        return drawn.extend_cell_length(width, _CHOSEN)
+        drawn = strip(*((text, look + selected()) for text, look in marked)).crop(0, width)
+        return drawn.extend_cell_length(width, selected())
 
 
 def detail_lines(view: MessageView, width: int, *, raw: bool = False) -> list[DetailLine]:

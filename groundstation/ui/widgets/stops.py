@@ -91,7 +91,7 @@ def _row(stop: StopBound, width: int) -> list[Part]:
 def _bar(stop: StopBound, width: int) -> list[Part]:
     share = stop.share
     full = 0 if share is None else min(width, round(share * width) or int(share > 0))
-    return [("━" * full, style(share_colour(stop), PANEL)), ("░" * (width - full), style(FAINT, PANEL))]
+    return [("▄" * full, style(share_colour(stop), PANEL)), ("░" * (width - full), style(FAINT, PANEL))]
 
 
 def share_colour(stop: StopBound) -> str:

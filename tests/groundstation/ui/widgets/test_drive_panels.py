@@ -54,7 +54,7 @@ def test_a_released_key_stops_at_once_by_a_timer_or_never(changes: dict[str, obj
 
 def test_each_bound_is_a_line_with_its_action_limit_and_value() -> None:
     lines = texts(StopsPanel(stops(*STOPS)).draw(44, 12))
-    assert lines[0].split() == ["no", "command", "neutral", "0.45", "s", "━░░░░░░░░", "0.04", "s"]
+    assert lines[0].split() == ["no", "command", "neutral", "0.45", "s", "▄░░░░░░░░", "0.04", "s"]
     assert lines[5].endswith("11.8 V")
     assert lines[6].endswith(" 3°")
     assert "off" in lines[4], "a fence that is off is no failsafe of the link"
