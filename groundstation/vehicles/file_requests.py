@@ -105,7 +105,7 @@ class FileRequests:
         self._handle_outcomes(now)
         for number, job in self._jobs.items():
             if job == self._client.number:
-                self._book.advance(number, *self._client.progress)
+                self._book.advance(number, *self._client.progress, self._book.describe_holes(self._client.holes))
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""

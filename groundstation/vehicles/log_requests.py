@@ -80,7 +80,8 @@ class LogRequests:
         self._client.tick(now)
         self._handle_outcomes(now)
         if self._number is not None:
-            self._book.advance(self._number, *self._client.progress)
+            holes = self._book.describe_holes(self._client.holes)
+            self._book.advance(self._number, *self._client.progress, holes)
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""

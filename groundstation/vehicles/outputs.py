@@ -32,6 +32,11 @@ def drive_names(info: m.RoverDriveInfo | None, count: int) -> tuple[str, ...]:
     return names if len(names) == count else tuple(f"motor {number + 1}" for number in range(count))
 
 
+def servo_functions(values: Mapping[str, float]) -> Mapping[int, float]:
+    """Return output -> its SERVOn_FUNCTION, as far as it is known."""
+    return {channel: values[name] for channel, name in PARAMS.items() if name in values}
+
+
 def servo_names(values: Mapping[str, float]) -> Mapping[int, str]:
     """Return the outputs to show, by number, and what each drives; none if it drives with no output known here."""
     names = {channel: FUNCTIONS.get(values[name]) for channel, name in PARAMS.items() if name in values}

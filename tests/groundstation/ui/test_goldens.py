@@ -21,6 +21,8 @@ from groundstation.views.base import View
 from groundstation.views.links import ControlView, LinksView, VehiclesView
 from tests.groundstation.ui.example_charts import drive, fields_page
 from tests.groundstation.ui.example_connect import CONNECT, FAILED, NOTHING, UNCONNECTED, forget, remember
+from tests.groundstation.ui.example_files import FILES, NO_SERVICE, NO_TASKS, TASKS, fill_folder
+from tests.groundstation.ui.example_setup import setup_frames, setup_view
 from tests.groundstation.ui.examples import (
     FOREIGN_STOPS,
     FOREIGN_WAY,
@@ -78,6 +80,8 @@ WARNED = snapshot(
     )
 )  # fmt: skip
 
+SETUP_FRAMES = setup_frames(STANDING, waiting())
+
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_80x24": (SMALL, snapshot(), ()),
     "drive_140x45": (WIDE, snapshot(), ()),
@@ -111,6 +115,12 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "connect_140x45": (WIDE, UNCONNECTED, ("ctrl+g", "c")),
     "connect_nothing_80x24": (SMALL, UNCONNECTED, ("ctrl+g", "c")),
     "connect_failed_140x45": (WIDE, FLEET, ("ctrl+g", "c", "tab", "tab", "down")),
+    "files_80x24": (SMALL, snapshot(transfers=0.41), ("ctrl+g", "9")),
+    "files_140x45": (WIDE, snapshot(transfers=0.41), ("ctrl+g", "9", "down", "tab", "down")),
+    "files_tree_80x24": (SMALL, snapshot(), ("ctrl+g", "9", "tab", "down", "enter", "down", "enter")),
+    "files_here_80x24": (SMALL, snapshot(), ("ctrl+g", "9", "tab", "tab")),
+    "files_none_80x24": (SMALL, snapshot(), ("ctrl+g", "9", "tab")),
+    "files_loading_80x24": (SMALL, waiting(), ("ctrl+g", "9")),
     "charts_empty_80x24": (SMALL, snapshot(), ("f5",)),
     "charts_empty_140x45": (WIDE, waiting(), ("f5",)),
     "charts_80x24": (SMALL, snapshot(), ("f5", "v")),
@@ -119,6 +129,7 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "charts_measure_80x24": (SMALL, snapshot(), ("f5", "v", "z", *["shift+left"] * 2, "m", "left", "left")),
     "charts_measure_140x45": (WIDE, snapshot(), ("f5", "v", "z", "shift+left", "m", *["shift+left"] * 4)),
     "charts_add_140x45": (WIDE, snapshot(), ("f5", "v", "a", *"volt")),
+    **SETUP_FRAMES,
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
@@ -139,7 +150,11 @@ FRAMES |= {
         "links_140x45",
         "connect_80x24",
         "connect_140x45",
+        "files_80x24",
+        "files_140x45",
         "goto_80x24",
+        "setup_80x24",
+        "setup_140x45",
         "messages_80x24",
         "messages_140x45",
         "charts_80x24",
@@ -150,12 +165,16 @@ FRAMES |= {
 
 def views_for(name: str) -> Sequence[View]:
     """Return what the station sends to the screen of a frame."""
+    if "files" in name:
+        return () if "loading" in name else (NO_SERVICE, NO_TASKS) if "none" in name else (FILES, TASKS)
     if "connect" in name:
         return (NOTHING if "nothing" in name else FAILED if "failed" in name else CONNECT,)
     if "charts" in name:
         return (fields_page(empty=True),) if "empty" in name else (fields_page(),)
-    if "empty" in name:
+    if "links_empty" in name:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
+    if "setup" in name:
+        return (setup_view(name),)
     if "params" in name:
         return (param_page(),)
     return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE, TRACK, SPEEDS)
@@ -187,10 +206,13 @@ async def fill(screen: Console, name: str, keys: Sequence[str], picture: Snapsho
 
 
 @pytest.mark.parametrize("name", FRAMES)
-async def test_the_frame_is_the_golden_one(name: str) -> None:
+async def test_the_frame_is_the_golden_one(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     size, picture, keys = FRAMES[name]
     fill_recent(name)
-    async with console(size, picture, look=Look(ascii=name.startswith("ascii"))) as screen:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "logs").mkdir()
+    look, folder = Look(ascii=name.startswith("ascii")), fill_folder(tmp_path / "logs")
+    async with console(size, picture, folder=folder, look=look) as screen:
         opens = 2 if keys[:1] == ("ctrl+g",) else 1
         await screen.press(*keys[:opens])
         for view in views_for(name):
