@@ -24,6 +24,7 @@ from groundstation.vehicles.calibration import CalibrationState
 from groundstation.vehicles.doctor_params import DoctorParams
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.motor_outputs import TestedMotor, motors_of
+from groundstation.vehicles.outputs import servo_functions, servo_names
 from groundstation.views.base import ViewRequest
 from groundstation.views.doctor import (
     CheckText,
@@ -200,7 +201,7 @@ class DoctorDesk:
         if contact is None:
             return ()
         state = contact.state
-        functions = contact.servo_functions.functions if contact.servo_functions is not None else {}
+        functions = servo_functions(contact.drive.params.values)
         return motors_of(state.autopilot, state.drive_info, functions, rover_dialect=state.has_rover_dialect)
 
     def _motor_rows(self, contact: Contact, report: VehicleReport) -> tuple[MotorRow, ...]:
@@ -234,7 +235,7 @@ def _reversal(motor: TestedMotor, report: VehicleReport) -> ParamFix | None:
 
 def _vehicle_facts(contact: Contact) -> tuple[tuple[str, str], ...]:
     """Return what the vehicle is."""
-    state = contact.state
+    state, values = contact.state, contact.drive.params.values
     known = len(contact.services.params.client.params) if contact.services is not None else 0
     axes = "operator presence" if state.has_rover_dialect else "MANUAL_CONTROL"
     lines = {
@@ -242,7 +243,7 @@ def _vehicle_facts(contact: Contact) -> tuple[tuple[str, str], ...]:
         "system": f"{state.system}/{state.component}",
         "dialect": "rover" if state.has_rover_dialect else "common",
         "demands": axes,
-        "motors": ", ".join(state.servo_names.values()) or "",
+        "motors": ", ".join(servo_names(values).values()) if servo_functions(values) else "",
         "params": f"{known} known" if known else "",
         "signing": "signs its frames" if contact.signs else "",
     }

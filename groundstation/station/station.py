@@ -13,6 +13,7 @@ from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
 from groundstation.station.doctor_desk import DoctorDesk
+from groundstation.station.drive_display import DriveDisplay
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.driving import DrivingController
 from groundstation.station.handover import Handover
@@ -87,6 +88,7 @@ class Station:
         self._doctor = DoctorDesk(
             self.fleet, self.services, self._queries, self._links, self.operator, (system, COMPONENT)
         )
+        self._display = DriveDisplay(self.fleet, self.operator, self._timesync, system)
         self._link_views = LinkViews(
             self.fleet,
             self._commander,
@@ -109,9 +111,9 @@ class Station:
                 **self._charts.sources,
                 **self._detail.sources,
                 **self._doctor.sources,
+                **self._display.sources,
             }
         )
-        """Request -> its source."""
         self.link_closing = LinkClosing(self.operator, self.fleet, self._links)
         self._intents = IntentHandler(
             self.operator,
@@ -151,15 +153,13 @@ class Station:
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
         contact.details.receive(received, now)
+        self._display.receive(contact, received, now)
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
         self.services.receive(contact, received, now)
         self._doctor.receive(contact, received, now)
-        match received.message:
-            case m.StatusText() as message:
-                self._handle_statustext(message, contact, now)
-            case m.RoverDriveStatus() as message if message.source_system == self._system:
-                contact.state.latency.record_applied(message.source_seq, now, message.demand_age_ms / 1000)
+        if isinstance(received.message, m.StatusText):
+            self._handle_statustext(received.message, contact, now)
         if contact is self.fleet.selected:
             self._timesync.receive(received, now)
         self._outbox += handle_request(received, now, (self._system, COMPONENT))
@@ -170,6 +170,7 @@ class Station:
         self._expire_lease(now)
         self.log.expire(now)
         self.fleet.update(now)
+        self._display.tick(now)
         self._commander.tick(now)
         self._doctor.tick(now, watched=self.views.is_watching(DoctorRequest))
         self._handover.tick(now)
@@ -216,6 +217,7 @@ class Station:
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
         self._traffic.count_sent(message, now)
+        self._display.handle_sent(message, now)
         self._driving.handle_sent(message, sequence, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
@@ -223,21 +225,22 @@ class Station:
         moves = isinstance(message, DEMANDS) or is_turn(message)
         return not moves or not self.operator.stall.is_stalled(now)
 
-    # ---- the shell around the core ----
-
     def report_to_watchdog(self, now: float) -> tuple[DrivenVehicle, ...]:
         """Return the vehicles that the watchdog stops if no further call follows within STALL_TIMEOUT."""
         self._expire_lease(now)
         self.operator.stall.record_report(now)
         return self._driving.driven_vehicles(now)
 
-    def handle_intent(self, intent: AnyIntent, now: float) -> None:
-        """Carry out what the operator wants; the resulting messages are ready to be sent."""
+    def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
+        """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""
         self._expire_lease(now)
         self._charts.mark_key(intent, now)
         self._operator_log.handle(intent, now)
         self._doctor.handle(intent, now)
+        if intent.is_input:
+            self._driving.key_read_at = now if read_at is None else read_at
         self._intents.handle(intent, now)
+        self._driving.key_read_at = None
         self._log_driving(now)
 
     def set_simulator_state(self, state: str | None) -> None:
@@ -279,7 +282,6 @@ class Station:
             ),
             links=self._links.build_views(self._timesync.round_trip),
             texts=self.log.build_lines(now, wall),
-            messages=self._traffic.build_rates(selected.state.system if selected else 0, now),
             faults=self._doctor.faults,
             simulator=self._simulator_state,
             transfers=self.services.progress,
@@ -321,10 +323,8 @@ class Station:
             control_wait=self._handover.waits_for(contact, now),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
-            without_link=contact.without_link,
             refusal=commander.last_refusal(state.system, now),
-            obeys=contact.settings_check.obeys if contact.settings_check else None,
-            warnings=contact.warnings,
+            **self._display.build_fields(contact, now),
         )
 
     def _waiting(self) -> str | None:

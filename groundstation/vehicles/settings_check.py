@@ -7,6 +7,7 @@ SETTINGS.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from dialects.enums import Autopilot
 from dialects.messages import ParamValue
@@ -90,6 +91,11 @@ class SettingsCheck:
             return []
         self._unreported = False
         return warning
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """The values that are known."""
+        return self._values
 
     @property
     def without_link(self) -> str | None:

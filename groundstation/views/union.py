@@ -8,6 +8,7 @@ from groundstation.views import (  # noqa: F401 - defines the classes
     charts,
     connect,
     doctor,
+    drive,
     files,
     links,
     log,

@@ -25,7 +25,7 @@ from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.map_pictures import map_picture
 
-SIZES = ((80, 24), (140, 45))
+SIZES = ((80, 24), (140, 45), (200, 60))
 
 DRIVE: tuple[tuple[str, float], ...] = (
     ("i", 5.0), ("o", 1.1), ("i", 4.0), ("u", 1.6), ("i", 4.0), ("o", 0.9), ("i", 3.0), ("u", 2.4), ("i", 3.0),

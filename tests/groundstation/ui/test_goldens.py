@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from groundstation.actions import ACTIONS
+from groundstation.drive_views import KeyToMotor, StopBound
 from groundstation.input.hold_to_confirm import HoldProgress
 from groundstation.intents.session import Watch
 from groundstation.screens import SCREENS
@@ -24,9 +25,13 @@ from tests.groundstation.ui.example_connect import CONNECT, FAILED, NOTHING, UNC
 from tests.groundstation.ui.example_files import FILES, NO_SERVICE, NO_TASKS, TASKS, fill_folder
 from tests.groundstation.ui.example_setup import setup_frames, setup_view
 from tests.groundstation.ui.examples import (
+    FOREIGN_STOPS,
+    FOREIGN_WAY,
     LOG_PAGE,
     MESSAGES_PAGE,
+    SPEEDS,
     SYS_STATUS_VIEW,
+    TRACK,
     helm,
     param_page,
     snapshot,
@@ -39,7 +44,7 @@ from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import STANDARD, until
 
 GOLDEN = Path(__file__).parent / "golden"
-SMALL, WIDE = (80, 24), (140, 45)
+SMALL, WIDE, LARGE = (80, 24), (140, 45), (200, 60)
 
 STANDING = snapshot(
     vehicle=vehicle(
@@ -54,15 +59,18 @@ STANDING = snapshot(
 STOPPED = snapshot(vehicle=vehicle(emergency_stop=True, armed=False, failsafes=("estop",), outputs=wheels(0.0, 0.0)))
 UNKNOWN = snapshot(
     vehicle=vehicle(
-        name="ArduPilot rover 1", driver=None, position=None, home=None, track=(), heading=None, roll=None, pitch=None,
+        name="ArduPilot rover 1", driver=None, position=None, home=None, heading=None, roll=None, pitch=None,
         speed=math.nan, battery_voltage=None, battery_remaining=None, gps_fix=0, gps_satellites=None, demand=None,
-        outputs=(), command_age=None, latency=None,
+        outputs=(), command_age=None, latency=None, key_to_motor=KeyToMotor(), health=(), mission=None,
+        stops=(StopBound("no command", "--", "not known"), StopBound("no station", "--", "not known")),
     )
 )  # fmt: skip
 
 WARNED = snapshot(
     vehicle=vehicle(
-        name="ArduPilot rover 1", driver=None, demand=None, command_age=None, latency=None, limits=(),
+        name="ArduPilot rover 1", driver=None, demand=None, command_age=0.03, command_age_estimated=True, latency=None,
+        limits=(), stops=FOREIGN_STOPS, mission=None,
+        key_to_motor=FOREIGN_WAY,
         outputs=(OutputView(name="steering servo", value=0.25), OutputView(name="throttle servo", value=0.57)),
         obeys="obeys ground station 250 only and we are 255: use --system 250",
         warnings=(
@@ -78,6 +86,10 @@ SETUP_FRAMES = setup_frames(STANDING, waiting())
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_80x24": (SMALL, snapshot(), ()),
     "drive_140x45": (WIDE, snapshot(), ()),
+    "drive_200x60": (LARGE, snapshot(), ()),
+    "pane_speed_80x24": (SMALL, snapshot(), ("v",)),
+    "pane_rates_80x24": (SMALL, snapshot(), ("v", "v")),
+    "warned_140x45": (WIDE, WARNED, ()),
     "latched_80x24": (SMALL, snapshot(operator=helm(style="latch", stop_bound=math.inf, reports_releases=False)), ()),
     "disarmed_80x24": (SMALL, STANDING, ()),
     "hold_80x24": (SMALL, STANDING, ()),
@@ -129,6 +141,7 @@ FRAMES |= {
     for name in (
         "drive_80x24",
         "drive_140x45",
+        "drive_200x60",
         "waiting_80x24",
         "strip_40x10",
         "log_80x24",
@@ -165,7 +178,7 @@ def views_for(name: str) -> Sequence[View]:
         return (setup_view(name),)
     if "params" in name:
         return (param_page(),)
-    return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE)
+    return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE, TRACK, SPEEDS)
 
 
 def fill_recent(name: str) -> None:
@@ -205,10 +218,10 @@ async def test_the_frame_is_the_golden_one(name: str, tmp_path: Path, monkeypatc
     async with console(size, picture, folder=folder, look=look) as screen:
         opens = 2 if keys[:1] == ("ctrl+g",) else 1
         await screen.press(*keys[:opens])
+        for view in views_for(name):
+            screen.station.offer_view(view)
+        await screen.show(picture)
         if keys:
-            for view in views_for(name):
-                screen.station.offer_view(view)
-            await screen.show(picture)
             await fill(screen, name, keys[opens - 1 :], picture)
             await screen.show(picture)  # the height of the alerts is known after the first one
         if "hold" in name:

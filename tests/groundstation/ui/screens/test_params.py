@@ -33,7 +33,7 @@ from groundstation.views.params import (
 )
 from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.example_params import DIFF, HOLES, INFOS, PAGE, page
-from tests.groundstation.ui.examples import param_page, snapshot, vehicle
+from tests.groundstation.ui.examples import DRIVE_WATCH, param_page, snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
 
@@ -42,7 +42,7 @@ EMPTY = ParamPage(1, (), 0, 0, 0, None, has_defaults=False, running=(), ended=()
 
 async def open_params(screen: Console, page: ParamPage | None = None, picture: Snapshot | None = None) -> ParamsScreen:
     await screen.press("f4")
-    await until(lambda: screen.station.of(Watch))
+    await until(lambda: screen.station.of(Watch)[-1] != DRIVE_WATCH)
     await offer(screen, page or param_page(), picture)
     top = screen.app.screen
     assert isinstance(top, ParamsScreen)
