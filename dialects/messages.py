@@ -76,6 +76,7 @@ LogEntry = rover.MAVLink_log_entry_message
 LogRequestData = rover.MAVLink_log_request_data_message
 LogData = rover.MAVLink_log_data_message
 LogErase = rover.MAVLink_log_erase_message
+MagCalReport = rover.MAVLink_mag_cal_report_message
 LogRequestEnd = rover.MAVLink_log_request_end_message
 ComponentMetadata = rover.MAVLink_component_metadata_message
 

@@ -227,6 +227,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """The newest lines of the log, oldest first, without changes of state and what the operator did."""
     messages: tuple[MessageRate, ...] = ()
     """Received from the selected vehicle, and sent."""
+    faults: int = 0
+    """Links of the chain from the finger to the wheel that stop the operator (groundstation/doctor)."""
     transfers: float | None = None
     """How far the downloads and uploads under way are, 0..1; None without one."""
     simulator: str | None = None

@@ -11,6 +11,7 @@ from groundstation.intents import (  # noqa: F401 - defines the classes
     links,
     services,
     session,
+    setup,
     vehicle,
 )
 from groundstation.intents.base import Intent

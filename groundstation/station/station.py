@@ -12,6 +12,7 @@ from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
+from groundstation.station.doctor_desk import DoctorDesk
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.driving import DrivingController
 from groundstation.station.handover import Handover
@@ -33,6 +34,8 @@ from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.motor_outputs import is_turn
+from groundstation.views.doctor import DoctorRequest
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
 from link.core import LinkReport, Outgoing, Received
@@ -80,6 +83,9 @@ class Station:
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self.services)
         self._timesync = TimesyncClient(system)
+        self._doctor = DoctorDesk(
+            self.fleet, self.services, self._queries, self._links, self.operator, (system, COMPONENT)
+        )
         self._link_views = LinkViews(
             self.fleet,
             self._commander,
@@ -100,6 +106,7 @@ class Station:
                 **ParamViews(self.fleet, self.services, texts.files).sources,
                 **self._charts.sources,
                 **self._detail.sources,
+                **self._doctor.sources,
             }
         )
         """Request -> its source."""
@@ -145,6 +152,7 @@ class Station:
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
         self.services.receive(contact, received, now)
+        self._doctor.receive(contact, received, now)
         match received.message:
             case m.StatusText() as message:
                 self._handle_statustext(message, contact, now)
@@ -161,6 +169,7 @@ class Station:
         self.log.expire(now)
         self.fleet.update(now)
         self._commander.tick(now)
+        self._doctor.tick(now, watched=self.views.is_watching(DoctorRequest))
         self._handover.tick(now)
         if self.operator.live:
             self._queries.tick(now)
@@ -194,7 +203,12 @@ class Station:
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
         services = self.services.messages_to_send()  # repeated later if they are dropped here
         return (
-            demands + commands + self._timesync.messages_to_send() + outbox + (services if self.operator.live else [])
+            demands
+            + commands
+            + self._doctor.messages_to_send()
+            + self._timesync.messages_to_send()
+            + outbox
+            + (services if self.operator.live else [])
         )
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
@@ -203,8 +217,9 @@ class Station:
         self._driving.handle_sent(message, sequence, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
-        """Return False for a demand that was made before the process stood still."""
-        return not isinstance(message, DEMANDS) or not self.operator.stall.is_stalled(now)
+        """Return False for what moves a vehicle and was made before the process stood still."""
+        moves = isinstance(message, DEMANDS) or is_turn(message)
+        return not moves or not self.operator.stall.is_stalled(now)
 
     # ---- the shell around the core ----
 
@@ -219,6 +234,7 @@ class Station:
         self._expire_lease(now)
         self._charts.mark_key(intent, now)
         self._operator_log.handle(intent, now)
+        self._doctor.handle(intent, now)
         self._intents.handle(intent, now)
         self._log_driving(now)
 
@@ -243,7 +259,7 @@ class Station:
         """Build the snapshot for the screen; `now` and `wall` are the same moment on both clocks."""
         self._snapshot_count += 1
         selected = self.fleet.selected
-        return Snapshot(
+        snapshot = Snapshot(
             number=self._snapshot_count,
             uptime=now - self._started,
             endpoints=self._endpoints,
@@ -262,9 +278,12 @@ class Station:
             links=self._links.build_views(self._timesync.round_trip),
             texts=self.log.build_lines(now, wall),
             messages=self._traffic.build_rates(selected.state.system if selected else 0, now),
+            faults=self._doctor.faults,
             simulator=self._simulator_state,
             transfers=self.services.progress,
         )
+        self._doctor.look(snapshot, now)
+        return snapshot
 
     def _expire_lease(self, now: float) -> None:
         """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first.
@@ -289,6 +308,7 @@ class Station:
             contact.state.handle_text(text)
             self._commander.handle_statustext(system, text, message.severity, now)
             self.services.handle_text(contact, text, message.severity, now)
+            self._doctor.handle_text(contact, text, now)
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
         state, commander = contact.state, self._commander

@@ -285,6 +285,8 @@ class ConsoleApp(App[int]):
     def on_key_up(self, event: KeyUp) -> None:
         """Switch the key cap off."""
         self._pressed.release(event.key)
+        if (shown := self._navigator.shown) is not None:
+            shown.release_key(event.key)
         self.drive.light_keycaps(self._pressed.names)
 
     def _light(self, key: str) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from groundstation.ui.colours import BLUE
+from groundstation.ui.colours import BLUE, RED
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.params.model import ParamModel
 
@@ -36,7 +36,17 @@ def _transfers(now: DisplayState) -> TabMark | None:
     return None if share is None else TabMark(f" {100 * share:.0f}%", BLUE)
 
 
-TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {"params": _pending_params, "files": _transfers}
+def _faults(now: DisplayState) -> TabMark | None:
+    """Return how many links of the chain from the finger to the wheel stop the operator."""
+    count = now.snapshot.faults
+    return TabMark(f" {count}✗", RED, short=f"{count}✗") if count else None
+
+
+TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {
+    "params": _pending_params,
+    "setup": _faults,
+    "files": _transfers,
+}
 """Id of a row in SCREENS -> its mark, None for no mark."""
 
 

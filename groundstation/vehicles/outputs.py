@@ -66,6 +66,12 @@ class ServoFunctions:
         found = {channel: name for channel, name in names.items() if name is not None}
         return found or {channel: f"servo {channel}" for channel in DEFAULT_CHANNELS if channel not in names}
 
+    @property
+    def functions(self) -> Mapping[int, float]:
+        """Output -> its SERVOn_FUNCTION, as far as it is known."""
+        found = ((channel, self._params.params.get(name)) for channel, name in PARAMS.items())
+        return {channel: param.value for channel, param in found if param is not None}
+
     def receive(self, received: Received, now: float) -> None:
         """Handle a PARAM_VALUE; other messages and other parameters are ignored."""
         if isinstance(received.message, m.ParamValue) and received.message.param_id in PARAMS.values():

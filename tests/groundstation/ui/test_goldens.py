@@ -21,6 +21,7 @@ from groundstation.views.links import ControlView, LinksView, VehiclesView
 from tests.groundstation.ui.example_charts import drive, fields_page
 from tests.groundstation.ui.example_connect import CONNECT, FAILED, NOTHING, UNCONNECTED, forget, remember
 from tests.groundstation.ui.example_files import FILES, NO_SERVICE, NO_TASKS, TASKS, fill_folder
+from tests.groundstation.ui.example_setup import setup_frames, setup_view
 from tests.groundstation.ui.examples import (
     LOG_PAGE,
     MESSAGES_PAGE,
@@ -71,6 +72,8 @@ WARNED = snapshot(
     )
 )  # fmt: skip
 
+SETUP_FRAMES = setup_frames(STANDING, waiting())
+
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_80x24": (SMALL, snapshot(), ()),
     "drive_140x45": (WIDE, snapshot(), ()),
@@ -114,6 +117,7 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "charts_measure_80x24": (SMALL, snapshot(), ("f5", "v", "z", *["shift+left"] * 2, "m", "left", "left")),
     "charts_measure_140x45": (WIDE, snapshot(), ("f5", "v", "z", "shift+left", "m", *["shift+left"] * 4)),
     "charts_add_140x45": (WIDE, snapshot(), ("f5", "v", "a", *"volt")),
+    **SETUP_FRAMES,
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
@@ -136,6 +140,8 @@ FRAMES |= {
         "files_80x24",
         "files_140x45",
         "goto_80x24",
+        "setup_80x24",
+        "setup_140x45",
         "messages_80x24",
         "messages_140x45",
         "charts_80x24",
@@ -152,8 +158,10 @@ def views_for(name: str) -> Sequence[View]:
         return (NOTHING if "nothing" in name else FAILED if "failed" in name else CONNECT,)
     if "charts" in name:
         return (fields_page(empty=True),) if "empty" in name else (fields_page(),)
-    if "empty" in name:
+    if "links_empty" in name:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
+    if "setup" in name:
+        return (setup_view(name),)
     if "params" in name:
         return (param_page(),)
     return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE)

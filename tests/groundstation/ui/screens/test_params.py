@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from groundstation.intents.driving import STOP_KEY, Stop
@@ -368,3 +370,16 @@ async def test_redo() -> None:
         await until(lambda: "2→1" in screen.text)
         await screen.press("ctrl+r")
         await until(lambda: "nothing to redo" in screen.text)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 3.4e38])
+async def test_a_vehicle_may_send_values_that_are_no_numbers(value: float) -> None:
+    odd = [msgspec.structs.replace(row, value=value, default=value) for row in PAGE.rows]
+    infos = tuple(msgspec.structs.replace(info, value=value, default=value) for info in INFOS)
+    async with console((140, 45)) as screen:
+        await open_params(screen, page(rows=tuple(odd)))
+        screen.station.offer_view(ParamInfos(1, infos))
+        await screen.show(snapshot())
+        for _ in odd:
+            await screen.press("enter", "tab", "down", "escape", "down")
+        assert "RC_OVERRIDE_TIME" in screen.text
