@@ -107,7 +107,7 @@ async def test_a_screen_shows_the_newest_state_from_its_first_frame_on() -> None
         (["f6", "ctrl+g", "ctrl+g"], "drive"), (["f6", "escape", "ctrl+g", "ctrl+g"], "log"),
         (["right_square_bracket"], TABS[1]), (["left_square_bracket"], TABS[-1]), (["f4"], "params"),
         (["f6", "right_square_bracket"], (TABS + TABS)[TABS.index("log") + 1]), (["ctrl+g", "7"], "links"),
-        (["f6", "left_square_bracket"], TABS[TABS.index("log") - 1]), (["f7", "right_square_bracket"], "files"),
+        (["f6", "left_square_bracket"], TABS[TABS.index("log") - 1]), (["f7", "right_square_bracket"], "setup"),
         (["ctrl+g", "escape"], "drive"), (["ctrl+g", "x"], "drive"),
         (["f6", "ctrl+g", "escape"], "log"), (["f6", "f6"], "log"), (["question_mark", "f6"], "log"),
         (["f6", "question_mark", "escape"], "drive"),
