@@ -171,7 +171,7 @@ class StationProcess:
         self._report(now)
         self.connect.tick(now)
         self._disk.run()
-        self._station.set_addresses(self._addresses.find(now))
+        self._station.surroundings.addresses = self._addresses.find(now)
         self._last_snapshot = self._station.snapshot(now, time.time())
         for text in self._lasting_alerts.new_in(self._last_snapshot):
             log.warning(text)

@@ -70,7 +70,7 @@ class ConnectDesk:
             text, output = exited
             self._warn(now, text)
             log.error("output of the simulator:\n%s", output)
-        self._station.set_simulator_state(self._simulators.state)
+        self._station.surroundings.simulator = self._simulators.state
 
     def close(self) -> None:
         """Free what was opened, and end the simulators."""

@@ -191,7 +191,7 @@ class LinkKeeper:
             LinkReport(each.endpoint, each.index, down=each.problem or "connecting", retry_in=_wait(each, now))
             for each in self._waiting()
         ]
-        self._station.set_endpoints(self._texts(), reports)
+        self._station.surroundings.set_links(self._texts(), reports)
 
 
 def _wait(attempt: _Attempt, now: float) -> float | None:

@@ -8,7 +8,7 @@ from dialects import messages as m
 from dialects.enums import Severity
 from groundstation.input.style import Style
 from groundstation.intents.union import AnyIntent
-from groundstation.snapshot import Snapshot, VehicleView
+from groundstation.snapshot import Snapshot
 from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
@@ -31,7 +31,9 @@ from groundstation.station.param_texts import ParamTexts
 from groundstation.station.param_views import ParamViews
 from groundstation.station.plan_views import PlanViews
 from groundstation.station.service_desk import ServiceDesk
+from groundstation.station.surroundings import Surroundings
 from groundstation.station.transfer_hold import TransferHold
+from groundstation.station.vehicle_builder import VehicleBuilder
 from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
@@ -46,7 +48,6 @@ from link.services.timesync import TimesyncClient, handle_request
 
 DEMANDS = (m.ManualControl, m.RoverOperatorPresence)
 
-NO_LINK = "no link yet: Connect opens one"
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
@@ -70,8 +71,7 @@ class Station:
         self.operator = OperatorSession(style, speed, session)
         self.fleet = Fleet(self.log, system, COMPONENT)
         self._traffic = MessageTraffic(system, COMPONENT)
-        self._endpoints = tuple(endpoints)
-        self._not_open: tuple[LinkReport, ...] = ()
+        self.surroundings = Surroundings(endpoints)
         self._system = system
         self._started = now
         self._commander = Commander(self.log, system, COMPONENT)
@@ -89,6 +89,7 @@ class Station:
             self.fleet, self.services, self._queries, self._links, self.operator, (system, COMPONENT)
         )
         self._display = DriveDisplay(self.fleet, self.operator, self._timesync, system)
+        self._vehicle = VehicleBuilder(self._commander, self._driving, self._handover, self._display)
         self._link_views = LinkViews(
             self.fleet,
             self._commander,
@@ -132,8 +133,6 @@ class Station:
         self._heartbeat = HeartbeatSender(now)
         self._id_conflict = IdConflict(system)
         self._link_events = LinkEvents()
-        self._simulator_state: str | None = None
-        self._addresses: tuple[str, ...] = ()
         self._outbox: list[Outgoing] = []
         self._snapshot_count = 0
 
@@ -188,7 +187,7 @@ class Station:
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
         """Update the link statistics; log when a link problem starts and ends."""
-        reports = [*reports, *self._not_open]
+        reports = [*reports, *self.surroundings.not_open]
         selected = self.fleet.selected
         self._links.update(reports, selected.state.system if selected else None, now)
         self.fleet.observe(reports, now)
@@ -243,18 +242,6 @@ class Station:
         self._driving.key_read_at = None
         self._log_driving(now)
 
-    def set_simulator_state(self, state: str | None) -> None:
-        """Record the state of the simulator, for the next snapshot."""
-        self._simulator_state = state
-
-    def set_endpoints(self, endpoints: Sequence[str], not_open: Sequence[LinkReport]) -> None:
-        """Record the endpoints of all links, and the reports of those that are not open."""
-        self._endpoints, self._not_open = tuple(endpoints), tuple(not_open)
-
-    def set_addresses(self, addresses: tuple[str, ...]) -> None:
-        """Record the addresses of this machine, for the next snapshot."""
-        self._addresses = addresses
-
     @property
     def finished(self) -> bool:
         """Quit was requested, the last neutral demand is out, and nothing is left to disarm."""
@@ -267,10 +254,10 @@ class Station:
         snapshot = Snapshot(
             number=self._snapshot_count,
             uptime=now - self._started,
-            endpoints=self._endpoints,
-            addresses=() if selected else self._addresses,
-            waiting=self._waiting(),
-            vehicle=self._vehicle_view(selected, now) if selected else None,
+            endpoints=self.surroundings.endpoints,
+            addresses=() if selected else self.surroundings.addresses,
+            waiting=None if selected else self.surroundings.waiting(has_traffic=self._links.has_traffic),
+            vehicle=self._vehicle.build(selected, now) if selected else None,
             left_armed=self._departure.left_armed(now),
             id_conflict=self._id_conflict.text(now),
             vehicles=self.fleet.system_ids,
@@ -283,7 +270,7 @@ class Station:
             links=self._links.build_views(self._timesync.round_trip),
             texts=self.log.build_lines(now, wall),
             faults=self._doctor.faults,
-            simulator=self._simulator_state,
+            simulator=self.surroundings.simulator,
             transfers=self.services.progress,
         )
         self._doctor.look(snapshot, now)
@@ -313,23 +300,3 @@ class Station:
             self._commander.handle_statustext(system, text, message.severity, now)
             self.services.handle_text(contact, text, message.severity, now)
             self._doctor.handle_text(contact, text, now)
-
-    def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
-        state, commander = contact.state, self._commander
-        return state.build_view(
-            now,
-            in_control=self._driving.is_in_control(contact),
-            twin=self._driving.is_driven_by_twin(contact),
-            control_wait=self._handover.waits_for(contact, now),
-            emergency_stop=state.emergency_stop or commander.is_locked(state.system),
-            emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
-            refusal=commander.last_refusal(state.system, now),
-            **self._display.build_fields(contact, now),
-        )
-
-    def _waiting(self) -> str | None:
-        if self.fleet.selected is not None:
-            return None
-        if self._links.has_traffic:
-            return "receiving data, but no HEARTBEAT of a vehicle yet"
-        return f"waiting for a vehicle on {', '.join(self._endpoints)}" if self._endpoints else NO_LINK
