@@ -149,7 +149,11 @@ class Command(IntEnum):
     DO_SET_SAFETY_SWITCH_STATE = rover.MAV_CMD_DO_SET_SAFETY_SWITCH_STATE
     REQUEST_OPERATOR_CONTROL = rover.MAV_CMD_REQUEST_OPERATOR_CONTROL
     DO_SET_GLOBAL_ORIGIN = 611  # newer than pymavlink's common.xml
-    DO_SEND_BANNER = 42428  # MAV_CMD_DO_SEND_BANNER of ardupilotmega.xml, not in common.xml
+    DO_START_MAG_CAL = 42424  # this and the following ones are of ardupilotmega.xml, not in common.xml
+    DO_ACCEPT_MAG_CAL = 42425
+    DO_CANCEL_MAG_CAL = 42426
+    DO_SEND_BANNER = 42428
+    ACCELCAL_VEHICLE_POS = 42429
 
 
 class FenceItem(IntEnum):

@@ -35,7 +35,7 @@ class OperatorAction:
     """One or two words for the footer."""
     help: str
     group: str
-    """"drive", "stop", "speed", "vehicle" or "app"."""
+    """"drive", "stop", "speed", "view", "vehicle" or "app"."""
     intent: AnyIntent | None = None
     """Sent to the station; None where the screen acts itself. The key's name is added to a DriveKeyDown."""
     keys: tuple[str, ...] = ()
@@ -44,6 +44,8 @@ class OperatorAction:
     """The key must be held for HOLD_TIME; then `intent` is sent, with that time in its field `held` if it has one."""
     when_armed: AnyIntent | None = None
     """Sent in place of `intent`, without confirmation, while the vehicle is armed."""
+    steady: bool = False
+    """Its keys do not stop a vehicle that is driven. All others that are no drive keys do."""
 
 
 def _drive(name: str, label: str, text: str, throttle: int, steering: int, *keys: str) -> OperatorAction:
@@ -52,7 +54,8 @@ def _drive(name: str, label: str, text: str, throttle: int, steering: int, *keys
 
 
 def _speed(name: str, label: str, text: str, throttle: float, steering: float) -> OperatorAction:
-    return OperatorAction(f"speed.{name}", label, text, "speed", ScaleLimits(throttle=throttle, steering=steering))
+    limits = ScaleLimits(throttle=throttle, steering=steering)
+    return OperatorAction(f"speed.{name}", label, text, "speed", limits, steady=True)
 
 
 _ROWS = (
@@ -78,6 +81,9 @@ _ROWS = (
     _speed("throttle_slower", "Throttle -", "Lower the throttle limit by 10 %", SLOWER, 1.0),
     _speed("steering_faster", "Steering +", "Raise the steering limit by 10 %", 1.0, FASTER),
     _speed("steering_slower", "Steering -", "Lower the steering limit by 10 %", 1.0, SLOWER),
+    OperatorAction("view.pane", "View", "Next pane of the Drive screen", "view", keys=("v",), steady=True),
+    OperatorAction("view.closer", "Closer", "Zoom in on the pane", "view", keys=("pageup",), steady=True),
+    OperatorAction("view.wider", "Wider", "Zoom out of the pane", "view", keys=("pagedown",), steady=True),
     OperatorAction("drive.style", "Style", "Next drive style: hold, latch, step", "drive", SetStyle(style="next"),
                    ("tab",)),
     OperatorAction("vehicle.arm", "Arm", "Arm; when armed, one press disarms", "vehicle", Arm(), ("r",), confirm=True,

@@ -20,6 +20,8 @@ class ScreenRow:
     target: str
     """"module:Class" of a ConsoleScreen. Loaded when first opened: the program starts sooner, and this table stays free
     of Textual."""
+    short: str = ""
+    """Title where the tab bar is narrow; empty: `title`."""
 
     @property
     def action(self) -> str:
@@ -38,17 +40,21 @@ SCREENS: tuple[ScreenRow, ...] = (
     ScreenRow("map", "Map", "Mission, fence and rally points: edit, upload, drive them", ("f2",), "2",
               "groundstation.ui.screens.map:MapScreen"),
     ScreenRow("messages", "Messages", "Every message with its rate, and the fields of one", ("f3",), "3",
-              "groundstation.ui.screens.messages:MessagesScreen"),
+              "groundstation.ui.screens.messages:MessagesScreen", "Msgs"),
     ScreenRow("params", "Params", "Parameters of the vehicle: read, change, write", ("f4",), "4",
-              "groundstation.ui.screens.params:ParamsScreen"),
+              "groundstation.ui.screens.params:ParamsScreen", "Param"),
     ScreenRow("charts", "Charts", "Fields of messages over time, with modes, events and own keys", ("f5",), "5",
-              "groundstation.ui.screens.charts:ChartsScreen"),
+              "groundstation.ui.screens.charts:ChartsScreen", "Chart"),
     ScreenRow("log", "Log", "All alerts and messages, to scroll, filter and save", ("f6",), "6",
               "groundstation.ui.screens.log:LogScreen"),
     ScreenRow("links", "Links", "Vehicles, links and who is in control: choose a vehicle", ("f7",), "7",
               "groundstation.ui.screens.links:LinksScreen"),
+    ScreenRow("setup", "Setup", "Why the vehicle cannot be driven, motor test, calibration", ("f8",), "8",
+              "groundstation.ui.screens.setup:SetupScreen"),
+    ScreenRow("files", "Files", "Logs and files of the vehicle: download, upload, delete", (), "9",
+              "groundstation.ui.screens.files:FilesScreen"),
     ScreenRow("connect", "Connect", "What can be connected to: vehicles heard, endpoints, ports", (), "c",
-              "groundstation.ui.screens.connect:ConnectScreen"),
+              "groundstation.ui.screens.connect:ConnectScreen", "Conn"),
     ScreenRow("help", "Help", "Keys and what they do", ("question_mark",), "",
               "groundstation.ui.screens.help:HelpScreen"),
 )  # fmt: skip

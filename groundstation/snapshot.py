@@ -9,6 +9,8 @@ from enum import Enum
 
 import msgspec
 
+from groundstation.drive_views import HealthLine, KeyToMotor, MissionProgress, StopBound
+
 
 class EmergencyProgress(Enum):
     """How far our request for an emergency stop is, as long as the vehicle itself does not report one."""
@@ -27,8 +29,8 @@ class OutputView(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     """What it drives, e.g. "left wheel", "steering servo"; its number where that is not known, e.g. "servo 1"."""
-    value: float
-    """-1..1"""
+    value: float | None
+    """-1..1; None: what its pulse means is not known."""
 
 
 class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
@@ -63,8 +65,6 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     position: tuple[float, float] | None = None
     """North, east of the origin, m."""
     home: tuple[float, float] | None = None
-    track: tuple[tuple[float, float], ...] = ()
-    """Earlier positions, oldest first, thinned to at most 500."""
     heading: float | None = None
     """Clockwise from north, rad, 0..2 pi."""
     roll: float | None = None
@@ -85,7 +85,17 @@ class VehicleView(msgspec.Struct, frozen=True, kw_only=True):
     limits: tuple[str, ...] = ()
     """Why outputs differ from the demand: "slew", "neutral first" ..."""
     command_age: float | None = None
-    """Age of the demand that the motors obey, as reported by the vehicle; s."""
+    """Age of the demand that the motors obey, s."""
+    command_age_estimated: bool = False
+    """Not reported by the vehicle: time since the newest demand was sent, and half a round trip."""
+    speed_demand: float | None = None
+    """Speed that the obeyed demand requests, m/s; None where the top speed is not known."""
+    key_to_motor: KeyToMotor = KeyToMotor()
+    stops: tuple[StopBound, ...] = ()
+    """What stops the vehicle without us, most important first."""
+    health: tuple[HealthLine, ...] = ()
+    mission: MissionProgress | None = None
+    """None without a mission."""
     latency: float | None = None
     """Newest key-to-motor latency: from sending a changed demand to the report that it is applied; s."""
     failsafes: tuple[str, ...] = ()
@@ -188,16 +198,6 @@ class LogLine(msgspec.Struct, frozen=True, kw_only=True):
     """Counts the lines of a session from 1. A line that occurs again keeps its number."""
 
 
-class MessageRate(msgspec.Struct, frozen=True, kw_only=True):
-    """Rate of one kind of message."""
-
-    name: str
-    rate: float
-    count: int
-    sent: bool = False
-    """Sent by us; else received."""
-
-
 class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     """Everything the screen shows."""
 
@@ -225,8 +225,8 @@ class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag=True):
     links: tuple[LinkView, ...] = ()
     texts: tuple[LogLine, ...] = ()
     """The newest lines of the log, oldest first, without changes of state and what the operator did."""
-    messages: tuple[MessageRate, ...] = ()
-    """Received from the selected vehicle, and sent."""
+    faults: int = 0
+    """Links of the chain from the finger to the wheel that stop the operator (groundstation/doctor)."""
     transfers: float | None = None
     """How far the downloads and uploads under way are, 0..1; None without one."""
     simulator: str | None = None

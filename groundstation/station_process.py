@@ -146,7 +146,7 @@ class StationProcess:
             elif isinstance(intent, Quit):
                 self._quit(intent, now)
             else:
-                self._station.handle_intent(intent, now)
+                self._station.handle_intent(intent, now, read_at=batch.time)
                 self.connect.handle(intent, now)
         self._disk.run()
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 VERB_HELP = {
-    "param": "get, set, save, load or diff parameters of a vehicle",
+    "param": "get, set, save, load, diff, store or reset parameters of a vehicle",
     "mission": "show, get, put or clear the mission",
     "fence": "show, get, put or clear the fence",
     "rally": "show, get, put or clear the rally points",
     "modes": "print the modes of the vehicle",
     "mode": "change the mode",
     "reboot": "restart the vehicle",
+    "doctor": "print why the vehicle cannot be driven",
+    "motor": "turn one motor of a disarmed vehicle",
+    "calibrate": "calibrate gyros, level or pressure",
     "ftp": "ls, get, put, rm or crc files on the vehicle",
     "log": "list or get the logs on the vehicle",
 }

@@ -42,7 +42,7 @@ class ParamDoc:
         """Return the name of a value, or the names of its bits; empty where it has none."""
         if self.values:
             return next((name for each, name in self.values if each == value), "")
-        if self.bits and value == int(value) >= 0:
+        if self.bits and value.is_integer() and value >= 0:
             return ", ".join(name for bit, name in self.bits if int(value) >> bit & 1)
         return ""
 

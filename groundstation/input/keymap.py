@@ -69,7 +69,7 @@ class Keymap:
         A stop key anywhere in the read wins: then only intents that stop are left, because over a slow line "ik" may
         arrive in one read, and the key that was pressed last must not be overruled by an earlier one. While the vehicle
         is driven (`driving`; pass True when in doubt, a needless Stop is harmless) every key that does not drive is a
-        stop key, except the speed keys.
+        stop key, except those of `steady` actions.
         """
         intents = [intent for press in batch if (intent := self._build_intent(press, armed)) is not None]
         driving = driving or any(isinstance(intent, DriveKeyDown) for intent in intents)
@@ -95,7 +95,7 @@ class Keymap:
         action = self.get_action(press.key)
         if action is not None and isinstance(action.intent, (Stop, EmergencyStop)):
             return True
-        return driving and (action is None or not isinstance(action.intent, (DriveKeyDown, ScaleLimits)))
+        return driving and (action is None or not (action.steady or isinstance(action.intent, DriveKeyDown)))
 
 
 def _drive_intent(press: KeyEvent, push: DriveKeyDown) -> AnyIntent:

@@ -12,6 +12,7 @@ from groundstation.intents import (  # noqa: F401 - defines the classes
     plan,
     services,
     session,
+    setup,
     vehicle,
 )
 from groundstation.intents.base import Intent

@@ -11,6 +11,7 @@ from groundstation.station.commander import Commander
 from groundstation.station.driven import DEMAND_MEMORY, DrivenVehicle
 from groundstation.station.operator import OperatorSession
 from groundstation.vehicles.fleet import Contact, Fleet
+from groundstation.vehicles.latency import SentDemand
 from link.core import Outgoing
 
 IDLE_PROOF_PERIOD = 0.3
@@ -35,6 +36,10 @@ class DrivingController:
         """When the selected vehicle got the newest proof of this session."""
         self._changed_at = 0.0
         """When the demand in `_changed` was made: the time until it is sent is part of the latency."""
+        self._changed_key: float | None = None
+        """When the key was read that made it; None: a timer made it."""
+        self.key_read_at: float | None = None
+        """When the key was read that is handled just now; None: there is none."""
 
     def update(self, now: float) -> None:
         """Queue the demands that are due."""
@@ -77,7 +82,10 @@ class DrivingController:
             return
         contact = self._fleet.get(target)
         if contact is not None and any(message is changed for changed in self._changed):
-            contact.state.latency.record_sent(sequence, self._changed_at)
+            key = None if self._changed_key is None else max(0.0, now - self._changed_key)
+            demand = SentDemand(self._changed_at, now, key)
+            contact.state.latency.record_sent(sequence, demand)
+            contact.drive.steps.record_sent(demand)
 
     def _record_demand(self, system: int, now: float) -> None:
         contact = self._fleet.get(system)
@@ -177,7 +185,7 @@ class DrivingController:
             messages.insert(0, self._operator.build_presence(target, state.boot_time, now, message))
             self._proven_at = now
         if contact is self._fleet.selected and self._operator.record_demand(axes):
-            self._changed, self._changed_at = tuple(messages), now
+            self._changed, self._changed_at, self._changed_key = tuple(messages), now, self.key_read_at
             messages *= 2  # if lost, it would be 50 ms late; both are lost once in 400 at 5 % loss
         self._demands[state.system] = messages
 

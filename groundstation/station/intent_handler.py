@@ -29,6 +29,7 @@ from groundstation.intents.driving import (
 from groundstation.intents.links import CloseLink
 from groundstation.intents.services import CancelRequest, ServiceIntent
 from groundstation.intents.session import Quit, RenewLease, ReportKeyReleases, SetKeyGate, Watch
+from groundstation.intents.setup import SETUP_INTENTS
 from groundstation.intents.union import AnyIntent
 from groundstation.intents.vehicle import (
     Arm,
@@ -220,6 +221,9 @@ class IntentHandler:
         """Go neutral for the vehicles behind the link; the shell closes it after that."""
         self._link_closing.begin(intent.link, now)
 
+    def _leave_to_doctor(self, intent: Intent, now: float) -> None:
+        """Do nothing more: station/doctor_desk.py has carried it out."""
+
     def _quit(self, intent: Quit, now: float) -> None:
         self._operator.sticks.block(now)
         self._driving.end()
@@ -264,6 +268,7 @@ HANDLERS: dict[type[Intent], Callable[[IntentHandler, Any, float], None]] = {
     CloseLink: IntentHandler._close_link,
     Quit: IntentHandler._quit,
     **dict.fromkeys(SERVICE_CALLS, IntentHandler._start_request),
+    **dict.fromkeys(SETUP_INTENTS, IntentHandler._leave_to_doctor),
 }
 """Intent -> method, for all that are not commands to a vehicle. AddLink, StartSimulator and
 the rest of CloseLink are the shell's, groundstation/connect."""

@@ -74,10 +74,14 @@ class LinkStats:
         )
 
     @property
+    def newest(self) -> tuple[LinkReport, ...]:
+        """The newest report of each link."""
+        return tuple(samples[-1].report for samples in self._samples.values())
+
+    @property
     def signing(self) -> tuple[int, ...]:
         """System ids whose newest frame was signed, on any link."""
-        newest = (samples[-1].report for samples in self._samples.values())
-        return tuple(sorted({system for report in newest for system in report.signing}))
+        return tuple(sorted({system for report in self.newest for system in report.signing}))
 
     def capacity(self, link: int) -> float | None:
         """Return how many bytes/s a link takes now; None if unknown."""

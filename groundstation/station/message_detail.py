@@ -85,6 +85,9 @@ class MessageDetail:
         self._place = place
         self._kept.clear()
         self._traffic.set_taps(TAPS, {} if place is None else {place: self._keep})
+        kind = None if place is None else self._traffic.find(place)
+        if kind is not None:
+            self._kept.append((kind.at, kind.newest))
 
     def _keep(self, message: Message, now: float) -> None:
         if not self._kept or now - self._kept[-1][0] >= SPACING:
@@ -119,9 +122,9 @@ class MessageDetail:
 
 
 def _spark(kind: type[Message], field: str, messages: list[Message]) -> str:
-    """Return a bar for each message, from the lowest to the highest value; empty for what is no single number."""
+    """Return a bar for each message, from the lowest to the highest value; empty for flags, texts and arrays."""
     read = make_reader(kind, field, -1)
-    if read is None or not messages:
+    if read is None or not messages or kind.fielddisplays_by_name.get(field) == "bitmask":
         return ""
     values = [read(message) for message in messages]
     known = [value for value in values if value is not None]

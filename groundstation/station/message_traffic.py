@@ -7,7 +7,6 @@ from itertools import groupby
 
 from dialects.enum_names import enum_names
 from dialects.messages import Message
-from groundstation.snapshot import MessageRate
 from groundstation.station.message_filter import parse_filter, sorted_rows
 from groundstation.station.message_kind import BUCKET, BUCKETS, WINDOW, MessageKind, Tap
 from groundstation.station.unknown_messages import UnknownMessages
@@ -121,20 +120,6 @@ class MessageTraffic:
         return tuple(taps[place] for taps in self._taps.values() if place in taps)
 
     # ---- for the screen ----
-
-    def build_rates(self, system: int, now: float) -> tuple[MessageRate, ...]:
-        """Return the rates of one vehicle, and those of what we sent to all, by name."""
-        self._end_buckets_until(now)
-        sums: dict[tuple[bool, str], tuple[float, int]] = {}
-        for (sent, other, _), kinds in self._kinds.items():
-            if sent or other == system:
-                for name, kind in kinds.items():
-                    rate, count = sums.get((sent, name), (0.0, 0))
-                    sums[sent, name] = rate + kind.rate, count + kind.count
-        return tuple(
-            MessageRate(name=name, rate=rate, count=count, sent=sent)
-            for (sent, name), (rate, count) in sorted(sums.items())
-        )
 
     def build_page(self, request: MessagesRequest, now: float, wall: float) -> MessagesPage:
         """Return the rows that a screen shows."""

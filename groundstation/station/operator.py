@@ -158,6 +158,15 @@ class OperatorSession:
         changed, self._sent_demand = axes != self._sent_demand, axes
         return changed
 
+    @property
+    def moves(self) -> bool:
+        """The last demand sent requests motion."""
+        return not self._sent_demand.neutral
+
+    def input_age(self, now: float) -> float | None:
+        """Return the time since the last input, s; None without any."""
+        return None if self._last_input_at is None else now - self._last_input_at
+
     def _check_lease(self, now: float) -> None:
         """Release all keys when the lease has run out, whichever event of a thawed process comes first.
 

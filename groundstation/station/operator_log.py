@@ -10,6 +10,7 @@ from groundstation.intents.base import Intent
 from groundstation.intents.driving import STOP_KEY, ClearEmergencyStop, DriveKeyDown, EmergencyStop, SetStyle, Stop
 from groundstation.intents.links import AddLink, CloseLink
 from groundstation.intents.session import Quit, StartSimulator
+from groundstation.intents.setup import Calibrate, RebootVehicle, RunChecks
 from groundstation.intents.vehicle import (
     Arm,
     Disarm,
@@ -45,6 +46,9 @@ TEXTS: dict[type[Intent], Callable[[Any], str]] = {
     KeepControl: lambda _: "keep control",
     SelectVehicle: lambda intent: f"select vehicle {intent.system}",
     SelectNextVehicle: lambda _: "select the next vehicle",
+    RunChecks: lambda _: "run the pre-arm checks",
+    RebootVehicle: lambda _: "restart the vehicle",
+    Calibrate: lambda intent: f"calibrate {intent.kind}",
     StartSimulator: lambda _: "start the simulator",
     AddLink: lambda intent: f"open {intent.endpoint}{' to watch only' if intent.watch_only else ''}",
     CloseLink: lambda _: "close a link",

@@ -14,6 +14,7 @@ from groundstation.station.service_desk import ServiceDesk
 from groundstation.station.view_feed import ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.param_requests import param_type_name
+from groundstation.vehicles.param_writer import MAX_CHANGES
 from groundstation.views.base import ViewRequest
 from groundstation.views.params import (
     ParamDiff,
@@ -35,6 +36,8 @@ MAX_INFOS = 64
 """Parameters whose texts are sent at once."""
 MAX_GAPS = 10
 """Missing indexes that are named."""
+MAX_TEXT = 200_000
+"""Characters of a file, less than a packet of the pipe; QGroundControl's form of 1235 parameters has 60,000."""
 PERIOD = 0.25
 """Least s between two views of a kind."""
 _AUTOPILOTS = {int(Autopilot.ARDUPILOT): "ardupilot", int(Autopilot.PX4): "px4"}
@@ -69,6 +72,7 @@ class ParamViews:
         client = contact.services.params.client if contact.services else None
         if contact.services is not None and params and not contact.services.params.fetching:
             contact.services.metadata.want()
+        missing = client.missing if client else ()
         groups = groups_of(params)
         chosen = choose(params, docs, groups, request, self._ranks)
         first = max(0, min(request.first, len(chosen) - 1))
@@ -86,7 +90,8 @@ class ParamViews:
             ended=requests.ended,
             groups=count_groups(params, groups),
             changed=sum(map(is_changed, params.values())),
-            missing=client.missing if client else (),
+            missing=len(missing),
+            gaps=missing[:MAX_GAPS],
             autopilot=_AUTOPILOTS.get(int(contact.state.autopilot), "other"),
             texts=self._texts(contact, docs),
             file=contact.services.param_file.name if contact.services else "",
@@ -121,7 +126,12 @@ class ParamViews:
         found = compare(opened.file, self._params(contact), contact.state.component)
         different = tuple(sorted((name, param.value, wanted) for name, wanted, param in found.different))
         return ParamDiff(
-            contact.state.system, opened.name, found.same, different, len(found.only_vehicle), found.only_file
+            contact.state.system,
+            opened.name,
+            found.same,
+            different[:MAX_CHANGES],
+            len(found.only_vehicle),
+            found.only_file[:MAX_CHANGES],
         )
 
     def _build_export(self, request: ParamExportRequest, now: float, wall: float) -> ParamExport | None:
@@ -138,6 +148,8 @@ class ParamViews:
             return ParamExport(request.number, "", 0, "there is nothing to save")
         state = contact.state
         text = format_params(chosen, ParamForm(request.form), vehicle=state.system, component=state.component)
+        if len(text) > MAX_TEXT:
+            return ParamExport(request.number, "", 0, "too many parameters for the screen: groundstation param save")
         return ParamExport(request.number, text, len(chosen))
 
     # ---- parts ----

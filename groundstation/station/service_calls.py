@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from dialects.enums import MissionType
+from dialects.enums import Command, MissionType
 from groundstation.formats.plan import Home, Plan, for_vehicle
 from groundstation.intents.files import EraseLogs, GetFile, GetLog, ListFolder, ListLogs, PutFile, RemoveFile
 from groundstation.intents.plan import (
@@ -30,6 +30,8 @@ from groundstation.intents.services import (
     StoreParams,
     WriteParams,
 )
+from groundstation.intents.setup import Calibrate, RebootVehicle, RunChecks
+from groundstation.vehicles.calibration import KINDS, REQUEST
 from groundstation.vehicles.services import VehicleServices
 from link.services.mission.items import Items, MissionItem
 
@@ -44,6 +46,25 @@ class ServiceCall:
     """What is requested, for the case that there is no vehicle."""
     make: Callable[[VehicleServices, Any, float], None]
     """Called with the services of the vehicle, the intent and the time."""
+
+
+SETUP = "setup"
+"""The service of the requests of the Setup screen."""
+
+AUTOPILOT = 1.0
+"""Parameter 1 of PREFLIGHT_REBOOT_SHUTDOWN: restart the autopilot, not its computer."""
+
+
+def _command(what: str, command: Command, *params: float) -> ServiceCall:
+    """Return a call that is one command."""
+    return ServiceCall(
+        SETUP, what, lambda services, intent, now: services.commands.send(intent.request, command, params, what, now)
+    )
+
+
+def _calibrate(services: VehicleServices, intent: Calibrate, now: float) -> None:
+    kind = KINDS[intent.kind]
+    services.commands.send(intent.request, kind.command, kind.params, f"{REQUEST}{intent.kind}", now)
 
 
 def _upload(services: VehicleServices, intent: UploadPlan, now: float) -> None:
@@ -174,5 +195,8 @@ SERVICE_CALLS: dict[type[ServiceIntent], ServiceCall] = {
             intent.request, intent.component, intent.message, intent.name, now
         ),
     ),
+    RunChecks: _command("pre-arm checks", Command.RUN_PREARM_CHECKS),
+    RebootVehicle: _command("reboot", Command.PREFLIGHT_REBOOT_SHUTDOWN, AUTOPILOT),
+    Calibrate: ServiceCall(SETUP, "calibrate", _calibrate),
 }
 """Intent -> call."""

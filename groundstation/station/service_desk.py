@@ -215,4 +215,4 @@ class ServiceDesk:
 def _waits(services: VehicleServices, number: int) -> str:
     if services.transfers.waits(number):
         return "waits for the vehicle to be back"
-    return "waits while you drive: the line is slow" if services.held else ""
+    return "waits: you drive, and the line is slow" if services.held else ""

@@ -12,6 +12,8 @@ from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.station.charts.desk import ChartDesk
 from groundstation.station.commander import Commander
 from groundstation.station.departure import Departure
+from groundstation.station.doctor_desk import DoctorDesk
+from groundstation.station.drive_display import DriveDisplay
 from groundstation.station.driven import DrivenVehicle
 from groundstation.station.driving import DrivingController
 from groundstation.station.handover import Handover
@@ -34,6 +36,8 @@ from groundstation.station.vehicle_queries import VehicleQueries
 from groundstation.station.view_feed import ViewFeed, ViewSource
 from groundstation.vehicles.fleet import Contact, Fleet
 from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.motor_outputs import is_turn
+from groundstation.views.doctor import DoctorRequest
 from groundstation.views.links import Program
 from groundstation.views.log import LogRequest
 from link.core import LinkReport, Outgoing, Received
@@ -81,6 +85,10 @@ class Station:
         self._handover = Handover(self.fleet, self._commander, self._driving, self.log, system)
         self._queries = VehicleQueries(self.fleet, self._commander, self._links, self.log, self.services)
         self._timesync = TimesyncClient(system)
+        self._doctor = DoctorDesk(
+            self.fleet, self.services, self._queries, self._links, self.operator, (system, COMPONENT)
+        )
+        self._display = DriveDisplay(self.fleet, self.operator, self._timesync, system)
         self._link_views = LinkViews(
             self.fleet,
             self._commander,
@@ -102,9 +110,10 @@ class Station:
                 **ParamViews(self.fleet, self.services, texts.files).sources,
                 **self._charts.sources,
                 **self._detail.sources,
+                **self._doctor.sources,
+                **self._display.sources,
             }
         )
-        """Request -> its source."""
         self.link_closing = LinkClosing(self.operator, self.fleet, self._links)
         self._intents = IntentHandler(
             self.operator,
@@ -144,14 +153,13 @@ class Station:
         self._heartbeat.greet(received.peer, now)
         contact.state.receive(received, now)
         contact.details.receive(received, now)
+        self._display.receive(contact, received, now)
         self._queries.receive(contact, received, now)
         self._handover.receive(contact, received, now)
         self.services.receive(contact, received, now)
-        match received.message:
-            case m.StatusText() as message:
-                self._handle_statustext(message, contact, now)
-            case m.RoverDriveStatus() as message if message.source_system == self._system:
-                contact.state.latency.record_applied(message.source_seq, now, message.demand_age_ms / 1000)
+        self._doctor.receive(contact, received, now)
+        if isinstance(received.message, m.StatusText):
+            self._handle_statustext(received.message, contact, now)
         if contact is self.fleet.selected:
             self._timesync.receive(received, now)
         self._outbox += handle_request(received, now, (self._system, COMPONENT))
@@ -162,7 +170,9 @@ class Station:
         self._expire_lease(now)
         self.log.expire(now)
         self.fleet.update(now)
+        self._display.tick(now)
         self._commander.tick(now)
+        self._doctor.tick(now, watched=self.views.is_watching(DoctorRequest))
         self._handover.tick(now)
         if self.operator.live:
             self._queries.tick(now)
@@ -196,19 +206,24 @@ class Station:
         commands = self._commander.messages_to_send() + self._queries.messages_to_send()
         services = self.services.messages_to_send()  # repeated later if they are dropped here
         return (
-            demands + commands + self._timesync.messages_to_send() + outbox + (services if self.operator.live else [])
+            demands
+            + commands
+            + self._doctor.messages_to_send()
+            + self._timesync.messages_to_send()
+            + outbox
+            + (services if self.operator.live else [])
         )
 
     def handle_sent(self, message: m.Message, sequence: int, now: float) -> None:
         """Record that a message was sent under this packet sequence number."""
         self._traffic.count_sent(message, now)
+        self._display.handle_sent(message, now)
         self._driving.handle_sent(message, sequence, now)
 
     def may_send(self, message: m.Message, now: float) -> bool:
-        """Return False for a demand that was made before the process stood still."""
-        return not isinstance(message, DEMANDS) or not self.operator.stall.is_stalled(now)
-
-    # ---- the shell around the core ----
+        """Return False for what moves a vehicle and was made before the process stood still."""
+        moves = isinstance(message, DEMANDS) or is_turn(message)
+        return not moves or not self.operator.stall.is_stalled(now)
 
     def report_to_watchdog(self, now: float) -> tuple[DrivenVehicle, ...]:
         """Return the vehicles that the watchdog stops if no further call follows within STALL_TIMEOUT."""
@@ -216,12 +231,16 @@ class Station:
         self.operator.stall.record_report(now)
         return self._driving.driven_vehicles(now)
 
-    def handle_intent(self, intent: AnyIntent, now: float) -> None:
-        """Carry out what the operator wants; the resulting messages are ready to be sent."""
+    def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
+        """Carry out what the operator wants, and queue its messages. `read_at`: when the screen read the key."""
         self._expire_lease(now)
         self._charts.mark_key(intent, now)
         self._operator_log.handle(intent, now)
+        self._doctor.handle(intent, now)
+        if intent.is_input:
+            self._driving.key_read_at = now if read_at is None else read_at
         self._intents.handle(intent, now)
+        self._driving.key_read_at = None
         self._log_driving(now)
 
     def set_simulator_state(self, state: str | None) -> None:
@@ -245,7 +264,7 @@ class Station:
         """Build the snapshot for the screen; `now` and `wall` are the same moment on both clocks."""
         self._snapshot_count += 1
         selected = self.fleet.selected
-        return Snapshot(
+        snapshot = Snapshot(
             number=self._snapshot_count,
             uptime=now - self._started,
             endpoints=self._endpoints,
@@ -263,10 +282,12 @@ class Station:
             ),
             links=self._links.build_views(self._timesync.round_trip),
             texts=self.log.build_lines(now, wall),
-            messages=self._traffic.build_rates(selected.state.system if selected else 0, now),
+            faults=self._doctor.faults,
             simulator=self._simulator_state,
             transfers=self.services.progress,
         )
+        self._doctor.look(snapshot, now)
+        return snapshot
 
     def _expire_lease(self, now: float) -> None:
         """Go neutral when the lease has run out: before any intent, because after a freeze intents may come first.
@@ -291,6 +312,7 @@ class Station:
             contact.state.handle_text(text)
             self._commander.handle_statustext(system, text, message.severity, now)
             self.services.handle_text(contact, text, message.severity, now)
+            self._doctor.handle_text(contact, text, now)
 
     def _vehicle_view(self, contact: Contact, now: float) -> VehicleView:
         state, commander = contact.state, self._commander
@@ -301,10 +323,8 @@ class Station:
             control_wait=self._handover.waits_for(contact, now),
             emergency_stop=state.emergency_stop or commander.is_locked(state.system),
             emergency_progress=None if state.emergency_stop else commander.emergency_progress(state.system, now),
-            without_link=contact.without_link,
             refusal=commander.last_refusal(state.system, now),
-            obeys=contact.settings_check.obeys if contact.settings_check else None,
-            warnings=contact.warnings,
+            **self._display.build_fields(contact, now),
         )
 
     def _waiting(self) -> str | None:

@@ -40,9 +40,6 @@ class VehicleQueries:
         if own and contact.stream_requests.handle_message(received.message, now):
             contact.check_settings_again()
             contact.state.restart()
-        if contact.servo_functions is not None:
-            contact.servo_functions.receive(received, now)
-            contact.state.servo_names = contact.servo_functions.names
         if contact.settings_check is not None:
             self._log_warnings(contact, contact.settings_check.receive(received, now), now)
 
@@ -53,7 +50,7 @@ class VehicleQueries:
             if contact.lost_at is None:
                 self._query_dialect(contact, now)
                 self._query_settings(contact, now)
-                self._query_outputs(contact, now)
+                self._query_params(contact, now)
                 self._request_telemetry(contact, now)
 
     def request_version(self, contact: Contact, now: float) -> None:
@@ -97,9 +94,8 @@ class VehicleQueries:
             self._outbox += contact.settings_check.tick(now)
             self._log_warnings(contact, contact.settings_check.pop_missing_warning(), now)
 
-    def _query_outputs(self, contact: Contact, now: float) -> None:
-        if contact.servo_functions is not None:
-            self._outbox += contact.servo_functions.tick(now)
+    def _query_params(self, contact: Contact, now: float) -> None:
+        self._outbox += contact.drive.params.tick(now)
 
     def _log_warnings(self, contact: Contact, warnings: list[str], now: float) -> None:
         for warning in warnings:

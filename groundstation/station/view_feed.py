@@ -41,13 +41,24 @@ class ViewFeed:
         self._sources[kind] = source
 
     def watch(self, requests: Sequence[ViewRequest]) -> None:
-        """Answer these requests from now on and no others. A changed request keeps the rate of its kind."""
+        """Answer these requests from now on and no others. A changed request keeps the rate of its kind.
+
+        One without a source is ignored: its screen shows that nothing has arrived.
+        """
         before, self._watched = self._watched, {}
-        for request in requests:
+        for request in (each for each in requests if type(each) in self._sources):
             watched = before.get(type(request)) or _Watched(request)
             if watched.request != request:
                 watched.request, watched.sent = request, None
             self._watched[type(request)] = watched
+
+    def is_watching(self, kind: type[ViewRequest]) -> bool:
+        """Return whether the screen watches a view of this kind."""
+        return kind in self._watched
+
+    def build(self, request: ViewRequest, now: float, wall: float) -> View | None:
+        """Build the view for a request at once, for a station without a screen."""
+        return self._sources[type(request)].build(request, now, wall)
 
     def send_due(self, send: Callable[[View], bool], now: float, wall: float) -> None:
         """Send the views that are due and have changed. `send` returns False for one that is to be tried again."""

@@ -90,7 +90,7 @@ class ConsoleApp(App[int]):
         self._kept = context.kept
         self.drive = DriveScreen(context)
         self._navigator = ScreenNavigator(self, context)
-        self._actions = {"app.quit": self.request_quit, **self._navigator.actions}
+        self._actions = {"app.quit": self.request_quit, **self._navigator.actions, **self.drive.actions}
 
     # ---- start and end ----
 
@@ -208,6 +208,7 @@ class ConsoleApp(App[int]):
             pressed=self._pressed.names,
             key_hint=self._key_hint.text(self._clock()),
             terminal_round_trip=self.gate.ping.round_trip,
+            terminal_silence=self.gate.ping.waited(self._clock()),
             ascii=self._appearance.look.ascii,
             still=self._appearance.look.reduce_motion,
             kept=self._kept,
@@ -277,7 +278,7 @@ class ConsoleApp(App[int]):
         if self.screen is self.drive or not isinstance(self.screen, ConsoleScreen):
             return
         action = self._keys.get_action(event.key)
-        if action is not None:
+        if action is not None and action.id not in self.drive.actions:
             self.perform_action(action)
         elif event.key == "escape":
             self._navigator.go_back()
@@ -285,6 +286,8 @@ class ConsoleApp(App[int]):
     def on_key_up(self, event: KeyUp) -> None:
         """Switch the key cap off."""
         self._pressed.release(event.key)
+        if (shown := self._navigator.shown) is not None:
+            shown.release_key(event.key)
         self.drive.light_keycaps(self._pressed.names)
 
     def _light(self, key: str) -> None:

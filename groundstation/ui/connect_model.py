@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
+from pathlib import Path
 
 from groundstation.intents.links import AddLink
 from groundstation.recent.recent import RecentEndpoint, RecentEndpoints
 from groundstation.recent.recent_file import RecentFile
 from groundstation.simulators import SIMULATORS
+from groundstation.ui.local_files import LocalFile, list_logs
 from groundstation.views.connect import ConnectView, HeardRow, LinkAttempt, PortRow
 from link.endpoint import ANY_ADDRESSES, LISTENING, EndpointError, parse_endpoint
 
@@ -24,6 +26,8 @@ class Panel(IntEnum):
     RECENT = 1
     PORTS = 2
     SIMULATORS = 3
+    LOGS = 4
+    """Only where there is room for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +42,18 @@ class Choice:
     """Vehicle to select."""
     simulator: str = ""
     """Kind of simulator to start."""
+    file: str = ""
+    """To show on the Files screen."""
 
 
 class ConnectModel:
     """Lives as long as the app. `take_number` returns numbers for requests."""
 
-    def __init__(self, take_number: Callable[[], int], file: RecentFile | None = None) -> None:
+    def __init__(self, take_number: Callable[[], int], folder: Path, file: RecentFile | None = None) -> None:
+        self._folder = folder
+        self.logs: tuple[LocalFile, ...] = ()
+        self.shows_logs = False
+        """There is room for the panel of the logs."""
         self._take_number = take_number
         self._file = file or RecentFile()
         self.recent = RecentEndpoints()
@@ -53,6 +63,7 @@ class ConnectModel:
         self._cursors = dict.fromkeys(Panel, 0)
         self._awaited: AddLink | None = None
         self._wanted_system: int | None = None
+        self._wanted_name = ""
         self._accepted: set[str] = set()
         """Endpoints that listen to the whole network and were agreed to."""
         self._named: set[tuple[str, str]] = set()
@@ -60,7 +71,8 @@ class ConnectModel:
     # ---- lists ----
 
     def load(self) -> str | None:
-        """Read the endpoints used before; return what is wrong with the file."""
+        """Read the endpoints used before, and which logs are here; return what is wrong with the file."""
+        self.logs = list_logs(self._folder)
         self.recent = self._file.load()
         return self._file.warning
 
@@ -89,7 +101,7 @@ class ConnectModel:
 
     def count(self, panel: Panel) -> int:
         """Return how many rows a panel has."""
-        return (len(self.heard), len(self.entries), len(self.ports), len(SIMULATORS))[panel]
+        return (len(self.heard), len(self.entries), len(self.ports), len(SIMULATORS), len(self.logs))[panel]
 
     def cursor(self, panel: Panel) -> int:
         """Return the row of the cursor in a panel."""
@@ -105,7 +117,9 @@ class ConnectModel:
 
     def choose_panel(self, step: int) -> None:
         """Choose the next panel, or the one before."""
-        self.chosen = Panel((self.chosen + step) % len(Panel))
+        panels = [panel for panel in Panel if panel is not Panel.LOGS or self.shows_logs]
+        at = panels.index(self.chosen) if self.chosen in panels else 0
+        self.chosen = panels[(at + step) % len(panels)]
 
     def change_baud(self) -> None:
         """Choose the next baud rate."""
@@ -128,7 +142,14 @@ class ConnectModel:
                 return Choice("starts a simulated rover", simulator=SIMULATORS[0].kind)
             return Choice("")
         at = self.cursor(self.chosen)
-        return (self._heard_choice, self._recent_choice, self._port_choice, self._simulator_choice)[self.chosen](at)
+        choices = (
+            self._heard_choice,
+            self._recent_choice,
+            self._port_choice,
+            self._simulator_choice,
+            self._log_choice,
+        )
+        return choices[self.chosen](at)
 
     def _heard_choice(self, at: int) -> Choice:
         row = self.heard[at]
@@ -145,6 +166,10 @@ class ConnectModel:
     def _simulator_choice(self, at: int) -> Choice:
         row = SIMULATORS[at]
         return Choice(f"starts a simulator: {row.label}", simulator=row.kind)
+
+    def _log_choice(self, at: int) -> Choice:
+        name = self.logs[at].name
+        return Choice(f"shows {name} on the Files screen", file=name)
 
     def _opening(self, endpoint: str) -> Choice:
         if self.view is not None and endpoint in self.view.endpoints:
@@ -166,6 +191,8 @@ class ConnectModel:
         """Return the intent to open an endpoint. `system` is selected once it is heard there."""
         self._accepted.add(endpoint)
         self._wanted_system = system
+        heard = (row.name for row in self.heard if (row.endpoint, row.system) == (endpoint, system))
+        self._wanted_name = next(heard, "")
         self._awaited = AddLink(request=self._take_number(), endpoint=endpoint, watch_only=watch_only)
         return self._awaited
 
@@ -193,7 +220,8 @@ class ConnectModel:
         if attempt is None or attempt.state != "open" or self._wanted_system not in (None, *vehicles):
             return None
         self._awaited = None
-        self._change(lambda recent: recent.add(attempt.endpoint, now))
+        name = self._wanted_name
+        self._change(lambda recent: recent.add(attempt.endpoint, now, name))
         return self._wanted_system or 0
 
     def give_up(self) -> str:

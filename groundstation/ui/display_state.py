@@ -66,6 +66,8 @@ class DisplayState:
     """Why the last key did nothing, if that has a usual reason."""
     terminal_round_trip: float | None = None
     """Seconds from a ping of the terminal to its answer."""
+    terminal_silence: float | None = None
+    """Seconds for which an answer of the terminal is missing; None if it never answered."""
     screen: ScreenInfo = DRIVE_INFO
     ascii: bool = False
     """The terminal shows ASCII characters only."""

@@ -4,28 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, TypeVar
 
-from groundstation.snapshot import VehicleView
 from groundstation.ui.alerts import hint
-from groundstation.ui.colours import BLUE, GREEN
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.stops_model import is_near
 from groundstation.ui.widgets.alert import AlertLine, AlertValue, HintLine
-from groundstation.ui.widgets.chart import Chart, Samples, Series
 from groundstation.ui.widgets.footer import FooterValue, KeyFooter
 from groundstation.ui.widgets.heading_tape import HeadingTape, heading_degrees
+from groundstation.ui.widgets.health import HealthPanel
 from groundstation.ui.widgets.horizon import Horizon, HorizonValue
 from groundstation.ui.widgets.instrument import Instrument
+from groundstation.ui.widgets.key_to_motor import WayPanel, WayValue
 from groundstation.ui.widgets.keycaps import Keycaps, KeycapsValue
 from groundstation.ui.widgets.links import LinksPanel
 from groundstation.ui.widgets.log import LogPanel
-from groundstation.ui.widgets.rates import RatesPanel
+from groundstation.ui.widgets.mission import MissionStrip, MissionValue
 from groundstation.ui.widgets.speed import SpeedReadout, speed_text
 from groundstation.ui.widgets.status import StatusBar, StatusBarValue
 from groundstation.ui.widgets.sticks import StickBars, build_bars
+from groundstation.ui.widgets.stops import StopsLine, StopsPanel, StopsValue
 from groundstation.ui.widgets.tabs import TabBar, TabBarValue
-from groundstation.ui.widgets.track import TrackMap, TrackValue
 from groundstation.ui.widgets.waiting import WaitingPage, WaitingValue
 
 Value = TypeVar("Value")
@@ -43,7 +42,11 @@ class InstrumentRow:
     """Called with the first value and `id=`."""
     value: Callable[[DisplayState], Any]
     slow: bool = False
-    """Shown only in the wide layout, at 2 Hz: charts and tables, which change all their lines each time."""
+    """Shown at 2 Hz: tables whose figures change all the time."""
+    urgent: Callable[[DisplayState], bool] | None = None
+    """While it holds, a slow row is shown with each snapshot."""
+    layout: str = ""
+    """Class of the screen in which it is shown, see drive_layout.py; "": in all."""
 
 
 def _row(
@@ -53,18 +56,16 @@ def _row(
     value: Callable[[DisplayState], Value],
     *,
     slow: bool = False,
+    urgent: Callable[[DisplayState], bool] | None = None,
+    layout: str = "",
 ) -> InstrumentRow:
     """Return a row whose value has the type that its widget shows, which mypy checks here."""
-    return InstrumentRow(id, place, build, value, slow)
+    return InstrumentRow(id, place, build, value, slow, urgent, layout)
 
 
-def _samples(now: DisplayState, field: Callable[[VehicleView], float | None]) -> Samples:
-    vehicle = now.snapshot.vehicle
-    return () if vehicle is None else ((now.snapshot.uptime, (field(vehicle),)),)
+def _mission(now: DisplayState) -> MissionValue:
+    return MissionValue.from_vehicle(now.snapshot.vehicle)
 
-
-_SPEED_CHART = partial(Chart, title="speed", unit="m/s", series=(Series("", GREEN),), step=0.5)
-_BATTERY_CHART = partial(Chart, title="battery", unit="V", series=(Series("", BLUE),), step=0.5)
 
 _STATUS = _row("status", "top", StatusBar, StatusBarValue.from_state)
 _TABS = _row("tabs", "top", TabBar, TabBarValue.from_state)
@@ -78,17 +79,20 @@ INSTRUMENTS: tuple[InstrumentRow, ...] = (
     _STATUS,
     _TABS,
     _row("waiting", "top", WaitingPage, WaitingValue.from_state),
-    _row("track", "left", TrackMap, lambda now: TrackValue.from_vehicle(now.snapshot.vehicle, ascii=now.ascii)),
+    _row("mission-line", "left", MissionStrip, _mission, slow=True, layout="-narrow"),
     _row("speed", "motion", SpeedReadout, lambda now: speed_text(now.snapshot.vehicle)),
     _row("horizon", "motion", Horizon, lambda now: HorizonValue.from_vehicle(now.snapshot.vehicle)),
     _row("tape", "heading", HeadingTape, lambda now: heading_degrees(now.snapshot.vehicle)),
     _row("sticks", "drive", StickBars, lambda now: build_bars(now.snapshot)),
     _row("keycaps", "drive", Keycaps, KeycapsValue.from_state),
-    _row("speeds", "charts", _SPEED_CHART, lambda now: _samples(now, lambda vehicle: vehicle.speed), slow=True),
-    _row("battery", "charts", _BATTERY_CHART, lambda now: _samples(now, lambda vehicle: vehicle.battery_voltage),
-         slow=True),
-    _row("rates", "traffic", RatesPanel, lambda now: now.snapshot.messages, slow=True),
-    _row("links", "traffic", LinksPanel, lambda now: now.snapshot.links, slow=True),
+    _row("way", "readings", WayPanel, lambda now: WayValue.from_snapshot(now.snapshot), slow=True, urgent=is_near,
+         layout="-wide"),
+    _row("stops", "readings", StopsPanel, StopsValue.from_state, slow=True, urgent=is_near, layout="-wide"),
+    _row("health", "readings", HealthPanel, lambda now: now.snapshot.vehicle.health if now.snapshot.vehicle else (),
+         slow=True, layout="-wide"),
+    _row("links", "readings", LinksPanel, lambda now: now.snapshot.links, slow=True, layout="-tall"),
+    _row("mission", "bottom", MissionStrip, _mission, slow=True, layout="-wide"),
+    _row("stops-line", "bottom", StopsLine, StopsValue.from_state, slow=True, urgent=is_near, layout="-narrow"),
     _row("log", "bottom", LogPanel, lambda now: now.snapshot.texts),
     _row("alert", "bottom", AlertLine, AlertValue.from_state),
     _HINT,

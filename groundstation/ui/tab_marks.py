@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from groundstation.ui.colours import BLUE
+from groundstation.ui.colours import BLUE, RED
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.params.model import ParamModel
@@ -31,13 +31,30 @@ def _pending_params(now: DisplayState) -> TabMark | None:
     return TabMark(f"✎{pending}", BLUE, short="✎") if pending else None
 
 
+def _transfers(now: DisplayState) -> TabMark | None:
+    """Return how far the downloads and uploads are."""
+    share = now.snapshot.transfers
+    return None if share is None else TabMark(f" {100 * share:.0f}%", BLUE)
+
+
+def _faults(now: DisplayState) -> TabMark | None:
+    """Return how many links of the chain from the finger to the wheel stop the operator."""
+    count = now.snapshot.faults
+    return TabMark(f" {count}✗", RED, short=f"{count}✗") if count else None
+
+
 def _edited_plans(now: DisplayState) -> TabMark | None:
     """Return a pencil while a plan is not as on the vehicle."""
     model = now.kept.get(MapModel)
     return TabMark("✎", BLUE) if isinstance(model, MapModel) and model.editor.edited else None
 
 
-TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {"map": _edited_plans, "params": _pending_params}
+TAB_MARKS: dict[str, Callable[[DisplayState], TabMark | None]] = {
+    "map": _edited_plans,
+    "params": _pending_params,
+    "setup": _faults,
+    "files": _transfers,
+}
 """Id of a row in SCREENS -> its mark, None for no mark."""
 
 

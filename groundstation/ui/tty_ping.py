@@ -10,6 +10,9 @@ PERIOD = 0.25
 MISSES = 2
 """Unanswered pings until the terminal counts as silent: 0.5 s, as long as MAN_TIMEOUT of the vehicle."""
 
+SILENT_AFTER = MISSES * PERIOD
+"""s."""
+
 
 class TerminalPing:
     """Pings of one terminal. One that never answered never counts as silent: it may not support the request."""
@@ -41,7 +44,13 @@ class TerminalPing:
         if self._unanswered:
             self.round_trip = now - self._unanswered.popleft()
 
+    def waited(self, now: float) -> float | None:
+        """Return for how long an answer is missing, s; None for a terminal that never answered."""
+        if not self._ever:
+            return None
+        return 0.0 if self._waiting_since is None else now - self._waiting_since
+
     def is_silent(self, now: float) -> bool:
         """Return whether a terminal that used to answer has missed too many pings."""
-        waited = 0.0 if self._waiting_since is None else now - self._waiting_since
-        return self._ever and waited > MISSES * PERIOD
+        waited = self.waited(now)
+        return waited is not None and waited > SILENT_AFTER

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from groundstation.vehicles.requests import RequestBook
+from groundstation.vehicles.requests import RequestBook, describe_holes
 from link.core import Outgoing, Received
 from link.services.ftp.client import FtpClient
 from link.services.ftp.job import TRIES, FtpOutcome
@@ -105,7 +105,7 @@ class FileRequests:
         self._handle_outcomes(now)
         for number, job in self._jobs.items():
             if job == self._client.number:
-                self._book.advance(number, *self._client.progress)
+                self._book.advance(number, *self._client.progress, describe_holes(self._client.holes))
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""

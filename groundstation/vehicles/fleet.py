@@ -12,13 +12,14 @@ from dialects.messages import Heartbeat, Message
 from dialects.modes import Mode
 from groundstation.vehicles.demand_stream import DemandStream
 from groundstation.vehicles.dialect_probe import DialectProbe
+from groundstation.vehicles.drive_readings import DriveReadings
 from groundstation.vehicles.message_log import STATE, MessageLog
-from groundstation.vehicles.outputs import ServoFunctions
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.settings_check import SETTINGS, SettingsCheck
 from groundstation.vehicles.state_changes import StateChanges
 from groundstation.vehicles.stream_requests import StreamRequests
 from groundstation.vehicles.vehicle_details import VehicleDetails
+from groundstation.vehicles.vehicle_params import VehicleParams
 from groundstation.vehicles.vehicle_state import LOST_AFTER, VehicleState
 from link.core import LinkReport, Received
 from link.protocol.peer_table import MAX_PEERS
@@ -43,8 +44,8 @@ class Contact:
     """Index of the link on which the newest message of the vehicle arrived."""
     changes: StateChanges
     details: VehicleDetails
+    drive: DriveReadings
     settings_check: SettingsCheck | None = None
-    servo_functions: ServoFunctions | None = None
     demand_stream: DemandStream = field(default_factory=DemandStream)
     dialect_probe: DialectProbe = field(default_factory=DialectProbe)
     services: VehicleServices | None = None
@@ -115,8 +116,7 @@ class Contact:
         """Read the settings again: after a restart they may be others."""
         if self.settings_check is not None:
             self.settings_check.restart()
-        if self.servo_functions is not None:
-            self.servo_functions.restart()
+        self.drive.params.restart()
         if self.services is not None:
             self.services.params.forget()
 
@@ -209,12 +209,11 @@ class Fleet:
             received.peer.link,
             StateChanges(self._own_id[0]),
             VehicleDetails(state.component),
+            DriveReadings(state, VehicleParams(*self._own_id, target=target)),
         )
         self._contacts[received.system] = contact
         if state.autopilot in SETTINGS:
             contact.settings_check = SettingsCheck(SETTINGS[state.autopilot], *self._own_id, target=target)
-        if ServoFunctions.applies_to(state.autopilot):
-            contact.servo_functions = ServoFunctions(*self._own_id, target=target)
         self._selected = self._selected or contact
         self._log.add(now, "station", f"{state.name} found", Severity.NOTICE)
         return contact

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from groundstation.vehicles.requests import RequestBook
+from groundstation.vehicles.requests import RequestBook, describe_holes
 from link.core import Outgoing, Received
 from link.services.log.client import LogClient, LogOutcome, RemoteLog
 
@@ -80,7 +80,8 @@ class LogRequests:
         self._client.tick(now)
         self._handle_outcomes(now)
         if self._number is not None:
-            self._book.advance(self._number, *self._client.progress)
+            holes = describe_holes(self._client.holes)
+            self._book.advance(self._number, *self._client.progress, holes)
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""

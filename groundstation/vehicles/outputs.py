@@ -8,9 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from dialects import messages as m
-from dialects.enums import Autopilot, DriveType
-from link.core import Outgoing, Received
-from link.services.param.client import ParamClient
+from dialects.enums import DriveType
 
 PARAMS = {channel: f"SERVO{channel}_FUNCTION" for channel in range(1, 9)}
 """Output -> its parameter. ArduRover drives with the first four by default."""
@@ -27,9 +25,6 @@ DRIVE_NAMES: dict[int, tuple[str, ...]] = {
 }
 """Outputs of ROVER_DRIVE_STATUS by ROVER_DRIVE_TYPE, if there are as many."""
 
-REPEAT_AFTER, TRIES = 1.0, 3
-"""As the settings (ardupilot_checks.py). A function that is not answered stays unknown."""
-
 
 def drive_names(info: m.RoverDriveInfo | None, count: int) -> tuple[str, ...]:
     """Return the names of the outputs of a vehicle of our dialect; numbers where they are not known."""
@@ -37,45 +32,13 @@ def drive_names(info: m.RoverDriveInfo | None, count: int) -> tuple[str, ...]:
     return names if len(names) == count else tuple(f"motor {number + 1}" for number in range(count))
 
 
-class ServoFunctions:
-    """Reads SERVOn_FUNCTION of one ArduPilot vehicle, once. `system` and `component` are our ids."""
+def servo_functions(values: Mapping[str, float]) -> Mapping[int, float]:
+    """Return output -> its SERVOn_FUNCTION, as far as it is known."""
+    return {channel: values[name] for channel, name in PARAMS.items() if name in values}
 
-    def __init__(self, system: int, component: int, *, target: tuple[int, int]) -> None:
-        self._own_id = (system, component)
-        self._target = target
-        self.restart()
 
-    @staticmethod
-    def applies_to(autopilot: int) -> bool:
-        """Return whether this autopilot has these parameters."""
-        return autopilot == Autopilot.ARDUPILOT
-
-    def restart(self) -> None:
-        """Read again: the vehicle may have restarted with other functions."""
-        self._requested = False
-        self._params = ParamClient(
-            *self._own_id, target_system=self._target[0], target_component=self._target[1], repeat_after=REPEAT_AFTER,
-            tries=TRIES,
-        )  # fmt: skip
-
-    @property
-    def names(self) -> Mapping[int, str]:
-        """Return the outputs to show, by number, and what each drives; none if it drives with no output known here."""
-        functions = {channel: self._params.params.get(name) for channel, name in PARAMS.items()}
-        names = {channel: FUNCTIONS.get(param.value) for channel, param in functions.items() if param is not None}
-        found = {channel: name for channel, name in names.items() if name is not None}
-        return found or {channel: f"servo {channel}" for channel in DEFAULT_CHANNELS if channel not in names}
-
-    def receive(self, received: Received, now: float) -> None:
-        """Handle a PARAM_VALUE; other messages and other parameters are ignored."""
-        if isinstance(received.message, m.ParamValue) and received.message.param_id in PARAMS.values():
-            self._params.receive(received, now)
-
-    def tick(self, now: float) -> list[Outgoing]:
-        """Return the read requests that are due."""
-        if not self._requested:
-            self._requested = True
-            for name in PARAMS.values():
-                self._params.read(name, now)
-        self._params.tick(now)
-        return self._params.messages_to_send()
+def servo_names(values: Mapping[str, float]) -> Mapping[int, str]:
+    """Return the outputs to show, by number, and what each drives; none if it drives with no output known here."""
+    names = {channel: FUNCTIONS.get(values[name]) for channel, name in PARAMS.items() if name in values}
+    found = {channel: name for channel, name in names.items() if name is not None}
+    return found or {channel: f"servo {channel}" for channel in DEFAULT_CHANNELS if channel not in names}

@@ -77,11 +77,13 @@ class RequestBook:
         self._running[number] = self._changed[number] = report
         return True
 
-    def advance(self, number: int, done: int, total: int | None) -> None:
-        """Report progress."""
+    def advance(self, number: int, done: int, total: int | None, detail: str = "") -> None:
+        """Report progress, and what there is to say of it."""
         report = self._running.get(number)
-        if report is not None and (report.done, report.total) != (done, total):
-            self._running[number] = self._changed[number] = replace(report, done=done, total=total)
+        if report is None or number in self._refused:
+            return
+        if (report.done, report.total, report.detail) != (done, total, detail):
+            self._running[number] = self._changed[number] = replace(report, done=done, total=total, detail=detail)
 
     def accept(self, number: int, detail: str = "") -> None:
         """End a request as accepted."""
@@ -135,3 +137,8 @@ class RequestBook:
         self._refused.pop(number, None)
         if report is not None:
             self._changed[number] = replace(report, state=state, detail=detail)
+
+
+def describe_holes(holes: int) -> str:
+    """Return how many gaps a transfer has, which are requested again."""
+    return "" if not holes else "1 hole" if holes == 1 else f"{holes} holes"

@@ -7,6 +7,7 @@ SETTINGS.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from dialects.enums import Autopilot
 from dialects.messages import ParamValue
@@ -69,6 +70,16 @@ class SettingsCheck:
         return (*filter(None, found), *self._missing_warning())
 
     @property
+    def findings(self) -> tuple[tuple[str, float, str], ...]:
+        """Name, value and warning ("" for none) of each parameter that is known."""
+        return tuple((name, value, self._found.get(name) or "") for name, value in self._values.items())
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Parameters that were not answered in a whole round."""
+        return self._missing
+
+    @property
     def obeys(self) -> str | None:
         """Warning that the vehicle obeys another ground station only; None: it obeys us, or not known."""
         return next(filter(None, map(self._found.get, self._settings.obeyed)), None)
@@ -80,6 +91,11 @@ class SettingsCheck:
             return []
         self._unreported = False
         return warning
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """The values that are known."""
+        return self._values
 
     @property
     def without_link(self) -> str | None:

@@ -17,7 +17,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from dialects import messages as m
-from dialects.enums import DataStream, Result
+from dialects.enums import Autopilot, DataStream, Result
 from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS
 from link.services.command.client import CommandOutcome
 
@@ -51,6 +51,8 @@ class StreamRate:
 
     rate: float
     group: DataStream
+    only: Autopilot | None = None
+    """The autopilot that has the message; None: all."""
 
 
 STREAM_RATES: dict[int, StreamRate] = {
@@ -62,11 +64,18 @@ STREAM_RATES: dict[int, StreamRate] = {
     m.SysStatus.id: StreamRate(1.0, DataStream.EXTENDED_STATUS),
     m.GpsRawInt.id: StreamRate(1.0, DataStream.EXTENDED_STATUS),
     m.BatteryStatus.id: StreamRate(1.0, DataStream.EXTRA3),
+    m.RcChannels.id: StreamRate(2.0, DataStream.RC_CHANNELS, Autopilot.ARDUPILOT),
+    m.ActuatorOutputStatus.id: StreamRate(2.0, DataStream.RC_CHANNELS, Autopilot.PX4),
+    m.EkfStatusReport.id: StreamRate(0.5, DataStream.EXTRA3, Autopilot.ARDUPILOT),
+    m.EstimatorStatus.id: StreamRate(0.5, DataStream.EXTRA3, Autopilot.PX4),
+    m.Vibration.id: StreamRate(0.5, DataStream.EXTRA3),
+    m.MissionCurrent.id: StreamRate(1.0, DataStream.EXTENDED_STATUS),
+    m.NavControllerOutput.id: StreamRate(1.0, DataStream.EXTENDED_STATUS),
 }
 """Message id -> how to request it. Telemetry to request from a foreign vehicle is one row here."""
 
 LOAD = sum((m.MESSAGES[number].unpacker.size + FRAME) * wanted.rate for number, wanted in STREAM_RATES.items())
-"""Bytes/s of all of them together: 1240."""
+"""Bytes/s of all of them together, of both autopilots: 1790."""
 
 
 class StreamRequests:
@@ -129,10 +138,11 @@ class StreamRequests:
 
     def _missing(self, autopilot: int, now: float) -> list[int] | None:
         if autopilot in FOREIGN_AUTOPILOTS:  # they send little without a request: 1 Hz, or nothing
-            return list(STREAM_RATES)
+            return [number for number, wanted in STREAM_RATES.items() if wanted.only in (None, autopilot)]
         if now - self._since < IDENTIFY_TIMEOUT:
             return None
-        return [number for number in STREAM_RATES if number not in self._received]
+        common = [number for number, wanted in STREAM_RATES.items() if wanted.only is None]
+        return [number for number in common if number not in self._received]
 
     def _fall_back(self, messages: Collection[int]) -> None:
         for number in messages:

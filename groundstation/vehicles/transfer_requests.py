@@ -54,7 +54,7 @@ class _Transfer:
     @property
     def resumable(self) -> bool:
         """A file that the vehicle makes anew each time is not."""
-        return not self.remote.startswith("@")
+        return not self.remote.lstrip("/").startswith("@")
 
 
 class TransferRequests:
@@ -156,7 +156,7 @@ class TransferRequests:
             return
         if not report.state.ended:
             if transfer.phase is _Phase.MOVE:
-                self._book.advance(transfer.number, report.done, report.total)
+                self._book.advance(transfer.number, report.done, report.total, report.detail)
             return
         self._steps.pop(report.number, None)
         if transfer.phase is _Phase.LOCATE:

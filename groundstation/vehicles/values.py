@@ -5,7 +5,25 @@ from __future__ import annotations
 import math
 
 from dialects import messages as m
-from dialects.enums import DriveLimit, Failsafe
+from dialects.enums import Autopilot, DriveLimit, Failsafe, VehicleType
+
+_AUTOPILOTS: dict[int, str] = {Autopilot.ARDUPILOT: "ArduPilot ", Autopilot.PX4: "PX4 "}
+_KINDS: dict[int, str] = {VehicleType.GROUND_ROVER: "rover", VehicleType.SURFACE_BOAT: "boat"}
+
+
+def vehicle_name(autopilot: int, kind: int, system: int) -> str:
+    """Return a name for the driver, e.g. "Rover 1", "ArduPilot rover 1"."""
+    text = f"{_AUTOPILOTS.get(autopilot, '')}{_KINDS.get(kind, 'vehicle')} {system}"
+    return text[0].upper() + text[1:]
+
+
+def battery_values(volts: float | None, centiamperes: int, percent: int) -> dict[str, float | None]:
+    """Return the battery's fields of VehicleView."""
+    return {
+        "battery_voltage": volts,
+        "battery_current": centiamperes / 100 if centiamperes >= 0 else None,
+        "battery_remaining": percent / 100 if 0 <= percent <= 100 else None,
+    }
 
 
 def flag_words(flags: type[DriveLimit] | type[Failsafe], value: int) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ To handle another message, add a method and a row in _HANDLERS.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 from dialects import messages as m
@@ -15,10 +15,12 @@ from dialects.modes import DRIVABLE_MODES, STANDING_MODES, mode_name
 from groundstation.snapshot import OutputView, VehicleView
 from groundstation.vehicles.control_report import ControlReport
 from groundstation.vehicles.dialect_probe import FOREIGN_AUTOPILOTS
+from groundstation.vehicles.foreign_drive import ForeignDrive
+from groundstation.vehicles.key_to_motor import KeyTimings
 from groundstation.vehicles.latency import LatencyMeter
 from groundstation.vehicles.outputs import drive_names
 from groundstation.vehicles.track import LocalFrame, Track
-from groundstation.vehicles.values import all_finite, drive_demand, flag_words, within
+from groundstation.vehicles.values import all_finite, battery_values, drive_demand, flag_words, vehicle_name, within
 from link.core import Received
 from link.protocol.heartbeat import HeartbeatMonitor
 
@@ -28,16 +30,13 @@ LOST_AFTER = 2.5
 FRESH_TIMEOUT = 1.5
 """s for which a reading is preferred to that of a coarser message, and for which a ROVER_DRIVE_STATUS is shown."""
 
+REPORT_PERIOD = 0.5
+"""s up to which a ROVER_DRIVE_STATUS tells the present: it comes at 5 Hz, over a slow radio at 2.5 Hz."""
+
 PREARM_TEXTS = ("PreArm: ", "Preflight Fail: ")
 """What texts start with that say why arming would be refused: those of ArduPilot and our rover, and of PX4."""
 
 UNKNOWN_U16 = 0xFFFF
-
-NO_PULSE = (0, UNKNOWN_U16)
-"""SERVO_OUTPUT_RAW of an output that is off or not known; else 1000 to 2000 us."""
-
-_AUTOPILOTS: dict[int, str] = {Autopilot.ARDUPILOT: "ArduPilot ", Autopilot.PX4: "PX4 "}
-_KINDS: dict[int, str] = {VehicleType.GROUND_ROVER: "rover", VehicleType.SURFACE_BOAT: "boat"}
 
 
 class VehicleState:
@@ -47,7 +46,9 @@ class VehicleState:
         self.system = system
         self.component = component
         self.monitor = HeartbeatMonitor(LOST_AFTER)
-        self.latency = LatencyMeter()
+        self.key_timings = KeyTimings()
+        self.latency = LatencyMeter(self.key_timings)
+        self.foreign = ForeignDrive()
         self.autopilot: int = Autopilot.GENERIC
         self.kind: int = VehicleType.GROUND_ROVER
         self.mode = "unknown"
@@ -55,20 +56,16 @@ class VehicleState:
         self.status: int = SystemState.UNINIT
         self.control = ControlReport()
         self.drive_info: m.RoverDriveInfo | None = None
-        self.boot_time: int | None = None
-        """Newest time_boot_ms of the vehicle."""
+        self.boot_time: int | None = None  # newest time_boot_ms of the vehicle
         self.ready_at: float | None = None
         """When the pre-arm checks were passed; None while they are not, or it is not known."""
         self._times: dict[type[m.Message], float] = {}
         self._drive: m.RoverDriveStatus | None = None
         self._failsafe: m.RoverFailsafeStatus | None = None
         self._frame = LocalFrame()
-        self._track = Track()
+        self.trail = Track()
         self._velocity: tuple[float, float] | None = None
         self._ground_speed: float | None = None
-        self._servos: m.ServoOutputRaw | None = None
-        self.servo_names: Mapping[int, str] = {}
-        """Servo outputs that drive the vehicle, by number, and what each is."""
         self._values: dict[str, Any] = {}
         """Fields of VehicleView that are a reading without further logic."""
 
@@ -117,12 +114,11 @@ class VehicleState:
     @property
     def name(self) -> str:
         """Name for the driver, e.g. "Rover 1", "ArduPilot rover 1"."""
-        text = f"{_AUTOPILOTS.get(self.autopilot, '')}{_KINDS.get(self.kind, 'vehicle')} {self.system}"
-        return text[0].upper() + text[1:]
+        return vehicle_name(self.autopilot, self.kind, self.system)
 
     def restart(self) -> None:
         """Forget where the vehicle was: it has restarted, and its origin and home may be others."""
-        self._frame, self._track, self._velocity = LocalFrame(), Track(), None
+        self._frame, self.trail, self._velocity = LocalFrame(), Track(), None
         for name in ("position", "home", "prearm", "prearm_reason"):
             self._values.pop(name, None)
         self.ready_at = None
@@ -146,13 +142,12 @@ class VehicleState:
             alive=self.monitor.is_alive(now),
             silence=self.monitor.silence(now),
             driver=self.control.driver,
-            track=self._track.points,
-            speed=self._speed(),
-            demand=drive_demand(drive),
-            outputs=self._outputs(drive),
+            speed=self.speed,
+            demand=self.demand(now),
+            outputs=self.foreign.outputs(now) if drive is None else self._outputs(drive),
             limits=flag_words(DriveLimit, drive.limits) if drive else (),
-            command_age=drive.demand_age_ms / 1000 if drive and drive.demand_age_ms != UNKNOWN_U16 else None,
             latency=self.latency.latest,
+            key_to_motor=self.key_timings.build_view(),
             failsafes=self.failsafes,
             failsafe_in=self._failsafe_in(now),
             **self._values,
@@ -218,24 +213,31 @@ class VehicleState:
             cells = [cell / 1000 for cell in message.voltages if cell != UNKNOWN_U16]
             self._battery(sum(cells) if cells else None, message.current_battery, message.battery_remaining)
 
-    def _servo_output(self, message: m.ServoOutputRaw, now: float) -> None:
-        self._servos = message
-
     # ---- readings ----
 
-    def _outputs(self, drive: m.RoverDriveStatus | None) -> tuple[OutputView, ...]:
-        if drive is not None:
-            count = min(4, self.drive_info.motor_count) if self.drive_info else 2
-            names = drive_names(self.drive_info, count)
-            return tuple(
-                OutputView(name=name, value=within(value / 10_000))
-                for name, value in zip(names, drive.output, strict=False)
-            )
-        pulses = {channel: getattr(self._servos, f"servo{channel}_raw", 0) for channel in self.servo_names}
+    def demand(self, now: float) -> tuple[float, float] | None:
+        """Return throttle and steering that the vehicle obeys, -1..1; None where they are not known."""
+        drive = self._drive if self._fresh(m.RoverDriveStatus, now) else None
+        return self.foreign.demand(now) if drive is None else drive_demand(drive)
+
+    def command_age(self, now: float) -> float | None:
+        """Return the age of the demand in use as ROVER_DRIVE_STATUS reports it, s. An old report adds its own age."""
+        drive = self._drive
+        if drive is None or drive.demand_age_ms == UNKNOWN_U16:
+            return None
+        reported_for = now - self._times[m.RoverDriveStatus]
+        return float(drive.demand_age_ms) / 1000 + (reported_for if reported_for > REPORT_PERIOD else 0.0)
+
+    def reading(self, name: str) -> Any:
+        """Return a reading by its field in VehicleView; None where it is not known."""
+        return self._values.get(name)
+
+    def _outputs(self, drive: m.RoverDriveStatus) -> tuple[OutputView, ...]:
+        count = min(4, self.drive_info.motor_count) if self.drive_info else 2
+        names = drive_names(self.drive_info, count)
         return tuple(
-            OutputView(name=name, value=within((pulses[channel] - 1500) / 500))
-            for channel, name in self.servo_names.items()
-            if pulses[channel] not in NO_PULSE
+            OutputView(name=name, value=within(value / 10_000))
+            for name, value in zip(names, drive.output, strict=False)
         )
 
     def _read(self, **values: float) -> None:
@@ -250,19 +252,19 @@ class VehicleState:
             self._values.pop("prearm_reason", None)
 
     def _battery(self, volts: float | None, centiamperes: int, percent: int) -> None:
-        self._values["battery_voltage"] = volts
-        self._values["battery_current"] = centiamperes / 100 if centiamperes >= 0 else None
-        self._values["battery_remaining"] = percent / 100 if 0 <= percent <= 100 else None
+        self._values |= battery_values(volts, centiamperes, percent)
 
     def _move(self, north: float, east: float) -> None:
         self._values["position"] = (north, east)
-        self._track.add((north, east))
+        self.trail.add((north, east))
 
     def _fresh(self, kind: type[m.Message], now: float) -> bool:
         at = self._times.get(kind)
         return at is not None and now - at <= FRESH_TIMEOUT
 
-    def _speed(self) -> float | None:
+    @property
+    def speed(self) -> float | None:
+        """Along the nose where known, else over ground; m/s."""
         heading = self._values.get("heading")
         if self._velocity is None or heading is None:
             return self._ground_speed
@@ -291,6 +293,8 @@ _HANDLERS: dict[type[m.Message], Callable[[VehicleState, Any, float], None]] = {
     m.GpsRawInt: VehicleState._gps,
     m.SysStatus: VehicleState._system,
     m.BatteryStatus: VehicleState._battery_status,
-    m.ServoOutputRaw: VehicleState._servo_output,
+    m.ServoOutputRaw: lambda state, message, now: state.foreign.handle_servos(message, now),
+    m.ActuatorOutputStatus: lambda state, message, now: state.foreign.handle_actuators(message, now),
+    m.RcChannels: lambda state, message, now: state.foreign.handle_rc(message, now),
 }
 """Message -> the method that handles it."""

@@ -23,7 +23,7 @@ class ExitCode(IntEnum):
     NO_ANSWER = 5
     """No answer after all tries."""
     DIFFERS = 7
-    """Something differs, or there is no such thing."""
+    """Something differs, is not ready, or there is no such thing."""
     PARTLY = 8
     """Partly done; the rest was printed."""
 

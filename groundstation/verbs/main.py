@@ -27,6 +27,7 @@ from groundstation.recent.recent_file import RecentFile
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession, run_session
+from groundstation.verbs.station_session import StationSession, run_station
 from groundstation.verbs.table import ONLY, VERBS, VerbAction
 from link.endpoint import EndpointError
 from link.runtime import stdio
@@ -39,7 +40,7 @@ SYSTEM = 254
 
 EPILOG = f"""\
 exit codes: 0 done and confirmed; 1 this program failed; 2 wrong arguments; 3 no vehicle within --wait; 4 refused;
-5 no answer; 7 differs, or no such thing; 8 partly done
+5 no answer; 7 differs, not ready, or no such thing; 8 partly done
 
 A port that a running ground station listens on is taken: connect the verb by another link of the vehicle, or by
 `bridge`. Endpoints, or names of the config file, come from -e, else from {ENDPOINT_VARIABLE} (separated by spaces),
@@ -86,8 +87,13 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output) 
             recent.update(lambda known: known.add_all(endpoints, time.time(), session.vehicle.name))
         return await action.run(session, options, output)
 
+    async def alone(session: StationSession) -> int:
+        return await action.run(session, options, output)
+
     try:
         async with asyncio.timeout(options.timeout):
+            if action.station:
+                return await run_station(endpoints, options.system, getattr(options, "station", 0), alone)
             return await run_session(endpoints, options.system, options.vehicle, script, output.progress)
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None

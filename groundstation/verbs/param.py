@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from groundstation.formats.param_compare import compare
 from groundstation.formats.param_file import ParamFile, ParamForm, format_params, parse_params
 from groundstation.vehicles.param_requests import param_type_name
-from groundstation.vehicles.requests import RequestState
+from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.verbs.exit_codes import ExitCode, VerbError, code_of
 from groundstation.verbs.local_file import check_new_file, read_text, write_text
 from groundstation.verbs.output import Output
@@ -95,6 +95,27 @@ async def load(session: VerbSession, options: argparse.Namespace, output: Output
             output.record(param_id=name, before=param.value, param_value=wanted)
         return ExitCode.DIFFERS if differing or missing else ExitCode.DONE
     return await _write(session, differing, missing, output)
+
+
+async def store(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Have the vehicle store all parameters."""
+    await session.need_only_vehicle(options.vehicle)
+    return _ended(await session.request(session.services.param_storage.store), session, output)
+
+
+async def reset(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
+    """Have the vehicle reset all parameters to their defaults."""
+    if not options.yes:
+        raise VerbError(ExitCode.USAGE, "this resets ALL parameters of the vehicle; --yes does it")
+    await session.need_only_vehicle(options.vehicle)
+    return _ended(await session.request(session.services.param_storage.reset), session, output)
+
+
+def _ended(report: RequestReport, session: VerbSession, output: Output) -> int:
+    done = report.state is RequestState.ACCEPTED
+    (output.line if done else output.error)(f"{session.vehicle.name}: {report.text}")
+    output.result(done, session.vehicle.system, detail=report.detail, text=report.reason)
+    return code_of(report)
 
 
 async def _write(

@@ -13,9 +13,8 @@ from typing import Any
 
 from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import ftp, log, mode, param, plan, reboot
+from groundstation.verbs import calibrate, doctor, ftp, log, mode, motor, param, plan, reboot
 from groundstation.verbs.output import Output
-from groundstation.verbs.session import VerbSession
 from link.services.param.float32 import is_float32
 
 Argument = tuple[str, dict[str, Any]]
@@ -27,9 +26,11 @@ class VerbAction:
     """One action of a verb."""
 
     help: str
-    run: Callable[[VerbSession, argparse.Namespace, Output], Awaitable[int]]
-    """Returns the exit code."""
+    run: Callable[[Any, argparse.Namespace, Output], Awaitable[int]]
+    """Gets a VerbSession, or a StationSession; returns the exit code."""
     arguments: tuple[Argument, ...] = field(default=())
+    station: bool = False
+    """`run` gets a StationSession: a whole ground station without a screen. It finds its vehicle itself."""
 
 
 def number(text: str) -> float:
@@ -83,12 +84,34 @@ VERBS: dict[str, dict[str, VerbAction]] = {
             (_FILE, ("--dry-run", {"action": "store_true", "help": "only print what would be set"})),
         ),
         "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,)),
+        "store": VerbAction("have the vehicle store all parameters", param.store),
+        "reset": VerbAction("have the vehicle reset all parameters to their defaults", param.reset,
+                            (("--yes", {"action": "store_true", "help": "do it: there is no undo"}),)),
     },
     **{verb: _plan_actions(kind) for verb, kind in plan.KINDS},
     "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes)},
     "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
                               (("name", {"metavar": "MODE"}),))},
     "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run)},
+    "doctor": {ONLY: VerbAction(
+        "print why the vehicle cannot be driven, and what to do", doctor.run,
+        (("--report", {"metavar": "FILE", "help": "write a report for a bug, without keys and public addresses"}),
+         _YES, ("--station", {"type": int, "default": 255, "metavar": "ID",
+                              "help": "system id of the ground station that will drive (default: 255)"})),
+        station=True,
+    )},
+    "motor": {ONLY: VerbAction(
+        "turn one motor of a disarmed vehicle, wheels off the ground", motor.run,
+        (("number", {"type": int, "metavar": "N", "help": "its number, as on the Setup screen"}),
+         ("throttle", {"type": motor.percent, "metavar": "PERCENT", "help": "up to 30, negative for backward"}),
+         ("--for", {"dest": "seconds", "type": motor.duration, "default": 1.0, "metavar": "S",
+                    "help": "how long, up to 2 s (default: 1)"})),
+        station=True,
+    )},
+    "calibrate": {ONLY: VerbAction(
+        "calibrate gyros, level or pressure, at rest", calibrate.run,
+        (("kind", {"choices": calibrate.CHOICES, "metavar": "KIND", "help": ", ".join(calibrate.CHOICES)}),),
+    )},
     "ftp": {
         "ls": VerbAction("list a folder", ftp.ls, (("path", {"nargs": "?", "default": "/", "metavar": "FOLDER"}),)),
         "get": VerbAction("download a file, resume, and compare its checksum", ftp.get,

@@ -71,8 +71,10 @@ class ParamPage(View, frozen=True):
     """All groups, whatever the filter."""
     changed: int = 0
     """Parameters that are not at their default."""
-    missing: tuple[int, ...] = ()
-    """Indexes that have not arrived although the list has ended."""
+    missing: int = 0
+    """Parameters that have not arrived although the list has ended."""
+    gaps: tuple[int, ...] = ()
+    """Indexes of the first of them."""
     autopilot: str = ""
     """"ardupilot", "px4" or "other": for whom the operator has favourites."""
     texts: str = ""
@@ -125,14 +127,14 @@ class ParamDiffRequest(ViewRequest, frozen=True):
 
 
 class ParamDiff(View, frozen=True):
-    """All differences, by name."""
+    """The differences, by name."""
 
     system: int
     file: str
     """Empty: no file is compared."""
     same: int = 0
     different: tuple[tuple[str, float, float], ...] = ()
-    """Name, value on the vehicle, value in the file."""
+    """Name, value on the vehicle, value in the file; at most as many as one write takes."""
     only_vehicle: int = 0
     only_file: tuple[str, ...] = ()
 

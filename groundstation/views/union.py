@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, TypeAlias, Union
 from groundstation.views import (  # noqa: F401 - defines the classes
     charts,
     connect,
+    doctor,
+    drive,
     files,
     links,
     log,

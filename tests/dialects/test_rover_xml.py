@@ -10,6 +10,7 @@ from dialects.messages import MESSAGES, Message
 
 OFFICIAL = {
     "COMMAND_CANCEL": (80, 14),
+    "EKF_STATUS_REPORT": (193, 71),
     "ESC_INFO": (290, 251),
     "ESC_STATUS": (291, 10),
     "PROTOCOL_VERSION": (300, 217),

@@ -178,7 +178,7 @@ def test_charts_of_the_simulator_while_it_is_driven(tmux: Callable[..., Tmux]) -
     terminal.press("F5")
     recorded = re.compile(r"groundspeed +0\.00 +\d\.\d\d +0\.[3-9]")
     shown = terminal.until(lambda screen: recorded.search(screen) is not None and "━ MANUAL ━" in screen, PATIENCE)
-    assert "━●groundspeed" in shown
+    assert "━● groundspeed" in shown
     assert "▲" in shown
     assert re.search(r"marks .*\bi\b", shown)
 

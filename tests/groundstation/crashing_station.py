@@ -18,11 +18,11 @@ class CrashingStation(Station):
 
     _bug = ""
 
-    def handle_intent(self, intent: AnyIntent, now: float) -> None:
+    def handle_intent(self, intent: AnyIntent, now: float, *, read_at: float | None = None) -> None:
         if isinstance(intent, SetStyle) and intent.style.startswith(ORDER):
             self._bug = intent.style.removeprefix(ORDER)
         self._work("intend")
-        super().handle_intent(intent, now)
+        super().handle_intent(intent, now, read_at=read_at)
 
     def _work(self, method: str) -> None:
         if self._bug == method:

@@ -15,6 +15,11 @@ from tests.groundstation.fake_vehicle import FakeVehicle
 LATCH = 3.0
 """RC_OVERRIDE_TIME, s."""
 
+PULSES = {"MIN": 1000.0, "TRIM": 1500.0, "MAX": 2000.0, "REVERSED": 0.0}
+"""SERVOn_ and RCn_ of its simulation, us."""
+
+RC_MAP = {"RCMAP_ROLL": 1.0, "RCMAP_THROTTLE": 3.0}
+
 NOT_KNOWN = (Command.REQUEST_OPERATOR_CONTROL, Command.DO_SET_SAFETY_SWITCH_STATE)
 
 
@@ -25,14 +30,16 @@ class FakeArduPilot(FakeVehicle):
         super().__init__(autopilot=autopilot, driver=None, mode=mode)
         self.answers = dict.fromkeys(NOT_KNOWN, Result.UNSUPPORTED)
         self.parameters = {"RC_OVERRIDE_TIME": LATCH, "FS_GCS_ENABLE": 0.0, "FS_THR_ENABLE": 1.0}
-        self.rates = dict.fromkeys(STREAM_RATES, 1.0)
+        self.streams = [number for number, wanted in STREAM_RATES.items() if wanted.only in (None, autopilot)]
+        """Messages that it has."""
+        self.rates = dict.fromkeys(self.streams, 1.0)
         """Hz, of each message that it sends."""
         self.turning: list[tuple[float, int, int]] = []
         """Time, steering and throttle whenever one of them changed."""
         self._station = station
         self._steering = self._throttle = 0
         self._demand_at = 0.0
-        self._due = dict.fromkeys(STREAM_RATES, 0.0)
+        self._due = dict.fromkeys(self.streams, 0.0)
 
     @property
     def moves(self) -> bool:
@@ -53,7 +60,7 @@ class FakeArduPilot(FakeVehicle):
             self._demand_at = now
         elif isinstance(message, m.RequestDataStream):
             group = DataStream(message.req_stream_id)
-            for number in (number for number, wanted in STREAM_RATES.items() if wanted.group is group):
+            for number in (number for number in self.streams if STREAM_RATES[number].group is group):
                 self.rates[number] = float(message.req_message_rate)
         self._allow_arming()
         super().receive(received, now)
@@ -73,7 +80,13 @@ class FakeArduPilot(FakeVehicle):
     def reboot(self) -> None:
         """Forget all requests."""
         self.armed = False
-        self.rates = dict.fromkeys(STREAM_RATES, 1.0)
+        self.rates = dict.fromkeys(self.streams, 1.0)
+
+    def set_pulses(self, *channels: str) -> None:
+        """Give channels, such as "SERVO1", their limits, and the sticks their channels."""
+        self.parameters |= RC_MAP
+        for channel in channels:
+            self.parameters |= {f"{channel}_{name}": value for name, value in PULSES.items()}
 
     def servo(self, value: int) -> int:
         """The pulse for -1000..1000, us."""
@@ -104,6 +117,13 @@ def _servos(vehicle: FakeArduPilot, now: float) -> m.Message:
     return m.ServoOutputRaw(0, 0, vehicle.servo(steering), 0, vehicle.servo(throttle), 0, 0, 0, 0, 0)
 
 
+def _channels(vehicle: FakeArduPilot, now: float) -> m.Message:
+    steering, throttle = vehicle.turning[-1][1:]
+    pulses = {f"chan{number}_raw": 0 for number in range(1, 19)}
+    pulses |= {"chan1_raw": vehicle.servo(steering), "chan3_raw": vehicle.servo(throttle)}
+    return m.RcChannels(time_boot_ms=boot_ms(now), chancount=3, rssi=255, **pulses)
+
+
 _TELEMETRY: dict[int, Callable[[FakeArduPilot, float], m.Message]] = {
     m.Attitude.id: lambda _, now: m.Attitude(boot_ms(now), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
     m.LocalPositionNed.id: lambda _, now: m.LocalPositionNed(boot_ms(now), 1.0, 2.0, 0.0, 0.0, 0.0, 0.0),
@@ -113,4 +133,11 @@ _TELEMETRY: dict[int, Callable[[FakeArduPilot, float], m.Message]] = {
     m.SysStatus.id: lambda *_: m.SysStatus(0, 0, 0, 0, 12000, 100, 80, 0, 0, 0, 0, 0, 0),
     m.GpsRawInt.id: lambda *_: m.GpsRawInt(0, 3, 0, 0, 0, 0, 0, 0, 0, 9),
     m.BatteryStatus.id: lambda *_: m.BatteryStatus(0, 0, 0, 0, [12000] + [65535] * 9, 100, 0, 0, 80),
+    m.RcChannels.id: _channels,
+    m.ActuatorOutputStatus.id: lambda *_: m.ActuatorOutputStatus(0, 2, [0.0, -0.5] + [0.0] * 30),
+    m.EkfStatusReport.id: lambda *_: m.EkfStatusReport(0x033F, 0.1, 0.05, 0.1, 0.2, 0.0),
+    m.EstimatorStatus.id: lambda *_: m.EstimatorStatus(0, 0x033F, 0.1, 0.1, 0.0, 0.1, 0.0, 0.0, 0.4, 0.4),
+    m.Vibration.id: lambda *_: m.Vibration(0, 1.0, 2.0, 3.0, 0, 0, 0),
+    m.MissionCurrent.id: lambda *_: m.MissionCurrent(0),
+    m.NavControllerOutput.id: lambda *_: m.NavControllerOutput(0.0, 0.0, 0, 0, 12, 0.0, 0.0, 0.0),
 }

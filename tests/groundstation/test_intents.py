@@ -19,7 +19,7 @@ from groundstation.station.intent_handler import HANDLERS, VEHICLE_COMMANDS
 KINDS = [each for each in (*Intent.__subclasses__(), *ServiceIntent.__subclasses__()) if each is not ServiceIntent]
 VALUES: dict[str, Any] = {
     "key": "i", "throttle": 1, "steering": -1, "open": True, "style": "latch", "mode": "HOLD", "system": 3,
-    "request": 5, "endpoint": "udpin:127.0.0.1:14550", "link": 2, "path": "/logs/1.bin",
+    "request": 5, "motor": 1, "endpoint": "udpin:127.0.0.1:14550", "link": 2, "path": "/logs/1.bin",
     "folder": "/tmp", "name": "1.bin", "file": "/tmp/1.bin", "log": 3, "changes": (("FS_ACTION", 2.0),),
 }  # fmt: skip
 """Field -> a value for fields without a default."""
@@ -43,7 +43,7 @@ def test_every_intent_has_a_handler() -> None:
 
 def test_what_moves_a_vehicle_is_dropped_when_late() -> None:
     late = {kind.__name__ for kind in KINDS if kind.valid_when_late}
-    stops = {"Stop", "EmergencyStop", "Disarm", "DriveKeyUp", "ReleaseControl", "Quit"}
+    stops = {"Stop", "EmergencyStop", "Disarm", "DriveKeyUp", "ReleaseControl", "Quit", "StopMotorTest"}
     assert late == stops | {"SetKeyGate", "ReportKeyReleases", "Watch", "PinSeries"}
 
 

@@ -28,7 +28,7 @@ class ToyScreen(ConsoleScreen):
         yield Static("nothing but a toy")
 '''
 
-ROW = '    ScreenRow("toy", "Toy", "The toy screen", ("f8",), "8", "groundstation.ui.screens.toy:ToyScreen"),'
+ROW = '    ScreenRow("toy", "Toy", "The toy screen", ("f11",), "y", "groundstation.ui.screens.toy:ToyScreen"),'
 
 OPEN_IT = """
 import asyncio
@@ -37,15 +37,15 @@ from tests.groundstation.ui.ptys import until
 
 async def main():
     async with console(size=(140, 45)) as screen:
-        await screen.press("f8")
+        await screen.press("f11")
         await until(lambda: "nothing but a toy" in screen.text)
-        await until(lambda: "F8 Toy" in screen.text and "neutral · F1 drives" in screen.text)
+        await until(lambda: "F11 Toy" in screen.text and "neutral · F1 drives" in screen.text)
         assert screen.app.gate.closure is not None
         await screen.press("escape")
         await until(lambda: "nothing but a toy" not in screen.text)
         await screen.press("question_mark")
         await until(lambda: "The toy screen" in screen.text)
-        await screen.press("escape", "ctrl+g", "8")
+        await screen.press("escape", "ctrl+g", "y")
         await until(lambda: "nothing but a toy" in screen.text)
 
 asyncio.run(main())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 
@@ -30,11 +31,15 @@ class Columns:
         self._columns: list[Column] = []
         self._points: Points | None = None
         self._done = 0
+        self._begin = -math.inf
+        """Time from which on points are columns."""
 
-    def update(self, points: Points) -> None:
-        """Add the points that are new."""
-        if points is not self._points:
-            self._points, self._columns, self._done = points, [], points.dropped
+    def update(self, points: Points, begin: float = -math.inf) -> None:
+        """Add the points that are new. Those long before `begin` are left out until it is earlier."""
+        if points is not self._points or begin < self._begin:
+            self._points, self._columns, self._begin = points, [], begin
+            before = max(0, bisect_left(points.times, begin) - 1)  # the line to the left edge begins there
+            self._done = points.dropped + before
         for index in range(max(self._done - points.dropped, 0), len(points.times)):
             self._add(int(points.times[index] // self.step), points.values[index], broken=bool(points.breaks[index]))
         self._done = points.count

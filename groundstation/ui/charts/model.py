@@ -97,7 +97,7 @@ class ChartsModel:
         columns = self._columns.get(spec)
         if columns is None or columns.step != self.axis.step:
             columns = self._columns[spec] = Columns(self.axis.step)
-        columns.update(self.points(spec))
+        columns.update(self.points(spec), self.axis.begin)
         return columns
 
     def value(self, spec: SeriesSpec, at: float) -> float | None:

@@ -61,7 +61,7 @@ def check_value(info: ParamInfo | None, value: float) -> ValueCheck:
 
 def _check_bits(info: ParamInfo, value: float) -> ValueCheck:
     known = sum(1 << bit for bit, _ in info.bits)
-    if value == int(value) and (value < 0 or not int(value) & ~known):
+    if value.is_integer() and (value < 0 or not int(value) & ~known):
         return ValueCheck(Level.GOOD, "known bits")
     return ValueCheck(Level.WARNING, "unknown bits")
 
@@ -88,7 +88,7 @@ def meaning_of(info: ParamInfo | None, value: float) -> str:
         return ""
     if info.values:
         return next((name for each, name in info.values if each == value), "")
-    if info.bits and value == int(value) >= 0:
+    if info.bits and value.is_integer() and value >= 0:
         return ", ".join(name for bit, name in info.bits if int(value) >> bit & 1)
     return ""
 
@@ -121,7 +121,7 @@ def is_rounded(text: str, value: float) -> bool:
 
 def _whole(value: float, name: str, kind: str) -> float | str:
     low, high = INTEGERS[kind]
-    if value != int(value):
+    if not value.is_integer():
         return f"{name} is {kind}: whole numbers only"
     return value if low <= value <= high else f"{name} is {kind}: {low} to {high}"
 

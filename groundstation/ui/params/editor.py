@@ -16,7 +16,6 @@ class ValueEditor:
         self.text = value_text(value)
         self.cursor = 0
         """Row of the list of values, or of the bits."""
-        self._typed = False
         self._place_cursor()
 
     def set_info(self, info: ParamInfo) -> None:
@@ -27,7 +26,6 @@ class ValueEditor:
 
     def type(self, text: str) -> None:
         """Take the text of the field."""
-        self._typed = self._typed or text != self.text
         self.text = text
         self._place_cursor()
 
@@ -61,7 +59,7 @@ class ValueEditor:
     def toggle(self) -> None:
         """Toggle the bit at the cursor."""
         number = self._number
-        if self.bits and number is not None and number == int(number):
+        if self.bits and number is not None and number.is_integer():
             self.text = value_text(float(int(number) ^ 1 << self.bits[self.cursor][0]))
 
     @property

@@ -49,6 +49,8 @@ class ParamModel:
         """The value that is being typed."""
         self.last_write = ""
         """How the last write ended."""
+        self._system: int | None = None
+        """The vehicle that the changes are for."""
         self._top = self._selected = 0
         self._height = 1
         self._fetched: set[int] = set()
@@ -90,8 +92,8 @@ class ParamModel:
         """Take a page; return the intents that follow: parameters that are not known are fetched once."""
         if self.page is not None and self.page.known and not page.known:
             self._fetched.discard(page.system)  # the station has forgotten them: the vehicle was lost, or restarted
-        if self.page is not None and page.system != self.page.system:
-            self._forget_vehicle()
+        if page.system != self._system:
+            self._forget_vehicle(page.system)
         self.page = page
         self._selected = max(0, min(self._selected, page.matching - 1))
         self._finish_write(page)
@@ -114,8 +116,9 @@ class ParamModel:
         """Take the comparison with a file."""
         self.diff = view
 
-    def _forget_vehicle(self) -> None:
+    def _forget_vehicle(self, system: int) -> None:
         """Forget what was for another vehicle."""
+        self._system = system
         self.changes.clear()
         self._writing, self.diff, self.editor, self.infos, self.last_write = None, None, None, {}, ""
 
@@ -192,6 +195,12 @@ class ParamModel:
     def pending(self) -> dict[str, PendingChange]:
         """The changes that are not written, by name."""
         return self.changes.by_name
+
+    def propose(self, system: int, change: PendingChange) -> None:
+        """Make a change pending that another screen recommends for this vehicle."""
+        if system != self._system:
+            self._forget_vehicle(system)
+        self.changes.set([change])
 
     def open_editor(self) -> ValueEditor | None:
         """Begin to change the selected parameter."""

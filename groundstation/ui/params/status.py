@@ -22,7 +22,7 @@ def status_text(page: ParamPage | None, last_write: str, *, edited: bool) -> str
     if page.running:
         return " · ".join(map(_running_text, page.running))
     if page.missing:
-        return missing_text(page.missing)
+        return missing_text(page.missing, page.gaps)
     if not page.ended:
         return ""
     last = page.ended[-1]
@@ -31,10 +31,10 @@ def status_text(page: ParamPage | None, last_write: str, *, edited: bool) -> str
     return last_write if last_write and last.what.startswith("set ") else _ended_text(last)
 
 
-def missing_text(missing: Sequence[int]) -> str:
+def missing_text(missing: int, gaps: Sequence[int]) -> str:
     """Return which parameters have not arrived."""
-    indexes = ", ".join(map(str, missing[:MAX_GAPS])) + (" …" if len(missing) > MAX_GAPS else "")
-    return f"{len(missing)} missing (index {indexes}): R asks for them"
+    indexes = ", ".join(map(str, gaps[:MAX_GAPS])) + (" …" if missing > MAX_GAPS else "")
+    return f"{missing} missing (index {indexes}): R asks for them"
 
 
 def written_text(line: RequestLine, names: Sequence[str], done: int) -> str:

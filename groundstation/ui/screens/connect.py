@@ -15,16 +15,20 @@ from groundstation.intents.vehicle import SelectVehicle
 from groundstation.simulators import SIMULATORS
 from groundstation.ui.connect_model import ConnectModel, Panel
 from groundstation.ui.display_state import DisplayState, ScreenKey
+from groundstation.ui.files_model import FilesModel
 from groundstation.ui.key_parser import KeyRepeat
 from groundstation.ui.list_keys import rows_to_move
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
-from groundstation.ui.widgets.connect.tables import heard_value, ports_value, recent_value, simulators_value
+from groundstation.ui.widgets.connect.tables import heard_value, logs_value, ports_value, recent_value, simulators_value
 from groundstation.ui.widgets.connect.welcome import Welcome, WelcomeValue
 from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.ui.widgets.row_table import RowTable
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.connect import ConnectRequest, ConnectView
 from link.endpoint import EndpointError, parse_endpoint
+
+WIDE = 120
+"""Columns from which on the lists stand beside each other, with the logs that are here."""
 
 SIMULATOR_KEYS = {row.key: row.kind for row in SIMULATORS}
 
@@ -33,7 +37,7 @@ class ConnectScreen(ConsoleScreen):
     """A head over four lists; TAB chooses the one that has the arrows."""
 
     CSS_PATH = "connect.tcss"
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (120, "-wide")]  # noqa: RUF012 - Textual declares it so
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (WIDE, "-wide")]  # noqa: RUF012 - Textual declares it so
     KEYS = (
         ScreenKey("enter", "Connect", "Connect to what is marked; with nothing heard, start a simulated rover"),
         ScreenKey("tab", "Panel", "Next list: heard now, recent, serial ports, simulators"),
@@ -47,13 +51,14 @@ class ConnectScreen(ConsoleScreen):
 
     def __init__(self, context: ScreenContext) -> None:
         super().__init__(context)
-        self._model = context.keep(ConnectModel, context.numbers.take)
+        self._model = context.keep(ConnectModel, context.numbers.take, context.folder)
         self.say(self._model.load())
         self._welcome = Welcome(WelcomeValue(), id="welcome")
         self._heard = RowTable(heard_value(None, None), id="heard")
         self._recent = RowTable(recent_value((), (), None), id="recent")
         self._ports = RowTable(ports_value((), (), self._model.baud, None), id="ports")
         self._simulators = RowTable(simulators_value(None, None), id="simulators")
+        self._logs = RowTable(logs_value((), None), id="logs")
         self._typed = ""
 
     # ---- what all screens define ----
@@ -63,10 +68,11 @@ class ConnectScreen(ConsoleScreen):
         yield self._welcome
         yield self.build_panel(self._heard, "heard now")
         recent = self.build_panel(self._recent, "recent")
+        logs = self.build_panel(self._logs, "logs here, newest first")
         right = Horizontal(
             self.build_panel(self._ports, "serial ports"), self.build_panel(self._simulators, "simulators"), id="right"
         )
-        yield Vertical(recent, right, id="lists")
+        yield Vertical(Vertical(recent, logs, id="before"), right, id="lists")
 
     def requests(self) -> tuple[ViewRequest, ...]:
         """Return the request for what can be connected to."""
@@ -123,6 +129,9 @@ class ConnectScreen(ConsoleScreen):
             self._type(watch_only=True)
         elif choice.simulator:
             self._simulate(choice.simulator)
+        elif choice.file:
+            self.context.keep(FilesModel, self.context.numbers.take, self.context.folder).mark_here(choice.file)
+            self.context.perform(ACTIONS["app.files"])
         elif choice.text:
             self._drive(choice.system or 0)
 
@@ -196,10 +205,15 @@ class ConnectScreen(ConsoleScreen):
 
     @property
     def _tables(self) -> tuple[RowTable, ...]:
-        return self._heard, self._recent, self._ports, self._simulators
+        return self._heard, self._recent, self._ports, self._simulators, self._logs
 
     def _show(self) -> None:
         model, snapshot = self._model, self._state.snapshot
+        model.shows_logs = self.size.width >= WIDE
+        if model.chosen is Panel.LOGS and not model.shows_logs:
+            model.choose_panel(1)
+        self._logs.show(logs_value(model.logs, model.shown_cursor(Panel.LOGS)))
+        self._logs.border_subtitle = "ENTER shows it on the Files screen"
         opened = model.view.endpoints if model.view else ()
         self._heard.show(heard_value(model.view, model.shown_cursor(Panel.HEARD)))
         self._recent.show(recent_value(model.entries, opened, model.shown_cursor(Panel.RECENT)))
@@ -210,7 +224,7 @@ class ConnectScreen(ConsoleScreen):
         self._ports.border_subtitle = "live"
         for panel, table in zip(Panel, self._tables, strict=True):
             table.set_class(panel is model.chosen, "-chosen")
-        turn, endpoints = int(snapshot.uptime * 4), snapshot.endpoints
+        turn, endpoints = 0 if self._state.still else int(snapshot.uptime * 4), snapshot.endpoints
         self._welcome.show(
             WelcomeValue(self._describe_state(), len(model.heard), turn, endpoints, tuple(snapshot.addresses))
         )

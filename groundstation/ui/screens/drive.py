@@ -1,31 +1,37 @@
-"""Drive screen: the instruments. Keys that drive, stop or command take another way, see key_gate.py."""
+"""Drive screen: the instruments and a pane. Keys that drive, stop or command take another way, see key_gate.py."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from textual import events
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
+from textual.css.scalar import Scalar
 from textual.widgets import Static
 
 from groundstation.intents.session import StartSimulator
 from groundstation.snapshot import Snapshot, VehicleView
 from groundstation.ui.alerts import active_alerts
 from groundstation.ui.display_state import DisplayState
+from groundstation.ui.drive_layout import CLASSES, CONSOLE_SIZE, MIN_STRIP_SIZE, is_smaller, layout_classes
 from groundstation.ui.instruments import INSTRUMENTS
 from groundstation.ui.key_parser import KeyRepeat
+from groundstation.ui.panes import SECOND, SPEED_CHART, PaneInput, speed_samples
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.widgets.chart import ChartValue
+from groundstation.ui.widgets.pane import CLOSER, WIDER, PaneFrame
+from groundstation.ui.widgets.stops import StopsPanel
 from groundstation.ui.widgets.strip import DrivingStrip, StripValue
+from groundstation.views.base import View, ViewRequest
+from groundstation.views.drive import SpeedRequest, SpeedView
 
-CONSOLE_SIZE = (80, 24)
-"""Columns and rows below which the console does not fit; the driving strip takes its place."""
-
-MIN_STRIP_SIZE = (40, 10)
-"""Columns and rows below which mode, ARMED, the bar of a held key and the first alert would not fit: nothing drives."""
+BORDERS = 2
+"""Rows of the border of a panel."""
 
 SLOW = 0.5
-"""s between updates of charts and tables. Each update changes all their lines, which is expensive over SSH."""
+"""s between updates of slow rows. Each update changes all their lines, which is expensive over SSH."""
 
 
 class DriveScreen(ConsoleScreen):
@@ -33,13 +39,15 @@ class DriveScreen(ConsoleScreen):
 
     CSS_PATH = "drive.tcss"
     ROWS = INSTRUMENTS
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (120, "-wide")]  # noqa: RUF012 - Textual declares it so
 
     def __init__(self, context: ScreenContext) -> None:
         super().__init__(context)
         self._slow_at = -SLOW
         self._too_small_text = ""
         self._strip = DrivingStrip(StripValue.from_state(self._state), id="strip")
+        self._panes = (PaneFrame(0, self._state, id="pane"), PaneFrame(SECOND, self._state, id="pane2"))
+        self._chart = SPEED_CHART(ChartValue(), id="speeds")
+        self._views: dict[type[View], View] = {}
 
     @property
     def snapshot(self) -> Snapshot:
@@ -51,7 +59,10 @@ class DriveScreen(ConsoleScreen):
         with Vertical(id="console"):
             yield from self.build_place("top")
             with Horizontal(id="body"):
-                yield from self.build_place("left")
+                with Vertical(id="left"):
+                    yield self._panes[0]
+                    yield from self.build_place("left")
+                yield self._panes[1]
                 with Vertical(id="instruments"):
                     with Horizontal(id="motion") as motion:
                         motion.border_title = "motion"
@@ -60,15 +71,18 @@ class DriveScreen(ConsoleScreen):
                     with Vertical(id="drive") as drive:
                         drive.border_title = "drive"
                         yield from self.build_place("drive")
-                    yield from self.build_place("charts")
-                with Vertical(id="traffic"):
-                    yield from self.build_place("traffic")
+                    yield self._chart
+                with Vertical(id="readings"):
+                    yield from self.build_place("readings")
             yield from self.build_place("bottom")
         yield self._strip
         yield Static(id="too-small")
 
     def on_resize(self, event: events.Resize) -> None:
-        """Show what fits: the console, the driving strip, or the size that is needed."""
+        """Show what fits: a layout of the console, the driving strip, or the size that is needed."""
+        chosen = layout_classes(self.size)
+        for name in CLASSES:
+            self.set_class(name in chosen, name)
         self.set_class(self.too_small, "-too-small")
         self.set_class(self._small and not self.too_small, "-strip")
         self._show_small()
@@ -76,11 +90,11 @@ class DriveScreen(ConsoleScreen):
     @property
     def too_small(self) -> bool:
         """Not even the driving strip fits."""
-        return _is_smaller(self.size, MIN_STRIP_SIZE)
+        return is_smaller(self.size, MIN_STRIP_SIZE)
 
     @property
     def _small(self) -> bool:
-        return _is_smaller(self.size, CONSOLE_SIZE)
+        return is_smaller(self.size, CONSOLE_SIZE)
 
     def _show_small(self) -> None:
         if self.too_small:
@@ -103,18 +117,77 @@ class DriveScreen(ConsoleScreen):
     def show_body(self, now: DisplayState) -> None:
         """Show what depends on the size, the vehicle and the alerts."""
         self._show_small()
-        self.set_class(now.snapshot.vehicle is None, "-waiting")
+        vehicle = now.snapshot.vehicle
+        self.set_class(vehicle is None, "-waiting")
+        self.set_class(vehicle is None or vehicle.mission is None or not vehicle.mission.legs, "-no-legs")
         self.set_class(bool(active_alerts(now)), "-alert")
 
+    # ---- panes ----
+
+    @property
+    def actions(self) -> dict[str, Callable[[], None]]:
+        """Id of an action -> what it does."""
+        return {
+            "view.pane": self._show_next_pane,
+            "view.closer": lambda: self._panes[0].zoom(CLOSER),
+            "view.wider": lambda: self._panes[0].zoom(WIDER),
+        }
+
+    def requests(self) -> tuple[ViewRequest, ...]:
+        """Return the views of what is shown."""
+        if self._small or self.snapshot.vehicle is None:
+            return ()
+        wanted = [request for pane in self._shown_panes for request in pane.requests]
+        chart = [SpeedRequest()] if self.has_class("-chart") else []
+        return tuple(dict.fromkeys([*wanted, *chart]))
+
+    def show_view(self, view: View) -> None:
+        """Show what the station sent for a pane or the chart."""
+        first = type(view) not in self._views
+        self._views[type(view)] = view
+        if isinstance(view, SpeedView):
+            self._chart.show(speed_samples(PaneInput(self._state, self._views)))
+        if first:  # else it waits for the next update of the pane
+            for pane in self._shown_panes:
+                pane.show_view(self._views)
+
+    @property
+    def _shown_panes(self) -> tuple[PaneFrame, ...]:
+        return self._panes if self.has_class("-large") else self._panes[:1]
+
+    def _show_next_pane(self) -> None:
+        for pane in self._panes:
+            pane.turn_on()
+        self._show_panes()
+
+    def _show_panes(self) -> None:
+        for pane in self._shown_panes:
+            pane.show(self._state, self._views)
+        self._panes[0].set_hint(self._state.key("view.pane"))
+
+    # ---- instruments ----
+
     def show_rows(self) -> None:
-        """Show the state in the instruments, in slow ones less often."""
-        slow = self._is_slow_due(self.snapshot)
+        """Show the state in the instruments of this layout, in slow ones less often."""
+        due = self._is_slow_due(self.snapshot)
         for row in INSTRUMENTS:
-            if slow or not row.slow:
+            shown = not row.layout or self.has_class(row.layout)
+            if shown and (due or not row.slow or (row.urgent is not None and row.urgent(self._state))):
                 self.show_row(row)
+        if due:
+            self._fit_stops()
+        if self.snapshot.vehicle is not None and not self._small:
+            self._show_panes()
+
+    def _fit_stops(self) -> None:
+        """Give the panel of the stop bounds no more rows than it has lines."""
+        panel = self._built["stops"]
+        most = Scalar.from_number((panel.wanted if isinstance(panel, StopsPanel) else 0) + BORDERS)
+        if panel.styles.max_height != most:
+            panel.styles.max_height = most
 
     def _is_slow_due(self, snapshot: Snapshot) -> bool:
-        if snapshot.vehicle is None or not self.has_class("-wide") or 0 <= snapshot.uptime - self._slow_at < SLOW:
+        if snapshot.vehicle is None or 0 <= snapshot.uptime - self._slow_at < SLOW:
             return False
         self._slow_at = snapshot.uptime
         return True
@@ -138,10 +211,6 @@ class DriveScreen(ConsoleScreen):
             self.context.send(StartSimulator())
             return True
         return False
-
-
-def _is_smaller(size: tuple[int, int], least: tuple[int, int]) -> bool:
-    return size[0] < least[0] or size[1] < least[1]
 
 
 def format_arming(vehicle: VehicleView | None) -> str:

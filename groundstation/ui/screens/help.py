@@ -18,7 +18,8 @@ from groundstation.ui.navigation import load_screen
 from groundstation.ui.screens.screen import ConsoleScreen
 
 TITLES = {
-    "drive": "Drive", "stop": "Stop", "speed": "Speed limits", "vehicle": "Vehicle", "app": "Ground station",
+    "drive": "Drive", "stop": "Stop", "speed": "Speed limits", "view": "Pane of the Drive screen",
+    "vehicle": "Vehicle", "app": "Ground station",
 }  # fmt: skip
 """Group of actions -> its heading, in this order."""
 
@@ -27,7 +28,7 @@ STATUS_LINE = (
     ("loss", "frames of the vehicle lost over the last 5 s"),
     ("rtt", "round trip to the vehicle and back (TIMESYNC)"),
     ("sent", "MANUAL_CONTROL frames sent per second"),
-    ("cmd", "age of the demand that the motors obey; from 450 ms on they stop"),
+    ("cmd", "age of the demand that the motors obey; from 450 ms on our vehicle stops"),
     ("key→motor", "time from a changed demand to the vehicle that applies it"),
     ("tty", "round trip to this terminal; without answers keys do not drive"),
     ("pre-arm", "the vehicle's checks before arming; the log has the reasons"),
@@ -36,7 +37,8 @@ STATUS_LINE = (
 """Readings of the status line, in its order, and their meaning."""
 
 _NOTES = (
-    "Any key without a drive action stops the vehicle while it is driven. The emergency stop works on every screen.",
+    "Any key without a drive action stops the vehicle while it is driven, but for the speed keys, v, PgUp and PgDn.",
+    "The emergency stop works on every screen.",
     "Keys drive only on the Drive screen and while this window has the focus; leaving either stops the vehicle.",
     "Back on Drive, without key releases: a drive key counts once none was pressed or repeated for 0.75 s.",
     "In a text field SPACE and k are text: ^k stops there, and ! is the emergency stop as everywhere.",

@@ -11,21 +11,29 @@ from pathlib import Path
 from textual import events
 from textual.widget import Widget
 
+from groundstation.intents.services import CancelRequest
 from groundstation.ui.alerts import active_alerts
 from groundstation.ui.display_state import DisplayState, ScreenKey
 from groundstation.ui.list_keys import rows_to_move
 from groundstation.ui.log_model import LogFilter, LogModel, format_lines
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.task_list import TaskList
 from groundstation.ui.widgets.alert_list import AlertList, AlertListValue, alert_rows
+from groundstation.ui.widgets.files.tables import tasks_value
 from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.ui.widgets.log import PREFIX, LogRows
+from groundstation.ui.widgets.row_table import RowTable
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.log import LogPage
+from groundstation.views.requests import RequestsRequest, RequestsView
 
 LEAST_ROWS = 4
 """Rows of messages that the alerts leave, where there are many."""
 
 BORDERS = 2
+
+MAX_TASKS = 3
+"""Tasks that are listed; the Files screen has them all."""
 
 _SOURCES = {
     "v": (("vehicle", "state"), "of vehicles"),
@@ -48,6 +56,7 @@ class LogScreen(ConsoleScreen):
         ScreenKey("m", "Mine", "Show what your keys did, and the answers to your commands only"),
         ScreenKey("S", "Save", "Save the messages that are shown to a file"),
         ScreenKey("tab", "Alerts", "Scroll the alerts, or the messages again"),
+        ScreenKey("x", "Stop task", "Stop the newest task that runs; what has arrived is kept"),
     )
 
     def __init__(self, context: ScreenContext) -> None:
@@ -55,34 +64,44 @@ class LogScreen(ConsoleScreen):
         self._model = LogModel()
         self._alerts = AlertList(AlertListValue(), id="alerts")
         self._rows = LogRows((), id="rows")
+        self._tasks = TaskList()
+        self._task_rows = RowTable(tasks_value(self._tasks, None), id="tasks")
         self._scrolls_alerts = False
 
     # ---- what all screens define ----
 
     def compose_body(self) -> Iterable[Widget]:
-        """Lay out the alerts over the messages."""
-        return self.build_panel(self._alerts, "alerts"), self.build_panel(self._rows, "log")
+        """Lay out the alerts over the messages, and below them the tasks while any run."""
+        tasks = self.build_panel(self._task_rows, "tasks")
+        return self.build_panel(self._alerts, "alerts"), self.build_panel(self._rows, "log"), tasks
 
     def on_mount(self) -> None:
         """Mark the panel that the arrows scroll."""
         self._mark_chosen()
 
     def requests(self) -> tuple[ViewRequest, ...]:
-        """Return the request for new lines."""
-        return (self._model.request,)
+        """Return the requests for new lines and for the tasks."""
+        return self._model.request, RequestsRequest()
 
     def show_view(self, view: View) -> None:
         """Add new lines."""
         if isinstance(view, LogPage):
             self._model.add(view)
             self._show_lines()
+        elif isinstance(view, RequestsView):
+            self._tasks.show(view, time.monotonic())
+            self.show_body(self._state)
 
     def show_body(self, now: DisplayState) -> None:
         """Show the alerts, and the lines at their place."""
         alerts = tuple(active_alerts(now))
         self._alerts.show(AlertListValue(alerts, min(self._alerts.value.top, self._last_alert_row(len(alerts)))))
         wanted = max(1, len(alert_rows(alerts, self.size.width - BORDERS)))
-        room = self.size.height - 4 - 2 * BORDERS - LEAST_ROWS
+        running = min(len(self._tasks.running), MAX_TASKS)
+        self._task_rows.display = running > 0
+        self._task_rows.styles.height = running + BORDERS
+        self._task_rows.show(replace(tasks_value(self._tasks, None), notes=()))
+        room = self.size.height - 4 - 2 * BORDERS - LEAST_ROWS - (running + BORDERS if running else 0)
         self._alerts.styles.height = BORDERS + max(1, min(wanted, room))
         self._alerts.border_subtitle = f"{wanted} rows · TAB, then ↑ ↓" if wanted > room else ""
         self._show_lines()
@@ -138,6 +157,10 @@ class LogScreen(ConsoleScreen):
         self._scrolls_alerts = not self._scrolls_alerts
         self._mark_chosen()
 
+    def _stop_task(self) -> None:
+        if self._tasks.running:
+            self.context.send(CancelRequest(self._tasks.running[0].number))
+
     def _mark_chosen(self) -> None:
         self._alerts.set_class(self._scrolls_alerts, "-chosen")
         self._rows.set_class(not self._scrolls_alerts, "-chosen")
@@ -180,6 +203,7 @@ _ACTIONS: dict[str, Callable[[LogScreen], None]] = {
     **{key: partial(LogScreen._show_labels, labels=labels) for key, (labels, _) in _SOURCES.items()},
     "S": LogScreen._save,
     "tab": LogScreen._swap_scrolling,
+    "x": LogScreen._stop_task,
 }
 """Key -> what it does; LogScreen.KEYS has their names."""
 

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from platformdirs import user_state_path
 from textual import events
 from textual.containers import Container
 from textual.widget import Widget
 
-from groundstation.intents.services import CompareParams, ResetParams, StoreParams
 from groundstation.intents.union import AnyIntent
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.list_keys import rows_to_move
-from groundstation.ui.params.favourites import Favourites
-from groundstation.ui.params.files import parse_save, read_file
-from groundstation.ui.params.model import ParamModel
+from groundstation.ui.params.kept import keep_params
 from groundstation.ui.params.panels import PARAM_KEYS, ParamPanels
 from groundstation.ui.params.saving import ParamSaving
-from groundstation.ui.params.scope import ALL, CHANGED, group_of
+from groundstation.ui.params.scope import ALL, CHANGED
 from groundstation.ui.params.status import question_text
+from groundstation.ui.params.transfers import ParamTransfers
 from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
 from groundstation.ui.widgets.line_field import FieldUse
 from groundstation.ui.widgets.params.panels import MAX_PENDING, ParamWidgets
@@ -41,9 +38,8 @@ class ParamsScreen(ConsoleScreen):
 
     def __init__(self, context: ScreenContext) -> None:
         super().__init__(context)
-        favourites = context.keep(Favourites, user_state_path("mavhelm"))
-        self._model = context.keep(ParamModel, context.numbers, favourites)
-        self._saving = context.keep(ParamSaving, context.numbers)
+        self._model = keep_params(context)
+        self._transfers = ParamTransfers(self, self._model, context.keep(ParamSaving, context.numbers))
         self._panels = ParamPanels(self._model)
         self._widgets = ParamWidgets()
         self._warned = False
@@ -60,19 +56,21 @@ class ParamsScreen(ConsoleScreen):
 
     def requests(self) -> tuple[ViewRequest, ...]:
         """Return the requests for the rows that fit, their texts, the comparison, and a file to save."""
-        return (*self._model.requests, *self._saving.requests)
+        return (*self._model.requests, *self._transfers.requests)
 
     def show_view(self, view: View) -> None:
         """Show a view; parameters that are not known are fetched."""
         match view:
             case ParamPage():
+                before = self._model.last_write
                 self._send(self._model.show_page(view))
+                self.say(self._model.last_write if self._model.last_write != before else None)
             case ParamInfos():
                 self._model.show_infos(view)
             case ParamDiff():
                 self._model.show_diff(view)
             case ParamExport():
-                self.say(self._saving.take(view))
+                self._transfers.take(view)
         self._show()
 
     def on_resize(self, event: events.Resize) -> None:
@@ -172,61 +170,6 @@ class ParamsScreen(ConsoleScreen):
     def _cancel(self) -> None:
         self._send(self._model.cancel())
 
-    # ---- files and the vehicle's memory ----
-
-    def _take_all(self) -> None:
-        count = self._model.take_from_file()
-        self.say(f"{count} values of the file are pending" if count else "no file is compared, or nothing differs")
-
-    def _open_file(self) -> None:
-        placeholder = "parameter file to compare with; empty: none"
-        self.field.open(FieldUse(self._compare), placeholder=placeholder)
-
-    def _compare(self, text: str) -> None:
-        found = read_file(text, self.context.folder) if text.strip() else ("", "")
-        page = self._model.page
-        if isinstance(found, str) or page is None:
-            self.say(found if isinstance(found, str) else "no vehicle yet")
-        else:
-            self._send((CompareParams(self._model.take_number(), page.system, *found),))
-
-    def _open_save(self) -> None:
-        placeholder = "FILE [all|changed|group] [mavproxy|qgc|mp]"
-        self.field.open(FieldUse(self._save), placeholder=placeholder)
-
-    def _save(self, text: str) -> None:
-        choice, row, page = parse_save(text, self.context.folder), self._model.selected, self._model.page
-        if isinstance(choice, str) or page is None or not page.known:
-            self.say(choice if isinstance(choice, str) else "there is nothing to save")
-            return
-        group = self._model.scope.group or (group_of(row.name, page) if row else "")
-        if choice.path.exists():
-            self.ask(f"overwrite {choice.path}", lambda: self._saving.start(choice, group), word="overwrite")
-        else:
-            self._saving.start(choice, group)
-
-    def _open_memory(self) -> None:
-        placeholder = "store: the vehicle stores all values; reset: all go back to their defaults"
-        self.field.open(FieldUse(self._ask_memory), placeholder=placeholder)
-
-    def _ask_memory(self, text: str) -> None:
-        word, page = text.strip().lower(), self._model.page
-        if page is None or word not in ("store", "reset"):
-            self.say("no vehicle yet" if page is None else "type store or reset")
-        elif word == "store":
-            self.ask("store all parameters in the vehicle", self._store)
-        else:
-            self.ask("reset ALL parameters of the vehicle to their defaults, without undo", self._reset, word="reset")
-
-    def _store(self) -> None:
-        if self._model.page is not None:
-            self._send((StoreParams(self._model.take_number(), self._model.page.system),))
-
-    def _reset(self) -> None:
-        if self._model.page is not None:
-            self._model.fetch_after = number = self._model.take_number()
-            self._send((ResetParams(number, self._model.page.system),))
-
     # ---- parts ----
 
     def _send(self, intents: Iterable[AnyIntent]) -> None:
@@ -265,10 +208,10 @@ _ACTIONS: dict[str, Callable[[ParamsScreen], None]] = {
     "u": ParamsScreen._undo,
     "ctrl+r": ParamsScreen._redo,
     "asterisk": ParamsScreen._toggle_favourite,
-    "a": ParamsScreen._take_all,
-    "O": ParamsScreen._open_file,
-    "S": ParamsScreen._open_save,
-    "E": ParamsScreen._open_memory,
+    "a": lambda screen: screen._transfers.take_all(),
+    "O": lambda screen: screen._transfers.open_file(),
+    "S": lambda screen: screen._transfers.open_save(),
+    "E": lambda screen: screen._transfers.open_memory(),
     "R": ParamsScreen._read,
     "X": ParamsScreen._cancel,
 }

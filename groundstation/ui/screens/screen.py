@@ -119,6 +119,12 @@ class ConsoleScreen(Screen[None]):
         """Handle a key of this screen; return False for any other, which goes on to the app."""
         return False
 
+    def release_key(self, key: str) -> None:
+        """Handle the release of a key, on terminals that report it; also while something else has the keys."""
+
+    def leave(self) -> None:
+        """Stop what must not go on while this screen is not on top."""
+
     # ---- what a screen uses ----
 
     def build_panel(self, widget: Widget, title: str) -> Widget:
@@ -157,6 +163,10 @@ class ConsoleScreen(Screen[None]):
     def takes_text(self) -> bool:
         """Letters are text and no stop keys: in the field, and in a question that is answered by a word."""
         return (self.field.is_attached and self.field.is_open) or bool(self.question and self.question.word)
+
+    def on_screen_suspend(self, event: events.ScreenSuspend) -> None:
+        """Something else is on top now."""
+        self.leave()
 
     def on_key(self, event: events.Key) -> None:
         """Give a key to the field, the question or the screen; those of other screens go on to the app."""

@@ -1,9 +1,8 @@
-"""Chart of values over the last minute, in braille."""
+"""Chart of values over the last minute or less, in braille."""
 
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -28,14 +27,31 @@ class Series:
 
     name: str
     colour: str
+    dotted: bool = False
+    """Drawn as dots, so that no colour is needed to tell it from a line."""
 
 
-class Chart(Instrument[Samples]):
+@dataclass(frozen=True, slots=True)
+class ChartValue:
+    """Samples by time, oldest first, and how much of them is shown."""
+
+    samples: Samples = ()
+    span: float = SPAN
+    """s."""
+
+    @property
+    def shown(self) -> Samples:
+        """The samples of the last `span` seconds."""
+        start = self.samples[-1][0] - self.span if self.samples else 0.0
+        return tuple((at, tuple(map(finite_or_none, values))) for at, values in self.samples if at >= start)
+
+
+class Chart(Instrument[ChartValue]):
     """Some series on one scale, the newest sample at the right edge."""
 
     def __init__(
         self,
-        value: Samples,
+        value: ChartValue,
         *,
         title: str,
         unit: str,
@@ -46,27 +62,18 @@ class Chart(Instrument[Samples]):
         super().__init__(value, id=id)
         self.border_title = title
         self._unit, self._series, self._step = unit, tuple(series), step
-        self._kept: deque[tuple[float, tuple[float | None, ...]]] = deque(value)
-
-    def add(self, now: float, *values: float | None) -> None:
-        """Add one sample."""
-        self.show(((now, values),))
-
-    def show(self, value: Samples) -> None:
-        """Add samples and show those of the last SPAN seconds."""
-        self._kept.extend((at, tuple(map(finite_or_none, values))) for at, values in value)
-        while self._kept and self._kept[0][0] < self._kept[-1][0] - SPAN:
-            self._kept.popleft()
-        super().show(tuple(self._kept))
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw grid and scale, then the lines, then their names with the newest values."""
-        canvas = Canvas(width, height)
-        low, high = _scale([value for _, values in self.value for value in values if value is not None], self._step)
+        canvas, shown = Canvas(width, height), self.value.shown
+        low, high = _scale([value for _, values in shown for value in values if value is not None], self._step)
         self._draw_grid(canvas, low, high)
-        if self.value:
-            for number, series in enumerate(self._series):
-                self._draw_series(canvas, number, series, low, high)
+        if not shown:
+            canvas.write(AXIS + 1, 0, "nothing yet", style(DIM))
+        else:
+            for number, series in reversed(list(enumerate(self._series))):
+                self._draw_series(canvas, number, series, shown, (low, high))
+            self._draw_names(canvas, shown)
         return canvas.strips()
 
     def _draw_grid(self, canvas: Canvas, low: float, high: float) -> None:
@@ -75,18 +82,31 @@ class Chart(Instrument[Samples]):
             for x in range(AXIS * 2, canvas.across, 8):
                 canvas.dot(x, row * 4 + (3 if row else 0), style(LINE))
 
-    def _draw_series(self, canvas: Canvas, number: int, series: Series, low: float, high: float) -> None:
-        newest = self.value[-1][0]
+    def _draw_series(
+        self, canvas: Canvas, number: int, series: Series, shown: Samples, scale: tuple[float, float]
+    ) -> None:
+        newest, (low, high) = shown[-1][0], scale
         across, down = canvas.across - AXIS * 2, canvas.down - 1
         points = [
-            (AXIS * 2 + (1 - (newest - at) / SPAN) * (across - 1), (high - value) / (high - low) * down)
-            for at, values in self.value
+            (AXIS * 2 + (1 - (newest - at) / self.value.span) * (across - 1), (high - value) / (high - low) * down)
+            for at, values in shown
             if (value := values[number]) is not None
         ]
-        canvas.path(points, style(series.colour))
-        if (last := self.value[-1][1][number]) is not None:
-            text = f"{series.name} {last:.2f} {self._unit}".strip()
-            canvas.write(AXIS + 1 + number * (canvas.width - AXIS) // 2, 0, text, style(series.colour))
+        if not series.dotted:
+            canvas.path(points, style(series.colour))
+            return
+        for x, y in points:
+            canvas.dot(round(x), round(y), style(series.colour))
+
+    def _draw_names(self, canvas: Canvas, shown: Samples) -> None:
+        column = AXIS + 1
+        for series, last in zip(self._series, shown[-1][1], strict=True):
+            if last is not None:
+                text = f"{series.name} {last:.2f} {self._unit}".strip()
+                canvas.write(column, 0, text, style(series.colour))
+                column += len(text) + 2
+        span = f"{self.value.span:g} s"
+        canvas.write(canvas.width - len(span), canvas.height - 1, span, style(DIM))
 
 
 def _scale(values: Sequence[float], step: float) -> tuple[float, float]:

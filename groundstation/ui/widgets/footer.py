@@ -29,6 +29,7 @@ FOOTER_ITEMS: tuple[FooterItem, ...] = (
     ("Hold/latch/step", ("drive.style",)),
     (None, ("vehicle.manual",)),
     (None, ("vehicle.hold",)),
+    (None, ("view.pane",)),
     (None, ("vehicle.control",)),
 )
 """The most important first: the last ones may not fit."""

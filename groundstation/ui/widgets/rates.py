@@ -4,32 +4,36 @@ from __future__ import annotations
 
 from textual.strip import Strip
 
-from groundstation.snapshot import MessageRate
-from groundstation.ui.colours import AMBER, DIM, GREEN, TEXT, style
+from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, TEXT, style
 from groundstation.ui.widgets.instrument import Instrument, strip
+from groundstation.ui.wrap import clean
+from groundstation.views.messages import MessageRow, MessagesPage
 
 
-class RatesPanel(Instrument[tuple[MessageRate, ...]]):
-    """One line per message: received first, then sent."""
+class RatesPanel(Instrument[MessagesPage | None]):
+    """One line per message below its source, as on the Messages screen."""
 
     BORDER_TITLE = "messages"
 
     def draw(self, width: int, height: int) -> list[Strip]:
         """Draw names cut at the right; where rows do not fit, the last line has their number."""
-        room = width - 15
+        page = self.value
+        if page is None or not page.rows:
+            return [strip((" nothing yet", style(DIM))).crop(0, width)]
+        room = max(1, width - 15)
         lines = [strip((f"{'':<{room}}{'Hz':>6} {'count':>7} ", style(DIM)))]
-        rows = sorted(self.value, key=lambda each: (each.sent, each.name))
-        shown = rows if len(rows) < height else rows[: max(0, height - 2)]
+        shown = page.rows if page.total < height and len(page.rows) == page.total else page.rows[: max(0, height - 2)]
         lines += [_row(each, room) for each in shown]
-        if len(shown) < len(rows):
-            lines.append(strip((f"and {len(rows) - len(shown)} more", style(DIM))))
-        return lines
+        if len(shown) < page.total:
+            lines.append(strip((f"and {page.total - len(shown)} more", style(DIM))))
+        return [line.crop(0, width) for line in lines]
 
 
-def _row(each: MessageRate, room: int) -> Strip:
-    name = f"{each.name} >" if each.sent else each.name
+def _row(each: MessageRow, room: int) -> Strip:
+    source = not each.name
+    name = clean(each.label) if source else f" {each.name} >" if each.sent else f" {each.name}"
     return strip(
-        (f"{name[:room]:<{room}}", style(AMBER if each.sent else TEXT)),
+        (f"{name[:room]:<{room}}", style(BLUE if source else AMBER if each.sent else TEXT)),
         (f"{each.rate:6.1f}", style(GREEN if each.rate >= 0.05 else DIM)),
         (f" {each.count:>7} ", style(DIM)),
     )

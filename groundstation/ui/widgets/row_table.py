@@ -20,6 +20,8 @@ class Cell:
     text: str
     colour: str = TEXT
     bold: bool = False
+    bar: float | None = None
+    """Share of the column that is filled, 0..1, in place of the text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +68,9 @@ class RowTable(Instrument[RowTableValue]):
     def _row(self, columns: Sequence[Column], widths: Sequence[int], number: int, cells: tuple[Cell, ...]) -> Strip:
         marked = number == self.value.cursor
         ground = FAINT if marked else BACKGROUND
-        looks = [(each.text, style(each.colour, ground, bold=each.bold)) for each in cells]
+        texts = (_bar(each.bar, width) if each.bar is not None else each.text
+                 for each, width in zip(cells, widths[1:], strict=True))  # fmt: skip
+        looks = [(text, style(each.colour, ground, bold=each.bold)) for text, each in zip(texts, cells, strict=True)]
         mark = ("›" if marked else " ", style(BLUE, ground, bold=True))
         return row(columns, widths, [mark, *looks], style(TEXT, ground))
 
@@ -76,6 +80,11 @@ class RowTable(Instrument[RowTableValue]):
             for note in self.value.notes
             for line in wrap(note.text, max(10, width - 2))
         ]
+
+
+def _bar(share: float, width: int) -> str:
+    full = round(max(0.0, min(1.0, share)) * width)
+    return "█" * full + "·" * (width - full)
 
 
 def dim(text: str) -> Cell:

@@ -168,7 +168,8 @@ def _command(snapshot: Snapshot) -> list[StatusField]:
     age, latency = finite_or_none(vehicle.command_age), finite_or_none(vehicle.latency)
     if age is not None and age < 10:
         colour = DIM if not vehicle.armed else GREEN if age < OLD_COMMAND else AMBER if age < STALE_COMMAND else RED
-        fields.append(_field(1, "cmd", f"{1000 * age:.0f} ms", colour))
+        estimate = "~" if vehicle.command_age_estimated else ""
+        fields.append(_field(1, "cmd", f"{estimate}{1000 * age:.0f} ms", colour))
     if latency is not None:
         fields.append(_field(3, "key→motor", f"{1000 * latency:.1f} ms", TEXT if latency < 0.1 else AMBER))
     return fields

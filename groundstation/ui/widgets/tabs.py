@@ -18,6 +18,9 @@ from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 WIDE = 120
 """Columns from which on the keys of the screens are shown, below them the digits of the go-to menu."""
 
+GOTO_WIDTH = 10
+"""Cells of the go-to menu's key with its label."""
+
 
 @dataclass(frozen=True, slots=True)
 class TabBarValue:
@@ -38,29 +41,40 @@ class TabBar(Instrument[TabBarValue]):
     """One line: a screen after the other, the one on top bold on a ground of its own."""
 
     def draw(self, width: int, height: int) -> list[Strip]:
-        """Draw the tabs that fit, and the key of the go-to menu at the right edge."""
-        parts: list[Part] = []
-        right = goto_parts(self.value.keymap)
-        for row in SCREENS:
-            tab = self._tab(row, width) if row.in_tabs else []
-            if length(parts) + length(tab) + length(right) <= width:
-                parts += tab
-        gap = max(0, width - length(parts) - length(right))
-        return [strip(*parts, (" " * gap, style()), *right).crop(0, width)]
+        """Draw the tabs that fit, always with the one on top, and the key of the go-to menu at the right edge."""
+        right = goto_parts(self.value.keymap, label=width >= WIDE)
+        tabs = self._fitting(width - length(right))
+        gap = max(0, width - length(tabs) - length(right))
+        return [strip(*tabs, (" " * gap, style()), *right).crop(0, width)]
 
-    def _tab(self, row: ScreenRow, width: int) -> list[Part]:
-        key = main_key(self.value.keymap, row.action) if width >= WIDE else None
+    def _fitting(self, room: int) -> list[Part]:
+        """Return the tabs that have room; those that are farthest from the one on top go first."""
+        rows = [row for row in SCREENS if row.in_tabs]
+        tabs = [self._tab(row, wide=room >= WIDE - GOTO_WIDTH) for row in rows]
+        top = next((at for at, row in enumerate(rows) if row.id == self.value.screen), 0)
+        while len(tabs) > 1 and sum(map(length, tabs)) > room:
+            at = 0 if top > len(tabs) // 2 else len(tabs) - 1
+            del tabs[at]
+            top -= at == 0
+        return [part for tab in tabs for part in tab]
+
+    def _tab(self, row: ScreenRow, *, wide: bool) -> list[Part]:
+        key = main_key(self.value.keymap, row.action) if wide else None
         shown = format_key(key) if key else row.digit
+        title = row.title if wide else row.short or row.title
         mark = self.value.marks.get(row.id)
-        text = "" if mark is None else mark.text if width >= WIDE else mark.short or mark.text
+        text = "" if mark is None else mark.text if wide else mark.short or mark.text
         colour = DIM if mark is None else mark.colour
+        end = " " if wide else ""
         if row.id == self.value.screen:
-            name = (f" {shown} {row.title}", style(WHITE, FAINT, bold=True))
-            return [name, (text, style(colour, FAINT, bold=True)), (" ", style(WHITE, FAINT))]
-        return [(f" {shown} ", style(YELLOW)), (row.title, style(DIM)), (text, style(colour)), (" ", style(DIM))]
+            name = (f" {shown} {title}", style(WHITE, FAINT, bold=True))
+            return [name, (text, style(colour, FAINT, bold=True)), (end, style(WHITE, FAINT))]
+        return [(f" {shown} ", style(YELLOW)), (title, style(DIM)), (text, style(colour)), (end, style(DIM))]
 
 
-def goto_parts(keymap: Keymap) -> list[Part]:
-    """Return the key of the go-to menu with its label."""
+def goto_parts(keymap: Keymap, *, label: bool = True) -> list[Part]:
+    """Return the key of the go-to menu, with its label where there is room."""
     keys = keymap.get_keys("app.goto")
-    return [(f" {format_key(keys[0])} ", style(YELLOW)), ("Go to ", style(DIM))] if keys else []
+    if not keys:
+        return []
+    return [(f" {format_key(keys[0])} ", style(YELLOW)), *([("Go to ", style(DIM))] if label else [])]

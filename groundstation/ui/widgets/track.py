@@ -33,16 +33,25 @@ class TrackValue:
     track: tuple[Point, ...] = ()
     ascii: bool = False
     """Draw the vehicle as one character: its outline needs braille."""
+    zoom: int = 0
+    """Each step up halves what is shown around the vehicle; 0: all of the near track and home."""
 
     @classmethod
-    def from_vehicle(cls, vehicle: VehicleView | None, *, ascii: bool = False) -> TrackValue:  # noqa: A002
+    def from_vehicle(
+        cls,
+        vehicle: VehicleView | None,
+        track: tuple[Point, ...],
+        *,
+        ascii: bool = False,  # noqa: A002
+        zoom: int = 0,
+    ) -> TrackValue:
         """Return the map of a vehicle, rounded to what a dot can show."""
         if vehicle is None or vehicle.position is None or not all(map(math.isfinite, vehicle.position)):
             return cls()
         north, east = vehicle.position
         heading = finite_or_none(vehicle.heading)
         rounded = None if heading is None else round(heading, 1)
-        return cls((round(north, 2), round(east, 2)), rounded, vehicle.home, vehicle.track, ascii)
+        return cls((round(north, 2), round(east, 2)), rounded, vehicle.home, track, ascii, zoom)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +85,15 @@ def fit_view(value: TrackValue, across: int, down: int) -> MapView:
         wide = max(abs(max(easts) - view.east), abs(min(easts) - view.east)) / view.scale
         if tall < down * 0.42 and wide < across * 0.44:
             break
-    return view
+    return _zoomed(view, value.zoom, vehicle, min(across, down)) if value.zoom else view
+
+
+def _zoomed(view: MapView, zoom: int, vehicle: Point, dots: int) -> MapView:
+    """Return a view that shows less (zoom > 0), around the vehicle, or more of the surroundings."""
+    scale = max(MIN_SCALE / 4, view.scale * 0.5**zoom)
+    ring = _ring(scale * max(8, dots) / 5)
+    north, east = vehicle if zoom > 0 else (view.north, view.east)
+    return MapView(round(north / ring * 2) * ring / 2, round(east / ring * 2) * ring / 2, scale, ring)
 
 
 def _views(north: float, east: float, dots: int) -> Iterator[MapView]:

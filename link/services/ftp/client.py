@@ -92,6 +92,11 @@ class FtpClient:
         return self._current[2].beginning if self._current and isinstance(self._current[2], Download) else b""
 
     @property
+    def holes(self) -> int:
+        """Gaps in what has arrived of the download under way: lost pieces, which are requested again."""
+        return self._current[2].holes if self._current and isinstance(self._current[2], Download) else 0
+
+    @property
     def number(self) -> int | None:
         """Number of the job under way."""
         return self._current[0] if self._current else None

@@ -68,6 +68,11 @@ class Download:
         return self._file.received.bytes, self._file.end
 
     @property
+    def holes(self) -> int:
+        """Gaps in what has arrived."""
+        return sum(1 for _ in self._file.received.gaps(self._file.received.end))
+
+    @property
     def beginning(self) -> bytes:
         """What arrived without a gap from the start."""
         return self.have if self._phase is _Phase.OPEN else self._file.beginning

@@ -109,6 +109,14 @@ class LogClient:
         return (len(self._job.logs), self._job.total) if self._job else (0, None)
 
     @property
+    def holes(self) -> int:
+        """Gaps in what has arrived of the download under way: lost pieces, which are requested again."""
+        if not isinstance(self._job, _LogDownload):
+            return 0
+        received = self._job.file.received
+        return sum(1 for _ in received.gaps(received.end))
+
+    @property
     def beginning(self) -> bytes:
         """What arrived of the download under way without a gap from the start."""
         return self._job.file.beginning if isinstance(self._job, _LogDownload) else b""

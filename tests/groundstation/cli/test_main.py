@@ -140,6 +140,13 @@ def test_a_log_file_that_cannot_be_written() -> None:
 
 
 @pytest.mark.e2e
+def test_texts_of_parameters_that_cannot_be_read() -> None:
+    code, shown = in_terminal(["--param-docs", "/nowhere/apm.pdef.xml"])
+    assert code == 2
+    assert "groundstation: --param-docs /nowhere/apm.pdef.xml: No such file or directory" in shown
+
+
+@pytest.mark.e2e
 def test_a_pipe_for_a_log_file_is_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "station.log")
     code, shown = in_terminal(["--log-file", str(tmp_path / "station.log")])

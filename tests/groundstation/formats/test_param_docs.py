@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import lzma
+import math
 
 import pytest
 
@@ -78,6 +79,7 @@ def test_both_files_of_ardupilot_say_the_same(data: bytes) -> None:
     )
     assert docs.get("LOG_BITMASK").meaning(9.0) == "Fast Attitude, System Performance"
     assert docs.get("FS_ACTION").meaning(1.0) == ""
+    assert docs.get("LOG_BITMASK").meaning(math.nan) == docs.get("LOG_BITMASK").meaning(math.inf) == ""
     assert docs.get("NO_SUCH") == ParamDoc("NO_SUCH")
 
 

@@ -98,7 +98,7 @@ def test_an_item_of_an_array_is_plotted_and_an_index_too_large_means_the_last() 
     chosen.count(battery, 1.0)
     plot = chosen.view(1.0, request).plot
     assert plot is not None
-    assert list(array("d", plot.values)) == [4.1]
+    assert list(array("d", plot.values)) == [4.1, 4.1]
     last = chosen.view(1.0, MessageRequest(1, 1, False, "BATTERY_STATUS", "voltages", 200)).plot
     assert last is not None
     assert (last.info.field.index, len(last.values)) == (9, 0)

@@ -10,7 +10,7 @@ from dialects import messages as m
 from dialects.enums import Command
 from groundstation.intents.services import RequestMessage, ServiceIntent, SetMessageRate
 from groundstation.intents.session import Watch
-from groundstation.views.messages import MessageRequest, MessageView
+from groundstation.views.messages import MessageRequest, MessagesPage, MessagesRequest, MessageView
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
 from tests.groundstation.fake_vehicle import Cockpit
 from tests.test_stops import Drive
@@ -51,8 +51,17 @@ def end_of(drive: Drive, intent: ServiceIntent) -> tuple[str, str]:
 def rate(drive: Drive) -> float:
     """Hz of ATTITUDE over the last 3 s."""
     drive.run(4.0)
-    rates = drive.station.snapshot(drive.world.now, 0).messages
-    return next(each.rate for each in rates if each.name == "ATTITUDE" and not each.sent)
+    pages: list[MessagesPage] = []
+
+    def take(view: object) -> bool:
+        assert isinstance(view, MessagesPage)
+        pages.append(view)
+        return True
+
+    drive.tell(Watch((MessagesRequest(count=200),)))
+    drive.station.views.send_due(take, drive.world.now, 0.0)
+    drive.tell(Watch(()))
+    return next(each.rate for each in pages[-1].rows if each.name == "ATTITUDE" and not each.sent)
 
 
 def test_a_rate_is_set_ended_and_the_default_again() -> None:

@@ -41,27 +41,6 @@ def names(made: MessageTraffic, **request: object) -> list[str]:
     return [row.name or f"{row.system}/{row.component}" for row in rows(made, **request)]
 
 
-def test_messages_come_with_rates() -> None:
-    cockpit = Cockpit()
-    cockpit.run(5.0)
-    rates = {(rate.name, rate.sent): rate for rate in cockpit.snapshot.messages}
-    assert rates["HEARTBEAT", False].rate == pytest.approx(1.0, abs=0.4)
-    assert rates["HEARTBEAT", True].count >= 5
-
-
-def test_rates_are_those_of_the_selected_vehicle_and_of_all_its_components() -> None:
-    made = MessageTraffic(255, 190)
-    for tenth in range(100):
-        for system in (1, 2, 3):
-            made.count(BEAT, system, 1, tenth / 10, known=True)
-    made.count(BEAT, 2, 154, 9.9, known=False)
-    made.count_sent(BEAT, 9.9)
-    received, sent = made.build_rates(2, 9.9)
-    assert (received.count, received.sent, sent.count, sent.sent) == (101, False, 1, True)
-    assert received.rate == pytest.approx(10.0, abs=0.5)
-    assert [row.sent for row in made.build_rates(9, 9.9)] == [True]
-
-
 def test_the_tree_has_each_source_over_its_messages_and_ours_last() -> None:
     made = traffic()
     assert names(made) == ["1/1", "ATTITUDE", "HEARTBEAT", "51/68", "RADIO_STATUS", "255/190", "HEARTBEAT"]

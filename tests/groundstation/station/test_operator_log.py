@@ -11,7 +11,8 @@ from groundstation.intents.driving import DriveKeyDown, EmergencyStop, Stop
 from groundstation.intents.vehicle import Arm, SetMode
 from groundstation.snapshot import LogLine
 from groundstation.station.operator_log import MAX_KEYS, REPORT_WITHIN, OperatorLog
-from groundstation.vehicles.latency import LatencyMeter
+from groundstation.vehicles.key_to_motor import KeyTimings
+from groundstation.vehicles.latency import LatencyMeter, SentDemand
 from groundstation.vehicles.message_log import MessageLog
 from groundstation.views.log import LogPage, LogRequest
 from tests.test_stops import Drive
@@ -46,16 +47,16 @@ def test_commands_are_lines_at_once(log: MessageLog) -> None:
 
 
 def test_driving_is_a_line_when_the_vehicle_reports_neutral(log: MessageLog) -> None:
-    mine, latency = OperatorLog(log), LatencyMeter()
+    mine, latency = OperatorLog(log), LatencyMeter(KeyTimings())
     for key in ("i", "u", "i"):
         mine.handle(push(key), 1.0)
     mine.tick(FORWARD, latency, 1.0)
-    latency.record_sent(1, 1.0)
+    latency.record_sent(1, SentDemand(1.0, 1.0))
     latency.record_applied(1, 1.03, 0.0)
     mine.tick(FORWARD, latency, 2.0)
     mine.tick(NEUTRAL, latency, 2.9)
     assert texts(log) == [], "its report is not there yet"
-    latency.record_sent(2, 2.9)
+    latency.record_sent(2, SentDemand(2.9, 2.9))
     latency.record_applied(2, 2.919, 0.0)
     mine.tick(NEUTRAL, latency, 2.95)
     assert texts(log) == ["i u drove for 1.90 s, neutral applied after 19 ms"]

@@ -19,6 +19,7 @@ from groundstation.views.params import (
     ParamPage,
     ParamPageRequest,
 )
+from link.services.param.client import Param
 from tests.groundstation.station.test_service_desk import connected, end_of
 from tests.test_stops import Drive
 from vehicle.params import PARAMETERS
@@ -58,7 +59,7 @@ def test_the_vehicle_serves_the_texts_of_its_parameters() -> None:
     drive = described()
     page = view(drive, ParamPageRequest("FS_GCS_ENABLE", rows=5), ParamPage)
     assert [(row.name, row.unit, row.meaning) for row in page.rows] == [("FS_GCS_ENABLE", "", "HOLD")]
-    assert (page.autopilot, page.missing, page.changed) == ("other", (), page.changed)
+    assert (page.autopilot, page.missing, page.gaps) == ("other", 0, ())
     assert sum(group.count for group in page.groups) == page.known == len(PARAMETERS)
     [info] = view(drive, ParamInfoRequest(("FS_TIMEOUT", "NO_SUCH")), ParamInfos).infos
     assert (info.low, info.high, info.unit, info.not_armed) == (0.5, 10.0, "s", True)
@@ -129,3 +130,15 @@ def test_the_vehicle_stores_and_resets_its_parameters() -> None:
     assert view(drive, ParamPageRequest("WP_SPEED", rows=1), ParamPage).rows[0].value == 0.8
     drive.tell(StoreParams(5, 1))
     assert end_of(drive, 5).state in ("accepted", "refused"), "refused where nothing is saved"
+
+
+def test_a_file_that_no_packet_holds_is_refused() -> None:
+    drive = fetched()
+    contact = drive.station.fleet.selected
+    assert contact is not None
+    assert contact.services is not None
+    client = contact.services.params.client
+    client.load(Param(f"PARAMETER_{number:05}", 0.1, 9, number) for number in range(8000))
+    found = view(drive, ParamExportRequest(1, "qgc"), ParamExport)
+    assert (found.text, found.count) == ("", 0)
+    assert "groundstation param save" in found.problem

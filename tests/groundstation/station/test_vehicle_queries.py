@@ -104,11 +104,13 @@ def test_a_restarted_vehicle_has_a_new_track_and_home() -> None:
     vehicle.send(m.HomePosition(0, 0, 0, 5.0, 6.0, 0.0, [1, 0, 0, 0], 0, 0, 0))
     vehicle.send(m.LocalPositionNed(m.boot_ms(cockpit.now), 70.0, 80.0, 0.0, 0.0, 0.0, 0.0))
     cockpit.run(0.1)
-    assert (70.0, 80.0) in cockpit.view.track
+    selected = cockpit.station.fleet.selected
+    assert selected is not None
+    assert (70.0, 80.0) in selected.state.trail.points
     assert cockpit.view.home == (5.0, 6.0)
     vehicle.send(m.Attitude(1000, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0))
     cockpit.run(0.1)
-    assert (70.0, 80.0) not in cockpit.view.track
+    assert (70.0, 80.0) not in selected.state.trail.points
     assert cockpit.view.home is None
 
 

@@ -18,8 +18,8 @@ from groundstation.views.plan import (
     PlanMode,
     PlanPage,
     PlanSummary,
+    PlanTrackView,
     PlanView,
-    TrackView,
 )
 from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.examples import snapshot, vehicle
@@ -75,14 +75,14 @@ def pages() -> tuple[PlanPage, ...]:
     return tuple(PlanPage(1, kind, 1, len(items), 0, items) for kind, items in PLANS.items())
 
 
-def track() -> TrackView:
+def track() -> PlanTrackView:
     """What was driven, with a little sway."""
     points = []
     for (n1, e1), (n2, e2) in pairwise(_DRIVEN):
         for step in range(20):
             part = step / 20
             points.append((n1 + (n2 - n1) * part, e1 + (e2 - e1) * part + 0.3 * math.sin(step)))
-    return TrackView(1, HOME, tuple(points))
+    return PlanTrackView(1, HOME, tuple(points))
 
 
 NONE = (PlanSummary(), PlanSummary(), PlanSummary())

@@ -62,7 +62,7 @@ def page(**changes: object) -> ParamPage:
 
 EMPTY = page(rows=(), matching=0, known=0, total=None, groups=(), changed=0)
 LOADING = page(known=610, running=(RequestLine(1, "running", "fetch parameters", done=610, total=1235),))
-HOLES = page(known=1226, missing=(17, 18, 19, 400, 401, 402, 403, 1200, 1201))
+HOLES = page(known=1226, missing=9, gaps=(17, 18, 19, 400, 401, 402, 403, 1200, 1201))
 SILENT = page(
     rows=(), matching=0, known=0, total=None, groups=(), changed=0, texts="",
     ended=(RequestLine(1, "no answer", "fetch parameters", "no list after 8 tries"),),

@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 import socket
 from array import array
-from collections.abc import Sequence
 from typing import Any, TypeVar
 
 import msgspec
 
-from groundstation.intents.session import RenewLease, SetKeyGate
+from groundstation.drive_views import HealthLine, KeyToMotor, MissionProgress, StopBound, Timing
+from groundstation.intents.session import RenewLease, SetKeyGate, Watch
 from groundstation.intents.union import AnyIntent
 from groundstation.snapshot import (
     LinkView,
     LogLine,
-    MessageRate,
     OperatorView,
     OutputView,
     Snapshot,
@@ -24,6 +23,7 @@ from groundstation.snapshot import (
 )
 from groundstation.views.base import View
 from groundstation.views.charts import FieldId, FieldInfo
+from groundstation.views.drive import SpeedView, TrackRequest, TrackView
 from groundstation.views.log import LogPage
 from groundstation.views.messages import FieldPlot, MessageField, MessageRow, MessagesPage, MessageView
 from groundstation.views.params import ParamPage, ParamRow
@@ -114,14 +114,44 @@ def wheels(left: float, right: float) -> tuple[OutputView, ...]:
     return OutputView(name="left wheel", value=left), OutputView(name="right wheel", value=right)
 
 
+WAY = KeyToMotor(Timing(0.0003, 0.0009), Timing(0.0058, 0.009), Timing(0.0021, 0.011), Timing(0.0082, 0.021))
+FOREIGN_WAY = KeyToMotor(Timing(0.0003, 0.0009), Timing(0.004, 0.01), Timing(0.11, 0.19), Timing(0.12, 0.2))
+STOPS = (
+    StopBound("no command", "neutral", "MAN_TIMEOUT", 0.45, 0.042),
+    StopBound("no command", "HOLD", "FS_TIMEOUT", 1.95, 0.042),
+    StopBound("no station", "HOLD", "FS_GCS_TIMEOUT", 5.0, 0.62),
+    StopBound("no key", "neutral", "OPR_TIMEOUT", 10.0, 6.1),
+    StopBound("fence", "nothing", "FENCE_ENABLE", never=True, unit="m"),
+    StopBound("battery", "HOLD", "BATT_LOW_VOLT", 10.5, 11.82, unit="V"),
+    StopBound("tilt", "disarm", "CRASH_ANGLE", 45.0, 3.4, unit="deg"),
+)
+FOREIGN_STOPS = (
+    StopBound("no command", "nothing", "RC_OVERRIDE_TIME", never=True),
+    StopBound("... no RC", "nothing", "FS_THR_ENABLE", never=True),
+    StopBound("... no RC", "--", "FS_TIMEOUT"),
+    StopBound("no station", "HOLD", "FS_GCS_ENABLE", 6.5, 0.4, estimated=True),
+)
+HEALTH = (
+    HealthLine("logging", "not healthy", False), HealthLine("battery", "11.8 V  2.4 A  76%", True),
+    HealthLine("gps", "3D, 14 satellites, hdop 0.8", True), HealthLine("estimate", "good, within 0.4 m", True),
+    HealthLine("computer", "load 41%, 52 °C", True), HealthLine("gyro", "ok", True), HealthLine("motors", "ok", True),
+    HealthLine("fence", "off", None),
+)  # fmt: skip
+MISSION = MissionProgress(
+    current=4, last=7, command="LOITER_TIME 10 s", distance=14.9, legs=(20.0, 30.0, 12.5, 40.0, 28.0),
+    places=(2, 3, 4, 6, 7), left=82.9, time_left=98.0,
+)  # fmt: skip
+
+
 def vehicle(**changes: Any) -> VehicleView:
     """A rover that drives a curve, armed, with everything known."""
     track = path()
     view = VehicleView(
         system=1, name="Rover 1", autopilot=0, mode="MANUAL", armed=True, status=4, alive=True, silence=0.1, driver=255,
-        in_control=True, position=track[-1], home=(0.0, 0.0), track=track, heading=2.4, roll=0.06, pitch=-0.03,
+        in_control=True, position=track[-1], home=(0.0, 0.0), heading=2.4, roll=0.06, pitch=-0.03,
         speed=0.84, battery_voltage=11.82, battery_current=2.4, battery_remaining=0.76, gps_fix=3, gps_satellites=14,
         demand=(0.58, 0.24), outputs=wheels(0.71, 0.46), limits=("slew",), command_age=0.042, latency=0.0013,
+        speed_demand=0.9, key_to_motor=WAY, stops=STOPS, health=HEALTH, mission=MISSION,
     )  # fmt: skip
     return msgspec.structs.replace(view, **changes)
 
@@ -134,6 +164,16 @@ def helm(**changes: Any) -> OperatorView:
     )  # fmt: skip
     return msgspec.structs.replace(view, **changes)
 
+
+TRACK = TrackView(1, path())
+SPEEDS = SpeedView(
+    1,
+    tuple((step / 2, 0.9 * (1 - math.exp(-(step % 40) / 6)), 0.9 if step % 40 < 34 else 0.0) for step in range(120)),
+)
+"""What the Drive screen gets beside the snapshot."""
+
+DRIVE_WATCH = Watch((TrackRequest(),))
+"""What it requests at 80x24."""
 
 TEXTS = (
     LogLine(time=NOON, severity=6, label="vehicle", text="rover 1, mavhelm vehicle 0.1, MANUAL"),
@@ -165,21 +205,12 @@ LOG_PAGE = LogPage(
 )  # fmt: skip
 """What the Log screen gets."""
 
-RATES: Sequence[tuple[str, float, int, bool]] = (
-    ("HEARTBEAT", 1.0, 2023, False), ("ATTITUDE", 10.0, 6577, False), ("VFR_HUD", 4.0, 7363, False),
-    ("GLOBAL_POSITION_INT", 5.0, 8773, False), ("SYS_STATUS", 2.0, 1083, False), ("SERVO_OUTPUT_RAW", 5.0, 7333, False),
-    ("GPS_RAW_INT", 5.0, 7509, False), ("BATTERY_STATUS", 1.0, 1319, False), ("COMMAND_ACK", 0.0, 12, False),
-    ("STATUSTEXT", 0.2, 27, False), ("TIMESYNC", 1.0, 6264, False), ("ROVER_DRIVE_STATUS", 20.0, 9128, False),
-    ("MANUAL_CONTROL", 20.0, 7942, True), ("ROVER_OPERATOR_PRESENCE", 20.0, 7942, True), ("HEARTBEAT", 1.0, 747, True),
-)  # fmt: skip
-
 
 def snapshot(**changes: Any) -> Snapshot:
     """All of it."""
     picture = Snapshot(
         number=1, uptime=60.0, endpoints=("udpin:127.0.0.1:14550",), vehicle=vehicle(), operator=helm(),
         links=(LinkView(name="udpin:127.0.0.1:14550", loss=0.003, round_trip=0.012, rate=55.0),), texts=TEXTS,
-        messages=tuple(MessageRate(name=name, rate=rate, count=count, sent=sent) for name, rate, count, sent in RATES),
     )  # fmt: skip
     return msgspec.structs.replace(picture, **changes)
 

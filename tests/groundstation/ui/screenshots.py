@@ -14,6 +14,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from textual.pilot import Pilot
 
@@ -24,7 +25,7 @@ from tests.groundstation.held_key import hold_until
 from tests.groundstation.ui import frames
 from tests.groundstation.ui.map_pictures import map_picture
 
-SIZES = ((80, 24), (140, 45))
+SIZES = ((80, 24), (140, 45), (200, 60))
 
 DRIVE: tuple[tuple[str, float], ...] = (
     ("i", 5.0), ("o", 1.1), ("i", 4.0), ("u", 1.6), ("i", 4.0), ("o", 0.9), ("i", 3.0), ("u", 2.4), ("i", 3.0),
@@ -87,24 +88,68 @@ async def pictures(size: tuple[int, int]) -> dict[str, str]:
         await pilot.press("f6")
         await pilot.pause(1.0)
         made["log"] = frames.svg(app)
-        await pilot.press("f3", *"/sysstat", "enter")
+        await pilot.press("f3")
         await pilot.pause(1.5)
-        await pilot.press("down", "tab", *["down"] * 4)
+        while "SYS_STATUS #1" not in frames.text(app):
+            await pilot.press("down")
+            await pilot.pause(0.5)
+        await pilot.press("tab", "down")
         await pilot.pause(12.0)
         made["messages"] = frames.svg(app)
         await pilot.press("f5")
         await pilot.pause(0.5)
-        await pilot.press("z", "shift+left")
+        await pilot.press("1", "z", "shift+left")
         await pilot.pause(0.5)
         made["charts"] = frames.svg(app)
         await pilot.press("f1")
         await pilot.press("exclamation_mark")
         await pilot.pause(1.0)
         made["emergency"] = frames.svg(app)
+        await pilot.press("f8")
+        await pilot.pause(1.0)
+        await pilot.press("c")
+        await pilot.pause(3.0)
+        made["setup"] = frames.svg(app)
         await pilot.press("question_mark")
         await pilot.pause(0.5)
         made["help"] = frames.svg(app)
     return made
+
+
+SAFE = "FS_TIMEOUT 1\nFS_GCS_TIMEOUT 3\nMOT_THR_MAX 60\nMOT_SLEWRATE 250\n"
+"""A parameter file to compare with."""
+
+
+async def param_pictures(size: tuple[int, int], folder: Path) -> dict[str, str]:
+    """The Parameters screen with a file of this folder that is compared, and its values as changes."""
+    client = StationClient.start([], sitl=True)
+    try:
+        app = ConsoleApp(client, Keymap("standard", KEYMAPS["standard"]), folder=folder)
+        async with app.run_test(size=size) as pilot:
+            await _until(pilot, lambda: app.drive.snapshot.vehicle is not None)
+            await pilot.press("f4")
+            await _until(pilot, lambda: "Turn rate" in frames.text(app))
+            await pilot.press("O", *"safe", "full_stop", *"param", "enter")
+            await pilot.pause(1.0)
+            await pilot.press("a", "slash", *"fs", "underscore", "space", *"mot", "underscore", "enter")
+            await pilot.pause(1.0)
+            await pilot.press(*["down"] * 9)
+            await _until(pilot, lambda: "edits wait" in frames.text(app))
+            return {"params": frames.svg(app)}
+    finally:
+        client.close()
+
+
+async def all_pictures(size: tuple[int, int]) -> dict[str, str]:
+    """Name -> SVG of all screens."""
+    with TemporaryDirectory() as files:
+        return await pictures(size) | await param_pictures(size, write_safe(Path(files)))
+
+
+def write_safe(folder: Path) -> Path:
+    """Write the file to compare with; return the folder."""
+    (folder / "safe.param").write_text(SAFE)
+    return folder
 
 
 def write_pictures(make: Callable[[tuple[int, int]], Awaitable[dict[str, str]]]) -> None:
@@ -126,4 +171,4 @@ async def _await(made: Awaitable[dict[str, str]]) -> dict[str, str]:
 
 
 if __name__ == "__main__":
-    write_pictures(pictures)
+    write_pictures(all_pictures)

@@ -236,3 +236,14 @@ def test_what_to_do_next(picture: Snapshot, words: str) -> None:
 def test_another_screen_has_a_hint_of_its_own() -> None:
     info = ScreenInfo("log", hint="live")
     assert hint(DisplayState(snapshot(), STANDARD, screen=info)) == "live"
+
+
+def test_a_vehicle_that_is_only_watched_is_named_and_one_with_another_link_is_not() -> None:
+    watched = LinkView(name="udpin:127.0.0.1:14550", systems=(1,), watch_only=True)
+    other = LinkView(name="serial:/dev/ttyUSB0:57600", systems=(1, 7))
+
+    def texts(*links: LinkView) -> list[str]:
+        return [alert.text for alert in active_alerts(DisplayState(snapshot(links=links), STANDARD))]
+
+    assert "Rover 1 is only watched: nothing is sent on udpin:127.0.0.1:14550" in texts(watched)
+    assert not [text for text in texts(watched, other) if "watched" in text]

@@ -143,6 +143,8 @@ async def test_no_key_drives_on_another_screen(row: ScreenRow) -> None:
             await wheels.type(data * 3)
             assert wheels.power == 0.0, data
             assert wheels.station.drive.rover.state is SafetyState.ARMED, data
+            if not isinstance(wheels.app.screen, load_screen(row)):  # a key of this screen has opened another one
+                await wheels.open(row)
         for opening in STATES.values():
             for data in ("i", "j", "\x1b[A", " ", "1", "r"):
                 opening(wheels.screen)

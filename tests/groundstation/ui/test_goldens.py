@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from groundstation.actions import ACTIONS
+from groundstation.drive_views import KeyToMotor, StopBound
 from groundstation.input.hold_to_confirm import HoldProgress
+from groundstation.intents.session import Watch
 from groundstation.screens import SCREENS
 from groundstation.snapshot import OutputView, Snapshot
 from groundstation.ui.appearance import Look
@@ -20,10 +22,16 @@ from groundstation.views.base import View
 from groundstation.views.links import ControlView, LinksView, VehiclesView
 from tests.groundstation.ui.example_charts import drive, fields_page
 from tests.groundstation.ui.example_connect import CONNECT, FAILED, NOTHING, UNCONNECTED, forget, remember
+from tests.groundstation.ui.example_files import FILES, NO_SERVICE, NO_TASKS, TASKS, fill_folder
+from tests.groundstation.ui.example_setup import setup_frames, setup_view
 from tests.groundstation.ui.examples import (
+    FOREIGN_STOPS,
+    FOREIGN_WAY,
     LOG_PAGE,
     MESSAGES_PAGE,
+    SPEEDS,
     SYS_STATUS_VIEW,
+    TRACK,
     helm,
     param_page,
     snapshot,
@@ -33,10 +41,10 @@ from tests.groundstation.ui.examples import (
 )
 from tests.groundstation.ui.link_examples import FLEET, OURS, VIEWS
 from tests.groundstation.ui.pilots import Console, console
-from tests.groundstation.ui.ptys import STANDARD
+from tests.groundstation.ui.ptys import STANDARD, until
 
 GOLDEN = Path(__file__).parent / "golden"
-SMALL, WIDE = (80, 24), (140, 45)
+SMALL, WIDE, LARGE = (80, 24), (140, 45), (200, 60)
 
 STANDING = snapshot(
     vehicle=vehicle(
@@ -51,15 +59,18 @@ STANDING = snapshot(
 STOPPED = snapshot(vehicle=vehicle(emergency_stop=True, armed=False, failsafes=("estop",), outputs=wheels(0.0, 0.0)))
 UNKNOWN = snapshot(
     vehicle=vehicle(
-        name="ArduPilot rover 1", driver=None, position=None, home=None, track=(), heading=None, roll=None, pitch=None,
+        name="ArduPilot rover 1", driver=None, position=None, home=None, heading=None, roll=None, pitch=None,
         speed=math.nan, battery_voltage=None, battery_remaining=None, gps_fix=0, gps_satellites=None, demand=None,
-        outputs=(), command_age=None, latency=None,
+        outputs=(), command_age=None, latency=None, key_to_motor=KeyToMotor(), health=(), mission=None,
+        stops=(StopBound("no command", "--", "not known"), StopBound("no station", "--", "not known")),
     )
 )  # fmt: skip
 
 WARNED = snapshot(
     vehicle=vehicle(
-        name="ArduPilot rover 1", driver=None, demand=None, command_age=None, latency=None, limits=(),
+        name="ArduPilot rover 1", driver=None, demand=None, command_age=0.03, command_age_estimated=True, latency=None,
+        limits=(), stops=FOREIGN_STOPS, mission=None,
+        key_to_motor=FOREIGN_WAY,
         outputs=(OutputView(name="steering servo", value=0.25), OutputView(name="throttle servo", value=0.57)),
         obeys="obeys ground station 250 only and we are 255: use --system 250",
         warnings=(
@@ -70,9 +81,15 @@ WARNED = snapshot(
     )
 )  # fmt: skip
 
+SETUP_FRAMES = setup_frames(STANDING, waiting())
+
 FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "drive_80x24": (SMALL, snapshot(), ()),
     "drive_140x45": (WIDE, snapshot(), ()),
+    "drive_200x60": (LARGE, snapshot(), ()),
+    "pane_speed_80x24": (SMALL, snapshot(), ("v",)),
+    "pane_rates_80x24": (SMALL, snapshot(), ("v", "v")),
+    "warned_140x45": (WIDE, WARNED, ()),
     "latched_80x24": (SMALL, snapshot(operator=helm(style="latch", stop_bound=math.inf, reports_releases=False)), ()),
     "disarmed_80x24": (SMALL, STANDING, ()),
     "hold_80x24": (SMALL, STANDING, ()),
@@ -99,6 +116,12 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "connect_140x45": (WIDE, UNCONNECTED, ("ctrl+g", "c")),
     "connect_nothing_80x24": (SMALL, UNCONNECTED, ("ctrl+g", "c")),
     "connect_failed_140x45": (WIDE, FLEET, ("ctrl+g", "c", "tab", "tab", "down")),
+    "files_80x24": (SMALL, snapshot(transfers=0.41), ("ctrl+g", "9")),
+    "files_140x45": (WIDE, snapshot(transfers=0.41), ("ctrl+g", "9", "down", "tab", "down")),
+    "files_tree_80x24": (SMALL, snapshot(), ("ctrl+g", "9", "tab", "down", "enter", "down", "enter")),
+    "files_here_80x24": (SMALL, snapshot(), ("ctrl+g", "9", "tab", "tab")),
+    "files_none_80x24": (SMALL, snapshot(), ("ctrl+g", "9", "tab")),
+    "files_loading_80x24": (SMALL, waiting(), ("ctrl+g", "9")),
     "charts_empty_80x24": (SMALL, snapshot(), ("f5",)),
     "charts_empty_140x45": (WIDE, waiting(), ("f5",)),
     "charts_80x24": (SMALL, snapshot(), ("f5", "v")),
@@ -107,6 +130,7 @@ FRAMES: dict[str, tuple[tuple[int, int], Snapshot, tuple[str, ...]]] = {
     "charts_measure_80x24": (SMALL, snapshot(), ("f5", "v", "z", *["shift+left"] * 2, "m", "left", "left")),
     "charts_measure_140x45": (WIDE, snapshot(), ("f5", "v", "z", "shift+left", "m", *["shift+left"] * 4)),
     "charts_add_140x45": (WIDE, snapshot(), ("f5", "v", "a", *"volt")),
+    **SETUP_FRAMES,
     "goto_80x24": (SMALL, snapshot(), ("ctrl+g",)),
     "help_80x24": (SMALL, snapshot(), ("question_mark",)),
 }
@@ -117,6 +141,7 @@ FRAMES |= {
     for name in (
         "drive_80x24",
         "drive_140x45",
+        "drive_200x60",
         "waiting_80x24",
         "strip_40x10",
         "log_80x24",
@@ -126,7 +151,11 @@ FRAMES |= {
         "links_140x45",
         "connect_80x24",
         "connect_140x45",
+        "files_80x24",
+        "files_140x45",
         "goto_80x24",
+        "setup_80x24",
+        "setup_140x45",
         "messages_80x24",
         "messages_140x45",
         "charts_80x24",
@@ -137,15 +166,19 @@ FRAMES |= {
 
 def views_for(name: str) -> Sequence[View]:
     """Return what the station sends to the screen of a frame."""
+    if "files" in name:
+        return () if "loading" in name else (NO_SERVICE, NO_TASKS) if "none" in name else (FILES, TASKS)
     if "connect" in name:
         return (NOTHING if "nothing" in name else FAILED if "failed" in name else CONNECT,)
     if "charts" in name:
         return (fields_page(empty=True),) if "empty" in name else (fields_page(),)
-    if "empty" in name:
+    if "links_empty" in name:
         return VehiclesView(()), LinksView(()), ControlView(vehicle="", ours=OURS)
+    if "setup" in name:
+        return (setup_view(name),)
     if "params" in name:
         return (param_page(),)
-    return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE)
+    return VIEWS if "links" in name else (LOG_PAGE, MESSAGES_PAGE, TRACK, SPEEDS)
 
 
 def fill_recent(name: str) -> None:
@@ -160,6 +193,8 @@ async def fill(screen: Console, name: str, keys: Sequence[str], picture: Snapsho
     """Press the keys behind the one that opened the screen, and show what that asks for."""
     if "charts" in name:
         await screen.press(*keys[1:2])
+        if "v" in keys:  # points that come before they are requested are dropped
+            await until(lambda: any(getattr(each, "fields", ()) for each in screen.station.of(Watch)[-1].requests))
         screen.station.offer_view(drive())
         await screen.show(picture)
         await screen.press(*keys[2:])
@@ -174,16 +209,19 @@ async def fill(screen: Console, name: str, keys: Sequence[str], picture: Snapsho
 
 
 @pytest.mark.parametrize("name", FRAMES)
-async def test_the_frame_is_the_golden_one(name: str) -> None:
+async def test_the_frame_is_the_golden_one(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     size, picture, keys = FRAMES[name]
     fill_recent(name)
-    async with console(size, picture, look=Look(ascii=name.startswith("ascii"))) as screen:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "logs").mkdir()
+    look, folder = Look(ascii=name.startswith("ascii")), fill_folder(tmp_path / "logs")
+    async with console(size, picture, folder=folder, look=look) as screen:
         opens = 2 if keys[:1] == ("ctrl+g",) else 1
         await screen.press(*keys[:opens])
+        for view in views_for(name):
+            screen.station.offer_view(view)
+        await screen.show(picture)
         if keys:
-            for view in views_for(name):
-                screen.station.offer_view(view)
-            await screen.show(picture)
             await fill(screen, name, keys[opens - 1 :], picture)
             await screen.show(picture)  # the height of the alerts is known after the first one
         if "hold" in name:

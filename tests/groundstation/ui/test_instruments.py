@@ -11,6 +11,12 @@ from tests.groundstation.ui.examples import snapshot
 from tests.groundstation.ui.pilots import console
 from tests.groundstation.ui.ptys import STANDARD
 
+
+def state_of(picture: Snapshot) -> DisplayState:
+    """Return a display state of the standard key map."""
+    return DisplayState(picture, STANDARD)
+
+
 ROWS = pytest.mark.parametrize("row", INSTRUMENTS, ids=lambda row: row.id)
 
 
@@ -21,7 +27,7 @@ def test_ids_are_unique() -> None:
 @ROWS
 @pytest.mark.parametrize("picture", [Snapshot(), snapshot()], ids=["no vehicle", "driving"])
 def test_each_row_draws_its_value(row: InstrumentRow, picture: Snapshot) -> None:
-    state = DisplayState(picture, STANDARD)
+    state = state_of(picture)
     widget = row.build(row.value(state), id=row.id)
     assert all(line.cell_length <= 80 for line in widget.draw(80, 6))
 

@@ -140,7 +140,7 @@ async def test_edit_refuse_undo_save_and_compare(kind: Kind, tmp_path: Path, mon
         await at.change("3")
         await at.write(kind.words)
         assert at.model.last_write.startswith("refused: ")
-        assert "refused: " in frames.text(at.app)
+        await until(lambda: "refused: " in frames.text(at.app))
         await at.pilot.press("x")
 
         await at.find(kind.name)

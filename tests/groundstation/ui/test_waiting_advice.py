@@ -125,4 +125,4 @@ async def test_the_page_shows_problem_traffic_and_wraps_long_lines() -> None:
         assert "0 bytes" not in text
         assert "ENTER starts a simulated rover" in text
         await screen.show(waiting(endpoints=("tcpout:10.0.0.9:5760",)))
-        assert "ENTER or F5 starts a simulated rover, ^g c connects to another vehicle" in screen.text
+        assert "ENTER starts a simulated rover, ^g c connects to another vehicle" in screen.text

@@ -172,9 +172,14 @@ def test_parameters_that_the_vehicle_does_not_have_are_requested_three_times() -
 
 
 def test_what_the_driver_sees_of_it() -> None:
-    cockpit, _ = driving()
+    cockpit, vehicle = driving()
+    assert {output.name: output.value for output in cockpit.view.outputs} == {"servo 1": None, "servo 3": None}
+    assert cockpit.view.demand is None, "the meaning of a pulse is not known"
+    vehicle.set_pulses("SERVO1", "SERVO3", "RC1", "RC3")
+    cockpit.run(61.0)  # until they are requested again
     outputs = {output.name: output.value for output in cockpit.view.outputs}
     assert outputs == pytest.approx({"servo 1": -0.6, "servo 3": 0.6}), "servo 1 steers, servo 3 drives"
+    assert cockpit.view.demand == pytest.approx((0.6, -0.6))
     assert cockpit.view.name == "ArduPilot rover 1"
     assert cockpit.view.battery_voltage == pytest.approx(12.0)
     assert cockpit.view.in_control

@@ -23,6 +23,7 @@ FRAMES = {
 def cockpit(functions: dict[int, int]) -> tuple[Cockpit, FakeArduPilot]:
     vehicle = FakeArduPilot()
     vehicle.parameters |= {f"SERVO{channel}_FUNCTION": float(each) for channel, each in functions.items()}
+    vehicle.set_pulses("SERVO1", "SERVO3")
     made = Cockpit(vehicle)
     made.run(6.0)
     return made, vehicle

@@ -20,8 +20,17 @@ from tests.groundstation.fake_vehicle import Cockpit, FakeVehicle
 INTERVAL = Command.SET_MESSAGE_INTERVAL
 EXPECTED = {
     "ATTITUDE", "VFR_HUD", "LOCAL_POSITION_NED", "GLOBAL_POSITION_INT",
-    "SYS_STATUS", "GPS_RAW_INT", "SERVO_OUTPUT_RAW", "BATTERY_STATUS",
+    "SYS_STATUS", "GPS_RAW_INT", "SERVO_OUTPUT_RAW", "BATTERY_STATUS", "VIBRATION", "MISSION_CURRENT",
+    "NAV_CONTROLLER_OUTPUT",
 }  # fmt: skip
+ONLY = {
+    Autopilot.ARDUPILOT: {"RC_CHANNELS", "EKF_STATUS_REPORT"},
+    Autopilot.PX4: {"ACTUATOR_OUTPUT_STATUS", "ESTIMATOR_STATUS"},
+}
+
+
+def streams(autopilot: Autopilot | None) -> set[int]:
+    return {number for number, wanted in STREAM_RATES.items() if wanted.only in (None, autopilot)}
 
 
 def requested_rates(vehicle: FakeVehicle) -> dict[int, float]:
@@ -34,7 +43,9 @@ def groups(vehicle: FakeVehicle) -> dict[int, int]:
 
 
 def test_everything_that_the_drive_screen_needs_is_requested() -> None:
-    assert {m.MESSAGES[number].msgname for number in STREAM_RATES} == EXPECTED
+    assert {m.MESSAGES[number].msgname for number in streams(None)} == EXPECTED
+    for autopilot, only in ONLY.items():
+        assert {m.MESSAGES[number].msgname for number in streams(autopilot)} == EXPECTED | only
 
 
 @pytest.mark.parametrize("autopilot", [Autopilot.ARDUPILOT, Autopilot.PX4])
@@ -42,12 +53,12 @@ def test_a_foreign_vehicle_gets_requests_at_once_one_message_after_the_other(aut
     vehicle = FakeArduPilot(autopilot=autopilot)
     cockpit = Cockpit(vehicle)
     cockpit.run(2.0)
-    assert requested_rates(vehicle) == {number: pytest.approx(wanted.rate) for number, wanted in STREAM_RATES.items()}
-    assert len(vehicle.commands(INTERVAL)) == len(STREAM_RATES), "each once: they were acknowledged"
+    wanted = {number: pytest.approx(STREAM_RATES[number].rate) for number in streams(autopilot)}
+    assert requested_rates(vehicle) == wanted
+    assert len(vehicle.commands(INTERVAL)) == len(wanted), "each once: they were acknowledged"
     assert groups(vehicle) == {}
     cockpit.run(3.0)
-    rates = {each.name: each.rate for each in cockpit.snapshot.messages if not each.sent}
-    assert rates["ATTITUDE"] == pytest.approx(10.0, abs=1.0)
+    assert vehicle.rates[m.Attitude.id] == pytest.approx(10.0)
     assert not any("command" in text or "accepted" in text for text in cockpit.texts), "nobody needs to read of it"
 
 
@@ -69,7 +80,7 @@ def test_an_unknown_vehicle_gets_requests_for_what_does_not_arrive() -> None:
     cockpit.run(2.5)
     assert vehicle.commands(INTERVAL) == []
     cockpit.run(3.0)
-    assert set(requested_rates(vehicle)) == set(STREAM_RATES) - {m.Attitude.id}
+    assert set(requested_rates(vehicle)) == streams(None) - {m.Attitude.id}
 
 
 def test_a_vehicle_that_does_not_know_the_command_gets_group_requests() -> None:
@@ -105,7 +116,7 @@ def test_a_refused_message_is_requested_by_its_group_alone() -> None:
 
     vehicle = Picky()
     Cockpit(vehicle).run(5.0)
-    assert set(requested_rates(vehicle)) == set(STREAM_RATES)
+    assert set(requested_rates(vehicle)) == streams(Autopilot.ARDUPILOT)
     assert groups(vehicle) == {DataStream.RC_CHANNELS: 5}
 
 

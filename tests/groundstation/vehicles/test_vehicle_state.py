@@ -98,7 +98,7 @@ def test_global_position_is_used_where_there_is_no_local_one() -> None:
     seen = view(at(0, 0), at(600000000, 100000000), at(600010000, 100000000))
     assert seen.position is not None
     assert seen.position[0] == pytest.approx(111.3, abs=0.1)
-    assert seen.track[0] == (0.0, 0.0)
+    assert state(at(600000000, 100000000), at(600010000, 100000000)).trail.points[0] == (0.0, 0.0)
 
 
 def battery(volts: list[int], current: int, remaining: int, number: int = 0) -> m.BatteryStatus:
@@ -123,7 +123,8 @@ def test_drive_status() -> None:
     assert seen.demand == (0.6, -0.25)
     assert [(output.name, output.value) for output in seen.outputs] == [("motor 1", 0.5), ("motor 2", -1.0)]
     assert seen.limits == ("slew", "neutral first")
-    assert seen.command_age == 0.04
+    assert state(heartbeat(), status).command_age(10.0) == 0.04
+    assert state(heartbeat(), status).command_age(12.0) == pytest.approx(2.04), "an old report ages"
     assert view(heartbeat(), status, at=13.0).demand is None, "an old word is not shown as if it were true now"
 
 
@@ -155,10 +156,10 @@ def test_a_restart_forgets_where_the_vehicle_was() -> None:
     there = m.LocalPositionNed(1000, 50.0, 60.0, 0.0, 0.0, 0.0, 0.0)
     vehicle = state(heartbeat(), there, m.HomePosition(0, 0, 0, 1.0, 2.0, 0.0, [1, 0, 0, 0], 0, 0, 0), sys_status())
     before = vehicle.build_view(10.0)
-    assert (before.position, before.home, len(before.track)) == ((50.0, 60.0), (1.0, 2.0), 1)
+    assert (before.position, before.home, len(vehicle.trail.points)) == ((50.0, 60.0), (1.0, 2.0), 1)
     vehicle.restart()
     after = vehicle.build_view(10.0)
-    assert (after.position, after.home, after.track, after.prearm) == (None, None, (), None)
+    assert (after.position, after.home, vehicle.trail.points, after.prearm) == (None, None, (), None)
     assert after.mode == before.mode
     assert state(heartbeat(), m.RoverDriveStatus(0, 0, 0, 0, [0] * 4, 64, 0, 0)).emergency_stop
     assert not state(heartbeat()).emergency_stop
@@ -191,21 +192,6 @@ def test_outputs_are_named_by_the_arrangement_of_the_wheels(kind: DriveType, mot
 
 
 SERVOS = m.ServoOutputRaw(0, 0, 2000, 1750, 1250, 0, 0xFFFF, 0, 0, 0)
-
-
-@pytest.mark.parametrize(
-    ("names", "outputs"),
-    [
-        ({1: "steering servo", 3: "throttle servo"}, [("steering servo", 1.0), ("throttle servo", -0.5)]),
-        ({2: "left wheel", 3: "right wheel"}, [("left wheel", 0.5), ("right wheel", -0.5)]),
-        ({4: "left wheel", 5: "right wheel"}, []),
-        ({}, []),
-    ],
-)
-def test_servo_outputs_without_a_pulse_are_hidden(names: dict[int, str], outputs: list[tuple[str, float]]) -> None:
-    vehicle = state(heartbeat(autopilot=Autopilot.ARDUPILOT), SERVOS)
-    vehicle.servo_names = names
-    assert [(output.name, output.value) for output in vehicle.build_view(10.0).outputs] == outputs
 
 
 def test_not_a_number_is_not_shown() -> None:

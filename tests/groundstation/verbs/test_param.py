@@ -255,3 +255,21 @@ def test_files_that_cannot_be_read_or_written(capsys: Capture, vehicle: ForeignV
         assert run.code == ExitCode.USAGE, run.err
         assert words in run.err
         assert run.err.count("\n") == 1
+
+
+def test_store_and_reset_are_commands_and_reset_wants_yes(capsys: Capture, vehicle: ForeignVehicle) -> None:
+    stored = param(capsys, vehicle, "store")
+    assert (stored.code, stored.out) == (0, f"{_name(vehicle)}: store the parameters: accepted\n")
+    refused = param(capsys, vehicle, "reset")
+    assert refused.code == ExitCode.USAGE
+    assert refused.err.endswith("this resets ALL parameters of the vehicle; --yes does it\n")
+    vehicle.acks[245] = (4, "Disarm first")
+    refused = param(capsys, vehicle, "reset", "--yes")
+    assert refused.code == ExitCode.REFUSED
+    assert 'reset the parameters: refused, FAILED, "Disarm first"' in refused.err
+    sent = [(each.param1, each.param2) for each in vehicle.of("COMMAND_LONG") if each.command == 245]
+    assert sent == [(1.0, -1.0), (2.0, -1.0)], "plans are left alone"
+
+
+def _name(vehicle: ForeignVehicle) -> str:
+    return "ArduPilot rover 1" if vehicle.autopilot == ARDUPILOT else "PX4 rover 1"

@@ -112,8 +112,8 @@ class FieldList(Instrument[tuple[ListRow, ...]]):
 def _series(row: SeriesRow, width: int) -> Strip:
     ground = FAINT if row.chosen else BACKGROUND
     colour = COLOURS[row.slot]
-    sample = (f"{'›' if row.chosen else ' '}{SAMPLES[row.slot]}{'●' if row.pinned else ' '}", style(colour, ground))
-    name = clean(row.label if len(row.label) + 4 + 2 * VALUE <= width else row.short)
+    sample = (f"{'›' if row.chosen else ' '}{SAMPLES[row.slot]}{'●' if row.pinned else ' '} ", style(colour, ground))
+    name = clean(row.label if len(row.label) + 5 + 2 * VALUE <= width else row.short)
     label = (name, style(TEXT if row.heard else DIM, ground, bold=row.chosen))
     now = clean(row.now)[: 2 * VALUE] if not row.at_cursor else clean(row.now)[:VALUE]
     right: list[Part] = (

@@ -17,6 +17,8 @@ from groundstation.ui.widgets.instrument import Instrument, Part, length, strip
 AXIS = 8
 """Cells at the left for the scale."""
 
+MAX_DECIMALS = 9
+
 LEAST_SHARE = 0.02
 """Share of its value that a scale spans at least: the noise of a constant value must not fill the chart."""
 
@@ -96,13 +98,30 @@ def nice_scale(low: float, high: float, least: float = 0.0) -> tuple[float, floa
     """Return bounds on steps of 1, 2 or 5 around two values, at least `least` apart, and decimals for a scale."""
     if 0 <= low < high / 2:
         low = 0.0  # a scale from 0 shows at once how much it is
-    span = max(high - low, LEAST_SHARE * max(abs(low), abs(high)), least) or 1.0
+    largest = max(abs(low), abs(high))
+    span = max(high - low, LEAST_SHARE * largest, least) if largest else max(1.0, least)
     power = 10.0 ** math.floor(math.log10(span))
     step = next(power * each / 5 for each in (1, 2, 5, 10) if power * each >= span)
     bottom, top = math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
-    if top - bottom < step:
-        top = bottom + step
-    return bottom, top, max(0, -math.floor(math.log10((top - bottom) / 2) - 1e-9)) if top - bottom < 20 else 0
+    top = max(top, bottom + math.ceil(span / step - 1e-9) * step)
+    return bottom, top, _decimals(bottom, top)
+
+
+def _decimals(bottom: float, top: float) -> int:
+    """Return the decimals with which the bounds and what is between them are right to 1 % of the scale."""
+    numbers, slack = (bottom, (bottom + top) / 2, top), (top - bottom) / 100
+    exact = (
+        places for places in range(MAX_DECIMALS) if all(abs(round(each, places) - each) <= slack for each in numbers)
+    )
+    return next(exact, MAX_DECIMALS)
+
+
+def scale_text(number: float, decimals: int) -> str:
+    """Return a number that fits beside a chart: with an exponent, or without its first digits ("…165991")."""
+    text = f"{round(number, decimals) + 0.0:.{decimals}f}"
+    if len(text) < AXIS:
+        return text
+    return f"{number:.0e}" if decimals >= MAX_DECIMALS or abs(number) >= 1e7 else f"…{text[2 - AXIS :]}"
 
 
 def _header(value: PaneValue, width: int) -> Strip:
@@ -127,8 +146,7 @@ def _header(value: PaneValue, width: int) -> Strip:
 def _draw_scale(canvas: Canvas, value: PaneValue) -> None:
     middle = ((value.low + value.high) / 2, (canvas.down - 1) // 2)
     for number, y in ((value.high, 0), *([middle] if canvas.height > 3 else []), (value.low, canvas.down - 1)):
-        text = f"{round(number, value.decimals) + 0.0:.{value.decimals}f}"
-        canvas.write(0, y // 4, text[: AXIS - 1].rjust(AXIS - 1), style(DIM))
+        canvas.write(0, y // 4, scale_text(number, value.decimals).rjust(AXIS - 1), style(DIM))
         for x in range(AXIS * 2, canvas.across, 8):
             canvas.dot(x, y, style(LINE))
 

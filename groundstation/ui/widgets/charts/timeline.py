@@ -104,7 +104,7 @@ def _draw_marks(canvas: Canvas, marks: Iterable[TimelineMark], width: int) -> No
         sign, look = _sign(mark)
         _write_free(canvas, free, AXIS + mark.column // 2, sign, look)
     for mark in events:
-        _write_free(canvas, free, AXIS + mark.column // 2 + 2, f"{clean(mark.text)}", _sign(mark)[1])
+        _write_free(canvas, free, AXIS + mark.column // 2 + 1, f" {clean(mark.text)}", _sign(mark)[1])
 
 
 def _write_free(canvas: Canvas, free: list[bool], at: int, text: str, look: Style) -> None:
@@ -123,9 +123,12 @@ def _sign(mark: TimelineMark) -> tuple[str, Style]:
 
 
 def _draw_times(canvas: Canvas, value: TimelineValue, width: int) -> None:
-    canvas.write(AXIS, 2, value.begin, style(DIM))
-    canvas.write(width - len(value.end), 2, value.end, style(DIM))
+    """Draw the time of the cursor, and those at the edges where there is room beside it."""
+    size = len(value.cursor_time)
+    at = AXIS + (value.cursor or 0) // 2 - size // 2
+    at = max(AXIS, min(at, width - size))
     if value.cursor is not None:
-        at = AXIS + value.cursor // 2 - len(value.cursor_time) // 2
-        at = max(AXIS, min(at, width - len(value.cursor_time)))
         canvas.write(at, 2, value.cursor_time, style(WHITE, bold=True))
+    for edge, text in ((AXIS, value.begin), (width - len(value.end), value.end)):
+        if value.cursor is None or edge + len(text) < at or edge > at + size:
+            canvas.write(edge, 2, text, style(DIM))

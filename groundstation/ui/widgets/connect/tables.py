@@ -8,7 +8,9 @@ from collections.abc import Sequence
 from groundstation.recent.recent import RecentEndpoint
 from groundstation.simulators import SIMULATORS
 from groundstation.ui.colours import AMBER, BLUE, DIM, GREEN, TEXT, WHITE, YELLOW
+from groundstation.ui.local_files import LocalFile
 from groundstation.ui.widgets.columns import Column
+from groundstation.ui.widgets.files.tables import size_text
 from groundstation.ui.widgets.row_table import Cell, RowTableValue, dim
 from groundstation.views.connect import ConnectView, HeardRow, PortRow
 
@@ -31,6 +33,8 @@ RECENT_COLUMNS = (
 )
 
 PORT_COLUMNS = (Column("port", 12), Column("what", 10, 1, most=40), Column("state", 14, right=True))
+
+LOG_COLUMNS = (Column("log", 22, most=34), Column("size", 8, right=True), Column("used", 12, 1, right=True))
 
 SIMULATOR_COLUMNS = (Column("key", 1), Column("simulator", 12), Column("what", 16, 1))
 
@@ -131,6 +135,13 @@ def _port_notes(each: PortRow) -> list[Cell]:
     elif not each.allowed:
         notes.append(Cell("your user may not open it: sudo usermod -a -G dialout $USER, then log in again", AMBER))
     return notes
+
+
+def logs_value(logs: Sequence[LocalFile], cursor: int | None) -> RowTableValue:
+    """Return the table of the logs that are here."""
+    rows = tuple((Cell(each.name), dim(size_text(each.size)), dim(used_text(each.changed))) for each in logs)
+    notes = (dim("logs that you download are listed here"),) if not rows else ()
+    return RowTableValue(LOG_COLUMNS, rows, cursor, notes, titled=False)
 
 
 def simulators_value(cursor: int | None, state: str | None) -> RowTableValue:

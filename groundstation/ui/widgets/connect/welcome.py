@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
 
 from textual.strip import Strip
 
@@ -70,7 +69,6 @@ def _advice(where: str, what: str) -> list[Part]:
     return [(f"   {where:<21}", style(DIM)), (what, style(TEXT))]
 
 
-@cache
 def draw_helm() -> tuple[Strip, ...]:
     """Return the picture of a helm, in braille dots."""
     canvas = Canvas(HELM_WIDTH, HELM_HEIGHT)

@@ -18,7 +18,7 @@ from link.services.param.float32 import value_text
 
 LABEL = 12
 """Width of the labels."""
-TALL = 24
+TALL = 20
 """Rows from which on texts are shown whole before the values."""
 MAX_TEXT = 3
 """Lines of a text below that."""
@@ -98,9 +98,10 @@ def _values(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Pa
     yield _labelled("default", "--" if info.default is None else value_text(info.default), TEXT)
     if value.file:
         yield _labelled("in the file", "--" if info.file is None else value_text(info.file), TEXT)
-    unit = info.unit + (f" · step {value_text(info.step)}" if info.step else "")
-    if unit:
-        yield _labelled("unit", unit.removeprefix(" · "), TEXT)
+    if info.unit:
+        yield _labelled("unit", info.unit, TEXT)
+    if info.step:
+        yield _labelled("step", value_text(info.step), TEXT)
     if info.low is not None or info.high is not None:
         yield _labelled("range", range_text(info), TEXT)
 
@@ -171,7 +172,7 @@ def _list(value: DetailValue, info: ParamInfo, width: int) -> Iterator[list[Part
             yield _choice(f"{value_text(number):>4} {name}", number == now, row == value.cursor, width)
     elif info.bits:
         yield [("bits" if value.typed is None else "bits · TAB toggles", style(DIM))]
-        whole = int(now) if now == int(now) else 0
+        whole = int(now) if now.is_integer() else 0
         for row, (bit, name) in enumerate(info.bits):
             yield _choice(f"{bit:>4} {name}", bool(whole >> bit & 1), row == value.cursor, width)
 

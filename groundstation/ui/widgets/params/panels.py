@@ -127,7 +127,7 @@ def _empty_note(model: ParamModel, page: ParamPage | None) -> str:
 def _count_text(page: ParamPage) -> str:
     shown = f"{page.matching} of " if page.matching != page.known else ""
     of_all = f" of {page.total}" if page.total is not None and page.total != page.known else ""
-    missing = f" · {len(page.missing)} missing" if page.missing else ""
+    missing = f" · {page.missing} missing" if page.missing else ""
     return f"{shown}{page.known}{'' if shown else of_all}{missing} · system {page.system}"
 
 

@@ -117,6 +117,17 @@ def test_columns_have_the_extremes_however_the_points_arrive(steps: list[tuple[f
     assert sum(column.broken for column in found) == sum(made.breaks)
 
 
+@given(st.lists(st.floats(0.0, 99.0), min_size=1, max_size=8))
+def test_what_is_shown_is_the_same_wherever_the_picture_was_before(begins: list[float]) -> None:
+    points_of_a_line, moving = filled([at * 0.7 for at in range(150)]), Columns(0.5)
+    for begin in begins:
+        left = int(begin // 0.5)
+        moving.update(points_of_a_line, left * 0.5)
+        whole = Columns(0.5)
+        whole.update(points_of_a_line)
+        assert moving.between(left, left + 40) == whole.between(left, left + 40)
+
+
 def test_columns_outside_the_window_cost_nothing_but_the_one_before_it() -> None:
     made = Columns(1.0)
     made.update(filled([float(at) for at in range(100)]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from groundstation.ui.params.checks import Level, check_value, meaning_of, needs_care, parse_number
@@ -70,9 +72,10 @@ def test_bits_are_toggled() -> None:
     typed.move(-5)
     typed.toggle()
     assert (typed.text, typed.result()) == ("2", 2.0)
-    typed.type("x")
-    typed.toggle()
-    assert typed.text == "x", "bits of no number"
+    for text in ("x", "inf", "nan", "0.5"):
+        typed.type(text)
+        typed.toggle()
+        assert typed.text == text, "bits of no whole number"
 
 
 def test_texts_that_arrive_later() -> None:
@@ -106,6 +109,8 @@ def test_checks(info: ParamInfo | None, value: float, level: Level, text: str) -
 def test_meanings() -> None:
     assert meaning_of(ACTION, 4.0) == "SmartRTL or Hold"
     assert meaning_of(OPTIONS, 3.0) == "Failsafe enabled in Hold mode, Ignore in manual"
+    assert meaning_of(OPTIONS, math.nan) == meaning_of(OPTIONS, math.inf) == ""
+    assert check_value(OPTIONS, math.inf).level is Level.WARNING
     assert meaning_of(OPTIONS, 0.5) == meaning_of(None, 1.0) == meaning_of(TIME, 3.0) == ""
 
 

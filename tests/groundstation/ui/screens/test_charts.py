@@ -124,9 +124,9 @@ async def test_a_pin_is_sent_and_marked_and_kept_while_the_screen_is_closed() ->
     async with console(size=(140, 45)) as screen:
         await open_charts(screen, "p")
         assert screen.station.of(PinSeries) == [PinSeries((SPEED,))]
-        assert "━━●groundspeed" in screen.text
+        assert "━━● groundspeed" in screen.text
         await screen.press("escape", "f5")
-        await until(lambda: "━━●groundspeed" in screen.text)
+        await until(lambda: "━━● groundspeed" in screen.text)
         await screen.press("x")
         assert screen.station.of(PinSeries)[-1] == PinSeries(())
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -24,6 +25,7 @@ from tests.groundstation.ui.example_connect import (
     forget,
     remember,
 )
+from tests.groundstation.ui.example_files import fill_folder
 from tests.groundstation.ui.link_examples import FLEET, VIEWS
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
@@ -67,7 +69,8 @@ async def test_nothing_is_sent_before_enter_and_enter_connects_to_the_marked_veh
         await screen.show(found)
         await until(lambda: screen.app.screen is screen.app.drive)
         assert screen.station.of(SelectVehicle) == [SelectVehicle(system=3)]
-    assert RecentFile().load().last == "udpin:127.0.0.1:14551"
+    entry = RecentFile().load().entries[0]
+    assert (entry.endpoint, entry.vehicle) == ("udpin:127.0.0.1:14551", "Rover 3")
 
 
 async def test_enter_with_nothing_heard_starts_a_simulator_and_keys_start_the_others() -> None:
@@ -89,6 +92,7 @@ async def test_watch_only() -> None:
         assert screen.station.of(AddLink)[-1].watch_only
         await offer(screen, NOTHING)
         await screen.press("W", *"udpin:127.0.0.1:9", "enter")
+        await until(lambda: len(screen.station.of(AddLink)) == 2)
         assert screen.station.of(AddLink)[-1] == AddLink(request=2, endpoint="udpin:127.0.0.1:9", watch_only=True)
 
 
@@ -100,6 +104,7 @@ async def test_a_typed_endpoint_is_checked_while_it_is_typed() -> None:
         await screen.press("enter")
         assert screen.station.of(AddLink) == []
         await screen.press("colon", *"tcpout:10.0.0.7:5762", "enter")
+        await until(lambda: screen.station.of(AddLink))
         assert screen.station.of(AddLink)[-1].endpoint == "tcpout:10.0.0.7:5762"
 
 
@@ -108,13 +113,15 @@ async def test_the_whole_network_is_asked_for_once() -> None:
     async with console((140, 45), UNCONNECTED) as screen:
         await open_connect(screen)
         await screen.press("colon", *endpoint, "enter")
-        assert "which everybody in the network can send to" in screen.text
+        await until(lambda: "which everybody in the network can send to" in screen.text)
         await screen.press("n")
         assert screen.station.of(AddLink) == []
-        await screen.press("colon", *endpoint, "enter", "y")
+        await screen.press("colon", *endpoint, "enter")
+        await until(lambda: "which everybody in the network can send to" in screen.text)
+        await screen.press("y")
         assert [add.endpoint for add in screen.station.of(AddLink)] == [endpoint]
         await screen.press("colon", *endpoint, "enter")
-        assert len(screen.station.of(AddLink)) == 2
+        await until(lambda: len(screen.station.of(AddLink)) == 2)
         await screen.press("tab", "enter")  # the pinned one was agreed to when it was opened first
         assert screen.station.of(AddLink)[-1].endpoint == "udpin:0.0.0.0:14550"
 
@@ -167,3 +174,19 @@ async def test_a_link_is_closed_after_a_question() -> None:
         assert screen.station.of(CloseLink) == [CloseLink(link=0)]
         await screen.press("a")
         assert isinstance(screen.app.screen, ConnectScreen)
+
+
+async def test_a_log_that_is_here_leads_to_the_files_screen(tmp_path: Path) -> None:
+    async with console((140, 45), UNCONNECTED, folder=fill_folder(tmp_path)) as screen:
+        await open_connect(screen)
+        await screen.press("shift+tab", "down")
+        assert "ENTER shows 2-00003.bin on the Files screen" in screen.text
+        await screen.press("enter")
+        assert any(line.startswith("│› 2-00003.bin") for line in screen.text.splitlines())
+
+
+async def test_where_there_is_no_room_for_the_logs_the_arrows_do_not_go_there(tmp_path: Path) -> None:
+    async with console((80, 24), UNCONNECTED, folder=fill_folder(tmp_path)) as screen:
+        await open_connect(screen)
+        await screen.press("shift+tab")
+        assert "ENTER starts a simulator" in screen.text

@@ -27,7 +27,7 @@ from groundstation.ui.key_gate import OTHER_SCREEN
 from groundstation.ui.screens.links import LinksScreen
 from groundstation.views.base import View
 from groundstation.views.links import ControlRequest, ControlView, LinkRow, LinksRequest, LinksView, VehiclesRequest
-from tests.groundstation.ui.examples import snapshot, vehicle
+from tests.groundstation.ui.examples import DRIVE_WATCH, snapshot, vehicle
 from tests.groundstation.ui.link_examples import CONTROL, FLEET, LINKS, OURS, SIX, VIEWS, fleet, many
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
@@ -40,7 +40,7 @@ VEHICLE_INTENTS = (Arm, Disarm, SetMode, RequestControl, ReleaseControl, SelectV
 
 async def open_links(screen: Console, picture: Snapshot = FLEET, views: tuple[View, ...] = VIEWS) -> LinksScreen:
     await screen.press("f7")
-    await until(lambda: screen.station.of(Watch))
+    await until(lambda: LinksRequest() in screen.station.of(Watch)[-1].requests)
     await offer(screen, picture, *views)
     top = screen.app.screen
     assert isinstance(top, LinksScreen)
@@ -66,11 +66,10 @@ def cursor_is_on(screen: Console, name: str) -> bool:
 
 async def test_it_requests_its_views_only_while_it_is_open() -> None:
     async with console() as screen:
-        assert screen.station.of(Watch) == []
         await open_links(screen)
-        assert screen.station.of(Watch) == [Watch((VehiclesRequest(), LinksRequest(), ControlRequest()))]
+        assert screen.station.of(Watch)[-1] == Watch((VehiclesRequest(), LinksRequest(), ControlRequest()))
         await screen.press("escape")
-        await until(lambda: screen.station.of(Watch)[-1] == Watch(()))
+        await until(lambda: screen.station.of(Watch)[-1] == DRIVE_WATCH)
 
 
 async def test_until_the_views_arrive_it_waits_for_the_station() -> None:

@@ -12,7 +12,8 @@ from groundstation.snapshot import LogLine
 from groundstation.ui.key_gate import OTHER_SCREEN, TEXT_FIELD
 from groundstation.ui.screens.log import LogScreen, short_path
 from groundstation.views.log import LogPage, LogRequest
-from tests.groundstation.ui.examples import LOG_PAGE, NOON, snapshot, vehicle
+from groundstation.views.requests import RequestsRequest
+from tests.groundstation.ui.examples import DRIVE_WATCH, LOG_PAGE, NOON, snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
 
@@ -25,7 +26,7 @@ WARNED = snapshot(vehicle=vehicle(warnings=SETTINGS, refusal="mode AUTO denied: 
 
 async def open_log(screen: Console, page: LogPage = MANY) -> LogScreen:
     await screen.press("f6")
-    await until(lambda: screen.station.of(Watch))
+    await until(lambda: Watch((LogRequest(0), RequestsRequest())) in screen.station.of(Watch))
     screen.station.offer_view(page)
     await screen.show(snapshot())
     top = screen.app.screen
@@ -35,19 +36,18 @@ async def open_log(screen: Console, page: LogPage = MANY) -> LogScreen:
 
 async def test_it_requests_lines_while_it_is_open_and_says_which_it_has() -> None:
     async with console() as screen:
-        assert screen.station.of(Watch) == []
         await open_log(screen)
-        await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100),)))
-        assert screen.station.of(Watch)[0] == Watch((LogRequest(0),))
+        await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100), RequestsRequest())))
+        assert Watch((LogRequest(0), RequestsRequest())) in screen.station.of(Watch)
         await screen.press("escape")
-        await until(lambda: screen.station.of(Watch)[-1] == Watch(()))
+        await until(lambda: screen.station.of(Watch)[-1] == DRIVE_WATCH)
 
 
 async def test_under_the_menu_it_stays_live() -> None:
     async with console() as screen:
         await open_log(screen)
         await screen.press("ctrl+g")
-        await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100),)))
+        await until(lambda: screen.station.of(Watch)[-1] == Watch((LogRequest(100), RequestsRequest())))
         line = LogLine(time=NOON, severity=6, label="vehicle", text="under the menu", number=101)
         screen.station.offer_view(LogPage((line,), 101, after=100))
         await screen.show(snapshot(vehicle=vehicle(mode="HOLD")))

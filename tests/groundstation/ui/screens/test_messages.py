@@ -24,7 +24,7 @@ from groundstation.views.messages import (
     MessagesRequest,
 )
 from groundstation.views.requests import RequestLine, RequestsRequest, RequestsView
-from tests.groundstation.ui.examples import MESSAGES_PAGE, SYS_STATUS_VIEW, snapshot
+from tests.groundstation.ui.examples import DRIVE_WATCH, MESSAGES_PAGE, SYS_STATUS_VIEW, snapshot
 from tests.groundstation.ui.pilots import Console, console, type_in
 from tests.groundstation.ui.ptys import STANDARD, until
 
@@ -34,7 +34,7 @@ KEYS = [(action, key) for action in ACTIONS.values() for key in STANDARD.get_key
 
 async def open_messages(screen: Console) -> MessagesScreen:
     await screen.press("f3")
-    await until(lambda: screen.station.of(Watch))
+    await until(lambda: newest(screen) != DRIVE_WATCH.requests)
     screen.station.offer_view(MESSAGES_PAGE)
     await screen.show(snapshot())
     top = screen.app.screen
@@ -54,7 +54,6 @@ def page_request(screen: Console) -> MessagesRequest:
 
 async def test_it_requests_rows_and_the_selected_message_while_it_is_open() -> None:
     async with console() as screen:
-        assert screen.station.of(Watch) == []
         await open_messages(screen)
         assert len(newest(screen)) == 1
         await screen.press(*["down"] * 8)
@@ -64,7 +63,7 @@ async def test_it_requests_rows_and_the_selected_message_while_it_is_open() -> N
         assert "SYS_STATUS #1" in screen.text
         assert "41.2 %" in screen.text
         await screen.press("escape")
-        await until(lambda: newest(screen) == ())
+        await until(lambda: newest(screen) == DRIVE_WATCH.requests)
 
 
 async def test_the_fields_of_another_message_are_not_shown() -> None:

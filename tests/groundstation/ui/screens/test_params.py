@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from groundstation.intents.driving import STOP_KEY, Stop
@@ -31,7 +33,7 @@ from groundstation.views.params import (
 )
 from groundstation.views.requests import RequestLine
 from tests.groundstation.ui.example_params import DIFF, HOLES, INFOS, PAGE, page
-from tests.groundstation.ui.examples import param_page, snapshot, vehicle
+from tests.groundstation.ui.examples import DRIVE_WATCH, param_page, snapshot, vehicle
 from tests.groundstation.ui.pilots import Console, console
 from tests.groundstation.ui.ptys import until
 
@@ -40,7 +42,7 @@ EMPTY = ParamPage(1, (), 0, 0, 0, None, has_defaults=False, running=(), ended=()
 
 async def open_params(screen: Console, page: ParamPage | None = None, picture: Snapshot | None = None) -> ParamsScreen:
     await screen.press("f4")
-    await until(lambda: screen.station.of(Watch))
+    await until(lambda: screen.station.of(Watch)[-1] != DRIVE_WATCH)
     await offer(screen, page or param_page(), picture)
     top = screen.app.screen
     assert isinstance(top, ParamsScreen)
@@ -368,3 +370,16 @@ async def test_redo() -> None:
         await until(lambda: "2→1" in screen.text)
         await screen.press("ctrl+r")
         await until(lambda: "nothing to redo" in screen.text)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 3.4e38])
+async def test_a_vehicle_may_send_values_that_are_no_numbers(value: float) -> None:
+    odd = [msgspec.structs.replace(row, value=value, default=value) for row in PAGE.rows]
+    infos = tuple(msgspec.structs.replace(info, value=value, default=value) for info in INFOS)
+    async with console((140, 45)) as screen:
+        await open_params(screen, page(rows=tuple(odd)))
+        screen.station.offer_view(ParamInfos(1, infos))
+        await screen.show(snapshot())
+        for _ in odd:
+            await screen.press("enter", "tab", "down", "escape", "down")
+        assert "RC_OVERRIDE_TIME" in screen.text

@@ -2,15 +2,36 @@
 
 from __future__ import annotations
 
+import math
+
 from groundstation.ui.roles import Role
-from groundstation.ui.widgets.chart import Chart, Series
+from groundstation.ui.widgets.chart import Chart, ChartValue, Samples, Series
 from tests.groundstation.ui.frames import texts
 
+SERIES = (Series("", Role.GOOD), Series("asked", Role.CAUTION, dotted=True))
 
-def test_a_chart_takes_gaps_and_keeps_a_minute() -> None:
-    chart = Chart((), title="speed", unit="m/s", series=(Series("", Role.GOOD),), step=0.5, id="x")
-    for second in range(200):
-        chart.add(float(second), None if second % 7 == 0 else second / 100)
-    assert 59 <= len(chart.value) <= 61
-    assert len(chart.draw(40, 6)) == 6
-    assert "1.99 m/s" in texts(chart.draw(40, 6))[0]
+
+def chart(samples: Samples, span: float = 60.0) -> list[str]:
+    made = Chart(ChartValue(samples, span), title="speed", unit="m/s", series=SERIES, step=0.5, id="x")
+    return texts(made.draw(60, 6))
+
+
+def test_gaps_and_strange_numbers_are_no_values() -> None:
+    samples = tuple((float(at), (None if at % 7 == 0 else at / 100, math.nan)) for at in range(200))
+    lines = chart(samples)
+    assert len(lines) == 6
+    assert "1.99 m/s" in lines[0]
+    assert "asked" not in lines[0]
+    assert "2.0" in lines[0], "the scale has room for the largest"
+
+
+def test_a_shorter_span_shows_less() -> None:
+    samples = tuple((float(at), (5.0 if at < 50 else 0.5, None)) for at in range(61))
+    assert "5.0" in chart(samples)[0]
+    assert "1.5" in chart(samples, 7.5)[0], "the large values are out of sight"
+    assert "7.5 s" in chart(samples, 7.5)[-1]
+
+
+def test_both_series_are_named_with_their_newest_value() -> None:
+    assert "0.80 m/s  asked 0.90 m/s" in chart(((1.0, (0.8, 0.9)),))[0]
+    assert "nothing yet" in chart(())[0]

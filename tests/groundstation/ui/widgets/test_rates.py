@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from groundstation.snapshot import MessageRate
 from groundstation.ui.widgets.rates import RatesPanel
-from tests.groundstation.ui.examples import RATES
+from tests.groundstation.ui.examples import MESSAGE_ROWS, MESSAGES_PAGE
 from tests.groundstation.ui.frames import texts
 
 
 def test_a_table_that_is_too_long_says_so() -> None:
-    rates = tuple(MessageRate(name=name, rate=rate, count=count, sent=sent) for name, rate, count, sent in RATES)
-    assert texts(RatesPanel(rates).draw(40, 6))[-1] == f"and {len(rates) - 4} more"
-    assert len(RatesPanel(rates).draw(40, 30)) == len(rates) + 1
+    lines = texts(RatesPanel(MESSAGES_PAGE).draw(40, 6))
+    assert lines[-1] == f"and {len(MESSAGE_ROWS) - 4} more"
+    assert lines[1].startswith("Rover 1")
+    assert len(RatesPanel(MESSAGES_PAGE).draw(40, 30)) == len(MESSAGE_ROWS) + 1
+    assert texts(RatesPanel(None).draw(40, 6)) == [" nothing yet"]

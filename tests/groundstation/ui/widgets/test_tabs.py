@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from groundstation.screens import SCREENS, ScreenRow
+from groundstation.ui.colours import BLUE, RED
 from groundstation.ui.display_state import DisplayState
 from groundstation.ui.params.model import ParamModel
 from groundstation.ui.request_numbers import RequestNumbers
+from groundstation.ui.tab_marks import TabMark
 from groundstation.ui.widgets.tabs import TabBar, TabBarValue
 from tests.groundstation.ui.examples import param_page, snapshot
 from tests.groundstation.ui.ptys import STANDARD
@@ -18,7 +21,7 @@ def bar(model: ParamModel, width: int) -> str:
     return TabBar(value).draw(width, 1)[0].text
 
 
-@pytest.mark.parametrize(("width", "mark"), [(140, "Params✎1 "), (80, "Params✎ ")])
+@pytest.mark.parametrize(("width", "mark"), [(140, "Params✎1 "), (80, "Param✎ ")])
 def test_a_pencil_stands_there_while_changes_are_not_sent(width: int, mark: str) -> None:
     model = ParamModel(RequestNumbers())
     model.set_height(10)
@@ -29,3 +32,18 @@ def test_a_pencil_stands_there_while_changes_are_not_sent(width: int, mark: str)
     assert len(bar(model, width)) == width
     model.changes.undo()
     assert "✎" not in bar(model, width)
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 100, 120, 140])
+@pytest.mark.parametrize("row", [row for row in SCREENS if row.in_tabs], ids=lambda row: row.id)
+def test_the_tab_of_the_screen_on_top_is_always_there(row: ScreenRow, width: int) -> None:
+    marks = {"setup": TabMark(" 12✗", RED), "files": TabMark(" 41%", BLUE), "params": TabMark("✎3", BLUE)}
+    text = TabBar(TabBarValue(STANDARD, row.id, marks)).draw(width, 1)[0].text
+    assert len(text) == width
+    assert row.title in text or (row.short and row.short in text)
+    assert "^g" in text
+
+
+def test_all_tabs_fit_in_80_columns_without_marks() -> None:
+    text = TabBar(TabBarValue(STANDARD)).draw(80, 1)[0].text
+    assert all((row.short or row.title) in text for row in SCREENS if row.in_tabs)

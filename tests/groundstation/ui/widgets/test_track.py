@@ -36,3 +36,23 @@ def test_north_is_up_and_east_is_right() -> None:
     north, east = view.to_canvas((1.0, 0.0), canvas), view.to_canvas((0.0, 1.0), canvas)
     assert north[1] < y
     assert east[0] > x
+
+
+def test_zooming_in_shows_less_around_the_vehicle_and_out_shows_more() -> None:
+    track = tuple((float(step), 0.0) for step in range(100))
+    canvas = Canvas(36, 14)
+
+    def scale(zoom: int) -> float:
+        return fit_view(TrackValue((99.0, 0.0), 0.0, (0.0, 0.0), track, zoom=zoom), canvas.across, canvas.down).scale
+
+    assert scale(2) == scale(0) / 4
+    assert scale(-2) == scale(0) * 4
+
+
+@given(st.tuples(metres, metres), st.integers(0, 5))
+def test_the_vehicle_is_on_the_map_at_each_zoom(position: tuple[float, float], zoom: int) -> None:
+    canvas = Canvas(36, 14)
+    value = TrackValue(position, 0.0, (0.0, 0.0), ((0.0, 0.0), position), zoom=zoom)
+    x, y = fit_view(value, canvas.across, canvas.down).to_canvas(position, canvas)
+    assert 0 <= x < canvas.across
+    assert 0 <= y < canvas.down

@@ -1,0 +1,77 @@
+"""DoctorFacts: everything that the rows of the chain judge. Collected by station/doctor_facts.py."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from groundstation.snapshot import LinkView, OperatorView, VehicleView
+from groundstation.views.doctor import TerminalFacts
+
+
+@dataclass(frozen=True, slots=True)
+class SettingFact:
+    """A parameter that decides what the vehicle does without us."""
+
+    name: str
+    value: float
+    warning: str
+    """What is wrong with it; "" if nothing is."""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorBits:
+    """The three bitmasks of SYS_STATUS (MAV_SYS_STATUS_SENSOR)."""
+
+    present: int
+    enabled: int
+    health: int
+
+
+@dataclass(frozen=True, slots=True)
+class PreArmText:
+    """A reason why the vehicle would refuse to arm."""
+
+    text: str
+    """Without "PreArm: "."""
+    age: float
+    """s"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DoctorFacts:
+    """The known state. A vehicle that was never heard is None."""
+
+    system: int
+    """System id of the ground station that drives or will drive."""
+    vehicle: VehicleView | None = None
+    operator: OperatorView = field(default_factory=OperatorView)
+    links: tuple[LinkView, ...] = ()
+    endpoints: tuple[str, ...] = ()
+    id_conflict: str | None = None
+    terminal: TerminalFacts | None = None
+    """None: there is no screen."""
+    firmware: str = ""
+    rover_dialect: bool = False
+    """The vehicle sends the private messages of our dialect."""
+    unknown_share: float | None = None
+    """Share of the frames whose message is not in our dialect, 0..1."""
+    mismatched: tuple[str, ...] = ()
+    """Messages that arrive with the checksum of another definition."""
+    own_id: bool = False
+    """Another program sends with our system and component id."""
+    clash: bool = False
+    """Two programs send with the ids of the driver."""
+    signs: bool = False
+    """The vehicle signs its frames."""
+    sensors: SensorBits | None = None
+    texts: tuple[PreArmText, ...] = ()
+    settings: tuple[SettingFact, ...] = ()
+    unread: tuple[str, ...] = ()
+    """Settings that the vehicle did not report."""
+    params: Mapping[str, float] = field(default_factory=dict)
+    """Further parameters that are known."""
+    manual_timeout: float | None = None
+    """s after which a vehicle of our dialect is neutral without demands."""
+    motors_tested: frozenset[int] = frozenset()
+    """Numbers of the motors that were turned in this session."""

@@ -1,0 +1,42 @@
+"""The files in a folder of this machine, as screens list them."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+MAX_HERE = 500
+"""Files that are listed, the newest ones."""
+
+LOG_ENDINGS = (".tlog", ".bin", ".ulg")
+"""Endings of telemetry and flight logs."""
+
+
+@dataclass(frozen=True, slots=True)
+class LocalFile:
+    """A file."""
+
+    name: str
+    size: int
+    changed: float
+    """s since 1970."""
+
+
+def list_files(folder: Path) -> tuple[LocalFile, ...]:
+    """Return the files of a folder without hidden ones, the newest first; none of a folder that cannot be read."""
+    found = []
+    try:
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                if not entry.name.startswith(".") and entry.is_file():
+                    status = entry.stat()
+                    found.append(LocalFile(entry.name, status.st_size, status.st_mtime))
+    except OSError:
+        return ()
+    return tuple(sorted(found, key=lambda each: -each.changed)[:MAX_HERE])
+
+
+def list_logs(folder: Path) -> tuple[LocalFile, ...]:
+    """Return the logs of a folder, the newest first."""
+    return tuple(each for each in list_files(folder) if each.name.endswith(LOG_ENDINGS))

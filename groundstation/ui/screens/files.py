@@ -1,0 +1,223 @@
+"""Files screen: logs and files of the vehicle, files here, and the transfers that run."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from textual import events
+from textual.containers import Horizontal
+from textual.widget import Widget
+
+from groundstation.intents.services import CancelRequest, ServiceIntent
+from groundstation.ui.display_state import DisplayState, ScreenKey
+from groundstation.ui.files_model import FilesModel, Panel
+from groundstation.ui.key_parser import KeyRepeat
+from groundstation.ui.list_keys import rows_to_move
+from groundstation.ui.screens.log import short_path
+from groundstation.ui.screens.screen import ConsoleScreen, ScreenContext
+from groundstation.ui.widgets.files.tables import (
+    here_value,
+    logs_value,
+    percent_text,
+    progress_text,
+    size_text,
+    tasks_value,
+    tree_value,
+)
+from groundstation.ui.widgets.line_field import FieldUse
+from groundstation.ui.widgets.row_table import RowTable
+from groundstation.ui.wrap import clean
+from groundstation.views.base import View, ViewRequest
+from groundstation.views.files import FilesView
+from groundstation.views.requests import RequestsRequest, RequestsView
+
+
+class FilesScreen(ConsoleScreen):
+    """Four panels; where the terminal is narrow, one page of the first three over the tasks. TAB chooses."""
+
+    CSS_PATH = "files.tcss"
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (120, "-wide")]  # noqa: RUF012 - Textual declares it so
+    KEYS = (
+        ScreenKey("D", "Download", "Download the log or file under the cursor; one that was interrupted goes on"),
+        ScreenKey("tab", "Panel", "Next panel: logs there, files there, files here, tasks"),
+        ScreenKey("enter", "Open", "Open or close the folder under the cursor"),
+        ScreenKey("x", "Stop task", "Stop the task under the cursor, else the newest; what has arrived is kept"),
+        ScreenKey("U", "Upload", "Upload a file of this machine into the folder under the cursor"),
+        ScreenKey("X", "Delete", "Delete the file under the cursor on the vehicle, after a word is typed"),
+        ScreenKey("E", "Erase logs", "Erase all logs of the vehicle, after a word is typed"),
+        ScreenKey("R", "Read", "List the logs and the open folders again"),
+    )
+
+    def __init__(self, context: ScreenContext) -> None:
+        super().__init__(context)
+        self._model = context.keep(FilesModel, context.numbers.take, context.folder)
+        self._model.scan()
+        self._logs = RowTable(logs_value(self._model), id="logs")
+        self._tree = RowTable(tree_value(self._model), id="tree")
+        self._here = RowTable(here_value(self._model), id="here")
+        self._tasks = RowTable(tasks_value(self._model.tasks, None), id="tasks")
+
+    # ---- what all screens define ----
+
+    def compose_body(self) -> Iterable[Widget]:
+        """Lay out what is on the vehicle over what is here."""
+        logs, tree = self.build_panel(self._logs, "logs on the vehicle"), self.build_panel(self._tree, "files there")
+        here, tasks = self.build_panel(self._here, "files here"), self.build_panel(self._tasks, "tasks")
+        yield Horizontal(logs, tree, id="there")
+        yield Horizontal(here, tasks, id="below")
+
+    def requests(self) -> tuple[ViewRequest, ...]:
+        """Return the requests for the lists and the tasks."""
+        return self._model.request, RequestsRequest()
+
+    def show_view(self, view: View) -> None:
+        """Show a view; list what is not known yet, or may have changed."""
+        match view:
+            case FilesView():
+                self._send(self._model.show_view(view))
+            case RequestsView():
+                self._model.tasks.show(view, time.monotonic())
+                self._send(self._model.finish())
+        self._show()
+
+    def show_body(self, now: DisplayState) -> None:
+        """Show the model."""
+        self._show()
+
+    @property
+    def advice(self) -> str:
+        """Return how the newest task stands, or what to do."""
+        running = self._model.tasks.running
+        if running:
+            line = running[0]
+            how = line.waits or f"{percent_text(line)} {progress_text(line, self._model.tasks)}".strip()
+            return f"{line.what}: {how} · it goes on when you leave this screen · x stops it"
+        return "D downloads · nothing is deleted before a word is typed · ESC goes back to Drive"
+
+    # ---- keys ----
+
+    def perform_key(self, event: events.Key) -> bool:
+        """Handle the keys of this screen."""
+        if rows := rows_to_move(event.key, self._tables[self._model.chosen].size.height):
+            self._model.move(rows)
+        elif event.key not in _ACTIONS:
+            return False
+        elif not isinstance(event, KeyRepeat):
+            _ACTIONS[event.key](self)
+        self._show()
+        return True
+
+    def _toggle(self) -> None:
+        self._send(self._model.toggle())
+
+    def _download(self) -> None:
+        name = self._model.download_name
+        if not name:
+            self.say("choose a log or a file of the vehicle first")
+        elif self._model.find_here(name) is None:
+            self._send_one(self._model.download())
+        else:
+            wanted = self._model.download(overwrite=True)
+            text = f"{clean(name)} is here already and would be replaced"
+            self.ask(text, lambda: self._send_one(wanted), word="overwrite")
+
+    def _upload(self) -> None:
+        local = self._model.local
+        text = str(self._model.folder / local.name) if local is not None else ""
+        place = f"file of this machine, to upload into {self._model.target_folder}"
+        self.field.open(FieldUse(self._ask_upload), text=text, placeholder=place)
+
+    def _ask_upload(self, text: str) -> None:
+        file = Path(text.strip()).expanduser()
+        if not text.strip() or not file.is_file():
+            self.say(f"{text.strip()!r} is no file of this machine" if text.strip() else None)
+            return
+        what = f"upload {file.name}, {size_text(file.stat().st_size)}, into {clean(self._model.target_folder)}"
+        self.ask(f"{what} of {self._vehicle}", lambda: self._send_one(self._model.upload(file)))
+
+    def _delete(self) -> None:
+        node = self._model.node
+        if node is None or node.size is None:
+            self.say("choose a file of the vehicle first: TAB to the files there")
+            return
+        text = f"delete {clean(node.path)} on {self._vehicle}, which cannot be undone"
+        self.ask(text, lambda: self._send_one(self._model.remove(node.path)), word="delete")
+
+    def _erase(self) -> None:
+        count = len(self._model.logs)
+        if not count:
+            self.say("there are no logs to erase")
+            return
+        text = f"erase {count} log{'' if count == 1 else 's'} on {self._vehicle}, which cannot be undone"
+        self.ask(text, lambda: self._send_one(self._model.erase()), word="erase")
+
+    def _cancel(self) -> None:
+        tasks = self._model.tasks
+        at = self._model.cursor(Panel.TASKS) if self._model.chosen is Panel.TASKS else 0
+        if at < len(tasks.running):
+            self.context.send(CancelRequest(tasks.running[at].number))
+
+    def _read_again(self) -> None:
+        if self._model.view is not None:
+            self._send(self._model.read_again())
+        self._model.scan()
+
+    def _next_panel(self) -> None:
+        self._model.choose_panel(1)
+
+    def _panel_before(self) -> None:
+        self._model.choose_panel(-1)
+
+    def _send(self, intents: Sequence[ServiceIntent]) -> None:
+        for intent in intents:
+            self.context.send(intent)
+
+    def _send_one(self, intent: ServiceIntent | None) -> None:
+        if intent is not None:
+            self.context.send(intent)
+
+    # ---- drawing ----
+
+    @property
+    def _tables(self) -> tuple[RowTable, ...]:
+        return self._logs, self._tree, self._here, self._tasks
+
+    @property
+    def _vehicle(self) -> str:
+        return self._model.view.name if self._model.view is not None else "the vehicle"
+
+    def _show(self) -> None:
+        model = self._model
+        self._logs.show(logs_value(model))
+        self._tree.show(tree_value(model))
+        self._here.show(here_value(model))
+        self._tasks.show(tasks_value(model.tasks, model.shown_cursor(Panel.TASKS)))
+        self._logs.border_subtitle = _sum([log.size for log in model.logs])
+        self._tree.border_subtitle = "MAVLink FTP"
+        self._here.border_subtitle = f"{short_path(model.folder)} · {_sum([each.size for each in model.here])}"
+        self._tasks.border_subtitle = f"{len(model.tasks.running)} running · x stops one"
+        page = Panel.LOGS if model.chosen is Panel.TASKS else model.chosen
+        for panel, table in zip(Panel, self._tables, strict=True):
+            table.set_class(panel is model.chosen, "-chosen")
+            table.set_class(panel not in (page, Panel.TASKS), "-other-page")
+        self.set_class(page is Panel.HERE, "-here-page")
+
+
+def _sum(sizes: Sequence[int]) -> str:
+    return f"{len(sizes)} · {size_text(sum(sizes))}" if sizes else ""
+
+
+_ACTIONS = {
+    "enter": FilesScreen._toggle,
+    "tab": FilesScreen._next_panel,
+    "shift+tab": FilesScreen._panel_before,
+    "D": FilesScreen._download,
+    "U": FilesScreen._upload,
+    "X": FilesScreen._delete,
+    "E": FilesScreen._erase,
+    "x": FilesScreen._cancel,
+    "R": FilesScreen._read_again,
+}
+"""Key -> what it does; FilesScreen.KEYS has their names."""

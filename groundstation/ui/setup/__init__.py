@@ -1,0 +1,1 @@
+"""What the Setup screen knows and shows, without widgets."""

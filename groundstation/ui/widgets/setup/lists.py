@@ -1,0 +1,101 @@
+"""Calibrations and facts of the vehicle: lists of short lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from textual.strip import Strip
+
+from groundstation.ui.colours import BLUE, DIM, GREEN, RED, TEXT, YELLOW, style
+from groundstation.ui.widgets.instrument import Instrument, Part, strip
+from groundstation.ui.wrap import clean, wrap
+from groundstation.views.doctor import CalibrationRow, DoctorView, Health
+from groundstation.views.requests import RequestLine
+
+CALIBRATION_KEYS = {"accel": "A", "level": "H", "gyro": "Y", "pressure": "P", "compass": "C"}
+"""Kind, without the autopilot's suffix -> its key."""
+
+
+def calibration_key(row: CalibrationRow) -> str:
+    """Return the key that begins a calibration."""
+    return CALIBRATION_KEYS.get(row.kind.partition("-")[0], "?")
+
+
+@dataclass(frozen=True, slots=True)
+class ListValue:
+    """The view; None until the first one has arrived."""
+
+    view: DoctorView | None = None
+
+
+class CalibrationPanel(Instrument[ListValue]):
+    """What can be calibrated, and what to do meanwhile."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """Draw a line for each kind, or one for all where there is one row only."""
+        view = self.value.view
+        if view is None or not view.system:
+            return [strip((" no vehicle yet", style(DIM)))]
+        if height == 1:
+            return [strip(*(_running(view, ended=False) or _in_one_line(view))).crop(0, width)]
+        running = _running(view, ended=True)
+        lines = [_line(row) for row in view.calibrations]
+        below = [running] if running else []
+        below += [[(f" {text}", style(BLUE, bold=True))] for text in wrap(view.calibration, width - 2)]
+        return [strip(*line).crop(0, width) for line in [*lines, *([[]] if below else []), *below][:height]]
+
+
+def _line(row: CalibrationRow) -> list[Part]:
+    cannot = row.state == "cannot"
+    key = style(DIM) if cannot else style(YELLOW, bold=True)
+    looks = {Health.OK: GREEN, Health.FAULT: RED}
+    return [
+        (f" {calibration_key(row)} ", key),
+        (f"{row.title:<16}", style(DIM if cannot else TEXT)),
+        (row.state, style(looks.get(row.health, DIM))),
+    ]
+
+
+def _in_one_line(view: DoctorView) -> list[Part]:
+    if view.calibration:
+        return [(f" {clean(view.calibration)}", style(BLUE, bold=True))]
+    parts: list[Part] = [(" calibrate", style(DIM))]
+    for row in view.calibrations:
+        if row.state != "cannot":
+            done = " ✓" if row.health is Health.OK else ""
+            parts += [(f"  {calibration_key(row)} ", style(YELLOW, bold=True)), (f"{row.title}{done}", style(TEXT))]
+    return parts if len(parts) > 1 else [(" calibration: this vehicle cannot", style(DIM))]
+
+
+def _running(view: DoctorView, *, ended: bool) -> list[Part]:
+    """Return how the newest request for a calibration stands; `ended`: also after its end."""
+    line = next((each for each in reversed(view.requests) if each.what.startswith("calibrate")), None)
+    if line is None or (line.state != "running" and (view.calibration or not ended)):
+        return []
+    colour = {"running": BLUE, "accepted": GREEN}.get(line.state, RED)
+    return [(f" {clean(request_text(line))}", style(colour))]
+
+
+def request_text(line: RequestLine) -> str:
+    """Return how a request stands, in one line."""
+    done = f" {line.done} %" if line.state == "running" and line.total else ""
+    state = {"running": "…", "accepted": "done"}.get(line.state, line.state)
+    return f"{line.what}: {state}{done}" + (f", {line.detail}" if line.detail else "")
+
+
+class FactsPanel(Instrument[ListValue]):
+    """What the vehicle is, and the keys for it as a whole."""
+
+    def draw(self, width: int, height: int) -> list[Strip]:
+        """Draw the facts that fit, then the keys."""
+        view = self.value.view
+        if view is None or not view.system:
+            return [strip((" no vehicle yet", style(DIM)))]
+        keys: list[list[Part]] = [
+            [(" B ", style(YELLOW, bold=True)), ("restart it", style(TEXT))],
+            [(" S ", style(YELLOW, bold=True)), ("save a report for a bug", style(TEXT))],
+        ]
+        facts: list[list[Part]] = [
+            [(f" {name:<10}", style(DIM)), (clean(text), style(TEXT))] for name, text in view.facts
+        ]
+        return [strip(*line).crop(0, width) for line in [*facts[: max(0, height - 3)], [], *keys][:height]]

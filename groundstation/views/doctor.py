@@ -1,0 +1,155 @@
+"""View of the Setup screen: the chain from the finger to the wheel, the pre-arm checks, and a motor test."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+import msgspec
+
+from groundstation.views.base import View, ViewRequest
+from groundstation.views.requests import RequestLine
+
+
+class Health(Enum):
+    """How a link of the chain stands."""
+
+    OK = "ok"
+    WARNING = "warning"
+    """The vehicle can be driven, but somebody should look at it."""
+    FAULT = "fault"
+    """It keeps keys from driving, or may keep the vehicle from stopping."""
+    UNKNOWN = "unknown"
+    """Not known, does not apply, or comes after something else."""
+
+
+class ParamFix(msgspec.Struct, frozen=True):
+    """A change of one parameter that is proposed."""
+
+    name: str
+    before: float
+    value: float
+
+
+class DoctorRow(msgspec.Struct, frozen=True, kw_only=True):
+    """One link of the chain."""
+
+    id: str
+    title: str
+    health: Health
+    evidence: str
+    """What is known, in one line."""
+    advice: str = ""
+    """What to do."""
+    action: str = ""
+    """Id of an operator action (groundstation/actions.py) or of the screen that helps; "" for none."""
+    fix: ParamFix | None = None
+
+
+class SensorRow(msgspec.Struct, frozen=True):
+    """A subsystem of SYS_STATUS."""
+
+    name: str
+    health: Health
+    """UNKNOWN: present, but not enabled."""
+
+
+class CheckText(msgspec.Struct, frozen=True):
+    """Why the vehicle would refuse to arm, in its own words."""
+
+    text: str
+    advice: str
+    """What to do; "" for a text that is not in the table."""
+    age: float
+    """s since the vehicle has said it, whole."""
+
+
+class MotorRow(msgspec.Struct, frozen=True):
+    """A motor that can be tested."""
+
+    number: int
+    """The key that turns it, from 1."""
+    name: str
+    output: str
+    """Where it is connected, as the vehicle says, e.g. "SERVO1 73"."""
+    value: float | None
+    """-1..1 as reported; None: not known."""
+    tested: bool = False
+    """It was turned in this session."""
+    reversal: ParamFix | None = None
+    """The change that lets it turn the other way; None where that is not known."""
+
+
+class CalibrationRow(msgspec.Struct, frozen=True):
+    """A kind of calibration."""
+
+    kind: str
+    """Name in the command line, e.g. "compass"."""
+    title: str
+    health: Health
+    state: str
+    """In words."""
+
+
+class MotorTestView(msgspec.Struct, frozen=True):
+    """The motor test under way, or how the last one ended."""
+
+    motor: int
+    """Number of the MotorRow; 0: none."""
+    text: str
+    turning: bool
+
+
+class TerminalFacts(msgspec.Struct, frozen=True):
+    """What the screen knows of its terminal."""
+
+    round_trip: float | None = None
+    """s from a ping to its answer, in steps of 5 ms; None: no answer yet."""
+    silent: bool = False
+    """Pings are not answered any more."""
+
+
+class DoctorRequest(ViewRequest, frozen=True):
+    """The chain of the selected vehicle."""
+
+    terminal: TerminalFacts | None = None
+    """None: there is no screen."""
+    station: int = 0
+    """System id of the ground station that will drive; 0: this one."""
+
+
+class DoctorView(View, frozen=True, kw_only=True):
+    """Everything that the Setup screen shows. Ages are whole seconds, so that an unchanged view is not sent again."""
+
+    system: int = 0
+    """System id of the vehicle; 0: there is none."""
+    name: str = ""
+    armed: bool = False
+    rows: tuple[DoctorRow, ...]
+    sensors: tuple[SensorRow, ...] = ()
+    texts: tuple[CheckText, ...] = ()
+    checked: RequestLine | None = None
+    """The newest request for the pre-arm checks."""
+    checked_ago: float | None = None
+    """s since it was made."""
+    motors: tuple[MotorRow, ...] = ()
+    motor_limit: float = 0.3
+    """Largest throttle of a motor test, 0..1."""
+    test: MotorTestView | None = None
+    calibrations: tuple[CalibrationRow, ...] = ()
+    calibration: str = ""
+    """What the operator has to do for the calibration that runs, or how it ended."""
+    waits_for_position: bool = False
+    """The calibration of the accelerometers waits until the operator has laid the vehicle as `calibration` says."""
+    facts: tuple[tuple[str, str], ...] = ()
+    """What the vehicle is: names and texts."""
+    requests: tuple[RequestLine, ...] = ()
+    """Requests of this screen: running, then ended, the newest last."""
+
+    @property
+    def faults(self) -> tuple[DoctorRow, ...]:
+        """What stops the operator, in the order of the chain."""
+        return tuple(row for row in self.rows if row.health is Health.FAULT)
+
+    def count(self, health: Health) -> int:
+        """Return how many rows have this health."""
+        return sum(row.health is health for row in self.rows)

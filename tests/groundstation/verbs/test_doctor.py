@@ -1,0 +1,121 @@
+"""`groundstation doctor`, `motor` and `calibrate` on real sockets, with their exit codes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from groundstation.verbs.exit_codes import ExitCode
+from tests.groundstation.foreign_vehicle import PX4, ForeignParam, ForeignVehicle
+from tests.groundstation.verbs.verb_runs import run_verb
+from tests.ports import free_port
+
+Capture = pytest.CaptureFixture[str]
+MOTOR_TEST, ACTUATOR_TEST, CHECKS, CALIBRATION = 209, 310, 401, 241
+
+SAFE = {
+    "RC_OVERRIDE_TIME": 0.5, "FS_GCS_ENABLE": 1, "FS_THR_ENABLE": 1, "FS_GCS_TIMEOUT": 5, "MAV_GCS_SYSID": 255,
+    "BATT_LOW_VOLT": 0, "SERVO1_FUNCTION": 73, "SERVO3_FUNCTION": 74,
+}  # fmt: skip
+
+
+@pytest.fixture
+def rover() -> Iterator[ForeignVehicle]:
+    with ForeignVehicle() as vehicle:
+        vehicle.params = {name: ForeignParam(float(value)) for name, value in SAFE.items()}
+        yield vehicle
+
+
+def test_nothing_stops_you(capsys: Capture, rover: ForeignVehicle) -> None:
+    run = run_verb(capsys, "doctor", "-e", rover.endpoint)
+    assert run.code == ExitCode.DONE, run.out + run.err
+    assert "ok our id       255, nobody else has it" in run.out
+    assert "nothing stops you from driving ArduPilot rover 1" in run.err
+    assert [each.command for each in rover.of("COMMAND_LONG")].count(CHECKS) == 1
+
+
+def test_what_stops_you(capsys: Capture, rover: ForeignVehicle, tmp_path: Path) -> None:
+    rover.params["FS_THR_ENABLE"].value = 0.0
+    rover.acks[CHECKS] = (0, "PreArm: Compass not calibrated")
+    report = tmp_path / "report.txt"
+    run = run_verb(capsys, "doctor", "-e", rover.endpoint, "--json", "--report", str(report))
+    assert run.code == ExitCode.DIFFERS
+    rows = {record["row"]: record for record in run.records[:-1]}
+    assert rows["pre_arm"]["evidence"] == "Compass not calibrated"
+    assert rows["pre_arm"]["advice"] == "calibrate the compass, outdoors"
+    assert rows["stop_bound"]["set"] == {"name": "FS_THR_ENABLE", "value": 1.0}
+    assert run.records[-1]["faults"] == ["pre_arm", "stop_bound"]
+    assert not run.records[-1]["ok"]
+    assert "Compass not calibrated" in report.read_text()
+    again = run_verb(capsys, "doctor", "-e", rover.endpoint, "--report", str(report))
+    assert again.code == ExitCode.USAGE
+    assert "exists already" in again.err
+
+
+def test_nothing_is_heard(capsys: Capture) -> None:
+    run = run_verb(capsys, "doctor", "-e", f"udpin:127.0.0.1:{free_port()}", "--wait", "0.2")
+    assert run.code == ExitCode.NO_VEHICLE
+    assert "X  link         nothing heard on udpin:127.0.0.1" in run.out
+
+
+@pytest.mark.parametrize(("answer", "code"), [
+    ((0, ""), ExitCode.DONE), ((4, "Motor Test: vehicle not ready"), ExitCode.REFUSED), (None, ExitCode.NO_ANSWER),
+])  # fmt: skip
+def test_motor(capsys: Capture, rover: ForeignVehicle, answer: tuple[int, str] | None, code: int) -> None:
+    if answer is None:
+        rover.silent.add(76)
+    else:
+        rover.acks[MOTOR_TEST] = answer
+    run = run_verb(capsys, "motor", "2", "-12", "--for", "0.6", "-e", rover.endpoint)
+    assert run.code == code, run.err
+    sent = [message for message in rover.of("COMMAND_LONG") if message.command == MOTOR_TEST]
+    turns = [message for message in sent if message.param3]
+    assert {(message.param1, message.param2) for message in turns} == {(4.0, 0.0)}
+    assert all(message.param4 <= 0.5 for message in turns), "a program that is killed leaves a wheel turning for 0.5 s"
+    assert len(turns) == (1 if code == ExitCode.REFUSED else 3)
+    assert not sent[-1].param3
+    if code == ExitCode.REFUSED:
+        assert "Motor Test: vehicle not ready" in run.err
+
+
+@pytest.mark.parametrize(("words", "code"), [
+    (("motor", "1", "31"), ExitCode.USAGE),
+    (("motor", "1", "nan"), ExitCode.USAGE),
+    (("motor", "1", "10", "--for", "2.5"), ExitCode.USAGE),
+    (("motor", "x", "10"), ExitCode.USAGE),
+    (("calibrate", "teapot"), ExitCode.USAGE),
+])  # fmt: skip
+def test_mistakes(capsys: Capture, words: tuple[str, ...], code: int) -> None:
+    assert run_verb(capsys, *words, "-e", "udpin:127.0.0.1:0").code == code
+
+
+def test_a_motor_that_is_not_there(capsys: Capture, rover: ForeignVehicle) -> None:
+    run = run_verb(capsys, "motor", "7", "10", "-e", rover.endpoint)
+    assert run.code == ExitCode.USAGE
+    assert "there is no motor 7; there are: 1 left wheel, 2 right wheel" in run.err
+
+
+def test_px4_gets_an_actuator_test(capsys: Capture) -> None:
+    with ForeignVehicle(PX4) as vehicle:
+        run = run_verb(capsys, "motor", "1", "10", "--for", "0.1", "-e", vehicle.endpoint)
+        assert run.code == ExitCode.DONE, run.err
+        first, *_, last = (message for message in vehicle.of("COMMAND_LONG") if message.command == ACTUATOR_TEST)
+        assert (round(first.param1, 2), first.param5) == (0.1, 1.0)
+        assert last.param1 != last.param1, "NaN stops"
+
+
+@pytest.mark.parametrize(("kind", "parameter"), [("gyro", "param1"), ("level", "param5"), ("pressure", "param3")])
+def test_calibrate(capsys: Capture, rover: ForeignVehicle, kind: str, parameter: str) -> None:
+    run = run_verb(capsys, "calibrate", kind, "-e", rover.endpoint, "-v", "1")
+    assert run.code == ExitCode.DONE, run.err
+    sent = next(message for message in rover.of("COMMAND_LONG") if message.command == CALIBRATION)
+    assert getattr(sent, parameter) == (2.0 if kind == "level" else 1.0)
+
+
+def test_a_calibration_that_is_refused(capsys: Capture, rover: ForeignVehicle) -> None:
+    rover.acks[CALIBRATION] = (4, "Gyro cal failed")
+    run = run_verb(capsys, "calibrate", "gyro", "-e", rover.endpoint, "-v", "1")
+    assert run.code == ExitCode.REFUSED
+    assert "Gyro cal failed" in run.err
