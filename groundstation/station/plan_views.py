@@ -15,8 +15,6 @@ from groundstation.vehicles.vehicle_details import Place
 from groundstation.views.base import ViewRequest
 from groundstation.views.plan import (
     PAGE,
-    MapTrackRequest,
-    MapTrackView,
     Neighbour,
     PlanItem,
     PlanKind,
@@ -26,6 +24,8 @@ from groundstation.views.plan import (
     PlanPlace,
     PlanRequest,
     PlanSummary,
+    PlanTrackRequest,
+    PlanTrackView,
     PlanView,
 )
 from groundstation.views.requests import RequestsRequest
@@ -48,7 +48,7 @@ class PlanViews:
         return {
             PlanRequest: ViewSource(self._build_plan, period=0.2),
             PlanPageRequest: ViewSource(self._build_page, period=0.05),
-            MapTrackRequest: ViewSource(self._build_track, period=1.0),
+            PlanTrackRequest: ViewSource(self._build_track, period=1.0),
         }
 
     def _build_plan(self, request: PlanRequest, now: float, wall: float) -> PlanView | None:
@@ -81,12 +81,12 @@ class PlanViews:
         items = tuple(map(_item, plan[first : first + PAGE]))
         return PlanPage(contact.state.system, request.kind, version, len(plan), first, items)
 
-    def _build_track(self, request: MapTrackRequest, now: float, wall: float) -> MapTrackView | None:
+    def _build_track(self, request: PlanTrackRequest, now: float, wall: float) -> PlanTrackView | None:
         contact = self._fleet.selected
         if contact is None:
             return None
         details = contact.details
-        return MapTrackView(contact.state.system, _place(details.origin), details.track.points)
+        return PlanTrackView(contact.state.system, _place(details.origin), details.track.points)
 
     def _neighbours(self, selected: Contact) -> list[Neighbour]:
         others = ((each.state.system, _place(each.details.place)) for each in self._fleet if each is not selected)

@@ -129,11 +129,11 @@ class PlanPage(View, frozen=True):
     items: tuple[PlanItem, ...]
 
 
-class MapTrackRequest(ViewRequest, frozen=True):
+class PlanTrackRequest(ViewRequest, frozen=True):
     """Where the selected vehicle has been."""
 
 
-class MapTrackView(View, frozen=True):
+class PlanTrackView(View, frozen=True):
     """Where the selected vehicle has been: m north and east of `origin`, oldest first, thinned to 500 points."""
 
     system: int

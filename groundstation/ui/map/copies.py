@@ -6,12 +6,12 @@ from groundstation.ui.map.rows import Items
 from groundstation.views.base import View, ViewRequest
 from groundstation.views.plan import (
     MAX_ITEMS,
-    MapTrackRequest,
-    MapTrackView,
     PlanKind,
     PlanPage,
     PlanPageRequest,
     PlanRequest,
+    PlanTrackRequest,
+    PlanTrackView,
     PlanView,
 )
 
@@ -21,14 +21,14 @@ class PlanCopies:
 
     def __init__(self) -> None:
         self.view: PlanView | None = None
-        self._track: MapTrackView | None = None
+        self._track: PlanTrackView | None = None
         self.items: dict[PlanKind, Items] = {}
         """Plans that have arrived whole."""
         self._versions: dict[PlanKind, int] = {}
         self._parts: dict[PlanKind, tuple[int, list[PlanPage]]] = {}
 
     @property
-    def track(self) -> MapTrackView | None:
+    def track(self) -> PlanTrackView | None:
         """Where the vehicle has been. The track of another one may have arrived before its PlanView."""
         track = self._track
         return track if track is not None and self.view is not None and track.system == self.view.system else None
@@ -36,7 +36,7 @@ class PlanCopies:
     @property
     def requests(self) -> tuple[ViewRequest, ...]:
         """The views to request: the next page of a plan that is not whole, and always the rest."""
-        return PlanRequest(), MapTrackRequest(), *self._page_request()
+        return PlanRequest(), PlanTrackRequest(), *self._page_request()
 
     def show_view(self, view: View) -> PlanKind | None:
         """Take a view; return the plan that is whole with it. Those of another vehicle are dropped."""
@@ -45,7 +45,7 @@ class PlanCopies:
                 if self.view is not None and view.system != self.view.system:
                     self._clear()
                 self.view = view
-            case MapTrackView():
+            case PlanTrackView():
                 self._track = view
             case PlanPage() if self.view is not None and view.system == self.view.system:
                 expected = self.view.plans[view.kind].version == view.version

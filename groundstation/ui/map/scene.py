@@ -10,7 +10,7 @@ from groundstation.ui.map.commands import CIRCLES, POLYGONS, RETURN_POINT, RTL
 from groundstation.ui.map.geometry import LocalMap, Point, place_of
 from groundstation.ui.map.rows import Items
 from groundstation.ui.widgets.plan_map import Leg, MapLeg, MapMark, MapOutline
-from groundstation.views.plan import MapTrackView, PlanItem, PlanKind, PlanPlace, PlanView
+from groundstation.views.plan import PlanItem, PlanKind, PlanPlace, PlanTrackView, PlanView
 
 NAV_LAST = 95
 """MAV_CMD_NAV_LAST: those up to it are driven to."""
@@ -98,7 +98,7 @@ def _mark(kind: PlanKind, item: PlanItem, number: int) -> tuple[str, str]:
     return "corner", "×" if item.command in CIRCLES else "r" if item.command == RETURN_POINT else "?"
 
 
-def track_points(track: MapTrackView | None, frame: LocalMap) -> tuple[Point, ...]:
+def track_points(track: PlanTrackView | None, frame: LocalMap) -> tuple[Point, ...]:
     """Return a track as points of a map."""
     if track is None or track.origin is None:
         return ()

@@ -12,13 +12,13 @@ import msgspec
 from groundstation.snapshot import Snapshot
 from groundstation.views.base import View
 from groundstation.views.plan import (
-    MapTrackView,
     Neighbour,
     PlanItem,
     PlanKind,
     PlanMode,
     PlanPage,
     PlanSummary,
+    PlanTrackView,
     PlanView,
 )
 from groundstation.views.requests import RequestLine
@@ -75,14 +75,14 @@ def pages() -> tuple[PlanPage, ...]:
     return tuple(PlanPage(1, kind, 1, len(items), 0, items) for kind, items in PLANS.items())
 
 
-def track() -> MapTrackView:
+def track() -> PlanTrackView:
     """What was driven, with a little sway."""
     points = []
     for (n1, e1), (n2, e2) in pairwise(_DRIVEN):
         for step in range(20):
             part = step / 20
             points.append((n1 + (n2 - n1) * part, e1 + (e2 - e1) * part + 0.3 * math.sin(step)))
-    return MapTrackView(1, HOME, tuple(points))
+    return PlanTrackView(1, HOME, tuple(points))
 
 
 NONE = (PlanSummary(), PlanSummary(), PlanSummary())

@@ -5,14 +5,14 @@ from __future__ import annotations
 from groundstation.ui.map.copies import PlanCopies
 from groundstation.views.plan import (
     PAGE,
-    MapTrackRequest,
-    MapTrackView,
     PlanItem,
     PlanKind,
     PlanPage,
     PlanPageRequest,
     PlanRequest,
     PlanSummary,
+    PlanTrackRequest,
+    PlanTrackView,
     PlanView,
 )
 from tests.groundstation.ui.map.plans import HOME, item
@@ -36,7 +36,7 @@ def page_request(copies: PlanCopies) -> PlanPageRequest | None:
 
 def test_a_plan_arrives_page_by_page() -> None:
     copies = PlanCopies()
-    assert copies.requests == (PlanRequest(), MapTrackRequest())
+    assert copies.requests == (PlanRequest(), PlanTrackRequest())
     copies.show_view(view())
     assert page_request(copies) == PlanPageRequest(1, 0, 1, 0)
     assert copies.show_view(page(0, ITEMS[:PAGE])) is None
@@ -71,7 +71,7 @@ def test_another_vehicle_has_plans_of_its_own() -> None:
     copies.show_view(view())
     copies.show_view(page(0, ITEMS[:PAGE]))
     copies.show_view(page(PAGE, ITEMS[PAGE:]))
-    copies.show_view(MapTrackView(2, HOME, ((1.0, 2.0),)))
+    copies.show_view(PlanTrackView(2, HOME, ((1.0, 2.0),)))
     assert copies.track is None
     copies.show_view(view(system=2))
     assert copies.items == {}

@@ -24,7 +24,7 @@ from groundstation.snapshot import Snapshot
 from groundstation.ui.map.model import MapModel
 from groundstation.ui.screens.map import MapScreen
 from groundstation.views.base import View
-from groundstation.views.plan import MapTrackRequest, PlanKind, PlanRequest, PlanSummary
+from groundstation.views.plan import PlanKind, PlanRequest, PlanSummary, PlanTrackRequest
 from tests.groundstation.ui.example_map import (
     LOADING,
     MISSION,
@@ -63,7 +63,7 @@ async def test_plans_that_are_not_known_are_downloaded_once() -> None:
         screen.station.offer_view(plan_view(plans=NONE, place=None))
         await screen.show(STANDING)
         assert len(screen.station.of(DownloadPlan)) == 3
-        assert screen.station.of(Watch)[-1] == Watch((PlanRequest(), MapTrackRequest()))
+        assert screen.station.of(Watch)[-1] == Watch((PlanRequest(), PlanTrackRequest()))
 
 
 async def test_a_mission_is_drawn_with_the_cursor_and_uploaded() -> None:
