@@ -3,6 +3,13 @@
 from __future__ import annotations
 
 VERB_HELP = {
+    "status": "print the state of a vehicle",
+    "vehicles": "print the vehicles that are heard",
+    "links": "print what arrives on each link",
+    "arm": "arm a vehicle",
+    "disarm": "disarm, repeated until it is so",
+    "stop": "change to HOLD, repeated until it is so",
+    "estop": "stop the motors and lock them; --clear releases them",
     "param": "get, set, save, load or diff parameters of a vehicle",
     "mission": "show, get, put or clear the mission",
     "fence": "show, get, put or clear the fence",

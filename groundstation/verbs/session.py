@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable, Sequence
+import contextlib
+import secrets
+from collections.abc import Awaitable, Callable, Iterable, Sequence
 
 from dialects import messages as m
 from groundstation.station.heartbeat_sender import HeartbeatSender
-from groundstation.vehicles.fleet import is_vehicle
-from groundstation.vehicles.message_log import MessageLog
+from groundstation.vehicles.fleet import MAX_VEHICLES, is_vehicle
 from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.vehicle_state import VehicleState
+from groundstation.verbs.contact import VehicleContact
+from groundstation.verbs.demand_guard import DemandGuard
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from link.core import LinkReport, Outgoing, Received
 from link.runner import Runner, open_links
@@ -20,61 +23,65 @@ COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
 PERIOD = 0.02
 """s between two ticks: twice the shortest round trip of a radio."""
+END_WITHIN = 1.0
+"""s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
 ALONE_AFTER = 1.3
 """s for which the links are heard before a vehicle counts as the only one: a heartbeat interval and a delay."""
 
+Tap = Callable[[Received, float], None]
+"""Takes each message that arrives, and the time."""
 RequestStart = Callable[[int, float], None]
 """Starts a request, with its number and the time."""
 
 
 class VerbCore:
-    """A core (link/core.py) with one vehicle: `wanted`, or the first that is heard."""
+    """A core (link/core.py) with the vehicles that are heard. It talks to `wanted`, or to the first."""
 
     def __init__(self, system: int, wanted: int | None) -> None:
-        self.state: VehicleState | None = None
-        self.services: VehicleServices | None = None
-        self.vehicles: set[int] = set()
-        """System ids of all vehicles heard."""
-        self._system = system
+        self.contacts: dict[int, VehicleContact] = {}
+        """All vehicles heard, by system id; at most MAX_VEHICLES."""
+        self.chosen: VehicleContact | None = None
+        self.reports: tuple[LinkReport, ...] = ()
+        """The newest of each link."""
+        self.taps: list[Tap] = []
+        """Called with each message that arrives."""
+        self.outbox: list[m.Message] = []
+        """Messages of a verb, to all or to their target."""
+        self._ids = (system, COMPONENT)
         self._wanted = wanted
-        self._log = MessageLog()
+        self._session = secrets.randbits(32)
         self._heartbeat = HeartbeatSender(0.0)
-        self._outbox: list[Outgoing] = []
         self._looks: list[tuple[Callable[[], bool], asyncio.Future[None]]] = []
 
     def receive(self, received: Received, now: float) -> None:
-        """Handle one message; the HEARTBEAT of the wanted vehicle begins the conversation."""
-        message = received.message
-        if is_vehicle(message):
+        """Handle one message; the HEARTBEAT of a vehicle begins the conversation."""
+        if is_vehicle(received.message):
             self._heartbeat.greet(received.peer, now)
-            self.vehicles.add(received.system)
-            if self.state is None and self._wanted in (None, received.system):
-                self._attach(received)
-        if self.state is None or self.services is None or received.system != self.state.system:
-            return
-        self.state.receive(received, now)
-        self.services.autopilot, self.services.kind = self.state.autopilot, self.state.kind
-        if isinstance(message, m.StatusText):
-            text = self._log.handle_statustext(message, received.system, now)
-            if text is not None:
-                self.services.handle_text(text, message.severity, now)
-        self.services.receive(received, now)
+            self._add(received)
+        contact = self.contacts.get(received.system)
+        if contact is not None:
+            contact.receive(received, now)
+        for tap in self.taps:
+            tap(received, now)
         self._look()
 
     def tick(self, now: float) -> None:
         """Send heartbeats, repeat what is overdue."""
-        self._outbox += self._heartbeat.tick(now, driving=False)
-        if self.services is not None:
-            self.services.tick(now)
+        demanding = self.chosen is not None and self.chosen.operator.demanding
+        self.outbox += [each.message for each in self._heartbeat.tick(now, driving=demanding)]
+        for contact in self.contacts.values():
+            contact.tick(now)
         self._look()
 
     def observe(self, reports: Sequence[LinkReport], now: float) -> None:
-        """Ignore the reports of the links."""
+        """Keep the reports of the links."""
+        self.reports = tuple(reports)
 
     def messages_to_send(self) -> list[Outgoing]:
         """Return the messages to send now, and remove them."""
-        outbox, self._outbox = self._outbox, []
-        return outbox + (self.services.messages_to_send() if self.services else [])
+        outbox, self.outbox = self.outbox, []
+        found = [Outgoing(message) for message in outbox]
+        return found + [each for contact in self.contacts.values() for each in contact.messages_to_send()]
 
     def add_look(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
         """Return a future that is done once `condition` holds, checked after each message and tick."""
@@ -82,9 +89,12 @@ class VerbCore:
         self._looks.append((condition, found))
         return found
 
-    def _attach(self, received: Received) -> None:
-        self.state = VehicleState(received.system, received.component)
-        self.services = VehicleServices(self._system, COMPONENT, (received.system, received.component))
+    def _add(self, received: Received) -> None:
+        if received.system not in self.contacts and len(self.contacts) < MAX_VEHICLES:
+            target = (received.system, received.component)
+            self.contacts[received.system] = VehicleContact(self._ids, self._session, target)
+        if self.chosen is None and self._wanted in (None, received.system):
+            self.chosen = self.contacts.get(received.system)
 
     def _look(self) -> None:
         for condition, found in self._looks:
@@ -94,54 +104,87 @@ class VerbCore:
 
 
 class VerbSession:
-    """What a verb does with its vehicle. `progress` gets each report of a request that has changed."""
+    """What a verb does with its vehicle, or with another one if `contact` is given."""
 
-    def __init__(self, core: VerbCore, flush: Callable[[], None], progress: Callable[[RequestReport], None]) -> None:
-        self._core = core
-        self._flush = flush
+    def __init__(
+        self,
+        core: VerbCore,
+        flush: Callable[[], None],
+        progress: Callable[[RequestReport], None],
+        contact: VehicleContact | None = None,
+    ) -> None:
+        self.core = core
+        self.flush = flush
         self._progress = progress
+        self._contact = contact
         self._count = 0
         self._ended: dict[int, RequestReport] = {}
-        self._began = asyncio.get_running_loop().time()
+        self.began = self.now
+        """When the verb began."""
+
+    @property
+    def now(self) -> float:
+        """The time of the loop's clock, s."""
+        return asyncio.get_running_loop().time()
+
+    @property
+    def contact(self) -> VehicleContact:
+        """The vehicle, once it was heard."""
+        contact = self._contact or self.core.chosen
+        assert contact is not None
+        return contact
 
     @property
     def services(self) -> VehicleServices:
         """The services of the vehicle, once it was heard."""
-        assert self._core.services is not None
-        return self._core.services
+        return self.contact.services
 
     @property
     def vehicle(self) -> VehicleState:
         """The vehicle, once it was heard."""
-        assert self._core.state is not None
-        return self._core.state
+        return self.contact.state
 
     async def find_vehicle(self, wait: float, wanted: int | None, where: str) -> None:
         """Wait for the HEARTBEAT of the vehicle. Raises VerbError after `wait` s."""
-        try:
-            await asyncio.wait_for(self._core.add_look(lambda: self._core.state is not None), wait)
-        except TimeoutError:
+        if not await self.wait_for(lambda: self.core.chosen is not None, wait):
             which = "no vehicle" if wanted is None else f"no vehicle {wanted}"
-            heard = f", but {_numbers(self._core.vehicles)}" if self._core.vehicles else ""
-            raise VerbError(ExitCode.NO_VEHICLE, f"{which} on {where} within {wait:g} s{heard}") from None
+            heard = f", but {_numbers(self.core.contacts)}" if self.core.contacts else ""
+            raise VerbError(ExitCode.NO_VEHICLE, f"{which} on {where} within {wait:g} s{heard}")
 
     async def need_only_vehicle(self, wanted: int | None) -> None:
         """Before the first change: without --vehicle there must be only one. Raises VerbError."""
-        left = self._began + ALONE_AFTER - asyncio.get_running_loop().time()
-        if wanted is None and left > 0:
-            await asyncio.sleep(left)
-        if wanted is None and len(self._core.vehicles) > 1:
-            raise VerbError(
-                ExitCode.USAGE, f"vehicles {_numbers(self._core.vehicles)} are here: choose one with --vehicle"
-            )
+        if wanted is None:
+            await self.hear_all()
+            if len(self.core.contacts) > 1:
+                heard = _numbers(self.core.contacts)
+                raise VerbError(ExitCode.USAGE, f"vehicles {heard} are here: choose one with --vehicle")
+
+    async def hear_all(self, seconds: float = ALONE_AFTER) -> None:
+        """Wait until the links were heard for so long, counted from the start."""
+        await asyncio.sleep(max(0.0, self.began + seconds - self.now))
+
+    async def take_part(self) -> None:
+        """Prove a session to the vehicle, so that it takes what needs control from this program."""
+        self.contact.operator.begin(self.now)
+        await self.core.add_look(lambda: self.contact.operator.settled)
+
+    async def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Wait until `condition` holds; return whether it does."""
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self.core.add_look(condition), seconds)
+        return condition()
+
+    def of_others(self) -> list[VerbSession]:
+        """Return a session for each vehicle that was heard, this one included."""
+        return [VerbSession(self.core, self.flush, self._progress, each) for each in self.core.contacts.values()]
 
     async def request(self, start: RequestStart) -> RequestReport:
         """Make a request and return how it ended."""
         self._count += 1
         number = self._count
-        start(number, asyncio.get_running_loop().time())
-        self._flush()
-        await self._core.add_look(lambda: self._collect(number))
+        start(number, self.now)
+        self.flush()
+        await self.core.add_look(lambda: self._collect(number))
         return self._ended.pop(number)
 
     def _collect(self, number: int) -> bool:
@@ -152,7 +195,7 @@ class VerbSession:
         return number in self._ended
 
 
-def _numbers(systems: set[int]) -> str:
+def _numbers(systems: Iterable[int]) -> str:
     return ", ".join(map(str, sorted(systems)))
 
 
@@ -162,10 +205,15 @@ async def run_session(
     wanted: int | None,
     script: Callable[[VerbSession], Awaitable[int]],
     progress: Callable[[RequestReport], None],
+    guard: DemandGuard | None = None,
 ) -> int:
-    """Open the links, run the script, and return its exit code. Raises EndpointError, LinkError, VerbError."""
+    """Open the links, run the script, and return its exit code. Raises EndpointError, LinkError, VerbError.
+
+    A script that is interrupted gets END_WITHIN to end in order, over links that still work.
+    """
     core = VerbCore(system, wanted)
-    runner = Runner(core, open_links(endpoints, system=system, component=COMPONENT), period=PERIOD, route=False)
+    links = open_links(endpoints, system=system, component=COMPONENT)
+    runner = Runner(core, links, period=PERIOD, route=False, sent=guard.record_sent if guard else None)
     running = asyncio.ensure_future(runner.run())
     await asyncio.sleep(0)  # run() begins
     verb = asyncio.ensure_future(script(VerbSession(core, runner.flush, progress)))
@@ -175,6 +223,7 @@ async def run_session(
             running.result()
         return await verb
     finally:
-        verb.cancel()
+        if verb.cancel():
+            await asyncio.wait({verb}, timeout=END_WITHIN)
         runner.stop()
         await running

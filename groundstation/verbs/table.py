@@ -9,17 +9,13 @@ from __future__ import annotations
 import argparse
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import ftp, log, mode, param, plan, reboot
+from groundstation.verbs import arm, ftp, log, mode, param, plan, reboot, status, stops
+from groundstation.verbs.arguments import Argument, number, seconds
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
-from link.services.param.values import is_float32
-
-Argument = tuple[str, dict[str, Any]]
-"""Name and settings for argparse."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,17 +26,14 @@ class VerbAction:
     run: Callable[[VerbSession, argparse.Namespace, Output], Awaitable[int]]
     """Returns the exit code."""
     arguments: tuple[Argument, ...] = field(default=())
-
-
-def number(text: str) -> float:
-    """Parse a value that a parameter can have. Raises ArgumentTypeError."""
-    try:
-        value = float(int(text, 16)) if text.lower().startswith("0x") else float(text)
-    except (ValueError, OverflowError):
-        value = float("nan")
-    if not is_float32(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number that a parameter can have")
-    return value
+    finds: bool = True
+    """Waits for the vehicle before it runs."""
+    takes_part: bool = False
+    """Proves a session to the vehicle first, because the vehicle takes it from the ground station in control only."""
+    check: Callable[[argparse.Namespace], None] | None = None
+    """Raises VerbError for arguments that cannot be right, before any link is opened."""
+    guarded: Callable[[argparse.Namespace], bool] = lambda _: False
+    """Whether it sends demands, so that a watchdog must outlive it."""
 
 
 _PATTERNS = ("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"})
@@ -55,6 +48,11 @@ ONLY = ""
 """Name of the action of a verb that has only one, and takes no name for it."""
 
 
+def _listen(default: float) -> Argument:
+    return ("--for", {"dest": "seconds", "type": seconds, "default": default, "metavar": "S",
+                      "help": f"how long to listen ({default:g})"})  # fmt: skip
+
+
 def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
     name = kind.name.lower()
     return {
@@ -67,6 +65,19 @@ def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
 
 
 VERBS: dict[str, dict[str, VerbAction]] = {
+    "status": {ONLY: VerbAction(
+        "print the state of the vehicle", status.status,
+        (("--watch", {"action": "store_true", "help": "print a line each second"}),
+         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end --watch after this time"})))},
+    "vehicles": {ONLY: VerbAction("print the vehicles that are heard", status.vehicles, (_listen(1.3),))},
+    "links": {ONLY: VerbAction("print what arrives on each link", status.links, (_listen(2.0),), finds=False)},
+    "arm": {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
+                             takes_part=True)},
+    "disarm": {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm)},
+    "stop": {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop)},
+    "estop": {ONLY: VerbAction(
+        "stop the motors and lock them; repeated until the vehicle reports it", stops.estop,
+        (("--clear", {"action": "store_true", "help": "release the emergency stop"}),))},
     "param": {
         "get": VerbAction("print parameters", param.get, (_PATTERNS,)),
         "set": VerbAction(

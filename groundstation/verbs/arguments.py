@@ -1,0 +1,54 @@
+"""Arguments of verbs: what argparse turns words into. A mistake is one line."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import Any
+
+from link.services.param.values import is_float32
+
+Argument = tuple[str, dict[str, Any]]
+"""Name and settings for argparse."""
+LONGEST = 86_400.0
+"""s; a day."""
+
+
+def number(text: str) -> float:
+    """Parse a value that a parameter can have. Raises ArgumentTypeError."""
+    try:
+        value = float(int(text, 16)) if text.lower().startswith("0x") else float(text)
+    except (ValueError, OverflowError):
+        value = math.nan
+    if not is_float32(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number that a parameter can have")
+    return value
+
+
+def finite(text: str) -> float:
+    """Parse a number. Raises ArgumentTypeError for NaN and infinity."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return value
+
+
+def seconds(text: str) -> float:
+    """Parse a duration in s. Raises ArgumentTypeError."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 < value <= LONGEST:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of seconds above 0")
+    return value
+
+
+def system_id(text: str) -> int:
+    """Parse a MAVLink system id. Raises ArgumentTypeError."""
+    if not (text.isascii() and text.isdecimal() and len(text) <= 3 and 1 <= int(text) <= 255):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 255")
+    return int(text)

@@ -1,0 +1,41 @@
+"""The watchdog of a verb that sends demands: it sends neutral when the verb's process is killed or stands still."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Callable, Hashable, Sequence
+
+from dialects.messages import Message
+from groundstation.station.driven import DrivenVehicle
+from groundstation.watchdog.feed import WatchdogFeed
+from link.transport.transport import Link
+
+REPORT_PERIOD = 0.1
+"""s between two reports, as of the station; after 0.3 s without one the watchdog sends neutral."""
+
+
+class DemandGuard:
+    """The watchdog process (groundstation/watchdog/). Start it before any link is open."""
+
+    def __init__(self, ids: tuple[int, int]) -> None:
+        """Start the process. Raises OSError."""
+        self._ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._feed = WatchdogFeed.start(theirs, None, ids)
+        theirs.close()
+
+    def record_sent(self, link: Link, address: Hashable, message: Message, sequence: int, now: float) -> None:
+        """Record a frame that was sent."""
+        self._feed.record_sent(link, address, message, sequence, now)
+
+    async def run(self, driven: Callable[[], Sequence[DrivenVehicle]]) -> None:
+        """Report what is driven until cancelled."""
+        loop = asyncio.get_running_loop()
+        while True:
+            self._feed.report(driven(), loop.time())
+            await asyncio.sleep(REPORT_PERIOD)
+
+    def close(self) -> None:
+        """End the process: the last demands were neutral."""
+        self._feed.close()
+        self._ours.close()
