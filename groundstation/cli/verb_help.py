@@ -10,6 +10,7 @@ VERB_HELP = {
     "disarm": "disarm, repeated until it is so",
     "stop": "change to HOLD, repeated until it is so",
     "estop": "stop the motors and lock them; --clear releases them",
+    "control": "show, request, release or give control of a vehicle",
     "param": "get, set, save, load or diff parameters of a vehicle",
     "mission": "show, get, put or clear the mission",
     "fence": "show, get, put or clear the fence",

@@ -56,6 +56,11 @@ class VehicleContact:
         return self.state.driver if self.state.driver and not self.in_control else None
 
     @property
+    def follows(self) -> bool:
+        """The driver is a program with our ids that has not been silent for long enough yet to be succeeded."""
+        return self.state.driver == self.ids[0] and not self.in_control and not self.state.control.silent
+
+    @property
     def driven(self) -> DrivenVehicle:
         """What the watchdog must know."""
         return DrivenVehicle.of(self.state, self.session)

@@ -25,6 +25,10 @@ PERIOD = 0.02
 """s between two ticks: twice the shortest round trip of a radio."""
 END_WITHIN = 1.0
 """s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
+TOLD_WITHIN = 0.5
+"""s for our vehicle to tell which program is in control, once it knows that we understand it."""
+SUCCESSION_WITHIN = 2.0
+"""s for the session of the verb before this one to count as silent, which takes 0.7 s (docs/safety.md)."""
 ALONE_AFTER = 1.3
 """s for which the links are heard before a vehicle counts as the only one: a heartbeat interval and a delay."""
 
@@ -166,7 +170,11 @@ class VerbSession:
     async def take_part(self) -> None:
         """Prove a session to the vehicle, so that it takes what needs control from this program."""
         self.contact.operator.begin(self.now)
-        await self.core.add_look(lambda: self.contact.operator.settled)
+        contact = self.contact
+        await self.core.add_look(lambda: contact.operator.settled)
+        if contact.state.has_rover_dialect:
+            await self.wait_for(lambda: contact.state.control.session is not None, TOLD_WITHIN)
+            await self.wait_for(lambda: not contact.follows, SUCCESSION_WITHIN)
 
     async def wait_for(self, condition: Callable[[], bool], seconds: float) -> bool:
         """Wait until `condition` holds; return whether it does."""

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import arm, ftp, log, mode, param, plan, reboot, status, stops
-from groundstation.verbs.arguments import Argument, number, seconds
+from groundstation.verbs import arm, control, ftp, log, mode, param, plan, reboot, status, stops
+from groundstation.verbs.arguments import Argument, number, seconds, system_id
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
 
@@ -78,6 +78,17 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     "estop": {ONLY: VerbAction(
         "stop the motors and lock them; repeated until the vehicle reports it", stops.estop,
         (("--clear", {"action": "store_true", "help": "release the emergency stop"}),))},
+    "control": {
+        "show": VerbAction("print who is in control", control.show),
+        "request": VerbAction(
+            "take control, or ask the driver for it", control.request,
+            (("--takeover", {"action": "store_true", "help": "others may take control without asking"}),),
+            takes_part=True),
+        "release": VerbAction("release control; our own vehicle changes to HOLD", control.release, takes_part=True),
+        "give": VerbAction(
+            "release control once another ground station asks for it, within --wait", control.give,
+            (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), takes_part=True),
+    },
     "param": {
         "get": VerbAction("print parameters", param.get, (_PATTERNS,)),
         "set": VerbAction(
@@ -98,7 +109,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     **{verb: _plan_actions(kind) for verb, kind in plan.KINDS},
     "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes)},
     "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
-                              (("name", {"metavar": "MODE"}),))},
+                              (("name", {"metavar": "MODE"}),), takes_part=True)},
     "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run)},
     "ftp": {
         "ls": VerbAction("list a folder", ftp.ls, (("path", {"nargs": "?", "default": "/", "metavar": "FOLDER"}),)),
