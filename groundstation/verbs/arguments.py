@@ -12,6 +12,8 @@ Argument = tuple[str, dict[str, Any]]
 """Name and settings for argparse."""
 LONGEST = 86_400.0
 """s; a day."""
+SLOWEST, FASTEST = 0.001, 200
+"""Hz; our vehicle takes 200 demands a second, and an interval has 31 bits of us."""
 
 
 def number(text: str) -> float:
@@ -51,4 +53,38 @@ def system_id(text: str) -> int:
     """Parse a MAVLink system id. Raises ArgumentTypeError."""
     if not (text.isascii() and text.isdecimal() and len(text) <= 3 and 1 <= int(text) <= 255):
         raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 255")
+    return int(text)
+
+
+def float32(text: str) -> float:
+    """Parse a parameter of a command; NaN means "not used". Raises ArgumentTypeError."""
+    try:
+        value = float(int(text, 16)) if text.lower().startswith("0x") else float(text)
+    except (ValueError, OverflowError):
+        value = math.inf
+    if not (math.isnan(value) or is_float32(value)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return value
+
+
+def rate(text: str) -> float:
+    """Parse a rate in Hz. Raises ArgumentTypeError."""
+    value = rate_or_none(text)
+    if value == 0:
+        raise argparse.ArgumentTypeError("a rate of 0 sends nothing")
+    return value
+
+
+def rate_or_none(text: str) -> float:
+    """Parse a rate in Hz, or 0. Raises ArgumentTypeError."""
+    value = finite(text)
+    if value and not SLOWEST <= value <= FASTEST:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a rate from {SLOWEST} to {FASTEST} Hz")
+    return value
+
+
+def count(text: str) -> int:
+    """Parse how often. Raises ArgumentTypeError."""
+    if not (text.isascii() and text.isdecimal() and len(text) <= 6 and int(text) >= 1):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 999999")
     return int(text)

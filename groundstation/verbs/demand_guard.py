@@ -6,8 +6,9 @@ import asyncio
 import socket
 from collections.abc import Callable, Hashable, Sequence
 
-from dialects.messages import Message
+from dialects.messages import ManualControl, Message, RcChannelsOverride
 from groundstation.station.driven import DrivenVehicle
+from groundstation.station.stall import StallMonitor
 from groundstation.watchdog.feed import WatchdogFeed
 from link.transport.transport import Link
 
@@ -23,16 +24,31 @@ class DemandGuard:
         self._ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._feed = WatchdogFeed.start(theirs, None, ids)
         theirs.close()
+        self._monitor = StallMonitor()
+        self._stall: float | None = None
 
     def record_sent(self, link: Link, address: Hashable, message: Message, sequence: int, now: float) -> None:
-        """Record a frame that was sent."""
+        """Record a frame that was sent. Neutral in MANUAL_CONTROL also ends channels that ArduPilot holds."""
+        if isinstance(message, RcChannelsOverride):
+            message = ManualControl(message.target_system, 0, 0, 0, 0, 0)
         self._feed.record_sent(link, address, message, sequence, now)
+
+    def stood_still(self, now: float) -> float | None:
+        """Return for how many s this process stood still, so that the watchdog may have sent neutral; None: not yet.
+
+        After that no demand may follow, so it is not forgotten.
+        """
+        self._stall = self._stall or self._monitor.pop_stall(now)
+        return self._stall
 
     async def run(self, driven: Callable[[], Sequence[DrivenVehicle]]) -> None:
         """Report what is driven until cancelled."""
         loop = asyncio.get_running_loop()
         while True:
-            self._feed.report(driven(), loop.time())
+            now = loop.time()
+            self.stood_still(now)
+            self._monitor.record_report(now)
+            self._feed.report(driven(), now)
             await asyncio.sleep(REPORT_PERIOD)
 
     def close(self) -> None:

@@ -93,7 +93,7 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output, 
         return await action.run(session, options, output)
 
     try:
-        async with asyncio.timeout(options.timeout):
+        async with asyncio.timeout(None if action.own_timeout else options.timeout):
             return await run_session(endpoints, options.system, options.vehicle, script, output.progress, guard)
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None

@@ -8,6 +8,7 @@ import secrets
 from collections.abc import Awaitable, Callable, Iterable, Sequence
 
 from dialects import messages as m
+from groundstation.station.driven import DrivenVehicle
 from groundstation.station.heartbeat_sender import HeartbeatSender
 from groundstation.vehicles.fleet import MAX_VEHICLES, is_vehicle
 from groundstation.vehicles.requests import RequestReport, RequestState
@@ -49,6 +50,8 @@ class VerbCore:
         """The newest of each link."""
         self.taps: list[Tap] = []
         """Called with each message that arrives."""
+        self.guard: DemandGuard | None = None
+        """The watchdog of a verb that sends demands."""
         self.outbox: list[m.Message] = []
         """Messages of a verb, to all or to their target."""
         self._ids = (system, COMPONENT)
@@ -86,6 +89,10 @@ class VerbCore:
         outbox, self.outbox = self.outbox, []
         found = [Outgoing(message) for message in outbox]
         return found + [each for contact in self.contacts.values() for each in contact.messages_to_send()]
+
+    def driven(self) -> tuple[DrivenVehicle, ...]:
+        """Return what the watchdog must know."""
+        return () if self.chosen is None else (self.chosen.driven,)
 
     def add_look(self, condition: Callable[[], bool]) -> asyncio.Future[None]:
         """Return a future that is done once `condition` holds, checked after each message and tick."""
@@ -220,11 +227,13 @@ async def run_session(
     A script that is interrupted gets END_WITHIN to end in order, over links that still work.
     """
     core = VerbCore(system, wanted)
+    core.guard = guard
     links = open_links(endpoints, system=system, component=COMPONENT)
     runner = Runner(core, links, period=PERIOD, route=False, sent=guard.record_sent if guard else None)
     running = asyncio.ensure_future(runner.run())
     await asyncio.sleep(0)  # run() begins
     verb = asyncio.ensure_future(script(VerbSession(core, runner.flush, progress)))
+    reporting = asyncio.ensure_future(guard.run(core.driven)) if guard else None
     try:
         await asyncio.wait({running, verb}, return_when=asyncio.FIRST_COMPLETED)
         if running.done():
@@ -233,5 +242,7 @@ async def run_session(
     finally:
         if verb.cancel():
             await asyncio.wait({verb}, timeout=END_WITHIN)
+        if reporting is not None:
+            reporting.cancel()
         runner.stop()
         await running

@@ -23,9 +23,6 @@ from groundstation.verbs.stop_jobs import EmergencyJob, disarm_job, hold_job
 REPEAT_FOR = 30.0
 """s for which a stop is repeated, unless --timeout says otherwise: a radio link may be cut for some seconds."""
 
-REPORT_BEFORE = 0.9
-"""Share of --timeout after which a stop is given up, so that its end can still be told."""
-
 BuildJob = Callable[[int, VehicleContact, float, float], Job]
 """Takes the number of the request, the vehicle, the time, and until when to repeat."""
 Run = Callable[[VerbSession, argparse.Namespace, Output], Awaitable[int]]
@@ -35,7 +32,7 @@ def _stop_all(what: str, done: str, build: BuildJob) -> Run:
     """Return the action that stops all vehicles that are heard, or the one of --vehicle."""
 
     async def run(session: VerbSession, options: argparse.Namespace, output: Output) -> int:
-        within = REPEAT_FOR if options.timeout is None else options.timeout * REPORT_BEFORE
+        within = options.timeout or REPEAT_FOR
         codes: dict[int, asyncio.Task[int]] = {}
         while True:
             for each in session.of_others():

@@ -12,8 +12,33 @@ from dataclasses import dataclass, field
 
 from dialects.enums import MissionType
 from groundstation.formats.param_file import ParamForm
-from groundstation.verbs import arm, control, ftp, log, mode, param, plan, reboot, status, stops
-from groundstation.verbs.arguments import Argument, number, seconds, system_id
+from groundstation.verbs import (
+    arm,
+    command,
+    control,
+    ftp,
+    log,
+    messages,
+    mode,
+    param,
+    ping,
+    plan,
+    reboot,
+    send,
+    status,
+    stops,
+)
+from groundstation.verbs.arguments import (
+    Argument,
+    count,
+    finite,
+    float32,
+    number,
+    rate,
+    rate_or_none,
+    seconds,
+    system_id,
+)
 from groundstation.verbs.output import Output
 from groundstation.verbs.session import VerbSession
 
@@ -32,6 +57,8 @@ class VerbAction:
     """Proves a session to the vehicle first, because the vehicle takes it from the ground station in control only."""
     check: Callable[[argparse.Namespace], None] | None = None
     """Raises VerbError for arguments that cannot be right, before any link is opened."""
+    own_timeout: bool = False
+    """Ends by itself after --timeout, with a code of its own."""
     guarded: Callable[[argparse.Namespace], bool] = lambda _: False
     """Whether it sends demands, so that a watchdog must outlive it."""
 
@@ -73,11 +100,13 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     "links": {ONLY: VerbAction("print what arrives on each link", status.links, (_listen(2.0),), finds=False)},
     "arm": {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
                              takes_part=True)},
-    "disarm": {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm)},
-    "stop": {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop)},
+    "disarm": {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm,
+                                own_timeout=True)},
+    "stop": {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop,
+ own_timeout=True)},
     "estop": {ONLY: VerbAction(
         "stop the motors and lock them; repeated until the vehicle reports it", stops.estop,
-        (("--clear", {"action": "store_true", "help": "release the emergency stop"}),))},
+        (("--clear", {"action": "store_true", "help": "release the emergency stop"}),), own_timeout=True)},
     "control": {
         "show": VerbAction("print who is in control", control.show),
         "request": VerbAction(
@@ -89,6 +118,41 @@ VERBS: dict[str, dict[str, VerbAction]] = {
             "release control once another ground station asks for it, within --wait", control.give,
             (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), takes_part=True),
     },
+    "messages": {ONLY: VerbAction(
+        "print which messages arrive, and their rates", messages.messages,
+        (("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"}),
+         _listen(5.0)))},
+    "watch": {ONLY: VerbAction(
+        "print each message of a kind, until a condition holds or --timeout is over", messages.watch,
+        (("what", {"metavar": "MESSAGE[.FIELD]", "help": "e.g. VFR_HUD.groundspeed"}),
+         ("--until", {"metavar": "EXPR", "help": "end when it holds: '>0.5' for a field, else 'field>0.5'"}),
+         ("--csv", {"action": "store_true", "help": "print comma-separated values"})),
+        check=messages.check_watch, own_timeout=True)},
+    "send": {ONLY: VerbAction(
+        "send a message; what is not given is 0, and what can move the vehicle needs --yes", send.run,
+        (("name", {"metavar": "MESSAGE"}), ("fields", {"nargs": "*", "metavar": "FIELD=VALUE"}),
+         ("--rate", {"type": rate, "metavar": "HZ", "help": "repeat it, with --for"}),
+         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "how long to repeat it"}),
+         ("--yes", {"action": "store_true", "help": "send what can move the vehicle"})),
+        check=send.check, guarded=send.is_demand)},
+    "command": {ONLY: VerbAction(
+        "send a MAV_CMD; done when the vehicle has accepted", command.command,
+        (("name", {"metavar": "MAV_CMD_X", "help": "its name, with or without MAV_CMD_, or its number"}),
+         ("params", {"nargs": "*", "type": float32, "metavar": "P", "help": "up to 7 parameters; nan is allowed"})),
+        takes_part=True, check=command.check_command)},
+    "request": {ONLY: VerbAction(
+        "request one message and print it", command.request,
+        (("name", {"metavar": "MESSAGE"}),
+         ("params", {"nargs": "*", "type": finite, "metavar": "P", "help": "parameters 2 and up, e.g. an index"})),
+        check=command.check_message)},
+    "rate": {ONLY: VerbAction(
+        "set how often a message comes on this link", command.rate,
+        (("name", {"metavar": "MESSAGE"}), ("rate", {"type": rate_or_none, "metavar": "HZ", "help": "0: never"})),
+        check=command.check_message)},
+    "ping": {ONLY: VerbAction(
+        "measure round trips to the vehicle", ping.ping,
+        (("--count", {"type": count, "default": 4, "metavar": "N", "help": "how many (4)"}),
+         ("--interval", {"type": seconds, "default": 1.0, "metavar": "S", "help": "s between two (1)"})))},
     "param": {
         "get": VerbAction("print parameters", param.get, (_PATTERNS,)),
         "set": VerbAction(

@@ -71,6 +71,9 @@ class ForeignVehicle:
         """Does what it accepts: modes, arming."""
         self.telemetry: dict[int, Any] = {}
         """Message id -> what it sends on request."""
+        self.on_command: dict[int, Callable[[], None]] = {}
+        """Command -> what it does beside the acknowledgement."""
+        self.answers_timesync = False
         self.acks: dict[int, tuple[int, str]] = {}
         """Command -> MAV_RESULT, and STATUSTEXT before it."""
         self.received: list[Any] = []
@@ -153,7 +156,11 @@ class ForeignVehicle:
     def _answer(self, message: Any) -> None:
         self._sender = message.get_srcSystem(), message.get_srcComponent()
         answer = _ANSWERS.get(message.get_type())
-        if answer is not None and message.get_msgId() not in self.silent and message.target_system in (0, self.system):
+        if (
+            answer is not None
+            and message.get_msgId() not in self.silent
+            and getattr(message, "target_system", 0) in (0, self.system)
+        ):
             answer(self, message)
 
     # ---- commands ----
@@ -163,6 +170,7 @@ class ForeignVehicle:
         if text:
             self.say(text)
         self.send(mav.MAVLink_command_ack_message(message.command, result, 0, 0, *self._sender))
+        self.on_command.get(message.command, lambda: None)()
         if message.command in (176, 400) and result == 0 and self.obeys:
             self._obey(message)
         if message.command == 512 and result == 0:
@@ -188,6 +196,10 @@ class ForeignVehicle:
             chosen = enumerate(self.modes, 1) if index == 0 else [(index, self.modes[index - 1])]
             for at, (name, custom, properties) in chosen:
                 self.send_ours(m.AvailableModes(len(self.modes), at, 0, custom, properties, name.encode()))
+
+    def _timesync(self, message: Any) -> None:
+        if self.answers_timesync and message.tc1 == 0:
+            self.send(mav.MAVLink_timesync_message(time.monotonic_ns(), message.ts1))
 
     # ---- parameters ----
 
@@ -331,6 +343,7 @@ class ForeignVehicle:
 
 _ANSWERS: dict[str, Callable[[ForeignVehicle, Any], None]] = {
     "COMMAND_LONG": ForeignVehicle._command,
+    "TIMESYNC": ForeignVehicle._timesync,
     "PARAM_REQUEST_LIST": ForeignVehicle._list,
     "PARAM_REQUEST_READ": ForeignVehicle._read,
     "PARAM_SET": ForeignVehicle._set,

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 
 import pytest
 
 from groundstation.verbs.exit_codes import ExitCode
 from tests.e2e.programs import Vehicle
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, wait_until
 from tests.ports import free_port
 
 pytestmark = pytest.mark.xdist_group("verbs with our vehicle")
 Capture = pytest.CaptureFixture[str]
 OTHER = ("--system", "100")
+PORT = free_port()
 
 
 class Verb:
@@ -34,18 +37,18 @@ class Verb:
 
 
 @pytest.fixture(scope="module")
-def vehicle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The endpoint of a vehicle process; all tests share it, and leave it disarmed and without a driver."""
-    port = free_port()
-    process = Vehicle(tmp_path_factory.mktemp("vehicle"), f"udpin:127.0.0.1:{port}")
-    yield f"udpout:127.0.0.1:{port}"
+def vehicle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Vehicle]:
+    """A vehicle process; all tests share it, and leave it disarmed and without a driver."""
+    endpoint = f"udpin:127.0.0.1:{PORT}"
+    process = Vehicle(tmp_path_factory.mktemp("vehicle"), endpoint, "--param", "FS_TIMEOUT=10")
+    yield process
     process.end()
 
 
 @pytest.fixture
-def verb(capsys: Capture, vehicle: str) -> Iterator[Verb]:
+def verb(capsys: Capture, vehicle: Vehicle) -> Iterator[Verb]:
     """Runs a verb with the vehicle, which is free again afterwards."""
-    run = Verb(capsys, vehicle)
+    run = Verb(capsys, f"udpout:127.0.0.1:{PORT}")
     yield run
     run("disarm")
     run("estop", "--clear")
@@ -92,3 +95,26 @@ def test_control_is_given_to_who_asks(verb: Verb) -> None:
         given = verb("control", "give", "100", "--wait", "20")
     assert (given.code, other.returncode) == (0, 0), given.err
     assert verb("control", "release", *OTHER).code == 0
+
+
+def test_a_killed_process_leaves_no_demand(verb: Verb, vehicle: Vehicle) -> None:
+    assert verb("arm", "--wait", "20").code == 0
+    words = ["send", "MANUAL_CONTROL", "x=500", "--rate", "20", "--for", "30", "--yes", "-e", verb.endpoint, "-v", "1"]
+    with subprocess.Popen([sys.executable, "-m", "groundstation", *words]) as process:
+        wait_until(vehicle.turning, "the wheels do not turn")
+        process.send_signal(signal.SIGKILL)
+        at = time.monotonic()
+        wait_until(vehicle.stands, "the wheels turn on")
+    assert vehicle.falls_and_stops_after(at)[1] < 1.5  # 1 s by docs/safety.md; the machine is shared
+    assert not vehicle.moved_since(at + 1.5)
+
+
+def test_a_demand_in_hold_moves_nothing_and_says_so(verb: Verb, vehicle: Vehicle) -> None:
+    assert verb("arm", "--wait", "20").code == 0
+    assert verb("stop").code == 0
+    at = time.monotonic()
+    words = ["send", "MANUAL_CONTROL", "x=500", "--rate", "20", "--for", "0.3", "--yes", "-e", verb.endpoint, "-v", "1"]
+    sent = subprocess.run([sys.executable, "-m", "groundstation", *words], capture_output=True, text=True, timeout=60)
+    assert sent.returncode == 0
+    assert "ignores demands in HOLD" in sent.stderr
+    assert not vehicle.moved_since(at)
