@@ -9,7 +9,7 @@ from link.services.command.client import TRIES, CommandClient, CommandOutcome
 
 
 class CommandRequests:
-    """COMMAND_LONG requests to the component `target` (system, component).
+    """COMMAND_LONG and COMMAND_INT requests to the component `target` (system, component).
 
     COMMAND_ACK does not tell two commands of one kind apart, so the second waits for the end of the first.
     """
@@ -22,8 +22,19 @@ class CommandRequests:
         """Command -> the request under way."""
         self._queries: list[CommandOutcome] = []
 
-    def send(self, number: int, command: Command | int, params: tuple[float, ...], what: str, now: float) -> None:
-        """Send a command with up to 7 parameters; `what` names it for the operator."""
+    def send(
+        self,
+        number: int,
+        command: Command | int,
+        params: tuple[float, ...],
+        what: str,
+        now: float,
+        frame: int | None = None,
+    ) -> None:
+        """Send a command with up to 7 parameters; `what` names it for the operator.
+
+        With a `frame` it is a COMMAND_INT with a position in parameters 5 to 7 (CommandClient.send).
+        """
         if not self._book.begin(number, what):
             return
         if self.is_waiting(command):
@@ -31,7 +42,7 @@ class CommandRequests:
             self._book.refuse(number, text, now, by_vehicle=False)
             return
         self._numbers[int(command)] = number
-        self._transmit(int(command), params, now)
+        self._transmit(int(command), params, now, frame)
 
     def query(self, command: Command, params: tuple[float, ...], now: float) -> None:
         """Send a command that is no request of the operator; call it only while none of its kind is_waiting."""
@@ -72,9 +83,9 @@ class CommandRequests:
         """Return the messages to send now, and remove them."""
         return self._client.messages_to_send()
 
-    def _transmit(self, command: int, params: tuple[float, ...], now: float) -> None:
+    def _transmit(self, command: int, params: tuple[float, ...], now: float, frame: int | None = None) -> None:
         system, component = self.target
-        self._client.send(command, *params, target_system=system, target_component=component, now=now)
+        self._client.send(command, *params, target_system=system, target_component=component, now=now, frame=frame)
 
     def _handle_outcomes(self, now: float) -> None:
         for outcome in self._client.outcomes():

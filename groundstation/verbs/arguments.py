@@ -15,6 +15,9 @@ LONGEST = 86_400.0
 SLOWEST, FASTEST = 0.001, 200
 """Hz; our vehicle takes 200 demands a second, and an interval has 31 bits of us."""
 
+FASTEST_SPEED = 100.0
+"""m/s; our vehicle takes no more."""
+
 
 def number(text: str) -> float:
     """Parse a value that a parameter can have. Raises ArgumentTypeError."""
@@ -80,6 +83,14 @@ def rate_or_none(text: str) -> float:
     value = finite(text)
     if value and not SLOWEST <= value <= FASTEST:
         raise argparse.ArgumentTypeError(f"{text!r} is not a rate from {SLOWEST} to {FASTEST} Hz")
+    return value
+
+
+def metres_per_second(text: str) -> float:
+    """Parse a speed. Raises ArgumentTypeError."""
+    value = finite(text)
+    if not 0 < value <= FASTEST_SPEED:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a speed above 0 and up to {FASTEST_SPEED:g} m/s")
     return value
 
 

@@ -19,10 +19,11 @@ from groundstation.config.settings import DEFAULT_ENDPOINT
 from groundstation.formats.errors import FileFormatError
 from groundstation.recent.recent_file import RecentFile
 from groundstation.verbs.arguments import seconds, system_id
+from groundstation.verbs.core import COMPONENT
 from groundstation.verbs.demand_guard import DemandGuard
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
-from groundstation.verbs.session import COMPONENT, VerbSession, run_session
+from groundstation.verbs.session import VerbSession, run_session
 from groundstation.verbs.table import ONLY, VERBS, VerbAction
 from link.endpoint import EndpointError
 from link.runtime import stdio
@@ -84,12 +85,9 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output, 
     guard = DemandGuard((options.system, COMPONENT)) if action.guarded(options) else None  # before the links are open
 
     async def script(session: VerbSession) -> int:
-        if action.finds:
-            await session.find_vehicle(options.wait, options.vehicle, " ".join(endpoints))
+        await _prepare(session, action, options, " ".join(endpoints))
         if action.finds and options.endpoints:
             recent.update(lambda known: known.add_all(endpoints, time.time(), session.vehicle.name))
-        if action.takes_part:
-            await session.take_part()
         return await action.run(session, options, output)
 
     try:
@@ -100,6 +98,16 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output, 
     finally:
         if guard is not None:
             guard.close()
+
+
+async def _prepare(session: VerbSession, action: VerbAction, options: argparse.Namespace, where: str) -> None:
+    """Do what the action needs before it runs."""
+    if action.finds:
+        await session.find_vehicle(options.wait, options.vehicle, where)
+    if action.takes_part:
+        await session.take_part()
+    if action.shows_neutral:
+        await session.show_neutral()
 
 
 def _cancel_on_signals(caught: list[int]) -> None:

@@ -17,6 +17,7 @@ from groundstation.verbs import (
     command,
     control,
     ftp,
+    go_to,
     log,
     messages,
     mode,
@@ -33,6 +34,7 @@ from groundstation.verbs.arguments import (
     count,
     finite,
     float32,
+    metres_per_second,
     number,
     rate,
     rate_or_none,
@@ -55,6 +57,8 @@ class VerbAction:
     """Waits for the vehicle before it runs."""
     takes_part: bool = False
     """Proves a session to the vehicle first, because the vehicle takes it from the ground station in control only."""
+    shows_neutral: bool = False
+    """Shows neutral then, because it can make the vehicle move."""
     check: Callable[[argparse.Namespace], None] | None = None
     """Raises VerbError for arguments that cannot be right, before any link is opened."""
     own_timeout: bool = False
@@ -118,6 +122,17 @@ VERBS: dict[str, dict[str, VerbAction]] = {
             "release control once another ground station asks for it, within --wait", control.give,
             (("station", {"type": system_id, "metavar": "ID", "help": "its system id"}),), takes_part=True),
     },
+    "goto": {ONLY: VerbAction(
+        "drive to a place by itself; done when the heartbeat reports such a mode", go_to.go_to,
+        (("latitude", {"nargs": "?", "type": finite, "metavar": "LAT", "help": "degrees"}),
+         ("longitude", {"nargs": "?", "type": finite, "metavar": "LON", "help": "degrees"}),
+         ("--by", {"nargs": 2, "type": finite, "metavar": ("NORTH", "EAST"), "help": "m from where it is"})),
+        takes_part=True, shows_neutral=True, check=go_to.check_place)},
+    "home": {ONLY: VerbAction("drive home by itself; done when the heartbeat reports RTL", go_to.home,
+                              takes_part=True, shows_neutral=True)},
+    "speed": {ONLY: VerbAction(
+        "set the speed of modes that drive by themselves", go_to.speed,
+        (("speed", {"type": metres_per_second, "metavar": "M/S"}),), takes_part=True, shows_neutral=True)},
     "messages": {ONLY: VerbAction(
         "print which messages arrive, and their rates", messages.messages,
         (("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"}),
@@ -139,7 +154,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "send a MAV_CMD; done when the vehicle has accepted", command.command,
         (("name", {"metavar": "MAV_CMD_X", "help": "its name, with or without MAV_CMD_, or its number"}),
          ("params", {"nargs": "*", "type": float32, "metavar": "P", "help": "up to 7 parameters; nan is allowed"})),
-        takes_part=True, check=command.check_command)},
+        takes_part=True, shows_neutral=True, check=command.check_command)},
     "request": {ONLY: VerbAction(
         "request one message and print it", command.request,
         (("name", {"metavar": "MESSAGE"}),
@@ -173,7 +188,7 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     **{verb: _plan_actions(kind) for verb, kind in plan.KINDS},
     "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes)},
     "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
-                              (("name", {"metavar": "MODE"}),), takes_part=True)},
+                              (("name", {"metavar": "MODE"}),), takes_part=True, shows_neutral=True)},
     "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run)},
     "ftp": {
         "ls": VerbAction("list a folder", ftp.ls, (("path", {"nargs": "?", "default": "/", "metavar": "FOLDER"}),)),

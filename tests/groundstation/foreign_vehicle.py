@@ -149,6 +149,10 @@ class ForeignVehicle:
             self._socket.sendto(codec.frame(type(message).id, payload, self._link.seq, self.system, 1), self._peer)
             self._link.seq = (self._link.seq + 1) % 256
 
+    def change_mode(self, mode: int, *, armed: bool = True) -> None:
+        """Change the mode; the next heartbeat follows at once."""
+        self.mode, self.armed, self._beat_due = mode, armed, 0.0
+
     def say(self, text: str, severity: int = 4) -> None:
         """Send a STATUSTEXT."""
         self.send(mav.MAVLink_statustext_message(severity, text.encode()))
@@ -343,6 +347,7 @@ class ForeignVehicle:
 
 _ANSWERS: dict[str, Callable[[ForeignVehicle, Any], None]] = {
     "COMMAND_LONG": ForeignVehicle._command,
+    "COMMAND_INT": ForeignVehicle._command,
     "TIMESYNC": ForeignVehicle._timesync,
     "PARAM_REQUEST_LIST": ForeignVehicle._list,
     "PARAM_REQUEST_READ": ForeignVehicle._read,

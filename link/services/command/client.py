@@ -1,4 +1,4 @@
-"""Client half of the command protocol: sends COMMAND_LONG and repeats it until COMMAND_ACK.
+"""Client half of the command protocol: sends COMMAND_LONG or COMMAND_INT and repeats it until COMMAND_ACK.
 
 Rules (https://mavlink.io/en/services/command.html): repeats have a rising `confirmation`; IN_PROGRESS extends the
 timeout.
@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dialects.enums import Result
-from dialects.messages import CommandAck, CommandLong
+from dialects.messages import CommandAck, CommandInt, CommandLong
 from link.core import Outgoing, Received
 from link.services.command.request import PROGRESS_TIMEOUT, Params
 
@@ -39,6 +39,8 @@ class _Waiting:
     params: Params
     target: tuple[int, int]
     due: float
+    frame: int | None = None
+    """MAV_FRAME of a COMMAND_INT; None: COMMAND_LONG."""
     sent: int = 0
     progress: int | None = None
     """% of a command that is IN_PROGRESS; None: not told."""
@@ -57,10 +59,21 @@ class CommandClient:
         self._outbox: list[Outgoing] = []
         self._outcomes: list[CommandOutcome] = []
 
-    def send(self, command: int, *params: float, target_system: int, target_component: int = 1, now: float) -> None:
-        """Send a command with up to 7 parameters (missing ones are 0) and wait for its COMMAND_ACK."""
+    def send(
+        self,
+        command: int,
+        *params: float,
+        target_system: int,
+        target_component: int = 1,
+        now: float,
+        frame: int | None = None,
+    ) -> None:
+        """Send a command with up to 7 parameters (missing ones are 0) and wait for its COMMAND_ACK.
+
+        With a `frame` it is a COMMAND_INT, and parameters 5 and 6 are whole numbers: degrees times 1e7.
+        """
         full: Params = (*params, *(0.0,) * (7 - len(params)))  # type: ignore[assignment]
-        waiting = _Waiting(int(command), full, (target_system, target_component), now)
+        waiting = _Waiting(int(command), full, (target_system, target_component), now, frame)
         self._waiting[target_system, int(command)] = waiting
         self._transmit(waiting, now)
 
@@ -117,7 +130,12 @@ class CommandClient:
     def _transmit(self, waiting: _Waiting, now: float) -> None:
         one, two, three, four, five, six, seven = waiting.params
         system, component = waiting.target
-        message = CommandLong(system, component, waiting.command, waiting.sent, one, two, three, four, five, six, seven)
-        self._outbox.append(Outgoing(message))
+        if waiting.frame is None:
+            head = (system, component, waiting.command, waiting.sent)
+            self._outbox.append(Outgoing(CommandLong(*head, one, two, three, four, five, six, seven)))
+        else:
+            where = (round(five), round(six), seven)
+            head = (system, component, waiting.frame, waiting.command)
+            self._outbox.append(Outgoing(CommandInt(*head, 0, 0, one, two, three, four, *where)))
         waiting.sent += 1
         waiting.due = now + REPEAT_AFTER

@@ -118,3 +118,14 @@ def test_a_demand_in_hold_moves_nothing_and_says_so(verb: Verb, vehicle: Vehicle
     assert sent.returncode == 0
     assert "ignores demands in HOLD" in sent.stderr
     assert not vehicle.moved_since(at)
+
+
+def test_it_drives_itself_until_it_is_stopped(verb: Verb, vehicle: Vehicle) -> None:
+    assert verb("arm", "--wait", "20").code == 0
+    assert verb("speed", "1.5").code == 0
+    sent = verb("goto", "--by", "30", "0")
+    assert sent.code == 0, sent.err
+    wait_until(vehicle.turning, "the wheels do not turn")
+    assert verb("stop").code == 0
+    wait_until(vehicle.stands, "the wheels turn on")
+    assert verb.status("mode") == "HOLD"
