@@ -35,6 +35,8 @@ VERB_HELP = {
 
 LOCAL_HELP = {
     "config": "check, show, init or path of the config file",
+    "keys": "show what this terminal sends for keys",
+    "completion": "print a script that completes verbs in bash, zsh or fish",
 }
 """Verb without a vehicle -> what it does."""
 
@@ -44,4 +46,4 @@ RESERVED = frozenset({**VERB_HELP, **LOCAL_HELP})
 
 def verb_help() -> str:
     """Return the verbs as lines for --help."""
-    return "\n".join(f"  groundstation {name:<9} {text}" for name, text in {**VERB_HELP, **LOCAL_HELP}.items())
+    return "\n".join(f"  groundstation {name:<10} {text}" for name, text in {**VERB_HELP, **LOCAL_HELP}.items())

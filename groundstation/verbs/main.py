@@ -19,6 +19,7 @@ from groundstation.config.settings import DEFAULT_ENDPOINT
 from groundstation.formats.errors import FileFormatError
 from groundstation.recent.recent_file import RecentFile
 from groundstation.verbs.arguments import seconds, system_id
+from groundstation.verbs.completion import SHELLS, build_script
 from groundstation.verbs.core import COMPONENT
 from groundstation.verbs.demand_guard import DemandGuard
 from groundstation.verbs.exit_codes import ExitCode, VerbError
@@ -181,3 +182,23 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     add("--dialect", metavar="FILE.xml", help="definitions of a vehicle that sends messages of its own")
     add("--json", action="store_true", help="print one JSON object a line")
     add("-q", "--quiet", action="store_true", help="print no progress and no notes")  # fmt: skip
+
+
+def run_completion(arguments: Sequence[str], helps: Mapping[str, str]) -> int:
+    """Print the script for a shell; return the exit code."""
+    parser = CommandLineParser(
+        prog="groundstation completion",
+        description="Print a script that completes verbs, options and names in a shell.",
+        epilog='bash: eval "$(groundstation completion bash)" in ~/.bashrc; zsh likewise; '
+        "fish: groundstation completion fish | source",
+    )
+    parser.add_argument("shell", choices=SHELLS)
+    options = parser.parse_args(parser.reject_empty(arguments))
+    try:
+        sys.stdout.write(build_script(options.shell, helps))
+        sys.stdout.flush()
+    except OSError as error:
+        stdio.discard_output()
+        sys.stderr.write(f"groundstation: output: {error.strerror or error}\n")
+        return int(ExitCode.BROKEN)
+    return int(ExitCode.DONE)

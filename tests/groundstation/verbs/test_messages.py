@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -119,6 +121,19 @@ def test_ping(capsys: Capture) -> None:
         assert all(0 < each["round_trip"] < 1 for each in trips)
         vehicle.answers_timesync = False
         assert verb(capsys, vehicle, "ping", "--count", "1").code == ExitCode.NO_ANSWER
+
+
+@pytest.mark.parametrize("words", [("watch", "VFR_HUD"), ("status", "--watch")])
+def test_a_reader_that_is_gone_is_one_line(words: tuple[str, ...]) -> None:
+    with ForeignVehicle() as vehicle, streaming(vehicle):
+        command = [sys.executable, "-m", "groundstation", *words, "-e", vehicle.endpoint]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            assert process.stdout is not None
+            assert process.stderr is not None
+            process.stdout.readline()
+            process.stdout.close()
+            assert process.stderr.read() == "groundstation: output: Broken pipe\n"
+        assert process.returncode == ExitCode.BROKEN
 
 
 MISTAKES = [
