@@ -40,6 +40,8 @@ async def request(session: VerbSession, options: argparse.Namespace, output: Out
     """Take control, or ask the driver for it."""
     await session.need_only_vehicle(options.vehicle)
     report = await _ask(session, options.takeover)
+    if report.state is RequestState.REFUSED and session.vehicle.driver == 0:
+        report = await _ask(session, options.takeover)  # the driver has released control meanwhile
     asked = session.contact.other_driver
     if report.state is RequestState.REFUSED and asked is not None:
         output.note(f"GCS {asked} is asked for control of {session.vehicle.name}")

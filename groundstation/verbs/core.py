@@ -16,15 +16,21 @@ from link.core import LinkReport, Outgoing, Received
 
 COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: the component id that ground stations use."""
+WATCHER = 25
+"""MAV_COMP_ID_USER1: of verbs that only look. With the ids of a silent driver, as of the verb before, any command would
+count as its successor, and our vehicle would leave an autonomous mode (docs/safety.md, "Who the driver is")."""
 
 Tap = Callable[[Received, float], None]
 """Takes each message that arrives, and the time."""
 
 
 class VerbCore:
-    """A core (link/core.py) with the vehicles that are heard. It talks to `wanted`, or to the first."""
+    """A core (link/core.py) with the vehicles that are heard. It talks to `wanted`, or to the first.
 
-    def __init__(self, system: int, wanted: int | None) -> None:
+    `ids` are our system and component id.
+    """
+
+    def __init__(self, ids: tuple[int, int], wanted: int | None) -> None:
         self.contacts: dict[int, VehicleContact] = {}
         """All vehicles heard, by system id; at most MAX_VEHICLES."""
         self.chosen: VehicleContact | None = None
@@ -36,7 +42,7 @@ class VerbCore:
         """The watchdog of a verb that sends demands."""
         self.outbox: list[m.Message] = []
         """Messages of a verb, to all or to their target."""
-        self._ids = (system, COMPONENT)
+        self._ids = ids
         self._wanted = wanted
         self._session = secrets.randbits(32)
         self._heartbeat = HeartbeatSender(0.0)

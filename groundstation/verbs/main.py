@@ -20,7 +20,7 @@ from groundstation.formats.errors import FileFormatError
 from groundstation.recent.recent_file import RecentFile
 from groundstation.verbs.arguments import seconds, system_id
 from groundstation.verbs.completion import SHELLS, build_script
-from groundstation.verbs.core import COMPONENT
+from groundstation.verbs.core import COMPONENT, WATCHER
 from groundstation.verbs.demand_guard import DemandGuard
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from groundstation.verbs.output import Output
@@ -83,7 +83,8 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output, 
     if recent.warning:
         output.note(recent.warning)
     _cancel_on_signals(caught)
-    guard = DemandGuard((options.system, COMPONENT)) if action.guarded(options) else None  # before the links are open
+    ids = (options.system, WATCHER if action.watches else COMPONENT)
+    guard = DemandGuard(ids) if action.guarded(options) else None  # before the links are open
 
     async def script(session: VerbSession) -> int:
         await _prepare(session, action, options, " ".join(endpoints))
@@ -93,7 +94,7 @@ async def _run(action: VerbAction, options: argparse.Namespace, output: Output, 
 
     try:
         async with asyncio.timeout(None if action.own_timeout else options.timeout):
-            return await run_session(endpoints, options.system, options.vehicle, script, output.progress, guard)
+            return await run_session(endpoints, ids, options.vehicle, script, output.progress, guard)
     except TimeoutError:
         raise VerbError(ExitCode.NO_ANSWER, f"not done within {options.timeout:g} s") from None
     finally:

@@ -11,7 +11,7 @@ from groundstation.vehicles.requests import RequestReport, RequestState
 from groundstation.vehicles.services import VehicleServices
 from groundstation.vehicles.vehicle_state import VehicleState
 from groundstation.verbs.contact import VehicleContact
-from groundstation.verbs.core import COMPONENT, VerbCore
+from groundstation.verbs.core import VerbCore
 from groundstation.verbs.demand_guard import DemandGuard
 from groundstation.verbs.exit_codes import ExitCode, VerbError
 from link.runner import Runner, open_links
@@ -142,7 +142,7 @@ def _numbers(systems: Iterable[int]) -> str:
 
 async def run_session(
     endpoints: Sequence[str],
-    system: int,
+    ids: tuple[int, int],
     wanted: int | None,
     script: Callable[[VerbSession], Awaitable[int]],
     progress: Callable[[RequestReport], None],
@@ -152,9 +152,9 @@ async def run_session(
 
     A script that is interrupted gets END_WITHIN to end in order, over links that still work.
     """
-    core = VerbCore(system, wanted)
+    core = VerbCore(ids, wanted)
     core.guard = guard
-    links = open_links(endpoints, system=system, component=COMPONENT)
+    links = open_links(endpoints, system=ids[0], component=ids[1])
     runner = Runner(core, links, period=PERIOD, route=False, sent=guard.record_sent if guard else None)
     running = asyncio.ensure_future(runner.run())
     await asyncio.sleep(0)  # run() begins

@@ -55,6 +55,8 @@ class VerbAction:
     arguments: tuple[Argument, ...] = field(default=())
     finds: bool = True
     """Waits for the vehicle before it runs."""
+    watches: bool = False
+    """Only looks, and so has ids that are never those of a driver."""
     takes_part: bool = False
     """Proves a session to the vehicle first, because the vehicle takes it from the ground station in control only."""
     shows_neutral: bool = False
@@ -87,9 +89,9 @@ def _listen(default: float) -> Argument:
 def _plan_actions(kind: MissionType) -> dict[str, VerbAction]:
     name = kind.name.lower()
     return {
-        "show": VerbAction(f"print the {name}", plan.show(kind)),
+        "show": VerbAction(f"print the {name}", plan.show(kind), watches=True),
         "get": VerbAction(f"download the {name} into a file: .plan, or .waypoints for a mission", plan.get(kind),
-                          (_FILE, _YES)),
+                          (_FILE, _YES), watches=True),
         "put": VerbAction(f"upload the {name} of a file", plan.put(kind), (_FILE,)),
         "clear": VerbAction(f"clear the {name} on the vehicle", plan.clear(kind)),
     }  # fmt: skip
@@ -99,20 +101,22 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     "status": {ONLY: VerbAction(
         "print the state of the vehicle", status.status,
         (("--watch", {"action": "store_true", "help": "print a line each second"}),
-         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end --watch after this time"})))},
-    "vehicles": {ONLY: VerbAction("print the vehicles that are heard", status.vehicles, (_listen(1.3),))},
-    "links": {ONLY: VerbAction("print what arrives on each link", status.links, (_listen(2.0),), finds=False)},
+         ("--for", {"dest": "seconds", "type": seconds, "metavar": "S", "help": "end --watch after this time"})),
+        watches=True)},
+    "vehicles": {ONLY: VerbAction("print the vehicles that are heard", status.vehicles, (_listen(1.3),), watches=True)},
+    "links": {ONLY: VerbAction("print what arrives on each link", status.links, (_listen(2.0),), finds=False,
+                               watches=True)},
     "arm": {ONLY: VerbAction("arm, once the vehicle is ready; done when the heartbeat reports it", arm.run,
                              takes_part=True)},
     "disarm": {ONLY: VerbAction("disarm, repeated until the heartbeat reports it", stops.disarm,
                                 own_timeout=True)},
     "stop": {ONLY: VerbAction("change to HOLD, repeated until the heartbeat reports it", stops.stop,
- own_timeout=True)},
+                              own_timeout=True)},
     "estop": {ONLY: VerbAction(
         "stop the motors and lock them; repeated until the vehicle reports it", stops.estop,
         (("--clear", {"action": "store_true", "help": "release the emergency stop"}),), own_timeout=True)},
     "control": {
-        "show": VerbAction("print who is in control", control.show),
+        "show": VerbAction("print who is in control", control.show, watches=True),
         "request": VerbAction(
             "take control, or ask the driver for it", control.request,
             (("--takeover", {"action": "store_true", "help": "others may take control without asking"}),),
@@ -136,13 +140,13 @@ VERBS: dict[str, dict[str, VerbAction]] = {
     "messages": {ONLY: VerbAction(
         "print which messages arrive, and their rates", messages.messages,
         (("patterns", {"nargs": "*", "metavar": "PATTERN", "help": "names; * and ? match any characters"}),
-         _listen(5.0)))},
+         _listen(5.0)), watches=True)},
     "watch": {ONLY: VerbAction(
         "print each message of a kind, until a condition holds or --timeout is over", messages.watch,
         (("what", {"metavar": "MESSAGE[.FIELD]", "help": "e.g. VFR_HUD.groundspeed"}),
          ("--until", {"metavar": "EXPR", "help": "end when it holds: '>0.5' for a field, else 'field>0.5'"}),
          ("--csv", {"action": "store_true", "help": "print comma-separated values"})),
-        check=messages.check_watch, own_timeout=True)},
+        watches=True, check=messages.check_watch, own_timeout=True)},
     "send": {ONLY: VerbAction(
         "send a message; what is not given is 0, and what can move the vehicle needs --yes", send.run,
         (("name", {"metavar": "MESSAGE"}), ("fields", {"nargs": "*", "metavar": "FIELD=VALUE"}),
@@ -159,17 +163,18 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "request one message and print it", command.request,
         (("name", {"metavar": "MESSAGE"}),
          ("params", {"nargs": "*", "type": finite, "metavar": "P", "help": "parameters 2 and up, e.g. an index"})),
-        check=command.check_message)},
+        watches=True, check=command.check_message)},
     "rate": {ONLY: VerbAction(
         "set how often a message comes on this link", command.rate,
         (("name", {"metavar": "MESSAGE"}), ("rate", {"type": rate_or_none, "metavar": "HZ", "help": "0: never"})),
-        check=command.check_message)},
+        watches=True, check=command.check_message)},
     "ping": {ONLY: VerbAction(
         "measure round trips to the vehicle", ping.ping,
         (("--count", {"type": count, "default": 4, "metavar": "N", "help": "how many (4)"}),
-         ("--interval", {"type": seconds, "default": 1.0, "metavar": "S", "help": "s between two (1)"})))},
+         ("--interval", {"type": seconds, "default": 1.0, "metavar": "S", "help": "s between two (1)"})),
+        watches=True)},
     "param": {
-        "get": VerbAction("print parameters", param.get, (_PATTERNS,)),
+        "get": VerbAction("print parameters", param.get, (_PATTERNS,), watches=True),
         "set": VerbAction(
             "set one parameter", param.set_value,
             (("name", {"metavar": "NAME"}), ("value", {"metavar": "VALUE", "type": number})),
@@ -177,16 +182,17 @@ VERBS: dict[str, dict[str, VerbAction]] = {
         "save": VerbAction(
             "write parameters to a file", param.save,
             (_FILE, _PATTERNS, ("--changed", {"action": "store_true", "help": "only those not at the default"}),
-             _FORMAT, _YES),
+             _FORMAT, _YES), watches=True,
         ),
         "load": VerbAction(
             "set what differs from a file; stop at the first refusal", param.load,
             (_FILE, ("--dry-run", {"action": "store_true", "help": "only print what would be set"})),
         ),
-        "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,)),
+        "diff": VerbAction("print where a file and the vehicle differ", param.diff, (_FILE,), watches=True),
     },
     **{verb: _plan_actions(kind) for verb, kind in plan.KINDS},
-    "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes)},
+    "modes": {ONLY: VerbAction("print the modes of the vehicle; > marks the current one", mode.list_modes,
+                               watches=True)},
     "mode": {ONLY: VerbAction("change the mode; done when the heartbeat reports it", mode.set_mode,
                               (("name", {"metavar": "MODE"}),), takes_part=True, shows_neutral=True)},
     "reboot": {ONLY: VerbAction("restart the vehicle; it refuses while it is armed", reboot.run)},
@@ -200,10 +206,10 @@ VERBS: dict[str, dict[str, VerbAction]] = {
                           (_REMOTE, ("local", {"nargs": "?", "metavar": "FILE"}))),
     },
     "log": {
-        "list": VerbAction("print the logs on the vehicle", log.list_logs),
+        "list": VerbAction("print the logs on the vehicle", log.list_logs, watches=True),
         "get": VerbAction("download a log, or resume", log.get,
                           (("log", {"metavar": "ID", "help": "number of the log, or latest"}),
-                           ("file", {"nargs": "?", "metavar": "FILE"}), _YES)),
+                           ("file", {"nargs": "?", "metavar": "FILE"}), _YES), watches=True),
     },
 }  # fmt: skip
 """Verb -> its actions."""

@@ -68,7 +68,7 @@ def test_an_acknowledged_arming_that_the_heartbeat_does_not_show(capsys: Capture
 def test_an_interrupted_arming_disarms(capsys: Capture) -> None:
     with ForeignVehicle() as vehicle:
         vehicle.obeys = False
-        assert arm(capsys, vehicle, "--timeout", "0.5").code == ExitCode.NO_ANSWER
+        assert arm(capsys, vehicle, "--timeout", "2.5").code == ExitCode.NO_ANSWER
         vehicle.wait_for("COMMAND_LONG", 2)
         assert [each.param1 for each in vehicle.of("COMMAND_LONG") if each.command == ARM] == [1.0, 0.0]
 

@@ -129,3 +129,13 @@ def test_it_drives_itself_until_it_is_stopped(verb: Verb, vehicle: Vehicle) -> N
     assert verb("stop").code == 0
     wait_until(vehicle.stands, "the wheels turn on")
     assert verb.status("mode") == "HOLD"
+
+
+def test_a_verb_that_looks_leaves_the_vehicle_in_its_mode(verb: Verb, vehicle: Vehicle) -> None:
+    assert verb("arm", "--wait", "20").code == 0
+    assert verb("goto", "--by", "30", "0").code == 0
+    wait_until(vehicle.turning, "the wheels do not turn")
+    for words in (("control", "show"), ("request", "HOME_POSITION"), ("modes",)):
+        assert verb(*words).code == 0
+    assert verb.status("mode") == "GUIDED"
+    assert vehicle.turning()
