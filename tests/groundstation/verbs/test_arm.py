@@ -9,7 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mav
 
 from groundstation.verbs.exit_codes import ExitCode
 from tests.groundstation.foreign_vehicle import ARDUPILOT, PX4, ForeignVehicle
-from tests.groundstation.verbs.verb_runs import VerbRun, run_verb
+from tests.groundstation.verbs.verb_runs import VerbRun, run_verb, wait_until
 
 Capture = pytest.CaptureFixture[str]
 ARM, MODE, PREARM = 400, 176, 0x10000000
@@ -69,8 +69,11 @@ def test_an_interrupted_arming_disarms(capsys: Capture) -> None:
     with ForeignVehicle() as vehicle:
         vehicle.obeys = False
         assert arm(capsys, vehicle, "--timeout", "2.5").code == ExitCode.NO_ANSWER
-        vehicle.wait_for("COMMAND_LONG", 2)
-        assert [each.param1 for each in vehicle.of("COMMAND_LONG") if each.command == ARM] == [1.0, 0.0]
+        wait_until(lambda: arms(vehicle) == [1.0, 0.0], "it was not disarmed")
+
+
+def arms(vehicle: ForeignVehicle) -> list[float]:
+    return [each.param1 for each in vehicle.of("COMMAND_LONG") if each.command == ARM]
 
 
 def test_no_answer(capsys: Capture) -> None:

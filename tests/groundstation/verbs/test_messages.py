@@ -113,6 +113,14 @@ def test_a_command_by_name_and_number(capsys: Capture) -> None:
         assert (home.param1, home.param3 != home.param3, servo.param2) == (1, True, 1500)
 
 
+def test_verbs_that_only_look_never_have_the_ids_of_a_driver(capsys: Capture) -> None:
+    with ForeignVehicle() as vehicle:
+        for words, component in ((("request", "VFR_HUD"), 25), (("command", "RUN_PREARM_CHECKS"), 190)):
+            vehicle.received.clear()
+            verb(capsys, vehicle, *words)
+            assert {each.get_srcComponent() for each in list(vehicle.received)} == {component}
+
+
 def test_ping(capsys: Capture) -> None:
     with ForeignVehicle() as vehicle:
         vehicle.answers_timesync = True

@@ -41,6 +41,7 @@ def vehicle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Vehicle]:
     """A vehicle process; all tests share it, and leave it disarmed and without a driver."""
     endpoint = f"udpin:127.0.0.1:{PORT}"
     process = Vehicle(tmp_path_factory.mktemp("vehicle"), endpoint, "--param", "FS_TIMEOUT=10")
+    wait_until(lambda: "ready" in process.errors.read_text(), "the vehicle does not start")
     yield process
     process.end()
 
@@ -89,7 +90,7 @@ def test_control_is_taken_kept_and_released(verb: Verb) -> None:
 
 
 def test_control_is_given_to_who_asks(verb: Verb) -> None:
-    assert verb("control", "give", "100", "--wait", "0.3").code == ExitCode.DIFFERS
+    assert verb("control", "give", "100", "--wait", "1.5").code == ExitCode.DIFFERS
     words = ["control", "request", *OTHER, "-v", "1", "-e", verb.endpoint]
     with subprocess.Popen([sys.executable, "-m", "groundstation", *words], stderr=subprocess.DEVNULL) as other:
         given = verb("control", "give", "100", "--wait", "20")
@@ -129,13 +130,3 @@ def test_it_drives_itself_until_it_is_stopped(verb: Verb, vehicle: Vehicle) -> N
     assert verb("stop").code == 0
     wait_until(vehicle.stands, "the wheels turn on")
     assert verb.status("mode") == "HOLD"
-
-
-def test_a_verb_that_looks_leaves_the_vehicle_in_its_mode(verb: Verb, vehicle: Vehicle) -> None:
-    assert verb("arm", "--wait", "20").code == 0
-    assert verb("goto", "--by", "30", "0").code == 0
-    wait_until(vehicle.turning, "the wheels do not turn")
-    for words in (("control", "show"), ("request", "HOME_POSITION"), ("modes",)):
-        assert verb(*words).code == 0
-    assert verb.status("mode") == "GUIDED"
-    assert vehicle.turning()
