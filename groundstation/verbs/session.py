@@ -20,6 +20,8 @@ PERIOD = 0.02
 """s between two ticks: twice the shortest round trip of a radio."""
 END_WITHIN = 1.0
 """s for an interrupted verb to send its last messages: final neutrals take 0.25 s."""
+SETTLED_WITHIN = 3.0
+"""s to find out the dialect and prove the session; the question alone is repeated for 2.1 s."""
 TOLD_WITHIN = 0.5
 """s for our vehicle to tell which program is in control, once it knows that we understand it."""
 SUCCESSION_WITHIN = 2.0
@@ -92,10 +94,13 @@ class VerbSession:
         await asyncio.sleep(max(0.0, self.began + seconds - self.now))
 
     async def take_part(self) -> None:
-        """Prove a session to the vehicle, so that it takes what needs control from this program."""
+        """Prove a session to the vehicle, so that it takes what needs control from this program.
+
+        A vehicle that says neither that it has our dialect nor that it has not is treated as one without.
+        """
         self.contact.operator.begin(self.now)
         contact = self.contact
-        await self.core.add_look(lambda: contact.operator.settled)
+        await self.wait_for(lambda: contact.operator.settled, SETTLED_WITHIN)
         if contact.state.has_rover_dialect:
             await self.wait_for(lambda: contact.state.control.session is not None, TOLD_WITHIN)
             await self.wait_for(lambda: not contact.follows, SUCCESSION_WITHIN)

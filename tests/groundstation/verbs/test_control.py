@@ -27,3 +27,12 @@ def test_a_refused_request(capsys: pytest.CaptureFixture[str]) -> None:
         vehicle.acks[REQUEST_CONTROL] = (4, "not now")
         run = run_verb(capsys, "control", "request", "-e", vehicle.endpoint, "-v", "1")
         assert (run.code, "not now" in run.err) == (ExitCode.REFUSED, True)
+
+
+def test_a_vehicle_that_accepts_the_question_for_the_dialect_and_does_not_answer_it(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    with ForeignVehicle(autopilot=0) as vehicle:
+        run = run_verb(capsys, "control", "request", "-e", vehicle.endpoint, "-v", "1")
+        assert run.code == 0, run.err
+        assert vehicle.of("COMMAND_LONG")[-1].command == REQUEST_CONTROL
